@@ -1,0 +1,39 @@
+# The whole developer interface. Needs Python 3.11 or newer and nothing else.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test derive lint types check clean
+
+help:  ## list the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+demo: .venv/ready  ## set up and run the main job: derive, verify, generate, integrate
+	$(BIN)/holonomic demo
+
+test: .venv/ready  ## set up and run the tests
+	$(BIN)/pytest
+
+derive: .venv/ready  ## write the generated modules anew
+	$(BIN)/holonomic derive
+
+lint: .venv/ready  ## style and common mistakes
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+
+types: .venv/ready  ## strict type check of the three packages
+	$(BIN)/mypy
+
+check: lint types test  ## everything that decides whether a change lands
+	$(BIN)/holonomic derive --check
+	$(BIN)/holonomic verify > /dev/null
+
+clean:  ## remove the environment and what the tools left behind
+	rm -rf .venv out build dist .mypy_cache .pytest_cache .ruff_cache
+
+# The environment. Versions are those that are known to work together.
+.venv/ready: pyproject.toml .ci/constraints.txt
+	$(PYTHON) -m venv .venv
+	PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install \
+		--quiet --disable-pip-version-check --editable '.[test]'
+	@touch $@
