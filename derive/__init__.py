@@ -1,0 +1,27 @@
+"""From the positions of masses to equations of motion, and from these to code.
+
+The way of the data, one module a station::
+
+    system ─▶ derivation ─▶ mechanics ─▶ lowering ─▶ assignments ─▶ python ─▶ tree
+    positions  SymPy values  one graph    operations  names, texts   module    files
+
+``system`` holds positions and masses, ``derivation`` the textbook steps,
+``mechanics`` says how each function is computed, ``graph`` shares what is
+equal, ``lowering`` orders the operations, ``python`` lays out the module, and
+``tree`` puts it in its place.
+"""
+
+from derive.catalogue import load, names
+from derive.derivation import Derivation, Linearisation
+from derive.system import Coordinate, Parameter, PointMass, System
+
+__all__ = [
+    "Coordinate",
+    "Derivation",
+    "Linearisation",
+    "Parameter",
+    "PointMass",
+    "System",
+    "load",
+    "names",
+]

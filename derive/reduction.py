@@ -1,0 +1,91 @@
+"""Targeted reduction of trigonometric sums: of several equal forms, the shortest.
+
+Products of sines and cosines become sines and cosines of sums of angles, in
+which every identity has already happened: cos a cos b + sin a sin b is
+cos(a - b), sin² a + cos² a is 1. Where that leaves doubled angles, they are
+also tried as squares, since sin² a costs less than (1 - cos 2a)/2 and is exact
+near a = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import sympy as sp
+
+Wave = tuple[bool, sp.Expr]  # (is a sine, argument)
+HALF = sp.Rational(1, 2)
+
+
+def reduced(expression: sp.Expr) -> sp.Expr:
+    """The form of `expression` with the fewest operations, of those described above."""
+    if not expression.has(sp.sin, sp.cos):
+        return expression
+    harmonics = _harmonics(expression)
+    candidates = [harmonics, expression, *(_halved(harmonics, f) for f in (_by_sine, _by_cosine))]
+    return min(candidates, key=lambda candidate: int(candidate.count_ops()))
+
+
+def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
+    """`expression` expanded, one term for each distinct part that depends on `variables`."""
+    coefficients: dict[sp.Expr, sp.Expr] = {}
+    for term in sp.Add.make_args(sp.expand(expression)):
+        coefficient, dependent = term.as_independent(*variables, as_Add=False)
+        coefficients[dependent] = coefficients.get(dependent, sp.S.Zero) + coefficient
+    return sp.Add(*(sp.factor_terms(c) * dependent for dependent, c in coefficients.items()))
+
+
+def _harmonics(expression: sp.Expr) -> sp.Expr:
+    """`expression` as a sum of coefficient times sine or cosine of a sum of angles."""
+    total: dict[Wave, sp.Expr] = {}
+    for term in sp.Add.make_args(sp.expand(expression)):
+        coefficient, waves = sp.S.One, []
+        for factor in sp.Mul.make_args(term):
+            base, exponent = factor.as_base_exp()
+            if isinstance(base, sp.sin | sp.cos) and exponent.is_Integer and exponent > 0:
+                waves += [(isinstance(base, sp.sin), base.args[0])] * int(exponent)
+            else:
+                coefficient *= factor
+        for wave, number in _product(waves).items():
+            total[wave] = total.get(wave, sp.S.Zero) + coefficient * number
+    return sp.Add(
+        *(c * (sp.sin(angle) if sine else sp.cos(angle)) for (sine, angle), c in total.items())
+    )
+
+
+def _product(waves: list[Wave]) -> dict[Wave, sp.Expr]:
+    """The product of sines and cosines as a sum of them."""
+    product: dict[Wave, sp.Expr] = {(False, sp.S.Zero): sp.S.One}
+    for sine_b, b in waves:
+        longer: dict[Wave, sp.Expr] = {}
+        for (sine_a, a), number in product.items():
+            # cos a cos b, sin a cos b, cos a sin b, sin a sin b: half of f(a+b) ± f(a-b)
+            sine = sine_a != sine_b
+            signs = (-1 if sine_a and sine_b else 1, -1 if sine_b and not sine_a else 1)
+            for angle, sign in zip((a + b, a - b), signs, strict=True):
+                wave, sign = (sine, angle), sp.Integer(sign)
+                if angle.could_extract_minus_sign():
+                    wave, sign = (sine, -angle), -sign if sine else sign
+                longer[wave] = longer.get(wave, sp.S.Zero) + HALF * sign * number
+        product = longer
+    return product
+
+
+def _by_sine(angle: sp.Expr) -> sp.Expr:
+    return 1 - 2 * sp.sin(angle) ** 2
+
+
+def _by_cosine(angle: sp.Expr) -> sp.Expr:
+    return 2 * sp.cos(angle) ** 2 - 1
+
+
+def _halved(expression: sp.Expr, square: Callable[[sp.Expr], sp.Expr]) -> sp.Expr:
+    """`expression` with cos 2a as a square and sin 2a as a product."""
+    halves = {}
+    for wave in expression.atoms(sp.sin, sp.cos):
+        half = wave.args[0] / 2
+        if all(c.is_Integer for c in half.as_coefficients_dict().values()):
+            halves[wave] = (
+                square(half) if isinstance(wave, sp.cos) else 2 * sp.sin(half) * sp.cos(half)
+            )
+    return sp.expand(expression.xreplace(halves))

@@ -1,0 +1,47 @@
+"""Symbols of velocities, accelerations and momenta: named for code, printed as in textbooks."""
+
+from __future__ import annotations
+
+import sympy as sp
+from sympy.printing.latex import LatexPrinter
+
+
+class Rate(sp.Symbol):
+    """Time derivative of a coordinate, ``theta1_dot``; LaTeX sets the dots above."""
+
+    @classmethod
+    def class_key(cls) -> tuple[int, int, str]:
+        """Sort among the other symbols, by name."""
+        return sp.Symbol.class_key()
+
+    def _latex(self, printer: LatexPrinter) -> str:
+        base, _, dots = self.name.rpartition("_")
+        letter, subscript, index = printer.doprint(sp.Symbol(base)).partition("_")
+        return rf"\{dots}{{{letter}}}{subscript}{index}"
+
+
+class Momentum(sp.Symbol):
+    """Momentum conjugate to a coordinate, ``p_theta1``; LaTeX sets the coordinate below."""
+
+    @classmethod
+    def class_key(cls) -> tuple[int, int, str]:
+        """Sort among the other symbols, by name."""
+        return sp.Symbol.class_key()
+
+    def _latex(self, printer: LatexPrinter) -> str:
+        return f"p_{{{printer.doprint(sp.Symbol(self.name.removeprefix('p_')))}}}"
+
+
+def velocity(coordinate: sp.Symbol) -> Rate:
+    """The symbol of a coordinate's first time derivative."""
+    return Rate(f"{coordinate.name}_dot", real=True)
+
+
+def acceleration(coordinate: sp.Symbol) -> Rate:
+    """The symbol of a coordinate's second time derivative."""
+    return Rate(f"{coordinate.name}_ddot", real=True)
+
+
+def momentum(coordinate: sp.Symbol) -> Momentum:
+    """The symbol of the momentum conjugate to a coordinate."""
+    return Momentum(f"p_{coordinate.name}", real=True)

@@ -1,0 +1,1 @@
+"""Systems, one a file: each defines ``system`` and is found by its file's name."""
