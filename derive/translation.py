@@ -1,0 +1,61 @@
+"""SymPy expressions as nodes of a graph."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import sympy as sp
+
+from derive.graph import Graph, Node
+
+#: Functions that generated code may call, under the names of ``math`` and C99.
+FUNCTIONS: dict[type[sp.Expr], str] = {
+    sp.sin: "sin",
+    sp.cos: "cos",
+    sp.tan: "tan",
+    sp.exp: "exp",
+    sp.log: "log",
+}
+
+
+class Translation:
+    """Nodes of SymPy expressions in one graph; every symbol becomes a leaf of its name."""
+
+    def __init__(self, graph: Graph) -> None:
+        self.graph = graph
+        self._nodes: dict[sp.Expr, Node] = {}
+
+    def __call__(self, expression: sp.Expr) -> Node:
+        """The node of `expression`.
+
+        Raises
+        ------
+        NotImplementedError
+            For a function or power that generated code has no counterpart of.
+        """
+        if expression not in self._nodes:
+            self._nodes[expression] = self._translated(expression)
+        return self._nodes[expression]
+
+    def _translated(self, expression: sp.Expr) -> Node:
+        graph = self.graph
+        if expression.is_Symbol:
+            return graph.leaf(expression.name)
+        if expression.is_Rational:
+            return graph.node(Fraction(int(expression.p), int(expression.q)))
+        if expression.is_Add:
+            return graph.sum([(self(term), 1) for term in expression.args])
+        if expression.is_Mul:
+            return graph.product([(self(factor), 1) for factor in expression.args])
+        if type(expression) in FUNCTIONS:
+            return graph.call(FUNCTIONS[type(expression)], self(expression.args[0]))
+        if expression.is_Pow:
+            base, exponent = expression.as_base_exp()
+            if exponent.is_Integer:
+                return graph.power(self(base), int(exponent))
+            if (2 * exponent).is_Integer:
+                return graph.power(graph.call("sqrt", self(base)), int(2 * exponent))
+        raise NotImplementedError(
+            f"no generated code for {str(expression)[:80]!r}: use sums, products, integer and "
+            f"half powers, and {', '.join(FUNCTIONS.values())}"
+        )
