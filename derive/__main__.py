@@ -1,0 +1,7 @@
+"""``python -m derive``: the same as ``holonomic derive``."""
+
+import sys
+
+from derive.command import main
+
+sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,116 @@
+"""``holonomic derive``: write the generated modules, or check that they are up to date."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+from derive.catalogue import UnknownSystemError, load, names
+from derive.derivation import Derivation
+from derive.python import module
+from derive.system import SystemDefinitionError
+from derive.tree import Difference, Tree
+
+EXAMPLE = """\
+examples:
+  holonomic derive                                  all systems, into the package `generated`
+  holonomic derive double_pendulum --output build   one system, as build/double_pendulum.py
+  holonomic derive --check                          exit 1 if a file is not what this writes
+"""
+
+PACKAGE = '''"""Equations of motion as code, one module a system; see ``holonomic derive``."""
+
+
+__all__ = [
+{names}
+]
+'''
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run the command and return its exit code: 0, 1 (differences), 2 (input), 4 (files)."""
+    arguments = _parser().parse_args(argv)
+    try:
+        tree = planned(arguments.systems, arguments.output)
+        return _check(tree, arguments) if arguments.check else _write(tree)
+    except (UnknownSystemError, SystemDefinitionError) as error:
+        print(f"holonomic derive: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(
+            f"holonomic derive: cannot write {error.filename}: {error.strerror}; "
+            "name a folder that can be written to with --output",
+            file=sys.stderr,
+        )
+        return 4
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="holonomic derive",
+        description="Derive systems from their positions and write them as Python modules.",
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "systems", nargs="*", metavar="SYSTEM", help=f"one of {', '.join(names())}; default: all"
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit 1 and show what differs"
+    )
+    parser.add_argument(
+        "--output", type=Path, metavar="DIR", help="folder to write to; default: `generated`"
+    )
+    return parser
+
+
+def _write(tree: Tree) -> int:
+    written = tree.write()
+    kept = len(tree.texts) - len(written)
+    for path in written:
+        print(f"wrote {path}")
+    if kept:
+        print(f"{kept} file{'s' if kept > 1 else ''} in {tree.folder} already up to date")
+    for path in tree.orphans():
+        print(f"nothing generates {path}; remove it with: rm -r {path}")
+    return 0
+
+
+def planned(systems: list[str], output: Path | None) -> Tree:
+    """What the folder should hold after the command."""
+    texts = {f"{name}.py": module(Derivation(load(name))) for name in systems or names()}
+    if output is not None:
+        return Tree(output, texts, complete=False)
+    if not systems:
+        modules = "\n".join(f'    "{name}",' for name in names())
+        texts["__init__.py"] = PACKAGE.format(names=modules)
+    return Tree(_package_folder(), texts, complete=not systems)
+
+
+def _package_folder() -> Path:
+    spec = find_spec("generated")
+    if spec is None or not spec.submodule_search_locations:
+        return Path(__file__).parent.parent / "generated"
+    return Path(spec.submodule_search_locations[0])
+
+
+def _check(tree: Tree, arguments: argparse.Namespace) -> int:
+    differences = tree.differences()
+    for difference in differences:
+        print(f"{difference.path}: {difference.reason}")
+        print(difference.diff, end="")
+        print(f"  mend it with: {_mending(difference, arguments)}")
+    if not differences:
+        print(f"{len(tree.texts)} files in {tree.folder} are what holonomic derive writes")
+    return 1 if differences else 0
+
+
+def _mending(difference: Difference, arguments: argparse.Namespace) -> str:
+    if difference.reason == "orphan":
+        return f"rm -r {difference.path}"
+    systems = [name for name in arguments.systems if difference.path.stem == name]
+    output = ["--output", str(arguments.output)] if arguments.output else []
+    return " ".join(["holonomic", "derive", *systems, *output])

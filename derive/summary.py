@@ -1,0 +1,79 @@
+"""A system in words: what the docstring of its generated module says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from textwrap import indent
+
+import sympy as sp
+
+from derive.derivation import Derivation
+from derive.functions import state_names
+from derive.system import System
+
+#: Unit of the momentum conjugate to a coordinate of this unit.
+MOMENTUM_UNIT = {"rad": "J s", "m": "kg m/s"}
+
+
+def units(system: System) -> dict[str, str]:
+    """Unit of every coordinate, velocity, momentum and parameter, by name."""
+    rows = {parameter.symbol.name: parameter.unit for parameter in system.parameters}
+    for coordinate, qdot, p in zip(system.coordinates, system.qdot, system.p, strict=True):
+        rows[coordinate.symbol.name] = coordinate.unit
+        rows[qdot.name] = f"{coordinate.unit}/s"
+        rows[p.name] = MOMENTUM_UNIT.get(coordinate.unit, f"J s/({coordinate.unit})")
+    return rows
+
+
+def summary(derivation: Derivation) -> str:
+    """Coordinates, states, parameters, positions, Lagrangian and equations of motion."""
+    system = derivation.system
+    unit = units(system)
+    masses = (f"{mass.mass} at ({', '.join(map(str, mass.position))})" for mass in system.masses)
+    return "\n\n".join(
+        _section(title, lines)
+        for title, lines in {
+            "Coordinates q": (f"{c.symbol} [{c.unit}]: {c.meaning}" for c in system.coordinates),
+            "State y = (q, qdot)": (
+                f"{name} [{unit[name]}]" for name in state_names(system, "lagrangian")
+            ),
+            "State y = (q, p), in functions of the Hamiltonian form": (
+                f"{name} [{unit[name]}]" for name in state_names(system, "hamiltonian")
+            ),
+            "Parameters params": (
+                f"{p.symbol} [{p.unit}] {'> 0' if p.symbol.is_positive else 'real'}, "
+                f"default {p.default}: {p.meaning}"
+                for p in system.parameters
+            ),
+            "Masses and their positions": masses,
+            "Lagrangian": [f"L = {_text(derivation.lagrangian)}"],
+            "Equations of motion": (
+                f"{_text(residual)} = 0" for residual in derivation.euler_lagrange
+            ),
+        }.items()
+    )
+
+
+def broken_sum(text: str, width: int) -> str:
+    """A long expression over several lines, broken before a sign outside brackets."""
+    lines, depth, start = [""], 0, 0
+    for i, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        last = i + 1 == len(text)
+        if last or (depth == 0 and letter == " " and text[i + 1] in "+-"):
+            piece = text[start:] if last else text[start:i]
+            if lines[-1] and len(lines[-1]) + len(piece) > width:
+                lines.append(piece.lstrip())
+            else:
+                lines[-1] += piece
+            start = i
+    return "\n".join(lines)
+
+
+def _text(expression: sp.Expr) -> str:
+    return sp.sstr(expression, order="lex")
+
+
+def _section(title: str, lines: Iterable[str]) -> str:
+    broken = (indent(broken_sum(line, 84), " " * 8)[4:] for line in lines)
+    return "\n".join([f"{title}:", *broken])
