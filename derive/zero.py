@@ -1,0 +1,155 @@
+"""Is an expression zero? Is it positive? Proved, not sampled.
+
+A rational expression in sines, cosines and other symbols is brought to a
+polynomial over a product of polynomials, with cos² replaced by 1 - sin² for
+every angle. The polynomial is then a normal form, since sin² + cos² - 1
+generates all relations between the sine and the cosine of independent angles:
+the expression is zero exactly when the polynomial is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cache, reduce
+from operator import mul
+
+import sympy as sp
+from sympy.polys.rings import PolyElement, PolyRing
+
+
+def vanishes(expression: sp.Expr) -> bool:
+    """Whether `expression` is identically zero.
+
+    Raises
+    ------
+    NotImplementedError
+        When it is not rational in symbols, sines and cosines.
+    """
+    opened = expression.xreplace({wave: _opened(wave) for wave in _waves(expression)})
+    waves = _waves(opened)
+    generators = sorted({*opened.free_symbols, *waves}, key=sp.default_sort_key)
+    if not generators:
+        return bool(opened == 0)
+    ring = PolyRing(generators, sp.QQ, sp.lex)
+    pairs = {
+        ring.index(ring(wave)): ring(sp.sin(wave.args[0]))
+        for wave in waves
+        if isinstance(wave, sp.cos) and sp.sin(wave.args[0]) in waves
+    }
+    return not _Reader(ring, pairs).fraction(opened).numerator
+
+
+def is_positive(expression: sp.Expr, *, strictly: bool) -> bool:
+    """Whether `expression` is seen to be positive, or not negative: as a sum of such terms."""
+    sign = "is_positive" if strictly else "is_nonnegative"
+    numerator, denominator = sp.fraction(sp.together(expression))
+    forms = [
+        numerator,
+        *(
+            numerator.subs(wave(angle) ** 2, 1 - partner(angle) ** 2)
+            for wave, partner in ((sp.sin, sp.cos), (sp.cos, sp.sin))
+            for angle in {wave.args[0] for wave in _waves(numerator)}
+        ),
+    ]
+    return bool(
+        denominator.is_positive
+        and any(getattr(sp.factor_terms(sp.expand(form)), sign) for form in forms)
+    )
+
+
+@dataclass(frozen=True)
+class _Fraction:
+    """A polynomial over a product of powers of polynomials."""
+
+    numerator: PolyElement
+    denominator: dict[PolyElement, int] = field(default_factory=dict)
+
+
+class _Reader:
+    """Expressions as fractions over one ring, cos² replaced by 1 - sin² throughout."""
+
+    def __init__(self, ring: PolyRing, sines: dict[int, PolyElement]) -> None:
+        self._ring, self._sines = ring, sines
+        self._known: dict[sp.Expr, _Fraction] = {}
+
+    def fraction(self, expression: sp.Expr) -> _Fraction:
+        if expression not in self._known:
+            self._known[expression] = self._read(expression)
+        return self._known[expression]
+
+    def _read(self, expression: sp.Expr) -> _Fraction:
+        if expression.is_Rational or expression in self._ring.symbols:
+            return _Fraction(self._ring(expression))
+        if expression.is_Add:
+            return self._sum([self.fraction(term) for term in expression.args])
+        if expression.is_Mul:
+            return reduce(self._product, map(self.fraction, expression.args))
+        if expression.is_Pow and expression.exp.is_Integer:
+            power = int(expression.exp)
+            base = reduce(self._product, [self.fraction(expression.base)] * abs(power))
+            return base if power > 0 else self._inverse(base)
+        raise NotImplementedError(f"cannot decide whether {str(expression)[:80]!r} vanishes")
+
+    def _sum(self, fractions: list[_Fraction]) -> _Fraction:
+        common: dict[PolyElement, int] = {}
+        for fraction in fractions:
+            for factor, power in fraction.denominator.items():
+                common[factor] = max(power, common.get(factor, 0))
+        total = self._ring.zero
+        for fraction in fractions:
+            missing = [
+                factor
+                for factor, power in common.items()
+                for _ in range(power - fraction.denominator.get(factor, 0))
+            ]
+            total += reduce(self._times, missing, fraction.numerator)
+        return _Fraction(total, common if total else {})
+
+    def _product(self, a: _Fraction, b: _Fraction) -> _Fraction:
+        denominator = dict(a.denominator)
+        for factor, power in b.denominator.items():
+            denominator[factor] = denominator.get(factor, 0) + power
+        return _Fraction(self._times(a.numerator, b.numerator), denominator)
+
+    def _inverse(self, a: _Fraction) -> _Fraction:
+        if not a.numerator:
+            raise ZeroDivisionError("a denominator vanishes identically")
+        above = [factor for factor, power in a.denominator.items() for _ in range(power)]
+        content, primitive = a.numerator.primitive()
+        # the parameters that all terms share are factors of their own: they often cancel
+        shared = reduce(
+            lambda m, n: tuple(map(min, m, n)), primitive.monoms(), primitive.monoms()[0]
+        )
+        denominator = {self._ring.gens[i]: power for i, power in enumerate(shared) if power}
+        rest = primitive.quo(self._ring({shared: sp.QQ(1)}))
+        if rest != 1:
+            denominator[rest] = 1
+        return _Fraction(reduce(self._times, above, self._ring(1 / content)), denominator)
+
+    def _times(self, a: PolyElement, b: PolyElement) -> PolyElement:
+        product = a * b
+        for i, sine in self._sines.items():
+            product = self._without_squares(product, i, 1 - sine**2)
+        return product
+
+    def _without_squares(self, poly: PolyElement, i: int, square: PolyElement) -> PolyElement:
+        parts: dict[int, dict[tuple[int, ...], object]] = {}
+        for monomial, coefficient in poly.terms():
+            half, odd = divmod(monomial[i], 2)
+            parts.setdefault(half, {})[(*monomial[:i], odd, *monomial[i + 1 :])] = coefficient
+        if set(parts) <= {0}:
+            return poly
+        return reduce(
+            lambda total, part: total + mul(self._ring(part[1]), square ** part[0]),
+            parts.items(),
+            self._ring.zero,
+        )
+
+
+def _waves(expression: sp.Expr) -> set[sp.Expr]:
+    return set(expression.atoms(sp.sin, sp.cos))
+
+
+@cache
+def _opened(wave: sp.Expr) -> sp.Expr:
+    return sp.expand_trig(wave)
