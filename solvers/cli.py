@@ -1,0 +1,200 @@
+"""The command ``holonomic``: the one module that joins derivations, generated code and solvers."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+USAGE = """\
+usage: holonomic COMMAND [OPTION ...]
+
+Positions in, motion out: equations of motion derived, verified, generated and integrated.
+
+commands:
+  derive   write the generated modules from the systems' positions, or check them
+  verify   judge every equation, program and claim of the double-pendulum report
+  demo     the whole way on one screen, in about ten seconds
+
+holonomic COMMAND --help shows a command's options and an example.
+"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command; return 0 done, 1 check failed, 2 input, 3 numerics, 4 files, 130 interrupt."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments or arguments[0] in ("-h", "--help"):
+        print(USAGE, end="")
+        return 0
+    name, *rest = arguments
+    if name not in COMMANDS:
+        print(f"holonomic: unknown command {name[:50]!r}\n\n{USAGE}", end="", file=sys.stderr)
+        return 2
+    try:
+        return COMMANDS[name](rest)
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        sys.stderr.close()  # the reader has gone: nothing to tell, and nobody to tell it to
+        return 0
+
+
+def _derive(argv: Sequence[str]) -> int:
+    from derive.command import main as derive
+
+    return derive(argv)
+
+
+def _verify(argv: Sequence[str]) -> int:
+    parser = argparse.ArgumentParser(
+        prog="holonomic verify",
+        description="Judge the double-pendulum report: equations, programs, claims. Exits with 1 "
+        "if an equation neither holds nor can be corrected.",
+        epilog="example:\n  holonomic verify --json > verdicts.json",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    as_json = parser.parse_args(argv).json
+    judged = judgement()
+    if as_json:
+        print(json.dumps(judged, indent=2, ensure_ascii=False))
+    else:
+        from solvers.tables import report
+
+        print(report(judged), end="")
+    return int(any(equation["verdict"] == "wrong" for equation in judged["equations"]))
+
+
+def judgement() -> dict[str, Any]:
+    """The verdicts on the report's equations, programs and claims, ready for JSON."""
+    import generated.double_pendulum as double_pendulum
+    from derive.report.contexts import NUMBERS
+    from derive.report.judgement import verdicts
+    from derive.report.programs import PROSE, programs
+    from solvers.claims import Evidence, Setting, claims
+    from solvers.order_conditions import order
+
+    def setting(scene: Any) -> Setting:
+        values = [*scene.masses, *scene.lengths, scene.gravity]
+        start = [*scene.angles, *scene.velocities]
+        return Setting(tuple(map(float, values)), tuple(map(float, start)), float(scene.duration))
+
+    found = programs()
+    evidence = Evidence(
+        double_pendulum, setting(PROSE), *(setting(program.scene) for program in found)
+    )
+    return {
+        "state": NUMBERS,
+        "equations": [asdict(verdict) for verdict in verdicts(order)],
+        "programs": [
+            {k: v for k, v in asdict(program).items() if k != "scene"} for program in found
+        ],
+        "claims": [asdict(claim) for claim in claims(evidence)],
+    }
+
+
+def _demo(argv: Sequence[str]) -> int:
+    parser = argparse.ArgumentParser(
+        prog="holonomic demo",
+        description="Derive, verify, generate and integrate the double pendulum; show each step.",
+        epilog="example:\n  holonomic demo --output out",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--output", type=Path, default=Path("out"), metavar="DIR",
+        help="folder for the picture (default: out)",
+    )  # fmt: skip
+    output = parser.parse_args(argv).output
+    print("Double pendulum: from the positions of two bobs to their motion.\n")
+    stations: dict[str, Callable[[], list[str]]] = {
+        "1 derive": _derived,
+        "2 verify": _verified,
+        "3 generate": _generated,
+        "4 integrate": lambda: _integrated(output / "double_pendulum.png"),
+    }
+    for name, station in stations.items():
+        start = time.perf_counter()
+        first, *lines = station()
+        print(f"{name:<13}{first}", *lines, sep="\n" + " " * 13, end="")
+        print(f"  [{time.perf_counter() - start:.1f} s]", flush=True)
+    return 0
+
+
+def _derived() -> list[str]:
+    from derive import Derivation, load
+
+    derivation = Derivation(load("double_pendulum"))
+    return [
+        f"T = {derivation.kinetic_energy}",
+        f"V = {derivation.potential_energy}",
+        "L = T - V, then M qddot = f, p = M qdot and H = pT M^-1 p/2 + V, without a simplify",
+    ]
+
+
+def _verified() -> list[str]:
+    from solvers.tables import counted
+
+    judged = judgement()
+    return [
+        f"report's equations: {counted(judged['equations'])}",
+        f"report's claims: {counted(judged['claims'])}",
+        f"report's programs: {len(judged['programs'])}, none runs as printed"
+        if all(program["stops"] for program in judged["programs"])
+        else f"report's programs: {len(judged['programs'])}",
+        "why, and the corrections: holonomic verify",
+    ]
+
+
+def _generated() -> list[str]:
+    import generated.double_pendulum as dp
+    from derive.command import planned
+
+    tree = planned(["double_pendulum"], None)
+    state = "differs: run holonomic derive" if tree.differences() else "up to date"
+    counts = (
+        f"{name} {(getattr(dp, name).__doc__ or '').split(' operations')[0].split()[-1]}"
+        for name in ("rhs", "rhs_hamiltonian", "jacobian", "energy")
+    )
+    return [
+        f"{tree.folder / 'double_pendulum.py'}: {state}",
+        f"operations a call: {', '.join(counts)}",
+    ]
+
+
+def _integrated(picture: Path) -> list[str]:
+    from math import pi
+
+    import numpy as np
+    from scipy.integrate import solve_ivp
+
+    import generated.double_pendulum as dp
+    from solvers.pictures import overview
+
+    t = np.linspace(0.0, 5.0, 1001)
+    solution = solve_ivp(
+        dp.rhs, (0.0, 5.0), (pi / 2, pi, 0.0, 0.0), method="DOP853", rtol=1e-12, atol=1e-12,
+        t_eval=t, args=(dp.DEFAULTS,),
+    )  # fmt: skip
+    energy = dp.energy_many(solution.y, dp.DEFAULTS)
+    overview(
+        picture, t, solution.y[:2], dp.COORDINATES, dp.positions_many(solution.y, dp.DEFAULTS),
+        energy, "Double pendulum from rest at (π/2, π), m = 1 kg, l = 2 m",
+    )  # fmt: skip
+    theta1, theta2 = solution.y[:2, -1]
+    return [
+        f"the report's scene, 5 s by DOP853: theta1 = {theta1:.9f}, theta2 = {theta2:.9f} rad",
+        f"energy kept to {np.abs(energy - energy[0]).max():.1g} J",
+        f"picture: {picture}",
+    ]
+
+
+COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {
+    "derive": _derive,
+    "verify": _verify,
+    "demo": _demo,
+}
