@@ -111,6 +111,6 @@ def _check(tree: Tree, arguments: argparse.Namespace) -> int:
 def _mending(difference: Difference, arguments: argparse.Namespace) -> str:
     if difference.reason == "orphan":
         return f"rm -r {difference.path}"
-    systems = [name for name in arguments.systems if difference.path.stem == name]
+    systems = [name for name in names() if difference.path.stem == name]
     output = ["--output", str(arguments.output)] if arguments.output else []
     return " ".join(["holonomic", "derive", *systems, *output])

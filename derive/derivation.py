@@ -16,9 +16,12 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.reduction import collected, reduced
-from derive.system import System
+from derive.system import System, SystemDefinitionError
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
+
+#: A pivot smaller than this part of its diagonal entry, at 50 digits, is zero.
+TINY = sp.Float("1e-30")
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,11 @@ class Derivation:
     system : System
         Positions, masses and potential.
 
+    Raises
+    ------
+    SystemDefinitionError
+        When a coordinate moves no mass, or moves the masses only as others do.
+
     Notes
     -----
     Velocities, accelerations and momenta are symbols of their own
@@ -37,6 +45,9 @@ class Derivation:
     """
 
     system: System
+
+    def __post_init__(self) -> None:
+        self._check_independence()
 
     @cached_property
     def position_jacobians(self) -> tuple[Matrix, ...]:
@@ -133,6 +144,27 @@ class Derivation:
     def euler_lagrange(self) -> Matrix:
         """Residuals d/dt ∂L/∂q̇ - ∂L/∂q, a column; the motion makes them zero."""
         return self.mass_matrix * Matrix(self.system.qddot) - self.forcing
+
+    def _check_independence(self) -> None:
+        """Eliminate the mass matrix at a generic place: a pivot of zero names its coordinate."""
+        system = self.system
+        symbols = (*system.params, *system.q)
+        place = {s: sp.Rational(7 * k + 3, 5 * k + 4) for k, s in enumerate(symbols)}
+        rows = [list(row) for row in self.mass_matrix.evalf(50, subs=place).tolist()]
+        for k, q in enumerate(system.q):
+            if not rows[k][k] > self.mass_matrix[k, k].evalf(50, subs=place) * TINY:
+                why = (
+                    "moves no mass"
+                    if self.mass_matrix[k, k] == 0
+                    else (f"moves the masses only as {', '.join(s.name for s in system.q[:k])} can")
+                )
+                raise SystemDefinitionError(
+                    f"coordinate {q.name!r} of system {system.name!r} {why}: leave it out, or let "
+                    "a position depend on it"
+                )
+            for i in range(k + 1, len(rows)):
+                ratio = rows[i][k] / rows[k][k]
+                rows[i] = [a - ratio * b for a, b in zip(rows[i], rows[k], strict=True)]
 
     @cached_property
     def _adjugate_and_determinant(self) -> tuple[Matrix, sp.Expr]:

@@ -190,7 +190,9 @@ class Graph:
             reduce(gcd, (c.numerator for _, c in ordered)),
             reduce(gcd, (c.denominator for _, c in ordered)),
         )
-        if ordered[0][1] < 0:
+        # of s and -s the one with more plus signs is the node
+        negative = sum(c < 0 for _, c in ordered)
+        if 2 * negative > len(ordered) or (2 * negative == len(ordered) and ordered[0][1] < 0):
             content = -content
         rest = []
         for (node, coefficient), monomial in zip(ordered, monomials, strict=True):

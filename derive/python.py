@@ -33,13 +33,13 @@ from math import {called}
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from typing import Any
 
     from numpy.typing import ArrayLike, NDArray
 
     Numbers = Iterable[float]
-    Arrays = Iterable[Any]
+    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
@@ -50,11 +50,11 @@ if TYPE_CHECKING:
 {functions}
 
 
-def _stacked(shape: tuple[int, ...], *values: ArrayLike) -> Array:
-    """The values, broadcast together, as one array that begins with the axes of `shape`."""
+def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
+    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
     import numpy
 
-    arrays = numpy.broadcast_arrays(*values)
+    _, *arrays = numpy.broadcast_arrays(like, *values)
     return numpy.stack(arrays).reshape(shape + arrays[0].shape)
 '''
 
@@ -182,14 +182,15 @@ def _many(part: Function, body: Assignments, system: System) -> str:
         shape=f"({shape})",
         imports=f"    from numpy import {called}\n\n" if called else "",
         body=_body(part, body, system, plain=False),
-        outputs=_call(part.shape, body.outputs),
+        outputs=_call(part, body.outputs),
     )
 
 
-def _call(shape: tuple[int, ...], outputs: Sequence[str]) -> str:
-    if not shape:
+def _call(part: Function, outputs: Sequence[str]) -> str:
+    if not part.shape:
         return outputs[0]
-    return "_stacked" + _tuple([repr(shape), *outputs], depth=1)
+    like = "0.0" if part.form == "parameters" else "y[0]"
+    return "_stacked" + _tuple([repr(part.shape), like, *outputs], depth=1)
 
 
 def _count(body: Assignments) -> str:

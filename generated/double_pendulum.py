@@ -53,13 +53,13 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from typing import Any
 
     from numpy.typing import ArrayLike, NDArray
 
     Numbers = Iterable[float]
-    Arrays = Iterable[Any]
+    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
@@ -142,7 +142,7 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
     x2 = c1*sin(theta1) + c2*theta2_dot*theta2_dot*sin_x0 - m2*cos_x0*x1
     x3 = x2/(m1 + m2*sin_x0*sin_x0)
     # outputs
-    return _stacked((4,), theta1_dot, theta2_dot, -c0*x3, -c3*(x1 - cos_x0*x3))
+    return _stacked((4,), y[0], theta1_dot, theta2_dot, -c0*x3, -c3*(x1 - cos_x0*x3))
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -249,6 +249,7 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     # outputs
     return _stacked(
         (4, 4),
+        y[0],
         0.0,
         0.0,
         1.0,
@@ -373,7 +374,7 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     # intermediate terms
     x0 = c1*cos(theta1 - theta2)
     # outputs
-    return _stacked((2, 2), l1*l1*(m1 + m2), x0, x0, l2*c0)
+    return _stacked((2, 2), y[0], l1*l1*(m1 + m2), x0, x0, l2*c0)
 
 
 def positions(y: Numbers, params: Numbers) -> Matrix:
@@ -414,7 +415,7 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     x0 = l1*sin(theta1)
     x1 = l1*cos(theta1)
     # outputs
-    return _stacked((2, 2), x0, -x1, x0 + l2*sin(theta2), -(x1 + l2*cos(theta2)))
+    return _stacked((2, 2), y[0], x0, -x1, x0 + l2*sin(theta2), -(x1 + l2*cos(theta2)))
 
 
 def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
@@ -466,6 +467,7 @@ def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
     # outputs
     return _stacked(
         (4,),
+        y[0],
         theta1,
         theta2,
         l1*(c0*theta1_dot + c1*theta2_dot*x0),
@@ -542,6 +544,7 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     # outputs
     return _stacked(
         (4,),
+        y[0],
         c0*x2,
         c1*x3,
         -(x1*x4 + c3*sin(theta1)),
@@ -646,6 +649,7 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     # outputs
     return _stacked(
         (4, 4),
+        y[0],
         x8,
         x9,
         c0*x10,
@@ -778,7 +782,7 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     sin_x0 = sin(x0)
     x1 = (c0*p_theta1 - c1*p_theta2*cos_x0)/(m1 + m2*sin_x0*sin_x0)
     # outputs
-    return _stacked((4,), theta1, theta2, c0*x1, c1*(c2*p_theta2 - cos_x0*x1))
+    return _stacked((4,), y[0], theta1, theta2, c0*x1, c1*(c2*p_theta2 - cos_x0*x1))
 
 
 def linear(params: Numbers) -> tuple[Matrix, ...]:
@@ -815,12 +819,12 @@ def linear_many(params: Arrays) -> Array:
     c1 = m2*l2
     c2 = l1*c1
     # outputs
-    return _stacked((2, 2, 2), l1*c0, c2, c2, l2*c1, g*c0, 0.0, 0.0, g*c1)
+    return _stacked((2, 2, 2), 0.0, l1*c0, c2, c2, l2*c1, g*c0, 0.0, 0.0, g*c1)
 
 
-def _stacked(shape: tuple[int, ...], *values: ArrayLike) -> Array:
-    """The values, broadcast together, as one array that begins with the axes of `shape`."""
+def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
+    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
     import numpy
 
-    arrays = numpy.broadcast_arrays(*values)
+    _, *arrays = numpy.broadcast_arrays(like, *values)
     return numpy.stack(arrays).reshape(shape + arrays[0].shape)

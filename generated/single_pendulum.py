@@ -39,13 +39,13 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from typing import Any
 
     from numpy.typing import ArrayLike, NDArray
 
     Numbers = Iterable[float]
-    Arrays = Iterable[Any]
+    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
@@ -103,7 +103,7 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l
     # outputs
-    return _stacked((2,), theta_dot, -c0*(g*sin(theta)))
+    return _stacked((2,), y[0], theta_dot, -c0*(g*sin(theta)))
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -144,7 +144,7 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l
     # outputs
-    return _stacked((2, 2), 0.0, 1.0, -c0*(g*cos(theta)), 0.0)
+    return _stacked((2, 2), y[0], 0.0, 1.0, -c0*(g*cos(theta)), 0.0)
 
 
 def energy(y: Numbers, params: Numbers) -> float:
@@ -214,7 +214,7 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     # inputs
     m, l, _ = params
     # outputs
-    return _stacked((1, 1), m*l*l)
+    return _stacked((1, 1), y[0], m*l*l)
 
 
 def positions(y: Numbers, params: Numbers) -> Matrix:
@@ -249,7 +249,7 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     theta, _ = y
     _, l, _ = params
     # outputs
-    return _stacked((1, 2), l*sin(theta), -l*cos(theta))
+    return _stacked((1, 2), y[0], l*sin(theta), -l*cos(theta))
 
 
 def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
@@ -286,7 +286,7 @@ def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = m*l*l
     # outputs
-    return _stacked((2,), theta, c0*theta_dot)
+    return _stacked((2,), y[0], theta, c0*theta_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -333,7 +333,7 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     c2 = 1.0/c1
     c3 = c1*g
     # outputs
-    return _stacked((2,), c0*(c2*p_theta), -c3*sin(theta))
+    return _stacked((2,), y[0], c0*(c2*p_theta), -c3*sin(theta))
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -376,7 +376,7 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     c0 = l*m
     c1 = c0*g
     # outputs
-    return _stacked((2, 2), 0.0, 1.0/c0*(1.0/l), -c1*cos(theta), 0.0)
+    return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/l), -c1*cos(theta), 0.0)
 
 
 def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
@@ -460,7 +460,7 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     c0 = 1.0/l
     c1 = 1.0/(l*m)
     # outputs
-    return _stacked((2,), theta, c0*(c1*p_theta))
+    return _stacked((2,), y[0], theta, c0*(c1*p_theta))
 
 
 def linear(params: Numbers) -> tuple[Matrix, ...]:
@@ -493,12 +493,12 @@ def linear_many(params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = m*l
     # outputs
-    return _stacked((2, 1, 1), l*c0, g*c0)
+    return _stacked((2, 1, 1), 0.0, l*c0, g*c0)
 
 
-def _stacked(shape: tuple[int, ...], *values: ArrayLike) -> Array:
-    """The values, broadcast together, as one array that begins with the axes of `shape`."""
+def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
+    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
     import numpy
 
-    arrays = numpy.broadcast_arrays(*values)
+    _, *arrays = numpy.broadcast_arrays(like, *values)
     return numpy.stack(arrays).reshape(shape + arrays[0].shape)
