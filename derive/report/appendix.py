@@ -95,7 +95,7 @@ EULER_LAGRANGE: tuple[Equation | Stated, ...] = (
              "det(A) = 1 - alpha1*alpha2 = 1 - (m2/(m1 + m2))*cos(phi1 - phi2)**2 > 0",
              using=("eq101", "eq102")),
     Equation("A13", "m2/(m1 + m2) < 1; cos(phi1 - phi2)**2 <= 1",
-             check="1 - m2/(m1 + m2)*cos(phi1 - phi2)**2 = det(A)",
+             check="1 - left_1*left_2 = det(A)",
              note="the reason for (107), with x = phi1 - phi2"),
     Equation("eq108",
              "(phi1_ddot, phi2_ddot) = inverse(A)*(f1, f2)"

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from functools import cache
 
 import sympy as sp
 
-from derive.expression import Value, parsed, tree
+from derive.expression import Value, parsed
 from derive.report import appendix, chapters, contexts
 from derive.report.equation import Equation, Stated, Verdict
+from derive.report.method import Coefficients, NotRungeKuttaError, coefficients
 from derive.statement import Context, Finding
 
 #: Tells the order of the Runge–Kutta method with coefficients A, b, c.
-OrderOf = Callable[[Sequence[Sequence[Fraction]], Sequence[Fraction], Sequence[Fraction]], int]
+OrderOf = Callable[[*Coefficients], int]
 
 EQUATIONS: tuple[Equation | Stated, ...] = (
     *chapters.INTRODUCTION,
@@ -64,7 +63,10 @@ def verdict(equation: Equation | Stated, order_of: OrderOf) -> Verdict:
 def judged(equation: Equation, text: str, order_of: OrderOf) -> Finding:
     """Whether `equation` holds with `text` in place of what is printed."""
     if equation.system == "method":
-        order = order_of(*_tableau(equation, text))
+        try:
+            order = order_of(*coefficients(_steps(equation, text)))
+        except NotRungeKuttaError as error:
+            return Finding(False, witness=str(error))
         return Finding(order == 4, witness=f"order {order}")
     context = _context(equation)
     if not equation.check:
@@ -121,55 +123,30 @@ def _definitions(using: Sequence[str]) -> dict[str, Value]:
 def _defined(
     text: str, context: Context, using: Sequence[str], known: dict[str, Value] | None = None
 ) -> dict[str, Value]:
-    """The names on the left of ``name = formula; …`` with the formulas' values."""
+    """What ``name = formula; ...`` defines; of ``a < b; ...``, its left sides as ``left_1`` etc."""
     scope = {**context.scope, **_definitions(using), **(known or {})}
     values: dict[str, Value] = {}
-    for part in text.split(";"):
-        name, equals, formula = part.partition("=")
-        if equals and name.strip().isidentifier():
-            value = parsed(formula, scope)
-            values |= {name.strip(): value, f"{name.strip()[:-1]}_{name.strip()[-1]}": value}
+    for number, part in enumerate(text.split(";"), start=1):
+        if "<" in part:
+            values[f"left_{number}"] = parsed(part.partition("<")[0], scope)
+            continue
+        name, _, formula = (side.strip() for side in part.partition("="))
+        value = parsed(formula, scope)
+        # alpha1 is also alpha_1, for statements about every index
+        values |= {name: value, f"{name[:-1]}_{name[-1]}": value}
     return values
 
 
-def _tableau(
-    equation: Equation, text: str
-) -> tuple[list[list[Fraction]], list[Fraction], list[Fraction]]:
-    """A, b, c of the four stages and the step around `equation`, which reads `text`."""
-    texts = _family(equation)
-    texts[equation.id] = text
-    *stages, step = texts.values()
-    rows, nodes = [], []
-    for stage in stages:
-        call = _only_call(stage)
-        time, state = (ast.unparse(argument) for argument in call.args)
-        nodes.append(_coefficient(time, "h"))
-        rows.append([_coefficient(state, f"m_{j + 1}") for j in range(4)])
-    weights = [_coefficient(step.partition("=")[2], f"m_{j + 1}") for j in range(4)]
-    return rows, weights, nodes
-
-
-def _family(equation: Equation) -> dict[str, str]:
-    """The texts of the four stages and of the step that belong together."""
+def _steps(equation: Equation, text: str) -> list[str]:
+    """The four stages and the step that belong together, `equation` reading `text`."""
     if equation.using:
-        return {key: _by_id()[key].printed for key in equation.using} | {equation.id: ""}
-    ids = [
-        e.id for e in EQUATIONS if isinstance(e, Equation) and e.system == "method" and not e.using
-    ]
-    first = ids.index(equation.id) // 5 * 5
-    return {key: _by_id()[key].printed for key in ids[first : first + 5]}
+        keys = [*equation.using, equation.id]
+    else:
+        keys = [e.id for e in EQUATIONS if e.id in _by_id() and _is_plain_method(_by_id()[e.id])]
+        first = keys.index(equation.id) // 5 * 5
+        keys = keys[first : first + 5]
+    return [text if key == equation.id else _by_id()[key].printed for key in keys]
 
 
-def _only_call(stage: str) -> ast.Call:
-    product = tree(stage.partition("=")[2])
-    match product:
-        case ast.BinOp(left=ast.Name(id="h"), op=ast.Mult(), right=ast.Call() as call):
-            return call
-    raise ValueError(f"a stage reads m = h*f(t, w), not {stage!r}")
-
-
-def _coefficient(text: str, name: str) -> Fraction:
-    names = ("t_i", "w_i", "h", "m_1", "m_2", "m_3", "m_4")
-    symbols = {n: sp.Symbol(n) for n in names}
-    coefficient = sp.expand(parsed(text, symbols)).coeff(symbols[name], 1)
-    return Fraction(int(coefficient.p), int(coefficient.q))
+def _is_plain_method(equation: Equation) -> bool:
+    return equation.system == "method" and not equation.using
