@@ -1,0 +1,122 @@
+"""The command line: what it prints, and with which code it ends."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from derive.report.equation import Equation
+from solvers import cli
+from solvers.cli import COMMANDS, main
+from solvers.order_conditions import order
+from solvers.tables import counted, report
+
+ROOT = Path(__file__).parent.parent
+
+
+@pytest.fixture(scope="module")
+def judged() -> dict[str, list[dict[str, str]]]:
+    return cli.judgement()
+
+
+def test_help_names_every_command_and_each_command_shows_an_example(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main([]) == main(["--help"]) == 0
+    shown = capsys.readouterr().out
+    assert all(f"  {name}" in shown for name in COMMANDS)
+    for name in COMMANDS:
+        with pytest.raises(SystemExit, match="0"):
+            main([name, "--help"])
+        shown = capsys.readouterr().out
+        assert "example" in shown
+        assert f"  holonomic {name}" in shown
+
+
+def test_an_unknown_command_or_option_is_bad_input(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verifi"]) == 2
+    assert "unknown command 'verifi'" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="2"):
+        main(["verify", "--yaml"])
+
+
+def test_verify_prints_json_with_every_verdict(
+    capsys: pytest.CaptureFixture[str],
+    judged: dict[str, list[dict[str, str]]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(cli, "judgement", lambda: judged)
+    assert main(["verify", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert {"id", "verdict", "correction", "residual"} <= set(printed["equations"][0])
+    assert len(printed["equations"]) == 150
+    assert len(printed["programs"]) == 3
+    assert {claim["verdict"] for claim in printed["claims"]} == {
+        "supported",
+        "contradicted",
+        "untestable",
+    }
+    misprint = next(e for e in printed["equations"] if e["id"] == "eq64")
+    assert misprint["verdict"] == "misprint"
+    assert "phi2_dot**2" in misprint["correction"]
+    assert "theta1_dot**2 - theta2_dot**2" in misprint["residual"]
+
+
+def test_verify_prints_a_table_for_people_within_the_width_of_the_terminal(
+    judged: dict[str, list[dict[str, str]]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = report(judged).splitlines()
+    assert all(len(line) <= 80 for line in lines if " " in line.strip()[:40])
+    assert f"equations: {counted(judged['equations'])}" in lines
+    assert sum(line.startswith("eq") for line in lines) >= 128
+
+
+def test_verify_fails_where_an_equation_is_neither_right_nor_mended(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from derive.report import judgement
+
+    wrong = Equation("eq47", "x1 = l1*cos(theta1)", corrected="x1 = l2*sin(theta1)")
+    assert judgement.verdict(wrong, order).verdict == "wrong"
+    monkeypatch.setattr(judgement, "EQUATIONS", (wrong,))
+    assert main(["verify"]) == 1
+    assert "wrong" in capsys.readouterr().out
+
+
+def test_demo_shows_the_whole_way_on_one_screen(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    judged: dict[str, list[dict[str, str]]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(cli, "judgement", lambda: judged)
+    assert main(["demo", "--output", str(tmp_path / "out")]) == 0
+    shown = capsys.readouterr().out
+    assert "119 verified" in shown
+    assert "up to date" in shown
+    assert "theta1 = 2.22806424" in shown
+    assert len(shown.splitlines()) <= 24
+    picture = tmp_path / "out" / "double_pendulum.png"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert [path.name for path in picture.parent.iterdir()] == ["double_pendulum.png"]
+
+
+def test_an_interrupted_command_ends_with_130(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(COMMANDS, "verify", interrupted)
+    assert main(["verify"]) == 130
+
+
+def test_a_reader_who_leaves_early_causes_no_traceback() -> None:
+    run = subprocess.run(
+        f"{sys.executable} -m solvers.cli derive --check | true",
+        shell=True, capture_output=True, text=True, cwd=ROOT, check=False,
+        env=os.environ | {"PYTHONUNBUFFERED": "1"},
+    )  # fmt: skip
+    assert "Traceback" not in run.stderr

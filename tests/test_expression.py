@@ -1,0 +1,57 @@
+"""Formulas from text are read and never executed."""
+
+import pytest
+import sympy as sp
+
+from derive.expression import ExpressionError, parsed
+
+x, y = sp.symbols("x y")
+SCOPE = {"x": x, "y": y, "sin": sp.sin}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1/2", sp.Rational(1, 2)),
+        ("9.81", sp.Rational(981, 100)),
+        ("-x**2 + 2*sin(x - y)", -(x**2) + 2 * sp.sin(x - y)),
+        ("(x, y)", sp.Matrix([x, y])),
+        ("[[1, x], [y, 2]]*(x, y)", sp.Matrix([x + x * y, x * y + 2 * y])),
+    ],
+)
+def test_formulas_mean_what_they_say_exactly(text: str, value: sp.Expr) -> None:
+    assert parsed(text, SCOPE) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("__import__('os').system('touch owned')", "not allowed"),
+        ("x.__class__", "not allowed"),
+        ("(lambda: 1)()", "not allowed"),
+        ("[x for x in y]", "not allowed"),
+        ("'text'", "not allowed"),
+        ("True", "not allowed"),
+        ("2j", "not allowed"),
+        ("x if y else x", "not allowed"),
+        ("x := 1", "cannot read"),
+        ("f'{x}'", "not allowed"),
+        ("sin(*x)", "not allowed"),
+        ("sin(x=1)", "not allowed"),
+        ("x(2)", "'x' is no function"),
+        ("m^2", "write powers with"),
+        ("9**9**9", "exponent 387420489"),
+        ("x**y", "exponent y"),
+        ("z + 1", "unknown name 'z'"),
+        ("sim(x)", "did you mean 'sin'"),
+        ("x +", "cannot read"),
+        ("(" * 100_000 + "x" + ")" * 100_000, "at most 20000"),
+        ("(" * 5_000 + "x" + ")" * 5_000, "cannot read|nested too deeply"),
+        ("+".join("x" * 9_000), "nested too deeply|cannot read"),
+        ("x\0", "cannot read"),
+        ("", "cannot read"),
+    ],
+)
+def test_anything_else_is_refused(text: str, message: str) -> None:
+    with pytest.raises(ExpressionError, match=message):
+        parsed(text, SCOPE)

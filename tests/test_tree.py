@@ -1,0 +1,189 @@
+"""Generated files: the same bytes everywhere, checked, and never half-written."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from derive.command import main, planned
+from derive.tree import PASSAGE, Tree
+
+ROOT = Path(__file__).parent.parent
+
+
+def derive(*arguments: str, hash_seed: str = "random") -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {"PYTHONHASHSEED": hash_seed}
+    return subprocess.run(
+        [sys.executable, "-m", "derive", *arguments],
+        capture_output=True, text=True, cwd=ROOT, env=environment, check=False,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return Path(shutil.copytree(ROOT / "generated", tmp_path / "generated"))
+
+
+def checked(folder: Path, monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("derive.command._package_folder", lambda: folder)
+    return main(["--check", *arguments])
+
+
+@pytest.mark.parametrize("seed", ["0", "1", "2", "random"])
+def test_the_bytes_do_not_depend_on_the_hash_seed(seed: str, tmp_path: Path) -> None:
+    assert derive("--output", str(tmp_path), hash_seed=seed).returncode == 0
+    for path in tmp_path.iterdir():
+        assert path.read_bytes() == (ROOT / "generated" / path.name).read_bytes()
+
+
+def test_the_bytes_do_not_depend_on_what_was_derived_before() -> None:
+    texts = planned(["single_pendulum"], None).texts
+    planned(["double_pendulum"], None)
+    assert planned(["single_pendulum"], None).texts == texts
+
+
+def test_the_committed_files_are_what_the_generator_writes() -> None:
+    run = derive("--check")
+    assert run.returncode == 0, run.stdout
+    assert "3 files" in run.stdout
+
+
+def test_files_name_no_place_version_or_time() -> None:
+    for path in (ROOT / "generated").glob("*.py"):
+        text = path.read_text()
+        for foreign in (str(ROOT), os.uname().nodename, "1.14", "202"):
+            assert foreign not in text
+
+
+def test_one_changed_character_is_found_shown_and_mended(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = folder / "double_pendulum.py"
+    path.write_text(path.read_text().replace("sin_x0", "sin_xO", 1))
+    assert checked(folder, monkeypatch) == 1
+    shown = capsys.readouterr().out
+    assert f"{path}: differs" in shown
+    assert "-    sin_xO = sin(x0)\n" in shown
+    assert "+    sin_x0 = sin(x0)\n" in shown
+    assert "mend it with: holonomic derive double_pendulum\n" in shown
+    assert main(["double_pendulum"]) == 0
+    assert checked(folder, monkeypatch) == 0
+
+
+def test_a_missing_file_is_found(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "single_pendulum.py").unlink()
+    assert checked(folder, monkeypatch) == 1
+    shown = capsys.readouterr().out
+    assert "single_pendulum.py: missing" in shown
+    assert "holonomic derive single_pendulum" in shown
+    assert checked(folder, monkeypatch, "double_pendulum") == 0
+
+
+def test_an_orphan_is_found_and_left_alone(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "triple_pendulum.py").write_text("")
+    assert checked(folder, monkeypatch) == 1
+    assert f"mend it with: rm -r {folder / 'triple_pendulum.py'}" in capsys.readouterr().out
+    assert main([]) == 0
+    assert (folder / "triple_pendulum.py").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["double_pendulun"], "did you mean 'double_pendulum'?"),
+        (["__import__('os')"], "no system is called"),
+    ],
+)
+def test_an_unknown_system_is_refused_with_those_that_exist(
+    arguments: Sequence[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    shown = capsys.readouterr().err
+    assert message in shown
+    assert "single_pendulum" in shown
+
+
+def test_a_folder_that_cannot_be_written_to_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    assert main(["--output", str(tmp_path / "file" / "folder")]) == 4
+    shown = capsys.readouterr().err
+    assert str(tmp_path / "file") in shown
+    assert "--output" in shown
+
+
+def test_what_is_up_to_date_is_not_written_again(tmp_path: Path) -> None:
+    tree = Tree(tmp_path, {"a.py": "a\n", "b.py": "b\n"}, complete=True)
+    assert [path.name for path in tree.write()] == ["a.py", "b.py"]
+    (tmp_path / "b.py").write_text("c\n")
+    assert [path.name for path in tree.write()] == ["b.py"]
+    assert tree.write() == []
+
+
+def test_a_failed_write_leaves_the_old_files_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Tree(tmp_path, {"a.py": "old\n"}, complete=True).write()
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space"):
+        Tree(tmp_path, {"a.py": "new\n"}, complete=True).write()
+    assert [path.name for path in tmp_path.iterdir()] == ["a.py"]
+    assert (tmp_path / "a.py").read_text() == "old\n"
+
+
+def test_the_next_run_removes_what_a_killed_one_left_and_spares_a_living_one(
+    tmp_path: Path,
+) -> None:
+    sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    living = tmp_path / f"{PASSAGE}{sleeper.pid}-x"
+    living.mkdir()
+    tree = Tree(tmp_path, {"a.py": "a\n"}, complete=True)
+    tree.write()
+    assert living.is_dir()
+    sleeper.kill()
+    sleeper.wait()
+    tree.write()
+    assert not living.exists()
+
+
+def test_killing_it_at_any_moment_leaves_whole_files(tmp_path: Path) -> None:
+    old = {f"m{k}.py": "old\n" * 20_000 for k in range(8)}
+    code = (
+        "import sys; from pathlib import Path; from derive.tree import Tree\n"
+        "for n in range(10**6):\n"
+        "    texts = {f'm{k}.py': f'{n}\\n' * 20_000 for k in range(8)}\n"
+        "    Tree(Path(sys.argv[1]), texts, complete=True).write()\n"
+        "    print(n, flush=True)\n"
+    )
+    Tree(tmp_path, old, complete=True).write()
+    for pause in (0.0, 0.001, 0.003, 0.007, 0.013):
+        run = subprocess.Popen(
+            [sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE
+        )
+        assert run.stdout is not None
+        run.stdout.readline()
+        time.sleep(pause)
+        run.send_signal(signal.SIGKILL)
+        run.wait()
+        run.stdout.close()
+        for name in old:
+            lines = (tmp_path / name).read_text().splitlines()
+            assert len(lines) == 20_000
+            assert len(set(lines)) == 1
+    Tree(tmp_path, old, complete=True).write()
+    assert {path.name for path in tmp_path.iterdir()} == set(old)

@@ -1,0 +1,52 @@
+"""Zero and positive expressions are told from others, by proof."""
+
+import pytest
+import sympy as sp
+
+from derive.zero import is_positive, vanishes
+
+a, b = sp.symbols("a b", real=True)
+m, n = sp.symbols("m n", positive=True)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        sp.sin(a) ** 2 + sp.cos(a) ** 2 - 1,
+        sp.cos(a - b) - sp.cos(a) * sp.cos(b) - sp.sin(a) * sp.sin(b),
+        sp.sin(2 * (a - b)) - 2 * sp.sin(a - b) * sp.cos(a - b),
+        sp.cos(3 * a) - 4 * sp.cos(a) ** 3 + 3 * sp.cos(a),
+        1 / (m + n * sp.sin(a) ** 2) - 1 / (m + n - n * sp.cos(a) ** 2),
+        m / (m * n + m**2) - 1 / (m + n),
+        (m + n) ** 3 / (m + n) - (m + n) ** 2,
+        sp.S.Zero,
+    ],
+)
+def test_identities_vanish(expression: sp.Expr) -> None:
+    assert vanishes(expression)
+    assert not vanishes(expression + m * sp.sin(a) ** 8 / 10**9)
+
+
+def test_what_is_not_rational_is_not_decided() -> None:
+    with pytest.raises(NotImplementedError, match="cannot decide"):
+        vanishes(sp.sqrt(a) - sp.exp(b))
+
+
+def test_a_denominator_that_vanishes_is_no_proof() -> None:
+    with pytest.raises(ZeroDivisionError):
+        vanishes(a / (sp.sin(b) ** 2 + sp.cos(b) ** 2 - 1))
+
+
+@pytest.mark.parametrize(
+    ("expression", "strictly"),
+    [
+        (1 - m / (m + n), True),
+        (1 - sp.cos(a) ** 2, False),
+        (1 - m / (m + n) * sp.cos(a - b) ** 2, True),
+        (m * n + n**2 * sp.sin(a) ** 2, True),
+    ],
+)
+def test_sums_of_positive_terms_are_seen(expression: sp.Expr, strictly: bool) -> None:
+    assert is_positive(expression, strictly=strictly)
+    assert not is_positive(-expression, strictly=strictly)
+    assert not is_positive(expression - 2 * m - 2, strictly=strictly)
