@@ -12,7 +12,8 @@ equal, ``lowering`` orders the operations, ``python`` lays out the module, and
 """
 
 from derive.catalogue import load, names
-from derive.derivation import Derivation, Linearisation
+from derive.derivation import Derivation
+from derive.linearisation import Linearisation
 from derive.system import Coordinate, Parameter, PointMass, System
 
 __all__ = [

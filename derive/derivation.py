@@ -15,6 +15,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from derive.linearisation import Linearisation, linearised
 from derive.reduction import collected, reduced
 from derive.system import System, SystemDefinitionError
 
@@ -197,7 +198,7 @@ class Derivation:
         velocities = self._divided_by_mass(Matrix(self.system.p))
         return velocities, Matrix([-self.hamiltonian.diff(q) for q in self.system.q])
 
-    def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
+    def linearisation(self, equilibrium: Sequence[sp.Expr] = ()) -> Linearisation:
         """Small motions about an equilibrium.
 
         Parameters
@@ -210,43 +211,5 @@ class Derivation:
         ValueError
             When a force is left at that place, or their number is wrong.
         """
-        place = tuple(sp.sympify(self.system.equilibrium if equilibrium is None else equilibrium))
-        return Linearisation.about(place, self)
-
-
-@dataclass(frozen=True)
-class Linearisation:
-    """M₀ ẍ + K x = 0 for small displacements x = q - q₀ about an equilibrium q₀.
-
-    Attributes
-    ----------
-    equilibrium : tuple of sympy.Expr
-        q₀.
-    mass_matrix, stiffness_matrix : sympy.Matrix
-        M₀ = M(q₀) and K = ∂²V/∂q² at q₀, n × n.
-    """
-
-    equilibrium: tuple[sp.Expr, ...]
-    mass_matrix: Matrix
-    stiffness_matrix: Matrix
-
-    @classmethod
-    def about(cls, equilibrium: tuple[sp.Expr, ...], derivation: Derivation) -> Linearisation:
-        """Expand `derivation` to second order about `equilibrium`."""
-        system = derivation.system
-        if len(equilibrium) != len(system.q):
-            raise ValueError(
-                f"an equilibrium of {system.name!r} has {len(system.q)} coordinates "
-                f"({', '.join(q.name for q in system.q)}), got {len(equilibrium)}"
-            )
-        at_rest = dict(zip(system.q, equilibrium, strict=True))
-        gradient = [derivation.potential_energy.diff(q) for q in system.q]
-        for q, slope in zip(system.q, gradient, strict=True):
-            force = sp.simplify(-slope.subs(at_rest))
-            if force != 0:
-                raise ValueError(
-                    f"{system.name!r} is not at rest at {q.name} = {at_rest[q]}: the force "
-                    f"along {q.name} is {force} there; give coordinates where it is 0"
-                )
-        stiffness = Matrix([[slope.diff(q) for q in system.q] for slope in gradient])
-        return cls(equilibrium, derivation.mass_matrix.subs(at_rest), stiffness.subs(at_rest))
+        place = tuple(sp.sympify(tuple(equilibrium) or self.system.equilibrium))
+        return linearised(self.system, self.mass_matrix, self.potential_energy, place)

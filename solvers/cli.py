@@ -127,12 +127,16 @@ def _demo(argv: Sequence[str]) -> int:
 
 def _derived() -> list[str]:
     from derive import Derivation, load
+    from derive.summary import broken_sum
 
     derivation = Derivation(load("double_pendulum"))
+    first, second = derivation.forcing
     return [
-        f"T = {derivation.kinetic_energy}",
-        f"V = {derivation.potential_energy}",
-        "L = T - V, then M qddot = f, p = M qdot and H = pT M^-1 p/2 + V, without a simplify",
+        *broken_sum(f"L = {derivation.lagrangian}", 80).splitlines(),
+        f"M = {derivation.mass_matrix.tolist()[0]}",
+        f"    {derivation.mass_matrix.tolist()[1]}, and M qddot = f with",
+        f"f = ({first},",
+        f"     {second})",
     ]
 
 
@@ -141,12 +145,11 @@ def _verified() -> list[str]:
 
     judged = judgement()
     return [
-        f"report's equations: {counted(judged['equations'])}",
-        f"report's claims: {counted(judged['claims'])}",
-        f"report's programs: {len(judged['programs'])}, none runs as printed"
-        if all(program["stops"] for program in judged["programs"])
-        else f"report's programs: {len(judged['programs'])}",
-        "why, and the corrections: holonomic verify",
+        f"equations of the report: {counted(judged['equations'])}",
+        f"claims of its chapters 3 to 5: {counted(judged['claims'])}",
+        f"programs: {len(judged['programs'])}, of them "
+        f"{sum(bool(program['stops']) for program in judged['programs'])} would not run as printed",
+        "which and why, and the corrections: holonomic verify",
     ]
 
 
@@ -161,7 +164,7 @@ def _generated() -> list[str]:
         for name in ("rhs", "rhs_hamiltonian", "jacobian", "energy")
     )
     return [
-        f"{tree.folder / 'double_pendulum.py'}: {state}",
+        f"generated/double_pendulum.py: {state}",
         f"operations a call: {', '.join(counts)}",
     ]
 

@@ -26,7 +26,7 @@ NUMBERS = {
     "g_dot": "0.21", "theta1": "0.6", "theta2": "-0.9", "theta": "0.6", "theta1_dot": "1.7",
     "theta2_dot": "-0.4", "theta_dot": "1.7", "theta1_ddot": "0.5", "theta2_ddot": "2.3",
     "theta_ddot": "0.5", "chi1": "0.3", "chi2": "0.2", "t": "0.4", "theta0": "0.15",
-    "psi": "0.35", "omega": "2.9", "Ixx": "1.1", "Iyy": "1.9", "Izz": "2.7", "omega_x": "0.4",
+    "psi": "0.35", "Ixx": "1.1", "Iyy": "1.9", "Izz": "2.7", "omega_x": "0.4",
     "omega_y": "-0.7", "omega_z": "1.2", "omega_x_dot": "0.8", "omega_y_dot": "0.3",
     "omega_z_dot": "-0.6",
 }  # fmt: skip

@@ -1,0 +1,66 @@
+"""Chains of pendulums: code stays short, and right, as systems grow."""
+
+import random
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from derive import Coordinate, Derivation, Parameter, PointMass, System
+from derive.functions import functions
+from derive.python import assignments, module
+
+
+def chain(n: int) -> Derivation:
+    q = sp.symbols(f"theta1:{n + 1}", real=True)
+    g = sp.Symbol("g", real=True)
+    masses = sp.symbols(f"m1:{n + 1}", positive=True)
+    lengths = sp.symbols(f"l1:{n + 1}", positive=True)
+    places, x, y = [], sp.S.Zero, sp.S.Zero
+    for angle, length in zip(q, lengths, strict=True):
+        x, y = x + length * sp.sin(angle), y - length * sp.cos(angle)
+        places.append((x, y))
+    return Derivation(
+        System(
+            name=f"chain{n}",
+            title=f"Chain of {n} pendulums",
+            coordinates=[Coordinate(angle, "rad", "angle from the vertical") for angle in q],
+            parameters=[
+                *(Parameter(m, "kg", 1.0, "mass") for m in masses),
+                *(Parameter(length, "m", 1.0, "length") for length in lengths),
+                Parameter(g, "m/s^2", 9.81, "gravity"),
+            ],
+            masses=[PointMass(m, r) for m, r in zip(masses, places, strict=True)],
+        )
+    )
+
+
+@pytest.mark.parametrize(("n", "operations"), [(1, 5), (2, 33), (3, 81), (4, 152)])
+def test_right_hand_sides_of_chains_are_short(n: int, operations: int) -> None:
+    rhs = next(f for f in functions(chain(n)) if f.name == "rhs")
+    assert assignments(rhs.lowering, ()).operations == operations
+
+
+@pytest.mark.parametrize("n", [3, 5])
+def test_generated_chains_solve_the_textbook_equations(n: int) -> None:
+    # M_ij = μ l_i l_j cos(θ_i - θ_j), f_i = -Σ μ l_i l_j sin(θ_i - θ_j) θ̇_j² - μ_i g l_i sin θ_i,
+    # with μ the mass at or below the lower of the two joints
+    scope: dict[str, object] = {}
+    exec(compile(module(chain(n)), "chain", "exec"), scope)
+    generator = random.Random(n)
+    theta, omega = (np.array([generator.uniform(-3, 3) for _ in range(n)]) for _ in range(2))
+    m, lengths = (np.array([generator.uniform(0.5, 2) for _ in range(n)]) for _ in range(2))
+    below = np.cumsum(m[::-1])[::-1]
+    mu = below[np.maximum.outer(np.arange(n), np.arange(n))]
+    delta = np.subtract.outer(theta, theta)
+    M = mu * np.outer(lengths, lengths) * np.cos(delta)
+    f = -(mu * np.outer(lengths, lengths) * np.sin(delta)) @ omega**2
+    f -= below * 9.81 * lengths * np.sin(theta)
+    params = [*m, *lengths, 9.81]
+    rhs, positions = scope["rhs"], scope["positions"]
+    result = rhs(0.0, [*theta, *omega], params)  # type: ignore[operator]
+    np.testing.assert_allclose(result[n:], np.linalg.solve(M, f), rtol=1e-10)
+    tip = positions([*theta, *omega], params)[-1]  # type: ignore[operator]
+    np.testing.assert_allclose(
+        tip, (lengths @ np.sin(theta), -(lengths @ np.cos(theta))), atol=1e-12
+    )
