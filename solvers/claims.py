@@ -18,9 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from solvers.runge_kutta import METHODS, fixed_step
+from solvers.catalogue import load
+from solvers.fixed_step import fixed_step
 
 Array = NDArray[np.float64]
+
+#: What the report's figures call its methods.
+METHODS = {"RK1": "rk1", "RK2": "midpoint", "RK3": "rk3", "RK4": "rk4"}
 
 
 @dataclass(frozen=True)
@@ -97,7 +101,7 @@ class Evidence:
             derivative: tuple[float, ...] = self._module.rhs(t, y, scene.params)
             return derivative
 
-        return fixed_step(rhs, scene.y0, scene.duration / steps, steps, METHODS[method])
+        return fixed_step(rhs, scene.y0, scene.duration / steps, steps, load(METHODS[method]))
 
     def error(self, method: str, h: float) -> float:
         """Largest error of an angle at the end of the prose's scene, in rad."""

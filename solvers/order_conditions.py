@@ -1,41 +1,41 @@
-"""The order of a Runge–Kutta method, by rooted trees, in exact arithmetic.
+"""The order of a Runge–Kutta method, by rooted trees.
 
 A method has order p when Σ b Φ(τ) = 1/γ(τ) for every rooted tree τ with at most
 p nodes (J. C. Butcher, Numerical Methods for Ordinary Differential Equations,
 section 315; E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential
-Equations I, theorem II.2.13).
+Equations I, theorem II.2.13). Exact coefficients must fulfil them exactly;
+published decimals to what their last digits leave open.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cache
 from itertools import combinations_with_replacement
 from math import prod
+from typing import Any, TypeAlias
 
+#: A coefficient: Fraction, Surd or Decimal, of one kind in a method.
+Number: TypeAlias = Any
 Tree = tuple["Tree", ...]  # a root's branches, in descending order of size
 
+#: Digits that computations with rounded decimals carry.
+WORKING_DIGITS = 110
 
-def order(
-    A: Sequence[Sequence[Fraction]], b: Sequence[Fraction], c: Sequence[Fraction], most: int = 6
-) -> int:
-    """The order of the method with coefficients `A`, `b` and `c`, at most `most`.
 
-    Parameters
-    ----------
-    A, b, c : sequences of Fraction
-        Stage matrix (stages × stages), weights and nodes. A method whose nodes
-        are not the row sums of A has order 0 here: the trees then say nothing
-        about right-hand sides that depend on time.
-    most : int
-        Where to stop looking.
+def order(A: Sequence[Sequence[Number]], b: Sequence[Number], most: int = 12) -> int:
+    """The order of the method with stage matrix `A` and weights `b`, at most `most`.
+
+    The nodes are taken to be the row sums of A.
     """
-    if any(sum(row) != node for row, node in zip(A, c, strict=True)):
-        return 0
-    for p in range(1, most + 1):
-        if any(_residual(tree, A, b) for tree in trees(p)):
-            return p - 1
+    with localcontext() as context:
+        context.prec = WORKING_DIGITS
+        conditions = _Conditions(A, b)
+        for p in range(1, most + 1):
+            if not all(map(conditions.hold, trees(p))):
+                return p - 1
     return most
 
 
@@ -56,28 +56,60 @@ def _forests(nodes: int, largest: int) -> Iterator[Tree]:
                     yield chosen + rest
 
 
+@cache
 def _nodes(tree: Tree) -> int:
     return 1 + sum(map(_nodes, tree))
 
 
-def _density(tree: Tree) -> int:
+@cache
+def density(tree: Tree) -> int:
     """γ: the product of the sizes of all subtrees that hang from a node."""
-    return _nodes(tree) * prod(map(_density, tree))
+    return _nodes(tree) * prod(map(density, tree))
 
 
-def _stage_weights(tree: Tree, A: Sequence[Sequence[Fraction]]) -> list[Fraction]:
-    """Φ of each stage: the product over branches of A Φ(branch)."""
-    weights = [Fraction(1)] * len(A)
-    for branch in tree:
-        inner = _stage_weights(branch, A)
-        weights = [
-            w * sum((a * x for a, x in zip(row, inner, strict=True)), Fraction(0))
-            for w, row in zip(weights, A, strict=True)
-        ]
-    return weights
+class _Conditions:
+    """The order conditions of one method, with what trees have in common computed once."""
+
+    def __init__(self, A: Sequence[Sequence[Number]], b: Sequence[Number]) -> None:
+        self._A, self._b = A, b
+        self._zero = b[0] - b[0]
+        self._stage_weights: dict[Tree, list[Number]] = {}
+        decimals = [x for x in (*(x for row in A for x in row), *b) if isinstance(x, Decimal)]
+        self._digits = max((_digits(x) for x in decimals), default=0)
+        self._magnitudes = (
+            _Conditions([[abs(x) for x in row] for row in A], [abs(x) for x in b])
+            if any(x < 0 for x in decimals)
+            else self
+        )
+
+    def weight(self, tree: Tree) -> Number:
+        """Σ b Φ(tree)."""
+        return sum((w * x for w, x in zip(self._b, self._at_stages(tree), strict=True)), self._zero)
+
+    def hold(self, tree: Tree) -> bool:
+        """Whether the condition of `tree` is fulfilled."""
+        if not self._digits:
+            return bool(self.weight(tree) == Fraction(1, density(tree)))
+        residual = abs(self.weight(tree) - Decimal(1) / density(tree))
+        # every factor is rounded in its last digit, of which one or two may be lost in print
+        last_digit = Decimal(10) ** (2 - self._digits)
+        return bool(residual <= 2 * _nodes(tree) * last_digit * self._magnitudes.weight(tree))
+
+    def _at_stages(self, tree: Tree) -> list[Number]:
+        """Φ of each stage: the product over branches of A Φ(branch)."""
+        if tree not in self._stage_weights:
+            weights = [self._zero + 1] * len(self._b)
+            for branch in tree:
+                inner = self._at_stages(branch)
+                weights = [
+                    w * sum((a * x for a, x in zip(row, inner, strict=True) if a), self._zero)
+                    for w, row in zip(weights, self._A, strict=True)
+                ]
+            self._stage_weights[tree] = weights
+        return self._stage_weights[tree]
 
 
-def _residual(tree: Tree, A: Sequence[Sequence[Fraction]], b: Sequence[Fraction]) -> Fraction:
-    weights = _stage_weights(tree, A)
-    total = sum((x * w for x, w in zip(b, weights, strict=True)), Fraction(0))
-    return total - Fraction(1, _density(tree))
+def _digits(number: Decimal) -> int:
+    """Significant digits as printed; quotients, which fill the working digits, aside."""
+    digits = len(number.as_tuple().digits)
+    return digits if digits < WORKING_DIGITS else 0

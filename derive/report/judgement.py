@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from functools import cache
 
 import sympy as sp
@@ -10,11 +11,11 @@ import sympy as sp
 from derive.expression import Value, parsed
 from derive.report import appendix, chapters, contexts
 from derive.report.equation import Equation, Stated, Verdict
-from derive.report.method import Coefficients, NotRungeKuttaError, coefficients
+from derive.report.method import NotRungeKuttaError, coefficients
 from derive.statement import Context, Finding
 
-#: Tells the order of the Runge–Kutta method with coefficients A, b, c.
-OrderOf = Callable[[*Coefficients], int]
+#: Tells the order of the Runge–Kutta method with stage matrix A and weights b.
+OrderOf = Callable[[list[list[Fraction]], list[Fraction]], int]
 
 EQUATIONS: tuple[Equation | Stated, ...] = (
     *chapters.INTRODUCTION,
@@ -32,7 +33,7 @@ def verdicts(order_of: OrderOf) -> list[Verdict]:
     Parameters
     ----------
     order_of : callable
-        ``order_of(A, b, c)``, the order of a Runge–Kutta method by its order conditions.
+        ``order_of(A, b)``, the order of a Runge–Kutta method by its order conditions.
     """
     return [verdict(equation, order_of) for equation in EQUATIONS]
 

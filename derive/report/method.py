@@ -14,29 +14,27 @@ STAGES = 4
 NAMES = ("t_i", "w_i", "h", *(f"m_{k + 1}" for k in range(STAGES)))
 SYMBOLS = {name: sp.Symbol(name) for name in NAMES}
 
-#: A, b, c.
-Coefficients = tuple[list[list[Fraction]], list[Fraction], list[Fraction]]
-
 
 class NotRungeKuttaError(ValueError):
     """The lines are not the stages and the step of an explicit Runge–Kutta method."""
 
 
-def coefficients(lines: Sequence[str]) -> Coefficients:
-    """A, b, c of ``m_k = h*f(t_i + c*h, w_i + Σ a*m_j)``, …, ``w_next = w_i + Σ b*m_k``.
+def coefficients(lines: Sequence[str]) -> tuple[list[list[Fraction]], list[Fraction]]:
+    """A and b of ``m_k = h*f(t_i + c*h, w_i + Σ a*m_j)``, …, ``w_next = w_i + Σ b*m_k``.
 
     Raises
     ------
     NotRungeKuttaError
-        When a line has another form.
+        When a line has another form, or c is not the sum of its row of A.
     """
     *stages, step = lines
-    A, c = [], []
+    A = []
     for number, line in enumerate(stages, start=1):
         time, state = _arguments(line, f"m_{number}")
-        c.append(_weights(time, "t_i", ["h"])[0])
         A.append(_weights(state, "w_i", NAMES[3:]))
-    return A, _weights(_right(step, "w_next"), "w_i", NAMES[3:]), c
+        if _weights(time, "t_i", ["h"]) != [sum(A[-1])]:
+            raise NotRungeKuttaError(f"{line!r}: time and state move by different parts of h")
+    return A, _weights(_right(step, "w_next"), "w_i", NAMES[3:])
 
 
 def _right(line: str, name: str) -> sp.Expr:

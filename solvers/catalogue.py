@@ -1,0 +1,39 @@
+"""The methods that ship with holonomic, found by their files' names."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from functools import cache
+from importlib import import_module
+from pkgutil import iter_modules
+
+from solvers import methods
+from solvers.tableau import Tableau
+
+
+class UnknownMethodError(ValueError):
+    """No method has this name; the message lists those that exist."""
+
+
+def names() -> tuple[str, ...]:
+    """Names of all methods, in alphabetical order."""
+    return tuple(sorted(module.name for module in iter_modules(methods.__path__)))
+
+
+@cache
+def load(name: str) -> Tableau:
+    """The method called `name`.
+
+    Raises
+    ------
+    UnknownMethodError
+        When no file is called so.
+    """
+    if name not in names():
+        close = get_close_matches(name, names(), n=1)
+        hint = f"; did you mean {close[0]!r}?" if close else ""
+        raise UnknownMethodError(
+            f"no method is called {name[:50]!r}{hint} Known are: {', '.join(names())}"
+        )
+    tableau: Tableau = import_module(f"solvers.methods.{name}").tableau
+    return tableau

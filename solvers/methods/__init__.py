@@ -1,0 +1,1 @@
+"""Methods, one a file: each defines ``tableau`` and is found by its file's name."""

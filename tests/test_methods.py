@@ -1,0 +1,220 @@
+"""Tableaus: orders proved and observed, and what is derived from the numbers alone."""
+
+from dataclasses import replace
+from decimal import Decimal
+from fractions import Fraction
+from math import cos, exp, isclose, log2, sin, sqrt
+
+import numpy as np
+import pytest
+from mpmath import cos as mpcos
+from mpmath import exp as mpexp
+from mpmath import fdot, mpf, workdps
+from mpmath import log as mplog
+from mpmath import sin as mpsin
+
+from solvers.catalogue import UnknownMethodError, load, names
+from solvers.fixed_step import fixed_step
+from solvers.order_conditions import density, order, trees
+from solvers.surd import Surd
+from solvers.tableau import Tableau
+
+#: Order, embedded order, stages, and whether the last stage is the next step's first: as published.
+PUBLISHED = {
+    "rk1": (1, 0, 1, False), "midpoint": (2, 0, 2, False), "heun": (2, 0, 2, False),
+    "ralston": (2, 0, 2, False), "rk3": (3, 0, 3, False), "rk4": (4, 0, 4, False),
+    "rk4_38": (4, 0, 4, False), "bs32": (3, 2, 4, True), "dp54": (5, 4, 7, True),
+    "tsit54": (5, 4, 7, True), "dop853": (8, 5, 12, False), "verner87": (8, 7, 13, False),
+    "verner98": (9, 8, 16, False), "gauss1": (2, 0, 1, False), "gauss2": (4, 0, 2, False),
+    "gauss3": (6, 0, 3, False), "radau2": (3, 0, 2, False), "radau3": (5, 0, 3, False),
+}  # fmt: skip
+
+EXPLICIT = [name for name in names() if load(name).is_explicit]
+
+
+def test_there_are_as_many_rooted_trees_as_published() -> None:
+    # OEIS A000081
+    assert [len(trees(n)) for n in range(1, 11)] == [1, 1, 2, 4, 9, 20, 48, 115, 286, 719]
+
+
+def test_densities_are_those_of_the_textbook() -> None:
+    # Hairer, Nørsett and Wanner, table II.2.2, up to order 4
+    assert sorted(density(tree) for n in range(1, 5) for tree in trees(n)) == [
+        1, 2, 3, 4, 6, 8, 12, 24,
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", names())
+def test_each_method_has_its_published_properties_by_proof(name: str) -> None:
+    method = load(name)
+    found = (method.order, method.embedded_order, method.stages, method.is_fsal)
+    assert found == PUBLISHED[name]
+
+
+@pytest.mark.parametrize("name", names())
+def test_coefficients_that_can_be_exact_are(name: str) -> None:
+    method = load(name)
+    kinds = {type(x) for row in (*method.A, method.b, method.b_hat) for x in row}
+    decimals = name in ("tsit54", "dop853", "verner87", "verner98")
+    assert kinds <= ({Decimal} if decimals else {Fraction, Surd})
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_mistake_in_any_coefficient_loses_the_order(name: str) -> None:
+    method = load(name)
+    # in rounded decimals the fifteenth significant digit: beyond what a float would show
+    for i, row in enumerate(method.A):
+        for j, a in enumerate(row):
+            if a != 0:
+                wrong = [list(r) for r in method.A]
+                wrong[i][j] = a + abs(a) / 10**15
+                assert order(wrong, method.b) < method.order or (
+                    method.b_hat and order(wrong, method.b_hat) < method.embedded_order
+                )
+    for weights, expected in ((method.b, method.order), (method.b_hat, method.embedded_order)):
+        for j, b in enumerate(weights):
+            if b != 0:
+                changed = [*weights[:j], b + abs(b) / 10**15, *weights[j + 1 :]]
+                assert order(method.A, changed) < expected
+
+
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_the_proved_order_is_observed(name: str) -> None:
+    # y' = y cos t has y = exp(sin t) and depends on time; 50 digits leave room to converge
+    method = load(name)
+
+    def error(steps: int) -> mpf:
+        y, h = mpf(1), mpf(2) / steps
+        A, b, c = [[exact(x) for x in row] for row in method.A], method.b, method.c
+        for n in range(steps):
+            slopes: list[mpf] = []
+            for row, node in zip(A, map(exact, c), strict=True):
+                moved = y + h * fdot(row[: len(slopes)], slopes)
+                slopes.append(moved * mpcos((n + node) * h))
+            y += h * fdot(map(exact, b), slopes)
+        return abs(y - mpexp(mpsin(2)))
+
+    with workdps(50):
+        assert float(mplog(error(200) / error(400), 2)) == pytest.approx(method.order, abs=0.1)
+
+
+def exact(number: Fraction | Decimal) -> mpf:
+    numerator, denominator = number.as_integer_ratio()
+    return mpf(numerator) / denominator
+
+
+@pytest.mark.parametrize(("name", "steps"), [("rk1", 4000), ("midpoint", 400), ("rk3", 200),
+                                             ("rk4", 200), ("dp54", 80)])  # fmt: skip
+def test_the_order_is_observed_in_the_stepper(name: str, steps: int) -> None:
+    method = load(name)
+
+    def error(steps: int) -> float:
+        def rhs(t: float, y: list[float]) -> list[float]:
+            return [y[0] * cos(t)]
+
+        return abs(float(fixed_step(rhs, [1.0], 2.0 / steps, steps, method)[0, -1]) - exp(sin(2.0)))
+
+    assert log2(error(steps) / error(2 * steps)) == pytest.approx(method.order, abs=0.1)
+
+
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_one_step_multiplies_by_the_stability_function(name: str) -> None:
+    # as a black box: y' = λy for complex λ, written as two real equations
+    method = load(name)
+    numerator, denominator = method.stability_function
+    assert len(denominator) == 1
+    for z in (0.3 + 0.2j, -1.0 + 0.5j, -0.2 - 2.0j):
+
+        def rhs(t: float, y: list[float], z: complex = z) -> list[float]:
+            product = z * complex(*y)
+            return [product.real, product.imag]
+
+        step = complex(*fixed_step(rhs, [1.0, 0.0], 1.0, 1, method)[:, 1])
+        assert step == pytest.approx(np.polyval([float(a) for a in numerator[::-1]], z), rel=1e-11)
+
+
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_coefficients_are_read_back_from_the_running_stepper(name: str) -> None:
+    # a right-hand side that answers with one chosen stage only tells which number multiplies it
+    method = load(name)
+    arguments: list[tuple[float, float]] = []
+    for j in range(method.stages):
+        arguments.clear()
+
+        def rhs(t: float, y: list[float], j: int = j) -> list[float]:
+            arguments.append((t, y[0]))
+            return [float(len(arguments) == j + 1)]
+
+        end = float(fixed_step(rhs, [0.0], 1.0, 1, method)[0, 1])
+        assert end == float(method.b[j])
+        assert [y for _, y in arguments] == [float(row[j]) for row in method.A]
+        assert [t for t, _ in arguments] == [float(c) for c in method.c]
+
+
+@pytest.mark.parametrize(
+    ("name", "numerator", "denominator"),
+    [
+        ("rk4", [1, 1, "1/2", "1/6", "1/24"], [1]),
+        ("gauss1", [1, "1/2"], [1, "-1/2"]),
+        ("gauss2", [1, "1/2", "1/12"], [1, "-1/2", "1/12"]),
+        ("gauss3", [1, "1/2", "1/10", "1/120"], [1, "-1/2", "1/10", "-1/120"]),
+        ("radau2", [1, "1/3"], [1, "-2/3", "1/6"]),
+        ("radau3", [1, "2/5", "1/20"], [1, "-3/5", "3/20", "-1/60"]),
+    ],
+)
+def test_stability_functions_are_the_published_ones(
+    name: str, numerator: list[str], denominator: list[str]
+) -> None:
+    # Taylor sections and Padé approximants of the exponential, exactly
+    found = load(name).stability_function
+    assert found == (tuple(map(Fraction, numerator)), tuple(map(Fraction, denominator)))
+
+
+@pytest.mark.parametrize("name", ["gauss1", "gauss2", "gauss3"])
+def test_gauss_methods_are_symplectic_and_others_are_not(name: str) -> None:
+    # b_i a_ij + b_j a_ji = b_i b_j (Hairer, Lubich and Wanner, theorem VI.4.3)
+    def is_symplectic(method: Tableau) -> bool:
+        stages = range(method.stages)
+        A, b = method.A, method.b
+        return all(b[i] * A[i][j] + b[j] * A[j][i] == b[i] * b[j] for i in stages for j in stages)
+
+    assert is_symplectic(load(name))
+    assert not is_symplectic(load("radau3"))
+    assert not is_symplectic(load("rk4"))
+
+
+def test_nodes_of_gauss_are_roots_of_the_legendre_polynomial() -> None:
+    roots = (np.polynomial.legendre.leggauss(3)[0] + 1) / 2
+    assert np.allclose([float(c) for c in load("gauss3").c], roots, rtol=0, atol=1e-16)
+
+
+def test_error_weights_estimate_nothing_where_the_solution_is_constant() -> None:
+    for name in names():
+        method = load(name)
+        if method.b_hat:
+            assert abs(float(sum(method.error_weights))) < 1e-25
+            assert any(w != 0 for w in method.error_weights)
+
+
+def test_an_unknown_method_is_refused_with_those_that_exist() -> None:
+    with pytest.raises(UnknownMethodError, match=r"did you mean 'rk4'\?.*verner98"):
+        load("rk5")
+
+
+def test_a_method_without_its_embedded_weights_estimates_no_error() -> None:
+    bare = replace(load("dp54"), b_hat=())
+    assert bare.embedded_order == 0
+    assert bare.error_weights == ()
+
+
+def test_surds_compute_exactly() -> None:
+    r = Surd.root(3)
+    assert r * r == 3
+    assert (1 + r) * (1 - r) == -2
+    assert (r / 6 - Fraction(1, 2)) + Fraction(1, 2) == r / 6
+    assert r != Fraction(7, 4)
+    assert hash(0 * r + 2) == hash(Fraction(2))
+    assert isclose(float(r), sqrt(3), rel_tol=2e-16)
+    # 26² = 676 and 15² · 3 = 675: the parts cancel to three digits, the value keeps all
+    assert isclose(float(26 - 15 * r), 1 / (26 + 15 * sqrt(3)), rel_tol=1e-13)
+    assert abs(1 - r) == r - 1
