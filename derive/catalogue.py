@@ -27,17 +27,23 @@ def load(name: str) -> System:
     UnknownSystemError
         When no file is called so.
     SystemDefinitionError
-        When the file's name and the system's differ.
+        When its file is wrong: what it says, or that its name and the system's differ.
     """
     if name not in names():
         close = get_close_matches(name, names(), n=1)
-        hint = f"; did you mean {close[0]!r}?" if close else ""
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
         raise UnknownSystemError(
-            f"no system is called {name[:50]!r}{hint} Known are: {', '.join(names())}"
+            f"no system is called {name[:50]!r}{hint}; known are: {', '.join(names())}"
         )
-    system: System = import_module(f"derive.systems.{name}").system
-    if system.name != name:
+    try:
+        system = import_module(f"derive.systems.{name}").system
+    except Exception as error:
         raise SystemDefinitionError(
-            f"the system in {name}.py calls itself {system.name!r}; give both the same name"
+            f"{name}.py does not define a system: {type(error).__name__}: {error}"
+        ) from error
+    if not isinstance(system, System) or system.name != name:
+        raise SystemDefinitionError(
+            f"in {name}.py, `system` must be a System with the file's name, "
+            f"not {getattr(system, 'name', system)!r}"
         )
     return system

@@ -10,8 +10,10 @@ from pathlib import Path
 
 from derive.catalogue import UnknownSystemError, load, names
 from derive.derivation import Derivation
+from derive.functions import contents
 from derive.python import module
 from derive.system import SystemDefinitionError
+from derive.translation import UnsupportedFunctionError
 from derive.tree import Difference, Tree
 
 EXAMPLE = """\
@@ -36,7 +38,7 @@ def main(argv: Sequence[str]) -> int:
     try:
         tree = planned(arguments.systems, arguments.output)
         return _check(tree, arguments) if arguments.check else _write(tree)
-    except (UnknownSystemError, SystemDefinitionError) as error:
+    except (UnknownSystemError, SystemDefinitionError, UnsupportedFunctionError) as error:
         print(f"holonomic derive: {error}", file=sys.stderr)
         return 2
     except OSError as error:
@@ -73,20 +75,19 @@ def _write(tree: Tree) -> int:
     for path in written:
         print(f"wrote {path}")
     if kept:
-        print(f"{kept} file{'s' if kept > 1 else ''} in {tree.folder} already up to date")
+        print(f"{_files(kept)} in {tree.folder} already up to date")
     for path in tree.orphans():
-        print(f"nothing generates {path}; remove it with: rm -r {path}")
+        print(f"nothing generates {path}; remove it with: {_removal(path)}")
     return 0
 
 
 def planned(systems: list[str], output: Path | None) -> Tree:
     """What the folder should hold after the command."""
-    texts = {f"{name}.py": module(Derivation(load(name))) for name in systems or names()}
+    texts = {f"{name}.py": module(contents(Derivation(load(name)))) for name in systems or names()}
     if output is not None:
         return Tree(output, texts, complete=False)
-    if not systems:
-        modules = "\n".join(f'    "{name}",' for name in names())
-        texts["__init__.py"] = PACKAGE.format(names=modules)
+    modules = "\n".join(f'    "{name}",' for name in names())
+    texts["__init__.py"] = PACKAGE.format(names=modules)
     return Tree(_package_folder(), texts, complete=not systems)
 
 
@@ -104,13 +105,21 @@ def _check(tree: Tree, arguments: argparse.Namespace) -> int:
         print(difference.diff, end="")
         print(f"  mend it with: {_mending(difference, arguments)}")
     if not differences:
-        print(f"{len(tree.texts)} files in {tree.folder} are what holonomic derive writes")
+        print(f"{_files(len(tree.texts))} in {tree.folder} as holonomic derive writes them")
     return 1 if differences else 0
+
+
+def _files(count: int) -> str:
+    return "1 file" if count == 1 else f"{count} files"
+
+
+def _removal(path: Path) -> str:
+    return f"rm {'-r ' if path.is_dir() else ''}{path}"
 
 
 def _mending(difference: Difference, arguments: argparse.Namespace) -> str:
     if difference.reason == "orphan":
-        return f"rm -r {difference.path}"
+        return _removal(difference.path)
     systems = [name for name in names() if difference.path.stem == name]
     output = ["--output", str(arguments.output)] if arguments.output else []
     return " ".join(["holonomic", "derive", *systems, *output])

@@ -17,7 +17,7 @@ import sympy as sp
 
 from derive.linearisation import Linearisation, linearised
 from derive.reduction import collected, reduced
-from derive.system import System, SystemDefinitionError
+from derive.system import System, SystemDefinitionError, formula
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
 
@@ -198,18 +198,22 @@ class Derivation:
         velocities = self._divided_by_mass(Matrix(self.system.p))
         return velocities, Matrix([-self.hamiltonian.diff(q) for q in self.system.q])
 
-    def linearisation(self, equilibrium: Sequence[sp.Expr] = ()) -> Linearisation:
+    def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
         """Small motions about an equilibrium.
 
         Parameters
         ----------
         equilibrium : sequence of sympy.Expr, optional
-            Coordinates at rest; the system's own equilibrium by default.
+            Coordinates at rest; by default the system's own equilibrium, or zeros.
 
         Raises
         ------
-        ValueError
+        SystemDefinitionError
             When a force is left at that place, or their number is wrong.
         """
-        place = tuple(sp.sympify(tuple(equilibrium) or self.system.equilibrium))
-        return linearised(self.system, self.mass_matrix, self.potential_energy, place)
+        if equilibrium is None:
+            equilibrium = self.system.equilibrium
+        place = (0,) * len(self.system.q) if equilibrium is None else equilibrium
+        return linearised(
+            self.system, self.mass_matrix, self.potential_energy, tuple(map(formula, place))
+        )

@@ -103,8 +103,10 @@ OPERATORS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
 def _named(name: str, scope: Scope) -> Any:
     if name not in scope:
         close = get_close_matches(name, scope, n=1)
-        hint = f"; did you mean {close[0]!r}?" if close else ""
-        raise ExpressionError(f"unknown name {name[:50]!r}{hint} Known: {', '.join(sorted(scope))}")
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        raise ExpressionError(
+            f"unknown name {name[:50]!r}{hint}; known are: {', '.join(sorted(scope))}"
+        )
     return scope[name]
 
 

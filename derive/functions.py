@@ -8,9 +8,9 @@ from typing import Literal
 from derive.derivation import Derivation
 from derive.lowering import Lowering
 from derive.mechanics import Mechanics
-from derive.system import System
+from derive.system import System, SystemDefinitionError
 
-Form = Literal["lagrangian", "hamiltonian", "parameters"]
+Form = Literal["lagrangian", "hamiltonian", "rational", "parameters"]
 
 #: name, form of the state, shape of the result, first line of the docstring, what comes back
 TABLE: tuple[tuple[str, Form, str, str, str], ...] = (
@@ -65,6 +65,16 @@ TABLE: tuple[tuple[str, Form, str, str, str], ...] = (
         "Coordinates, then velocities from M qdot = p.",
     ),
     (
+        "rational_state", "lagrangian", "rational",
+        "State of the rational form that belongs to y = (q, qdot).",
+        "Sine and cosine of every angle, other coordinates, velocities.",
+    ),
+    (
+        "rhs_rational", "rational", "rational",
+        "Right-hand side of y' = rhs_rational(t, y, params): no function is called.",
+        "Time derivative of y.",
+    ),
+    (
         "linear", "parameters", "2 q q",
         "Matrices of small motions x about rest at q = {equilibrium}.",
         "M0 and K of M0 xddot + K x = 0.",
@@ -80,8 +90,10 @@ class Function:
     ----------
     name, summary, returns : str
         Its name, the first line of its docstring, and what it returns.
-    form : {"lagrangian", "hamiltonian", "parameters"}
+    form : {"lagrangian", "hamiltonian", "rational", "parameters"}
         Which state it takes as ``y``; ``parameters`` means none.
+    state : tuple of str
+        Names of the components of ``y``, in order.
     shape : tuple of int
         Shape of the result; ``()`` is a single number.
     lowering : Lowering
@@ -92,6 +104,7 @@ class Function:
     summary: str
     returns: str
     form: Form
+    state: tuple[str, ...]
     shape: tuple[int, ...]
     lowering: Lowering
 
@@ -101,35 +114,87 @@ class Function:
         return self.name.startswith(("rhs", "jacobian"))
 
 
-def functions(derivation: Derivation) -> tuple[Function, ...]:
-    """Every function of the module generated for `derivation`."""
+@dataclass(frozen=True)
+class Contents:
+    """What the generated files of a system hold, whatever language they are in.
+
+    Attributes
+    ----------
+    derivation : Derivation
+        Where everything comes from.
+    states : dict of form to tuple of str
+        Names of the components of ``y`` in each form that exists.
+    functions : tuple of Function
+        The functions that exist: without angles there is no rational form, without a
+        known equilibrium no ``linear``.
+    """
+
+    derivation: Derivation
+    states: dict[Form, tuple[str, ...]]
+    functions: tuple[Function, ...]
+
+    @property
+    def system(self) -> System:
+        """The system."""
+        return self.derivation.system
+
+
+def contents(derivation: Derivation) -> Contents:
+    """Everything that is generated for `derivation`."""
     system = derivation.system
-    parameters = {symbol.name for symbol in system.params}
-    return tuple(
-        Function(
-            name,
-            summary.format(equilibrium=f"({', '.join(map(str, system.equilibrium))})"),
-            returns,
-            form,
-            _shape(shape, system),
-            Lowering(getattr(Mechanics(derivation), name), parameters),
-        )
-        for name, form, shape, summary, returns in TABLE
-    )
-
-
-def state_names(system: System, form: Form) -> tuple[str, ...]:
-    """Names of the components of ``y``, in order."""
-    second = {"lagrangian": system.qdot, "hamiltonian": system.p}
-    return tuple(s.name for s in system.q + second[form]) if form in second else ()
-
-
-def _shape(words: str, system: System) -> tuple[int, ...]:
-    lengths = {
+    states = _states(derivation)
+    at_rest = _equilibrium(derivation)
+    sizes = {
         "q": len(system.q),
         "state": 2 * len(system.q),
+        "rational": len(states.get("rational", ())),
         "masses": len(system.masses),
         "axes": system.dimension,
         "2": 2,
     }
-    return tuple(lengths[word] for word in words.split())
+    parameters = {symbol.name for symbol in system.params}
+    return Contents(
+        derivation,
+        states,
+        tuple(
+            Function(
+                name,
+                summary.format(equilibrium=at_rest),
+                returns,
+                form,
+                states.get(form, ()),
+                tuple(sizes[word] for word in shape.split()),
+                Lowering(getattr(Mechanics(derivation), name), parameters),
+            )
+            for name, form, shape, summary, returns in TABLE
+            if ("rational" not in (form, shape) or "rational" in states)
+            and (name != "linear" or at_rest)
+        ),
+    )
+
+
+def _equilibrium(derivation: Derivation) -> str:
+    """Where ``linear`` expands, in words; empty if no equilibrium is known."""
+    try:
+        place = derivation.linearisation().equilibrium
+    except SystemDefinitionError:
+        if derivation.system.equilibrium is not None:
+            raise
+        return ""
+    return f"({', '.join(map(str, place))})"
+
+
+def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
+    system, angles = derivation.system, Mechanics(derivation).angles
+    places = [
+        name
+        for q in system.q
+        for name in ([f"sin_{q.name}", f"cos_{q.name}"] if q in angles else [q.name])
+    ]
+    states: dict[Form, tuple[str, ...]] = {
+        "lagrangian": tuple(s.name for s in system.q + system.qdot),
+        "hamiltonian": tuple(s.name for s in system.q + system.p),
+    }
+    if angles:
+        states["rational"] = (*places, *(s.name for s in system.qdot))
+    return states

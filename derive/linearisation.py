@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.system import System
+from derive.system import System, SystemDefinitionError
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
 
@@ -36,11 +36,11 @@ def linearised(
 
     Raises
     ------
-    ValueError
+    SystemDefinitionError
         When a force is left there, or the number of coordinates is wrong.
     """
     if len(equilibrium) != len(system.q):
-        raise ValueError(
+        raise SystemDefinitionError(
             f"an equilibrium of {system.name!r} has {len(system.q)} coordinates "
             f"({', '.join(q.name for q in system.q)}), got {len(equilibrium)}"
         )
@@ -49,9 +49,9 @@ def linearised(
     for q, slope in zip(system.q, gradient, strict=True):
         force = sp.simplify(-slope.subs(at_rest))
         if force != 0:
-            raise ValueError(
+            raise SystemDefinitionError(
                 f"{system.name!r} is not at rest at {q.name} = {at_rest[q]}: the force "
-                f"along {q.name} is {force} there; give coordinates where it is 0"
+                f"along {q.name} is {force} there; give equilibrium= coordinates where it is 0"
             )
     stiffness = Matrix([[slope.diff(q) for q in system.q] for slope in gradient])
     return Linearisation(equilibrium, mass_matrix.subs(at_rest), stiffness.subs(at_rest))

@@ -17,6 +17,7 @@ import sympy as sp
 from derive.derivation import Derivation
 from derive.factorisation import Factorisation
 from derive.graph import Graph, Node
+from derive.rational import angles, rationalised
 from derive.translation import Translation
 
 HALF = Fraction(1, 2)
@@ -100,6 +101,29 @@ class Mechanics:
     def rhs(self) -> list[Node]:
         """Q̇ and q̈ of M q̈ = f."""
         return [*self._qdot, *self._accelerations]
+
+    @cached_property
+    def angles(self) -> tuple[sp.Symbol, ...]:
+        """Coordinates that the equations of motion know through sine and cosine only."""
+        names = angles(self._accelerations, [q.name for q in self._system.q])
+        return tuple(q for q in self._system.q if q.name in names)
+
+    @property
+    def rhs_rational(self) -> list[Node]:
+        """(cos q, -sin q) q̇ for every angle, q̇ for other coordinates, and q̈."""
+        rates: list[Node] = []
+        for q, qdot in zip(self._system.q, self._qdot, strict=True):
+            sine, cosine = self._node(sp.sin(q)), self._node(sp.cos(q))
+            rates += [cosine * qdot, -sine * qdot] if q in self.angles else [qdot]
+        return rationalised([*rates, *self._accelerations], [q.name for q in self.angles])
+
+    @property
+    def rational_state(self) -> list[Node]:
+        """(sin q, cos q) for every angle, other coordinates, and q̇."""
+        places: list[sp.Expr] = []
+        for q in self._system.q:
+            places += [sp.sin(q), sp.cos(q)] if q in self.angles else [q]
+        return [*self._nodes(places), *self._qdot]
 
     @property
     def jacobian(self) -> list[Node]:

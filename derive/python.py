@@ -7,8 +7,7 @@ from itertools import groupby
 from textwrap import indent, wrap
 
 from derive.assignments import Assignments, assignments
-from derive.derivation import Derivation
-from derive.functions import Function, functions, state_names
+from derive.functions import Contents, Function
 from derive.summary import broken_sum, summary, units
 from derive.system import System
 
@@ -87,40 +86,46 @@ def {name}_many({arguments}) -> Array:
 TYPES = ("float", "Vector", "Matrix", "tuple[Matrix, ...]")
 
 
-def module(derivation: Derivation) -> str:
-    """The text of the module generated for `derivation`."""
-    system = derivation.system
-    parts = functions(derivation)
-    bodies = [assignments(part.lowering, _names(system)) for part in parts]
+def module(contents: Contents) -> str:
+    """The text of the module with `contents`."""
+    system = contents.system
+    bodies = [body(part, system) for part in contents.functions]
     return MODULE.format(
         title=system.title,
         name=system.name,
-        summary=summary(derivation),
+        summary=summary(contents),
         length=2 * len(system.q),
         called=", ".join(sorted({name for body in bodies for name in body.called})),
-        constants=_constants(system),
+        constants=_constants(contents),
         functions="\n\n".join(
             text
-            for part, body in zip(parts, bodies, strict=True)
+            for part, body in zip(contents.functions, bodies, strict=True)
             for text in (_one(part, body, system), _many(part, body, system))
         ).rstrip("\n"),
     )
 
 
-def _names(system: System) -> frozenset[str]:
-    return frozenset(units(system)) | {"t", "y", "params"}
+def body(part: Function, system: System) -> Assignments:
+    """The function's assignments; what it takes and the parameters keep their names."""
+    return assignments(part.lowering, {*part.state, *(s.name for s in system.params), "t", "y"})
 
 
-def _constants(system: System) -> str:
+def _constants(contents: Contents) -> str:
+    system = contents.system
     tables: dict[str, Sequence[object]] = {
         "COORDINATES": [q.name for q in system.q],
-        "STATE": state_names(system, "lagrangian"),
-        "STATE_HAMILTONIAN": state_names(system, "hamiltonian"),
+        **{
+            "STATE" if form == "lagrangian" else f"STATE_{form.upper()}": names
+            for form, names in contents.states.items()
+        },
         "PARAMETERS": [symbol.name for symbol in system.params],
         "DEFAULTS": [float(parameter.default) for parameter in system.parameters],
     }
     lines = [f"{name} = {_literal(values)}" for name, values in tables.items()]
-    rows = "".join(f'    "{name}": "{unit}",\n' for name, unit in units(system).items())
+    used = {name for names in contents.states.values() for name in names} | {*tables["PARAMETERS"]}
+    rows = "".join(
+        f'    "{name}": "{unit}",\n' for name, unit in units(system).items() if name in used
+    )
     return "\n".join([*lines, f"UNITS = {{\n{rows}}}"])
 
 
@@ -146,7 +151,7 @@ def _broken(text: str, margin: int, name: str = "") -> str:
 
 
 def _arguments(part: Function, kind: str) -> str:
-    taken = {"t: float": part.takes_time, f"y: {kind}": part.form != "parameters"}
+    taken = {"t: float": part.takes_time, f"y: {kind}": bool(part.state)}
     return ", ".join([*(name for name, wanted in taken.items() if wanted), f"params: {kind}"])
 
 
@@ -189,7 +194,7 @@ def _many(part: Function, body: Assignments, system: System) -> str:
 def _call(part: Function, outputs: Sequence[str]) -> str:
     if not part.shape:
         return outputs[0]
-    like = "0.0" if part.form == "parameters" else "y[0]"
+    like = "y[0]" if part.state else "0.0"
     return "_stacked" + _tuple([repr(part.shape), like, *outputs], depth=1)
 
 
@@ -199,11 +204,10 @@ def _count(body: Assignments) -> str:
 
 def _parameters(part: Function, system: System) -> str:
     unit = units(system)
-    state = state_names(system, part.form)
     rows = []
     if part.takes_time:
         rows.append("    t : float\n        Time in s; nothing here depends on it.")
-    for name, names in (("y", state), ("params", [s.name for s in system.params])):
+    for name, names in (("y", part.state), ("params", [s.name for s in system.params])):
         if names:
             # names of one unit that follow each other share it
             groups = [(u, list(g)) for u, g in groupby(names, key=unit.__getitem__)]
@@ -216,7 +220,7 @@ def _parameters(part: Function, system: System) -> str:
 def _body(part: Function, body: Assignments, system: System, *, plain: bool) -> str:
     lines = ["    # inputs"]
     for argument, names in (
-        ("y", state_names(system, part.form)),
+        ("y", part.state),
         ("params", [symbol.name for symbol in system.params]),
     ):
         if body.inputs.intersection(names):

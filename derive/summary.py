@@ -7,12 +7,17 @@ from textwrap import indent
 
 import sympy as sp
 
-from derive.derivation import Derivation
-from derive.functions import state_names
+from derive.functions import Contents, Form
 from derive.system import System
 
 #: Unit of the momentum conjugate to a coordinate of this unit.
 MOMENTUM_UNIT = {"rad": "J s", "m": "kg m/s"}
+
+STATES: dict[Form, str] = {
+    "lagrangian": "State y = (q, qdot)",
+    "hamiltonian": "State y = (q, p), in functions of the Hamiltonian form",
+    "rational": "State y in functions of the rational form",
+}
 
 
 def units(system: System) -> dict[str, str]:
@@ -22,24 +27,24 @@ def units(system: System) -> dict[str, str]:
         rows[coordinate.symbol.name] = coordinate.unit
         rows[qdot.name] = f"{coordinate.unit}/s"
         rows[p.name] = MOMENTUM_UNIT.get(coordinate.unit, f"J s/({coordinate.unit})")
+        rows[f"sin_{coordinate.symbol.name}"] = rows[f"cos_{coordinate.symbol.name}"] = "1"
     return rows
 
 
-def summary(derivation: Derivation) -> str:
+def summary(contents: Contents) -> str:
     """Coordinates, states, parameters, positions, Lagrangian and equations of motion."""
-    system = derivation.system
+    system, derivation = contents.system, contents.derivation
     unit = units(system)
     masses = (f"{mass.mass} at ({', '.join(map(str, mass.position))})" for mass in system.masses)
     return "\n\n".join(
         _section(title, lines)
         for title, lines in {
             "Coordinates q": (f"{c.symbol} [{c.unit}]: {c.meaning}" for c in system.coordinates),
-            "State y = (q, qdot)": (
-                f"{name} [{unit[name]}]" for name in state_names(system, "lagrangian")
-            ),
-            "State y = (q, p), in functions of the Hamiltonian form": (
-                f"{name} [{unit[name]}]" for name in state_names(system, "hamiltonian")
-            ),
+            **{
+                title: (f"{name} [{unit[name]}]" for name in contents.states[form])
+                for form, title in STATES.items()
+                if form in contents.states
+            },
             "Parameters params": (
                 f"{p.symbol} [{p.unit}] {'> 0' if p.symbol.is_positive else 'real'}, "
                 f"default {p.default}: {p.meaning}"

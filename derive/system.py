@@ -28,6 +28,26 @@ class SystemDefinitionError(ValueError):
     """A system that cannot be derived; the message says which part and what is allowed."""
 
 
+def formula(value: sp.Expr | float) -> sp.Expr:
+    """A SymPy expression as it is, a Python number as the fraction that its digits say.
+
+    Raises
+    ------
+    SystemDefinitionError
+        For anything else, text above all: SymPy would execute it.
+    """
+    if isinstance(value, sp.Expr):
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        try:
+            return sp.Rational(str(value))
+        except (TypeError, ValueError):
+            pass
+    raise SystemDefinitionError(
+        f"{str(value)[:50]!r} is no formula: use numbers and SymPy expressions"
+    )
+
+
 @dataclass(frozen=True)
 class Coordinate:
     """A generalized coordinate: its symbol, its unit and what it measures."""
@@ -57,6 +77,10 @@ class PointMass:
     mass: sp.Expr
     position: tuple[sp.Expr, ...]
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mass", formula(self.mass))
+        object.__setattr__(self, "position", tuple(map(formula, self.position)))
+
 
 @dataclass(frozen=True)
 class System:
@@ -78,7 +102,8 @@ class System:
         Potential energy V(q); by default uniform gravity along the last axis,
         downwards, with the parameter named ``g``.
     equilibrium : sequence of sympy.Expr, optional
-        Coordinates at which the ``linear`` form expands; zeros by default.
+        Coordinates about which ``linear`` describes small motions. By default
+        zeros if the system is at rest there; else there is no ``linear``.
 
     Raises
     ------
@@ -94,11 +119,15 @@ class System:
     parameters: Sequence[Parameter]
     masses: Sequence[PointMass]
     potential: sp.Expr | None = None
-    equilibrium: Sequence[sp.Expr] = ()
+    equilibrium: Sequence[sp.Expr] | None = None
 
     def __post_init__(self) -> None:
         for field in ("coordinates", "parameters", "masses"):
             object.__setattr__(self, field, tuple(getattr(self, field)))
+        if self.potential is not None:
+            object.__setattr__(self, "potential", formula(self.potential))
+        if self.equilibrium is not None:
+            object.__setattr__(self, "equilibrium", tuple(map(formula, self.equilibrium)))
         if not self.coordinates or not self.masses:
             raise SystemDefinitionError(
                 f"system {self.name!r} needs at least one coordinate and one mass, "
@@ -115,8 +144,6 @@ class System:
             )
         if self.potential is None:
             object.__setattr__(self, "potential", self._gravity())
-        if not self.equilibrium:
-            object.__setattr__(self, "equilibrium", (sp.Integer(0),) * len(self.coordinates))
         self._check_symbols()
 
     @property
@@ -180,7 +207,7 @@ class System:
         places = {
             f"the position of mass {mass.mass}": sp.Tuple(*mass.position) for mass in self.masses
         }
-        places["the potential"] = sp.sympify(self.potential)
+        places["the potential"] = self.potential
         for place, expression in places.items():
             unknown = sorted(str(s) for s in expression.free_symbols - known)
             if unknown:

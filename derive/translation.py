@@ -18,6 +18,10 @@ FUNCTIONS: dict[type[sp.Expr], str] = {
 }
 
 
+class UnsupportedFunctionError(NotImplementedError):
+    """An expression that generated code has no counterpart of; the message says what it has."""
+
+
 class Translation:
     """Nodes of SymPy expressions in one graph; every symbol becomes a leaf of its name."""
 
@@ -30,7 +34,7 @@ class Translation:
 
         Raises
         ------
-        NotImplementedError
+        UnsupportedFunctionError
             For a function or power that generated code has no counterpart of.
         """
         if expression not in self._nodes:
@@ -55,7 +59,7 @@ class Translation:
                 return graph.power(self(base), int(exponent))
             if (2 * exponent).is_Integer:
                 return graph.power(graph.call("sqrt", self(base)), int(2 * exponent))
-        raise NotImplementedError(
+        raise UnsupportedFunctionError(
             f"no generated code for {str(expression)[:80]!r}: use sums, products, integer and "
             f"half powers, and {', '.join(FUNCTIONS.values())}"
         )

@@ -18,6 +18,14 @@ State y = (q, p), in functions of the Hamiltonian form:
     p_theta1 [J s]
     p_theta2 [J s]
 
+State y in functions of the rational form:
+    sin_theta1 [1]
+    cos_theta1 [1]
+    sin_theta2 [1]
+    cos_theta2 [1]
+    theta1_dot [rad/s]
+    theta2_dot [rad/s]
+
 Parameters params:
     m1 [kg] > 0, default 1.0: mass of the first bob
     m2 [kg] > 0, default 1.0: mass of the second bob
@@ -67,6 +75,14 @@ if TYPE_CHECKING:
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 STATE_HAMILTONIAN = ("theta1", "theta2", "p_theta1", "p_theta2")
+STATE_RATIONAL = (
+    "sin_theta1",
+    "cos_theta1",
+    "sin_theta2",
+    "cos_theta2",
+    "theta1_dot",
+    "theta2_dot",
+)
 PARAMETERS = ("m1", "m2", "l1", "l2", "g")
 DEFAULTS = (1.0, 1.0, 2.0, 2.0, 9.81)
 UNITS = {
@@ -78,9 +94,13 @@ UNITS = {
     "theta1": "rad",
     "theta1_dot": "rad/s",
     "p_theta1": "J s",
+    "sin_theta1": "1",
+    "cos_theta1": "1",
     "theta2": "rad",
     "theta2_dot": "rad/s",
     "p_theta2": "J s",
+    "sin_theta2": "1",
+    "cos_theta2": "1",
 }
 
 
@@ -783,6 +803,129 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     x1 = (c0*p_theta1 - c1*p_theta2*cos_x0)/(m1 + m2*sin_x0*sin_x0)
     # outputs
     return _stacked((4,), y[0], theta1, theta2, c0*x1, c1*(c2*p_theta2 - cos_x0*x1))
+
+
+def rational_state(y: Numbers, params: Numbers) -> Vector:
+    """State of the rational form that belongs to y = (q, qdot).
+
+    4 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    y : iterable of 4 floats
+        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Sine and cosine of every angle, other coordinates, velocities.
+    """
+    # inputs
+    theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
+    # outputs
+    return (
+        sin(theta1),
+        cos(theta1),
+        sin(theta2),
+        cos(theta2),
+        theta1_dot,
+        theta2_dot,
+    )
+
+
+def rational_state_many(y: Arrays, params: Arrays) -> Array:
+    """`rational_state` over arrays: the result has shape (6, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, theta1_dot, theta2_dot = y
+    # outputs
+    return _stacked(
+        (6,),
+        y[0],
+        sin(theta1),
+        cos(theta1),
+        sin(theta2),
+        cos(theta2),
+        theta1_dot,
+        theta2_dot,
+    )
+
+
+def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
+    """Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+
+    40 operations, 5 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; nothing here depends on it.
+    y : iterable of 6 floats
+        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
+        rad/s.
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y.
+    """
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
+    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = (m1 + m2)*g
+    c2 = m2*l2
+    c3 = 1.0/l2
+    # intermediate terms
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x1 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x2 = g*sin_theta2 - l1*theta1_dot*theta1_dot*x0
+    x3 = c1*sin_theta1 + c2*theta2_dot*theta2_dot*x0 - m2*x1*x2
+    x4 = x3/(m1 + m2*x0*x0)
+    # outputs
+    return (
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        -c0*x4,
+        -c3*(x2 - x1*x4),
+    )
+
+
+def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+    """`rhs_rational` over arrays: the result has shape (6, ...)."""
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y
+    m1, m2, l1, l2, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = (m1 + m2)*g
+    c2 = m2*l2
+    c3 = 1.0/l2
+    # intermediate terms
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x1 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x2 = g*sin_theta2 - l1*theta1_dot*theta1_dot*x0
+    x3 = c1*sin_theta1 + c2*theta2_dot*theta2_dot*x0 - m2*x1*x2
+    x4 = x3/(m1 + m2*x0*x0)
+    # outputs
+    return _stacked(
+        (6,),
+        y[0],
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        -c0*x4,
+        -c3*(x2 - x1*x4),
+    )
 
 
 def linear(params: Numbers) -> tuple[Matrix, ...]:

@@ -13,6 +13,11 @@ State y = (q, p), in functions of the Hamiltonian form:
     theta [rad]
     p_theta [J s]
 
+State y in functions of the rational form:
+    sin_theta [1]
+    cos_theta [1]
+    theta_dot [rad/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     l [m] > 0, default 2.0: length of the rod
@@ -53,6 +58,7 @@ if TYPE_CHECKING:
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 STATE_HAMILTONIAN = ("theta", "p_theta")
+STATE_RATIONAL = ("sin_theta", "cos_theta", "theta_dot")
 PARAMETERS = ("m", "l", "g")
 DEFAULTS = (1.0, 2.0, 9.81)
 UNITS = {
@@ -62,6 +68,8 @@ UNITS = {
     "theta": "rad",
     "theta_dot": "rad/s",
     "p_theta": "J s",
+    "sin_theta": "1",
+    "cos_theta": "1",
 }
 
 
@@ -461,6 +469,84 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     c1 = 1.0/(l*m)
     # outputs
     return _stacked((2,), y[0], theta, c0*(c1*p_theta))
+
+
+def rational_state(y: Numbers, params: Numbers) -> Vector:
+    """State of the rational form that belongs to y = (q, qdot).
+
+    2 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    y : iterable of 2 floats
+        theta in rad; theta_dot in rad/s.
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Sine and cosine of every angle, other coordinates, velocities.
+    """
+    # inputs
+    theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    # outputs
+    return (sin(theta), cos(theta), theta_dot)
+
+
+def rational_state_many(y: Arrays, params: Arrays) -> Array:
+    """`rational_state` over arrays: the result has shape (3, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta, theta_dot = y
+    # outputs
+    return _stacked((3,), y[0], sin(theta), cos(theta), theta_dot)
+
+
+def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
+    """Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+
+    7 operations, 1 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; nothing here depends on it.
+    y : iterable of 3 floats
+        sin_theta, cos_theta in 1; theta_dot in rad/s.
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y.
+    """
+    # inputs
+    sin_theta, cos_theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # outputs
+    return (theta_dot*cos_theta, -theta_dot*sin_theta, -c0*(g*sin_theta))
+
+
+def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+    """`rhs_rational` over arrays: the result has shape (3, ...)."""
+    # inputs
+    sin_theta, cos_theta, theta_dot = y
+    _, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # outputs
+    return _stacked(
+        (3,),
+        y[0],
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -c0*(g*sin_theta),
+    )
 
 
 def linear(params: Numbers) -> tuple[Matrix, ...]:

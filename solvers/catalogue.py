@@ -31,9 +31,9 @@ def load(name: str) -> Tableau:
     """
     if name not in names():
         close = get_close_matches(name, names(), n=1)
-        hint = f"; did you mean {close[0]!r}?" if close else ""
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
         raise UnknownMethodError(
-            f"no method is called {name[:50]!r}{hint} Known are: {', '.join(names())}"
+            f"no method is called {name[:50]!r}{hint}; known are: {', '.join(names())}"
         )
     tableau: Tableau = import_module(f"solvers.methods.{name}").tableau
     return tableau

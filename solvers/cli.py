@@ -8,11 +8,13 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 USAGE = """\
 usage: holonomic COMMAND [OPTION ...]
+       holonomic --version
 
 Positions in, motion out: equations of motion derived, verified, generated and integrated.
 
@@ -31,6 +33,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not arguments or arguments[0] in ("-h", "--help"):
         print(USAGE, end="")
         return 0
+    if arguments[0] == "--version":
+        print(f"holonomic {version('holonomic')}")
+        return 0
     name, *rest = arguments
     if name not in COMMANDS:
         print(f"holonomic: unknown command {name[:50]!r}\n\n{USAGE}", end="", file=sys.stderr)
@@ -42,6 +47,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         sys.stderr.close()  # the reader has gone: nothing to tell, and nobody to tell it to
         return 0
+    except OSError as error:
+        print(f"holonomic {name}: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 4
 
 
 def _derive(argv: Sequence[str]) -> int:
@@ -110,6 +118,7 @@ def _demo(argv: Sequence[str]) -> int:
         help="folder for the picture (default: out)",
     )  # fmt: skip
     output = parser.parse_args(argv).output
+    output.mkdir(parents=True, exist_ok=True)  # before the work, not after it
     print("Double pendulum: from the positions of two bobs to their motion.\n")
     stations: dict[str, Callable[[], list[str]]] = {
         "1 derive": _derived,

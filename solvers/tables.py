@@ -35,7 +35,8 @@ def report(judged: Mapping[str, Any]) -> str:
     for claim in judged["claims"]:
         lines.append(_row(claim["id"], claim["verdict"], claim["claim"], width))
         lines.append(_wrapped(claim["number"], width))
-    lines += ["", f"equations: {counted(judged['equations'])}"]
+    lines += ["", "Lines that end in ... are whole in: holonomic verify --json"]
+    lines += [f"equations: {counted(judged['equations'])}"]
     lines += [f"claims:    {counted(judged['claims'])}"]
     return "\n".join(lines) + "\n"
 
@@ -48,8 +49,13 @@ def counted(rows: Rows) -> str:
 
 def _equations(rows: Rows, width: int) -> Iterable[str]:
     for row in rows:
-        yield _row(row["id"], row["verdict"], row["printed"], width)
-        if row["correction"]:
+        if not row["correction"]:
+            yield _row(row["id"], row["verdict"], row["printed"], width)
+        else:
+            yield (
+                f"{row['id']:<7}{row['verdict']:<{COLUMN - 7}}"
+                + _wrapped(f"printed: {row['printed']}", width).lstrip()
+            )
             yield _wrapped(f"should be: {row['correction']}", width)
             yield _wrapped(f"residual: {row['residual']} = {row['witness']}", width)
         if row["note"]:

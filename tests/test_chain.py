@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System
-from derive.functions import functions
+from derive.functions import contents
 from derive.python import assignments, module
 
 
@@ -37,7 +37,7 @@ def chain(n: int) -> Derivation:
 
 @pytest.mark.parametrize(("n", "operations"), [(1, 5), (2, 33), (3, 80), (4, 150)])
 def test_right_hand_sides_of_chains_are_short(n: int, operations: int) -> None:
-    rhs = next(f for f in functions(chain(n)) if f.name == "rhs")
+    rhs = next(f for f in contents(chain(n)).functions if f.name == "rhs")
     assert assignments(rhs.lowering, ()).operations == operations
 
 
@@ -46,7 +46,7 @@ def test_generated_chains_solve_the_textbook_equations(n: int) -> None:
     # M_ij = μ l_i l_j cos(θ_i - θ_j), f_i = -Σ μ l_i l_j sin(θ_i - θ_j) θ̇_j² - μ_i g l_i sin θ_i,
     # with μ the mass at or below the lower of the two joints
     scope: dict[str, object] = {}
-    exec(compile(module(chain(n)), "chain", "exec"), scope)
+    exec(compile(module(contents(chain(n))), "chain", "exec"), scope)
     generator = random.Random(n)
     theta, omega = (np.array([generator.uniform(-3, 3) for _ in range(n)]) for _ in range(2))
     m, lengths = (np.array([generator.uniform(0.5, 2) for _ in range(n)]) for _ in range(2))

@@ -6,6 +6,7 @@ from sympy.physics.mechanics import LagrangesMethod, Lagrangian, Particle, Point
 from sympy.physics.mechanics import dynamicsymbols as dynamic
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System
+from derive.functions import contents
 from derive.reduction import collected, reduced
 from derive.system import SystemDefinitionError
 from derive.zero import vanishes
@@ -134,9 +135,11 @@ def test_linearisation_knows_every_equilibrium_and_refuses_other_places(
     upright = double.linearisation((0, sp.pi)).stiffness_matrix
     _, m2, _, l2, g = double.system.params
     assert upright[1, 1] == -g * l2 * m2
-    with pytest.raises(ValueError, match=r"not at rest at theta2 = pi/3.*force along theta2"):
+    with pytest.raises(
+        SystemDefinitionError, match=r"not at rest at theta2 = pi/3.*force along theta2"
+    ):
         double.linearisation((0, sp.pi / 3))
-    with pytest.raises(ValueError, match="has 2 coordinates"):
+    with pytest.raises(SystemDefinitionError, match="has 2 coordinates"):
         double.linearisation((0,))
 
 
@@ -208,6 +211,8 @@ mass = sp.Symbol("mass", positive=True)
             "uses a name twice: x_dot",
         ),
         ({"parameters": [Parameter(mass, "kg", 1.0, "mass")]}, "no parameter named 'g'"),
+        ({"potential": "x**2"}, "'x\\*\\*2' is no formula"),
+        ({"equilibrium": (True,)}, "'True' is no formula"),
     ],
 )
 def test_a_system_that_cannot_be_derived_is_refused(
@@ -244,3 +249,20 @@ def test_three_dimensions_and_a_potential_of_ones_own() -> None:
     derivation = Derivation(spherical)
     assert derivation.mass_matrix == sp.diag(mass * l**2, mass * l**2 * sp.sin(theta) ** 2)
     assert derivation.potential_energy == k * theta**2
+
+
+def test_python_numbers_are_formulas_and_exact() -> None:
+    bead = system(
+        coordinates=[Coordinate(x, "m", "")], parameters=[],
+        masses=[PointMass(1.5, (x, 0))], potential=0,
+    )  # fmt: skip
+    assert Derivation(bead).mass_matrix == sp.Matrix([[sp.Rational(3, 2)]])
+
+
+def test_without_a_known_equilibrium_there_is_no_linear_form() -> None:
+    falling = Derivation(system(masses=[PointMass(mass, (0, x))]))
+    assert "linear" not in {f.name for f in contents(falling).functions}
+    spring = {"potential": (x - 1) ** 2, "equilibrium": (1,)}
+    assert "linear" in {f.name for f in contents(Derivation(system(**spring))).functions}
+    with pytest.raises(SystemDefinitionError, match="not at rest at x = 2"):
+        contents(Derivation(system(**(spring | {"equilibrium": (2,)}))))

@@ -7,7 +7,7 @@ import inspect
 import random
 from collections.abc import Callable, Iterator, Sequence
 from itertools import product
-from math import pi
+from math import cos, pi, sin
 from types import ModuleType
 
 import numpy as np
@@ -106,6 +106,45 @@ def test_functions_are_exact_to_a_few_rounding_errors(
                 assert abs(mpf(result) - value) <= FEW * EPS * weight
 
 
+def test_the_rational_form_gives_the_same_rates(derivation: Derivation, module: ModuleType) -> None:
+    system, n = derivation.system, len(derivation.system.q)
+    symbols = (*system.q, *system.qdot, *system.params)
+    # rounding sin q and cos q moves q itself, by ε in radians
+    weights = sp.lambdify(
+        symbols,
+        [
+            sum(sp.Abs(f.diff(s) * s) for s in symbols) + sum(sp.Abs(f.diff(q)) for q in system.q)
+            for f in derivation.accelerations
+        ],
+        modules="math",
+        cse=True,
+    )
+    for y, params in states(module):
+        rational = module.rational_state(y, params)
+        rates = module.rhs_rational(0.0, rational, params)
+        expected = module.rhs(0.0, y, params)
+        for k, angle in enumerate(y[:n]):
+            assert rational[2 * k : 2 * k + 2] == (sin(angle), cos(angle))
+            assert rates[2 * k : 2 * k + 2] == (
+                pytest.approx(cos(angle) * y[n + k], rel=1e-15),
+                pytest.approx(-sin(angle) * y[n + k], rel=1e-15),
+            )
+        for rate, value, weight in zip(
+            rates[2 * n :], expected[n:], weights(*y, *params), strict=True
+        ):
+            assert abs(rate - value) <= 2 * FEW * EPS * (weight + abs(value))
+
+
+def test_the_rational_right_hand_side_calls_no_function(module: ModuleType) -> None:
+    source = ast.parse(inspect.getsource(module.rhs_rational))
+    called = {
+        node.func.id
+        for node in ast.walk(source)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    }
+    assert called == {"hasattr"}
+
+
 @pytest.mark.parametrize("name", ["rhs", "rhs_hamiltonian"])
 def test_jacobians_agree_with_complex_steps(module: ModuleType, name: str) -> None:
     function = getattr(module, f"{name}_many")
@@ -118,10 +157,12 @@ def test_jacobians_agree_with_complex_steps(module: ModuleType, name: str) -> No
 
 
 def test_arrays_of_states_give_what_single_states_give(module: ModuleType) -> None:
-    cases = list(states(module))
-    y = np.array([y for y, _ in cases]).T
-    params = np.array([params for _, params in cases]).T
     for name in formulas_names(module):
+        cases = list(states(module))
+        if name == "rhs_rational":
+            cases = [(module.rational_state(y, params), params) for y, params in cases]
+        y = np.array([y for y, _ in cases]).T
+        params = np.array([params for _, params in cases]).T
         function, many = getattr(module, name), getattr(module, f"{name}_many")
         together = called(many, y, params)
         for k, (state, values) in enumerate(cases):
@@ -279,7 +320,9 @@ def test_docstrings_count_the_operations_that_the_text_has(module: ModuleType) -
         assert stated == operations(ast.parse(inspect.getsource(function))), name
 
 
-@pytest.mark.parametrize(("name", "most"), [("rhs", 33), ("rhs_hamiltonian", 35)])
+@pytest.mark.parametrize(
+    ("name", "most"), [("rhs", 33), ("rhs_hamiltonian", 35), ("rhs_rational", 40)]
+)
 def test_right_hand_sides_of_the_double_pendulum_are_short(name: str, most: int) -> None:
     # straight-line code from a simplified Hamiltonian has 111, without reductions 87 and more
     import generated.double_pendulum as dp

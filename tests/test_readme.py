@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from derive import names
-from derive.functions import functions
+from derive.functions import contents
 from derive.python import assignments
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
@@ -19,7 +19,7 @@ def test_snippets_run(snippet: str) -> None:
 
 
 def test_the_table_of_operations_is_true(double) -> None:  # type: ignore[no-untyped-def]
-    counted = {f.name: assignments(f.lowering, ()).operations for f in functions(double)}
+    counted = {f.name: assignments(f.lowering, ()).operations for f in contents(double).functions}
     for row in re.findall(r"^\| (`.*?) \| (.*?) \|$", README, re.MULTILINE):
         called = re.findall(r"`(\w+)", row[0])
         stated = [int(number) for number in re.findall(r"\d+", row[1])]

@@ -92,7 +92,7 @@ def test_an_orphan_is_found_and_left_alone(
 ) -> None:
     (folder / "triple_pendulum.py").write_text("")
     assert checked(folder, monkeypatch) == 1
-    assert f"mend it with: rm -r {folder / 'triple_pendulum.py'}" in capsys.readouterr().out
+    assert f"mend it with: rm {folder / 'triple_pendulum.py'}" in capsys.readouterr().out
     assert main([]) == 0
     assert (folder / "triple_pendulum.py").exists()
 
