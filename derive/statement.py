@@ -33,10 +33,13 @@ class Comparison:
         What is said of them.
     residual : sympy.Expr
         Left minus right; for an inequality the larger minus the smaller side.
+    possible : bool
+        Whether the sides are of one kind: a number is never equal to a column.
     """
 
     relation: str
     residual: sp.Expr
+    possible: bool = True
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,8 @@ class Context:
                     return Finding(False, place, "not seen to be positive")
                 continue
             number = residual.evalf(DIGITS, subs=dict(self.state))
-            if abs(number) > TINY or not vanishes(self._reduced(residual)):
+            differ = abs(number) > TINY or not comparison.possible
+            if differ or not vanishes(self._reduced(residual)):
                 return Finding(False, place, sp.sstr(number.n(6)))
         return Finding(holds=True)
 
@@ -104,10 +108,15 @@ class Context:
             indices = range(1, self.count + 1) if INDEXED.search(part) else (0,)
             for index in indices:
                 pieces = RELATION.split(INDEXED.sub(rf"\g<1>{index}", part))
+                if len(pieces) == 1:
+                    raise ExpressionError(f"{part.strip()[:80]!r} states nothing: no =, <, >")
                 sides = [parsed(piece, scope) for piece in pieces[::2]]
                 for left, relation, right in zip(sides, pieces[1::2], sides[1:], strict=False):
                     larger, smaller = (right, left) if "<" in relation else (left, right)
-                    found += [Comparison(relation, r) for r in _differences(larger, smaller)]
+                    found += [
+                        Comparison(relation, r, _is_matrix(left) == _is_matrix(right))
+                        for r in _differences(larger, smaller)
+                    ]
         return found
 
     def _reduced(self, expression: sp.Expr) -> sp.Expr:
@@ -117,15 +126,16 @@ class Context:
         return expression
 
 
+def _is_matrix(side: Value) -> bool:
+    return isinstance(side, sp.MatrixBase)
+
+
 def _differences(left: Value, right: Value) -> list[sp.Expr]:
     """Left minus right, entry by entry; a number beside a matrix stands for each entry."""
-    matrices = [side for side in (left, right) if isinstance(side, sp.MatrixBase)]
-    if not matrices:
+    if not _is_matrix(left) and not _is_matrix(right):
         return [left - right]
-    ones = sp.ones(*matrices[0].shape)
-    left, right = (
-        side if isinstance(side, sp.MatrixBase) else side * ones for side in (left, right)
-    )
+    ones = sp.ones(*(left if _is_matrix(left) else right).shape)
+    left, right = (side if _is_matrix(side) else side * ones for side in (left, right))
     if left.shape != right.shape:
         raise ExpressionError(f"cannot compare matrices of shapes {left.shape} and {right.shape}")
     return list(left - right)

@@ -11,10 +11,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cache, reduce
+from math import lcm
 from operator import mul
 
 import sympy as sp
 from sympy.polys.rings import PolyElement, PolyRing
+
+#: Largest power, and largest multiple of an angle, that is written out.
+MOST = 100
 
 
 def vanishes(expression: sp.Expr) -> bool:
@@ -25,11 +29,10 @@ def vanishes(expression: sp.Expr) -> bool:
     NotImplementedError
         When it is not rational in symbols, sines and cosines.
     """
-    opened = expression.xreplace({wave: _opened(wave) for wave in _waves(expression)})
+    whole = _with_whole_angles(expression)
+    opened = whole.xreplace({wave: _opened(wave) for wave in _waves(whole)})
     waves = _waves(opened)
     generators = sorted({*opened.free_symbols, *waves}, key=sp.default_sort_key)
-    if not generators:
-        return bool(opened == 0)
     ring = PolyRing(generators, sp.QQ, sp.lex)
     pairs = {
         ring.index(ring(wave)): ring(sp.sin(wave.args[0]))
@@ -84,7 +87,7 @@ class _Reader:
             return self._sum([self.fraction(term) for term in expression.args])
         if expression.is_Mul:
             return reduce(self._product, map(self.fraction, expression.args))
-        if expression.is_Pow and expression.exp.is_Integer:
+        if expression.is_Pow and expression.exp.is_Integer and abs(expression.exp) <= MOST:
             power = int(expression.exp)
             base = reduce(self._product, [self.fraction(expression.base)] * abs(power))
             return base if power > 0 else self._inverse(base)
@@ -150,6 +153,20 @@ def _waves(expression: sp.Expr) -> set[sp.Expr]:
     return set(expression.atoms(sp.sin, sp.cos))
 
 
+def _with_whole_angles(expression: sp.Expr) -> sp.Expr:
+    """`expression` with its symbols stretched, so that no wave holds a fraction of one."""
+    arguments = [sp.expand(wave.args[0]) for wave in _waves(expression)]
+    stretch = lcm(
+        *(int(n.q) for a in arguments for n in a.as_coefficients_dict().values() if n.is_Rational)
+    )
+    symbols = {symbol for argument in arguments for symbol in argument.free_symbols}
+    if stretch > 1:
+        expression = expression.xreplace({symbol: stretch * symbol for symbol in symbols})
+    return expression.xreplace({w: w.func(sp.expand(w.args[0])) for w in _waves(expression)})
+
+
 @cache
 def _opened(wave: sp.Expr) -> sp.Expr:
+    if any(abs(n) > MOST for n in wave.args[0].as_coefficients_dict().values()):
+        raise NotImplementedError(f"cannot open {wave}: a multiple above {MOST}")
     return sp.expand_trig(wave)

@@ -22,12 +22,12 @@ def evidence() -> Evidence:
 def test_each_claim_has_its_verdict_and_a_number_or_a_reason(evidence: Evidence) -> None:
     found = claims(evidence)
     assert {claim.id: claim.verdict for claim in found} == {
-        "3.1a": "contradicted", "3.1b": "contradicted", "3.1c": "contradicted",
-        "3.2a": "contradicted", "3.2b": "untestable", "3.3a": "supported",
-        "3.3b": "contradicted", "3.3c": "contradicted", "3.3d": "untestable",
+        "3.1a": "contradicted", "3.1b": "untestable", "3.1c": "untestable",
+        "3.2a": "contradicted", "3.2b": "untestable", "3.3a": "contradicted",
+        "3.3b": "contradicted", "3.3c": "untestable", "3.3d": "untestable",
         "4.1": "untestable", "4.2": "supported", "4.3": "contradicted",
-        "5a": "supported", "5b": "supported", "5c": "contradicted", "5d": "supported",
-        "5e": "contradicted", "5f": "supported",
+        "5a": "supported", "5b": "supported", "5c": "untestable", "5d": "supported",
+        "5e": "supported", "B3": "supported",
     }  # fmt: skip
     assert all(
         any(letter.isdigit() for letter in claim.number)
@@ -40,7 +40,7 @@ def test_verdicts_change_with_the_facts() -> None:
     # had all programs been set to what the prose says, these claims would stand
     honest = Evidence(dp, PROSE, PROSE, PROSE, THIRD)
     verdicts = {claim.id: claim.verdict for claim in claims(honest)}
-    assert verdicts["3.1a"] == verdicts["3.2a"] == verdicts["5c"] == "supported"
+    assert verdicts["3.1a"] == verdicts["3.2a"] == "supported"
 
 
 def test_the_reference_is_the_known_state(evidence: Evidence) -> None:

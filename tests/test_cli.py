@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -75,6 +76,23 @@ def test_verify_prints_a_table_for_people_within_the_width_of_the_terminal(
     assert sum(line.startswith("eq") for line in lines) >= 128
 
 
+def test_readme_states_the_verdicts_as_they_are(
+    judged: dict[str, list[dict[str, str]]],
+) -> None:
+    text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    equations, claims = (
+        Counter(row["verdict"] for row in judged[name]) for name in ("equations", "claims")
+    )
+    stopped = sum(bool(program["stops"]) for program in judged["programs"])
+    assert f"{equations['verified']} hold, {equations['misprint']} are misprints" in text
+    assert f"{equations['definition']} are definitions and {equations['context']} concern" in text
+    assert f"three programs {stopped} would not run" in text
+    assert (
+        f"of {claims.total()} claims about their results {claims['supported']} hold, "
+        f"{claims['contradicted']} do not, and {claims['untestable']} cannot"
+    ) in text
+
+
 def test_verify_fails_where_an_equation_is_neither_right_nor_mended(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -103,6 +121,30 @@ def test_demo_shows_the_whole_way_on_one_screen(
     picture = tmp_path / "out" / "double_pendulum.png"
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert [path.name for path in picture.parent.iterdir()] == ["double_pendulum.png"]
+
+
+def test_a_place_that_cannot_be_written_to_is_named_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    assert main(["demo", "--output", str(tmp_path / "file")]) == 4
+    shown = capsys.readouterr()
+    assert str(tmp_path / "file") in shown.err
+    assert shown.out == ""
+
+
+def test_a_broken_system_ends_with_2_and_is_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from derive import systems
+
+    (tmp_path / "broken_one.py").write_text("system = undefined\n")
+    (tmp_path / "broken_two.py").write_text("sytsem = 1\n")
+    monkeypatch.setattr(systems, "__path__", [*systems.__path__, str(tmp_path)])
+    for name, message in (("broken_one", "NameError"), ("broken_two", "AttributeError")):
+        assert main(["derive", name, "--check"]) == 2
+        shown = capsys.readouterr().err
+        assert f"{name}.py does not define a system: {message}" in shown
 
 
 def test_an_interrupted_command_ends_with_130(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -67,8 +67,10 @@ EULER_LAGRANGE: tuple[Equation | Stated, ...] = (
     Equation("eq100", "phi2_ddot + alpha2*phi1_ddot = f2", using=("eq102", "eq104"),
              measure="E2/(m2*l2**2)"),
     Equation("eq101", "alpha1 = l2/l1*(m2/(m1 + m2))*cos(phi1 - phi2)", using=("eq103",),
+             note="printed with a colon for =",
              check="phi1_ddot + alpha1*phi2_ddot - f1 = E1/((m1 + m2)*l1**2)"),
     Equation("eq102", "alpha2 = l1/l2*cos(phi1 - phi2)", using=("eq104",),
+             note="printed with a colon for =",
              check="phi2_ddot + alpha2*phi1_ddot - f2 = E2/(m2*l2**2)"),
     Equation("eq103",
              "f1 = -l2/l1*(m2/(m1 + m2))*phi2_dot**2*sin(phi1 - phi2) - g/l1*sin(phi1)",
@@ -118,8 +120,8 @@ EULER_LAGRANGE: tuple[Equation | Stated, ...] = (
 
 HAMILTON: tuple[Equation | Stated, ...] = (
     Equation("eq110", LAGRANGIAN),
-    Equation("eq111", MOMENTUM_1.replace("p_theta1", "P_theta1")),
-    Equation("eq112", MOMENTUM_2.replace("p_theta2", "P_theta2")),
+    Equation("eq111", MOMENTUM_1),
+    Equation("eq112", MOMENTUM_2),
     Equation("eq113", "H = theta1_dot*P_theta1 + theta2_dot*P_theta2 - L"),
     Equation("eq114", "thetadot_i = d(H, P_theta_i); P_theta_i = -d(H, theta_i)",
              corrected="thetadot_i = d(H, P_theta_i); Pdot_theta_i = -d(H, theta_i)",
@@ -130,7 +132,7 @@ HAMILTON: tuple[Equation | Stated, ...] = (
              " [m2*l1*l2*cos(theta1 - theta2), m2*l2**2]]"),
     Equation("eq117", "P*(theta1_dot, theta2_dot) = inverse(B)*(P_theta1, P_theta2)",
              corrected="(theta1_dot, theta2_dot) = inverse(B)*(P_theta1, P_theta2)",
-             note="a P too many"),
+             stray="P", note="a P too many"),
     Equation("A17",
              "det(B) = m1*m2*l1**2*l2**2 + m2**2*l1**2*l2**2*(1 - cos(theta1 - theta2)**2)"
              " = m1*m2*l1**2*l2**2 + m2**2*l1**2*l2**2*sin(theta1 - theta2)**2"

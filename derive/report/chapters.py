@@ -33,7 +33,7 @@ INTRODUCTION: tuple[Equation | Stated, ...] = (
              note="judged against the linearised derivation"),
     Equation("eq8", "theta = theta0*cos(omega*t + psi)", system="single",
              check="I*d(d(theta, t), t) + stiffness*theta = 0; "
-                   "at(theta, t, -psi/omega) = theta0",
+                   "at(theta, t, -psi/omega) = theta0; at(theta, t, (pi/2 - psi)/omega) = 0",
              note="with omega = sqrt(g/l), as the next line of the report says"),
     Equation("eq9", "v = 0", corrected="z = 0", system="single",
              note="the speed of a swinging bob is not 0; its third coordinate is"),
@@ -150,7 +150,7 @@ IMPLEMENTATION: tuple[Equation | Stated, ...] = (
     Equation("eq71", "ddt((phi1, phi2, omega1, omega2)) = (chi1, chi2, g1, g2)",
              corrected="ddt((phi1, phi2, omega1, omega2)) = (omega1, omega2, g1, g2)",
              using=("eq101", "eq102", "eq103", "eq104", "A14"),
-             note="chi stands nowhere else; (109) has omega"),
+             note="the sentence before it lets omega be the velocity; chi is not defined"),
     Equation("eq72", LAGRANGIAN),
     Equation("eq73", MOMENTUM_1),
     Equation("eq74", MOMENTUM_2),
@@ -162,10 +162,10 @@ IMPLEMENTATION: tuple[Equation | Stated, ...] = (
              " [m2*l1*l2*cos(theta1 - theta2), m2*l2**2]]",
              corrected="B = [[(m1 + m2)*l1**2, m2*l1*l2*cos(theta1 - theta2)],"
              " [m2*l1*l2*cos(theta1 - theta2), m2*l2**2]]",
-             note="printed 'P (...)' for 'B = (...)'; (116) is right"),
+             stray="P", note="printed 'P (...)' for 'B = (...)'; (116) is right"),
     Equation("eq79", "P*(theta1_dot, theta2_dot) = inverse(B)*(P_theta1, P_theta2)",
              corrected="(theta1_dot, theta2_dot) = inverse(B)*(P_theta1, P_theta2)",
-             note="a P too many"),
+             stray="P", note="a P too many"),
     Equation("eq80",
              "theta1_dot = (l2*P_theta1 - l1*P_theta2*cos(theta1 - theta2))"
              "/(l1**2*l2*(m1 + m2*sin(theta1 - theta2)**2))"),

@@ -28,13 +28,17 @@ NUMBERS = {
     "theta_ddot": "0.5", "chi1": "0.3", "chi2": "0.2", "t": "0.4", "theta0": "0.15",
     "psi": "0.35", "Ixx": "1.1", "Iyy": "1.9", "Izz": "2.7", "omega_x": "0.4",
     "omega_y": "-0.7", "omega_z": "1.2", "omega_x_dot": "0.8", "omega_y_dot": "0.3",
-    "omega_z_dot": "-0.6",
+    "omega_z_dot": "-0.6", "stray": "0.7",
 }  # fmt: skip
+
+#: A letter that was printed and means nothing.
+STRAY = sp.Symbol("stray")
 
 FUNCTIONS: dict[str, Any] = {
     "sin": sp.sin,
     "cos": sp.cos,
     "sqrt": sp.sqrt,
+    "pi": sp.pi,
     "det": lambda matrix: matrix.det(),
     "inverse": lambda matrix: matrix.inv(),
     "norm": lambda vector: sp.sqrt(sp.factor_terms(reduced(vector.dot(vector)))),
@@ -127,6 +131,8 @@ def _common(derivation: Derivation) -> dict[str, Any]:
     g_dot, time = sp.Symbol("g_dot", real=True), sp.Symbol("t", real=True)
 
     def ddt(value: Any) -> Any:
+        if value.free_symbols & {*system.qddot}:
+            raise ValueError("third derivatives have no symbol here")
         value = value.xreplace(momenta)
         terms = [value.diff(s) * rate for s, rate in rates.items()]
         return sum(terms[1:], terms[0])
@@ -140,7 +146,7 @@ def _common(derivation: Derivation) -> dict[str, Any]:
     def only(value: Any, *symbols: sp.Symbol) -> Any:
         # what is left of a value when all coordinates and velocities but these are taken away
         others = {*system.q, *system.qdot, *system.qddot} - {*symbols}
-        return value.subs(dict.fromkeys(others, 0))
+        return value.xreplace(momenta).subs(dict.fromkeys(others, 0))
 
     return FUNCTIONS | {s.name: s for s in (*system.params, time)} | {
         "d": d, "ddt": ddt, "only": only, "K": derivation.kinetic_energy,
@@ -166,6 +172,5 @@ def _context(derivation: Derivation, scope: Mapping[str, Any], *, moving: bool) 
 
 
 def _numbers(symbols: Any) -> dict[sp.Symbol, sp.Expr]:
-    return {s: sp.Rational(NUMBERS[s.name]) for s in symbols} | {
-        sp.Symbol("g_dot", real=True): sp.Rational(NUMBERS["g_dot"])
-    }
+    extra = sp.Symbol("g_dot", real=True), STRAY
+    return {s: sp.Rational(NUMBERS[s.name]) for s in (*symbols, *extra)}

@@ -25,6 +25,8 @@ class Equation:
         For an equation that defines quantities: the statement that these must fulfil.
     using : tuple of str
         Other equations that define quantities used here.
+    stray : str
+        A letter of the printed form that has no meaning there, if one has.
     system : {"double", "single", "rigid", "method"}
         What it is about.
     note : str
@@ -37,6 +39,7 @@ class Equation:
     measure: str = ""
     check: str = ""
     using: tuple[str, ...] = ()
+    stray: str = ""
     system: str = "double"
     note: str = ""
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable
 from fractions import Fraction
 from functools import cache
 
 import sympy as sp
 
-from derive.expression import Value, parsed
+from derive.expression import ExpressionError, Value, parsed
 from derive.report import appendix, chapters, contexts
+from derive.report.contexts import STRAY
 from derive.report.equation import Equation, Stated, Verdict
 from derive.report.method import NotRungeKuttaError, coefficients
 from derive.statement import Context, Finding
@@ -70,17 +72,20 @@ def judged(equation: Equation, text: str, order_of: OrderOf) -> Finding:
             return Finding(False, witness=str(error))
         return Finding(order == 4, witness=f"order {order}")
     context = _context(equation)
+    known = _known(equation)
     if not equation.check:
-        return context.judged(_measured(equation, text), _definitions(equation.using))
-    known = _definitions(equation.using) | _defined(text, context, equation.using)
-    finding = context.judged(equation.check, known)
+        return context.judged(_measured(equation, text), known)
+    defined = _defined(text, context, known)
+    if set(defined) != set(_defined(equation.printed, context, known)):
+        return Finding(False, witness="it defines something else")
+    finding = context.judged(equation.check, known | defined)
     # an inequality defines nothing: it must hold by itself, too
-    return context.judged(text, known) if finding.holds and "<" in text else finding
+    return context.judged(text, known | defined) if finding.holds and "<" in text else finding
 
 
 def _residual(equation: Equation, finding: Finding) -> str:
     """How far the printed form is from the corrected one, where it first differs."""
-    context, known = _context(equation), _definitions(equation.using)
+    context, known = _context(equation), _known(equation)
     printed, corrected = (
         context.comparisons(_measured(equation, text), known)[finding.place].residual
         for text in (equation.printed, equation.corrected)
@@ -103,7 +108,11 @@ def _context(equation: Equation) -> Context:
 def _measured(equation: Equation, text: str) -> str:
     if not equation.measure:
         return text
-    sides = (part.split("=") for part in text.split(";"))
+    if re.search(r"\bE(_?[12i])?\b", text):
+        raise ExpressionError(f"{text!r} names what it is measured by")
+    sides = [part.split("=") for part in text.split(";")]
+    if any(len(pair) != 2 for pair in sides):
+        raise ExpressionError(f"{text!r} should have two sides")
     return "; ".join(f"({left}) - ({right}) = {equation.measure}" for left, right in sides)
 
 
@@ -112,20 +121,18 @@ def _by_id() -> dict[str, Equation]:
     return {e.id: e for e in EQUATIONS if isinstance(e, Equation)}
 
 
-def _definitions(using: Sequence[str]) -> dict[str, Value]:
-    """What other equations define, as printed."""
-    known: dict[str, Value] = {}
-    for key in using:
-        equation = _by_id()[key]
-        known |= _defined(equation.printed, _context(equation), (), known)
+def _known(equation: Equation) -> dict[str, Value]:
+    """What the equations that it uses define, as printed; and a letter without a meaning."""
+    known: dict[str, Value] = {equation.stray: STRAY} if equation.stray else {}
+    for key in equation.using:
+        used = _by_id()[key]
+        known |= _defined(used.printed, _context(used), known)
     return known
 
 
-def _defined(
-    text: str, context: Context, using: Sequence[str], known: dict[str, Value] | None = None
-) -> dict[str, Value]:
+def _defined(text: str, context: Context, known: dict[str, Value]) -> dict[str, Value]:
     """What ``name = formula; ...`` defines; of ``a < b; ...``, its left sides as ``left_1`` etc."""
-    scope = {**context.scope, **_definitions(using), **(known or {})}
+    scope = {**context.scope, **known}
     values: dict[str, Value] = {}
     for number, part in enumerate(text.split(";"), start=1):
         if "<" in part:

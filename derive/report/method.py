@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derive.expression import evaluated, parsed, tree
+from derive.expression import parsed, tree
 
 STAGES = 4
 NAMES = ("t_i", "w_i", "h", *(f"m_{k + 1}" for k in range(STAGES)))
@@ -48,9 +48,11 @@ def _arguments(line: str, name: str) -> tuple[sp.Expr, sp.Expr]:
     left, _, right = line.partition("=")
     match left.strip(), tree(right):
         case str(found), ast.BinOp(
-            left=ast.Name(id="h"), op=ast.Mult(), right=ast.Call(func=ast.Name(id="f"), args=[t, w])
+            left=ast.Name(id="h"),
+            op=ast.Mult(),
+            right=ast.Call(func=ast.Name(id="f"), args=[time, state], keywords=[]),
         ) if found == name:
-            return evaluated(t, SYMBOLS), evaluated(w, SYMBOLS)
+            return parsed(ast.unparse(time), SYMBOLS), parsed(ast.unparse(state), SYMBOLS)
     raise NotRungeKuttaError(f"{line!r} should read {name} = h*f(t, w)")
 
 

@@ -2,7 +2,8 @@
 
 The formulas are retyped in the language of `derive.expression`; of the programs'
 text only the lines that a finding rests on are quoted, with dots for what is
-beside the point and every bracket in its place.
+beside the point. The report is known through character recognition, so that a
+bracket may have been lost on the way.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class Scene:
         )
 
 
-#: What the prose of chapters 3 to 5 says of all three programs.
+#: What chapters 3 to 5 say of all programs. They name no velocities; program 1 starts at rest.
 PROSE = Scene(
     masses=(sp.S(1), sp.S(1)),
     lengths=(sp.S(2), sp.S(2)),
@@ -66,7 +67,7 @@ class Program:
     stops : tuple of str
         What keeps it from running as printed.
     differs : tuple of str
-        Where it is at odds with the prose.
+        Where it is at odds with the prose, or with itself.
     """
 
     id: str
@@ -118,17 +119,22 @@ def _second() -> Program:
         f" - g*(m1*{y1} + m2*{y2})"
     )
     right = double_pendulum(moving=False).judged(f"L = {lagrangian}").holds
-    text = "sol = First[NDSolve[...]]; x1[t] := ... /. sol2; ... y2[t] := ... /. sol2"
+    text = "sol = First[NDSolve[...]]; x1[t] := Sin[phi1[t]] /. sol2; ... Plot[... /. sol, ...]"
     scene = replace(PROSE, velocities=(sp.pi, 2 * sp.pi))
     return Program(
         "program2",
         "Appendix B, figure 2: Euler-Lagrangian",
         f"the Euler-Lagrange equations of {'the right' if right else 'a wrong'} Lagrangian",
         scene,
-        tuple(f"the bobs' path needs {name}, which is never assigned" for name in _missing(text)),
+        (),
         (
             *scene.differences(PROSE),
-            "its last plot is phi2 over phi1, not the path of the bobs that the prose shows",
+            *(
+                f"the bobs' coordinates need {name}, which is never assigned; no plot uses them"
+                for name in _missing(text)
+            ),
+            "these coordinates leave out the lengths: they would belong to rods of 1 m",
+            "its last plot is phi2 over phi1, not a path of the bobs",
         ),
     )
 
@@ -145,7 +151,17 @@ def _third() -> Program:
         " + theta2_dot**2*l2*m2*cos(theta1 - theta2))"
         "/(l2*(2*m1 + m2 - m2*cos(2*theta1 - 2*theta2)))"
     )
-    loop = "Do[ {f1, k1, l1, m1} = Map[#][t, ...] &, {f1, f2, f3, f4}]; ... {...}], {i, 1, n}]"
+    loop = (
+        "f1[t_, ...] := y; f2[t_, ...] := v; f3[t_, ...] := ...; f4[t_, ...] := ...; Do["
+        " {f1, k1, l1, m1} = Map[#][t, ...] &, {f1, f2, f3, f4}];"
+        " {f2, k2, l2, m2} = Map[#][..., x + h/2 * j1, ...] &, {f1, f2, f3, f4}];"
+        " {f3, k3, l3, m3} = Map[#][..., x + h/2 * j2, ...] &, {f1, f2, f3, f4}];"
+        " {f4, k4, l4, m4} = Map[#][..., x + h * j3, ...] &, {f1, f2, f3, f4}];"
+        " x = x + h * (j1 + 2 * j2 + 2 * j3 + j4) / 6; ... {...}], {i, 1, n}]"
+    )
+    assigned = re.findall(r"\{(\w+), \w+, \w+, \w+\} =", loop)
+    functions = set(re.findall(r"(\w+)\[t_", loop))
+    needed = sorted(set(re.findall(r"\bj\d", loop)) - set(assigned))
     scene = replace(PROSE, angles=(sp.S(0), -sp.pi / 4), duration=sp.S(50))
     return Program(
         "program3",
@@ -156,12 +172,13 @@ def _third() -> Program:
         scene,
         (
             _bracket_fault(loop),
-            "the first stage overwrites the functions f1 to f4, and j1 to j4, which the "
-            "sum needs, are never assigned",
+            f"it assigns to its functions {', '.join(n for n in assigned if n in functions)}",
+            f"it never assigns to {', '.join(needed)}, which it needs",
         ),
         (
             *scene.differences(PROSE),
-            "it has the fourth-order rule only: no program makes the figures RK1, RK2 and RK3",
+            "it has the fourth-order rule only, and eight plots of that one run: if the figures "
+            "RK1 to RK4 are methods of these orders, no program makes three of them",
         ),
     )
 
@@ -207,7 +224,7 @@ def _bracket_fault(text: str) -> str:
             opened.append((letter, place))
         elif letter in OPENING:
             if not opened:
-                return f"a {letter!r} too many, after: {text[:place]}"
+                return f"a {letter!r} too many, after: ...{text[:place][-40:]}"
             bracket, start = opened.pop()
             if bracket != OPENING[letter]:
                 return f"the {bracket!r} after {text[:start].strip()!r} is never closed"
