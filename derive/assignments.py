@@ -47,6 +47,13 @@ class Assignments:
     operations: int
     constant_operations: int
 
+    @property
+    def count(self) -> str:
+        """The number of operations, in words."""
+        return (
+            f"{self.operations} operations, {self.constant_operations} of them on parameters alone."
+        )
+
 
 def assignments(lowering: Lowering, taken: Collection[str]) -> Assignments:
     """Lay out `lowering`; no new name is one of those `taken`."""

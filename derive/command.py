@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
+from derive.c import header
 from derive.catalogue import UnknownSystemError, load, names
 from derive.derivation import Derivation
 from derive.functions import contents
@@ -19,7 +20,7 @@ from derive.tree import Difference, Tree
 EXAMPLE = """\
 examples:
   holonomic derive                                  all systems, into the package `generated`
-  holonomic derive double_pendulum --output build   one system, as build/double_pendulum.py
+  holonomic derive double_pendulum --output build   one system, as build/double_pendulum.py, .h
   holonomic derive --check                          exit 1 if a file is not what this writes
 """
 
@@ -53,7 +54,7 @@ def main(argv: Sequence[str]) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="holonomic derive",
-        description="Derive systems from their positions and write them as Python modules.",
+        description="Derive systems from their positions; write Python modules and C headers.",
         epilog=EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -83,7 +84,10 @@ def _write(tree: Tree) -> int:
 
 def planned(systems: list[str], output: Path | None) -> Tree:
     """What the folder should hold after the command."""
-    texts = {f"{name}.py": module(contents(Derivation(load(name)))) for name in systems or names()}
+    texts: dict[str, str] = {}
+    for name in systems or names():
+        generated = contents(Derivation(load(name)))
+        texts |= {f"{name}.py": module(generated), f"{name}.h": header(generated)}
     if output is not None:
         return Tree(output, texts, complete=False)
     modules = "\n".join(f'    "{name}",' for name in names())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from derive.assignments import Assignments, assignments
 from derive.derivation import Derivation
 from derive.lowering import Lowering
 from derive.mechanics import Mechanics
@@ -198,3 +199,9 @@ def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
     if angles:
         states["rational"] = (*places, *(s.name for s in system.qdot))
     return states
+
+
+def body(part: Function, system: System) -> Assignments:
+    """The function's assignments; what it takes and the parameters keep their names."""
+    taken = {*part.state, *(s.name for s in system.params), "t", "y", "state", "params", "result"}
+    return assignments(part.lowering, taken)

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 from textwrap import indent, wrap
 
-from derive.assignments import Assignments, assignments
-from derive.functions import Contents, Function
+from derive.assignments import Assignments
+from derive.functions import Contents, Function, body
 from derive.summary import broken_sum, summary, units
 from derive.system import System
 
@@ -95,19 +95,14 @@ def module(contents: Contents) -> str:
         name=system.name,
         summary=summary(contents),
         length=2 * len(system.q),
-        called=", ".join(sorted({name for body in bodies for name in body.called})),
+        called=", ".join(sorted({name for assigned in bodies for name in assigned.called})),
         constants=_constants(contents),
         functions="\n\n".join(
             text
-            for part, body in zip(contents.functions, bodies, strict=True)
-            for text in (_one(part, body, system), _many(part, body, system))
+            for part, assigned in zip(contents.functions, bodies, strict=True)
+            for text in (_one(part, assigned, system), _many(part, assigned, system))
         ).rstrip("\n"),
     )
-
-
-def body(part: Function, system: System) -> Assignments:
-    """The function's assignments; what it takes and the parameters keep their names."""
-    return assignments(part.lowering, {*part.state, *(s.name for s in system.params), "t", "y"})
 
 
 def _constants(contents: Contents) -> str:
@@ -164,30 +159,30 @@ def _shaped(items: Sequence[str], shape: tuple[int, ...], depth: int = 1) -> str
     return _tuple([_shaped(row, shape[1:], depth + 1) for row in rows], depth)
 
 
-def _one(part: Function, body: Assignments, system: System) -> str:
+def _one(part: Function, assigned: Assignments, system: System) -> str:
     return ONE.format(
         name=part.name,
         arguments=_arguments(part, "Numbers"),
         type=TYPES[len(part.shape)],
         summary=part.summary,
-        count=_count(body),
+        count=assigned.count,
         parameters=_parameters(part, system),
         returns=part.returns,
-        body=_body(part, body, system, plain=True),
-        outputs=_shaped(body.outputs, part.shape),
+        body=_body(part, assigned, system, plain=True),
+        outputs=_shaped(assigned.outputs, part.shape),
     )
 
 
-def _many(part: Function, body: Assignments, system: System) -> str:
+def _many(part: Function, assigned: Assignments, system: System) -> str:
     shape = ", ".join([*map(str, part.shape), "..."])
-    called = ", ".join(sorted(body.called))
+    called = ", ".join(sorted(assigned.called))
     return MANY.format(
         name=part.name,
         arguments=_arguments(part, "Arrays"),
         shape=f"({shape})",
         imports=f"    from numpy import {called}\n\n" if called else "",
-        body=_body(part, body, system, plain=False),
-        outputs=_call(part, body.outputs),
+        body=_body(part, assigned, system, plain=False),
+        outputs=_call(part, assigned.outputs),
     )
 
 
@@ -196,10 +191,6 @@ def _call(part: Function, outputs: Sequence[str]) -> str:
         return outputs[0]
     like = "y[0]" if part.state else "0.0"
     return "_stacked" + _tuple([repr(part.shape), like, *outputs], depth=1)
-
-
-def _count(body: Assignments) -> str:
-    return f"{body.operations} operations, {body.constant_operations} of them on parameters alone."
 
 
 def _parameters(part: Function, system: System) -> str:
@@ -217,23 +208,23 @@ def _parameters(part: Function, system: System) -> str:
     return "\n".join(rows)
 
 
-def _body(part: Function, body: Assignments, system: System, *, plain: bool) -> str:
+def _body(part: Function, assigned: Assignments, system: System, *, plain: bool) -> str:
     lines = ["    # inputs"]
     for argument, names in (
         ("y", part.state),
         ("params", [symbol.name for symbol in system.params]),
     ):
-        if body.inputs.intersection(names):
-            targets = ", ".join(name if name in body.inputs else "_" for name in names)
+        if assigned.inputs.intersection(names):
+            targets = ", ".join(name if name in assigned.inputs else "_" for name in names)
             comma = "," if len(names) == 1 else ""
             # Python's own floats: arithmetic on NumPy's scalars takes three times as long
             value = f'{argument}.tolist() if hasattr({argument}, "tolist") else {argument}'
             lines.append(f"    {targets}{comma} = {value if plain else argument}")
-    for title, assigned in (
-        ("terms of the parameters alone", body.constants),
-        ("intermediate terms", body.terms),
+    for title, named in (
+        ("terms of the parameters alone", assigned.constants),
+        ("intermediate terms", assigned.terms),
     ):
-        if assigned:
+        if named:
             lines.append(f"    # {title}")
-            lines += [_broken(text, 4, name) for name, text in assigned]
+            lines += [_broken(text, 4, name) for name, text in named]
     return "\n".join([*lines, "    # outputs"])

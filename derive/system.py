@@ -20,7 +20,8 @@ RESERVED = {
     *keyword.softkwlist,
     *"auto char const default do double enum extern float goto inline int long register".split(),
     *"restrict short signed sizeof static struct switch typedef union unsigned void".split(),
-    *"volatile NULL NAN INFINITY t params numpy math sin cos tan exp log sqrt pi".split(),
+    *"volatile NULL NAN INFINITY sin cos tan exp log sqrt pi".split(),
+    *"t params state result numpy math".split(),
 }
 
 

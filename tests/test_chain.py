@@ -7,8 +7,9 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System
+from derive.assignments import assignments
 from derive.functions import contents
-from derive.python import assignments, module
+from derive.python import module
 
 
 def chain(n: int) -> Derivation:

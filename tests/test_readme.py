@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from derive import names
+from derive.assignments import assignments
 from derive.functions import contents
-from derive.python import assignments
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
