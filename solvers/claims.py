@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from solvers.catalogue import load
-from solvers.fixed_step import fixed_step
+from solvers.integration import integrate
 
 Array = NDArray[np.float64]
 
@@ -94,18 +93,23 @@ class Evidence:
 
     def stepped(self, method: str, h: float, setting: Setting | None = None) -> Array:
         """States at every step of a method with fixed step."""
-        scene = setting or self.prose
-        steps = round(scene.duration / h)
-
-        def rhs(t: float, y: Sequence[float]) -> Sequence[float]:
-            derivative: tuple[float, ...] = self._module.rhs(t, y, scene.params)
-            return derivative
-
-        return fixed_step(rhs, scene.y0, scene.duration / steps, steps, load(METHODS[method]))
+        return self._integrated(method, h, setting or self.prose, None)
 
     def error(self, method: str, h: float) -> float:
         """Largest error of an angle at the end of the prose's scene, in rad."""
-        return float(np.abs(self.stepped(method, h)[:2, -1] - self.end[:2]).max())
+        end = self._integrated(method, h, self.prose, [self.prose.duration])[:, -1]
+        return float(np.abs(end[:2] - self.end[:2]).max())
+
+    def _integrated(
+        self, method: str, h: float, setting: Setting, times: Sequence[float] | None
+    ) -> Array:
+        solution = integrate(
+            self._module, (0.0, setting.duration), setting.y0, setting.params,
+            method=METHODS[method], h=h, t_eval=times,
+        )  # fmt: skip
+        if not solution.success:
+            raise RuntimeError(f"{method} with h = {h}: {solution.message}")
+        return solution.y
 
     def energy_change(self, states: Array, setting: Setting) -> float:
         """Largest change of energy along `states`, in parts of the energy above rest."""

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
-from math import cos, exp, isclose, log2, sin, sqrt
+from math import isclose, sqrt
 
 import numpy as np
 import pytest
@@ -14,8 +14,8 @@ from mpmath import log as mplog
 from mpmath import sin as mpsin
 
 from solvers.catalogue import UnknownMethodError, load, names
-from solvers.fixed_step import fixed_step
 from solvers.order_conditions import density, order, trees
+from solvers.stepper import Rhs, Stepper
 from solvers.surd import Surd
 from solvers.tableau import Tableau
 
@@ -105,34 +105,24 @@ def exact(number: Fraction | Decimal) -> mpf:
     return mpf(numerator) / denominator
 
 
-@pytest.mark.parametrize(("name", "steps"), [("rk1", 4000), ("midpoint", 400), ("rk3", 200),
-                                             ("rk4", 200), ("dp54", 80)])  # fmt: skip
-def test_the_order_is_observed_in_the_stepper(name: str, steps: int) -> None:
-    method = load(name)
-
-    def error(steps: int) -> float:
-        def rhs(t: float, y: list[float]) -> list[float]:
-            return [y[0] * cos(t)]
-
-        return abs(float(fixed_step(rhs, [1.0], 2.0 / steps, steps, method)[0, -1]) - exp(sin(2.0)))
-
-    assert log2(error(steps) / error(2 * steps)) == pytest.approx(method.order, abs=0.1)
+def one_step(name: str, rhs: Rhs, y: list[float], jacobian: Rhs | None = None) -> np.ndarray:
+    """A step of length 1 from t = 0, by the running stepper."""
+    stepper, start = Stepper(load(name), rhs, jacobian), np.array(y)
+    return stepper.step(0.0, start, 1.0, stepper.slope(0.0, start))[0]
 
 
-@pytest.mark.parametrize("name", EXPLICIT)
+@pytest.mark.parametrize("name", names())
 def test_one_step_multiplies_by_the_stability_function(name: str) -> None:
     # as a black box: y' = λy for complex λ, written as two real equations
-    method = load(name)
-    numerator, denominator = method.stability_function
-    assert len(denominator) == 1
+    numerator, denominator = (
+        [float(a) for a in coefficients[::-1]] for coefficients in load(name).stability_function
+    )
     for z in (0.3 + 0.2j, -1.0 + 0.5j, -0.2 - 2.0j):
-
-        def rhs(t: float, y: list[float], z: complex = z) -> list[float]:
-            product = z * complex(*y)
-            return [product.real, product.imag]
-
-        step = complex(*fixed_step(rhs, [1.0, 0.0], 1.0, 1, method)[:, 1])
-        assert step == pytest.approx(np.polyval([float(a) for a in numerator[::-1]], z), rel=1e-11)
+        matrix = np.array([[z.real, -z.imag], [z.imag, z.real]])
+        end = one_step(name, lambda t, y, m=matrix: m @ y, [1.0, 0.0], lambda t, y, m=matrix: m)
+        assert complex(*end) == pytest.approx(
+            np.polyval(numerator, z) / np.polyval(denominator, z), rel=1e-11
+        )
 
 
 @pytest.mark.parametrize("name", EXPLICIT)
@@ -143,12 +133,12 @@ def test_coefficients_are_read_back_from_the_running_stepper(name: str) -> None:
     for j in range(method.stages):
         arguments.clear()
 
-        def rhs(t: float, y: list[float], j: int = j) -> list[float]:
-            arguments.append((t, y[0]))
-            return [float(len(arguments) == j + 1)]
+        def rhs(t: float, y: np.ndarray, j: int = j) -> np.ndarray:
+            arguments.append((t, float(y[0])))
+            return np.array([float(len(arguments) == j + 1)])
 
-        end = float(fixed_step(rhs, [0.0], 1.0, 1, method)[0, 1])
-        assert end == float(method.b[j])
+        end = one_step(name, rhs, [0.0])
+        assert end[0] == float(method.b[j])
         assert [y for _, y in arguments] == [float(row[j]) for row in method.A]
         assert [t for t, _ in arguments] == [float(c) for c in method.c]
 

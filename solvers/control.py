@@ -1,0 +1,59 @@
+"""How long the next step is: proportional and integral control of the local error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: Part of the ideal step that is tried, and limits to its change (E. Hairer, S. P. Nørsett,
+#: G. Wanner, Solving Ordinary Differential Equations I, section II.4).
+SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+
+
+@dataclass
+class Controller:
+    """Step sizes from error norms; 1 is what the tolerances allow.
+
+    Parameters
+    ----------
+    order : int
+        Order of the error estimate, the lower one of the pair.
+    rtol, atol : float or ndarray
+        The error of a component may be atol + rtol |y|.
+    """
+
+    order: int
+    rtol: float
+    atol: float | Array
+    _previous: float = 1.0
+
+    def norm(self, error: Array, y: Array, end: Array) -> float:
+        """Root mean square of the error in parts of what is allowed."""
+        allowed = self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end))
+        return float(np.sqrt(np.mean((error / allowed) ** 2)))
+
+    def factor(self, norm: float) -> float:
+        """By what the step changes, after one whose error has this norm.
+
+        PI control (K. Gustafsson, ACM Transactions on Mathematical Software 17
+        (1991) 533-554) after a step that is kept, the plain rule after one that is not.
+        """
+        k = self.order + 1
+        if norm > 1:
+            return max(SHRINK, SAFETY * norm ** (-1 / k))
+        floor = max(norm, 1e-10)
+        factor = SAFETY * floor ** (-0.7 / k) * self._previous ** (0.4 / k)
+        self._previous = floor
+        return min(GROW, max(SHRINK, factor))
+
+    def first_step(self, slope: Array, y: Array, duration: float) -> float:
+        """A step to begin with: a change of a hundredth of the state, or of what is allowed."""
+        allowed = self.atol + self.rtol * np.abs(y)
+        size = float(np.sqrt(np.mean((y / allowed) ** 2)))
+        speed = float(np.sqrt(np.mean((slope / allowed) ** 2)))
+        h = 0.01 * size / speed if size > 1e-5 and speed > 1e-5 else 1e-6
+        return min(h, abs(duration))

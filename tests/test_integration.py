@@ -1,0 +1,349 @@
+"""Integrations against exact solutions; samples, events, and what bad input and faults get."""
+
+from math import asin, log2, pi, sin, sqrt
+from types import ModuleType, SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipj, ellipk
+
+import generated.double_pendulum as dp
+import generated.single_pendulum as sp
+from solvers.catalogue import UnknownMethodError, load, names
+from solvers.integration import integrate
+from solvers.scipy_methods import ode_solver
+from solvers.solution import Status
+
+EXPLICIT_PAIRS = [n for n in names() if load(n).b_hat]
+FORMS = ("lagrangian", "hamiltonian", "rational")
+REPORT = (pi / 2, pi, 0.0, 0.0)
+#: The report's scene at 5 s, from an 80-bit Taylor series.
+END = (2.2280642400930692, -0.2670447339117043, -1.9694093323354762, -2.9859792219408772)
+
+
+def exact_pendulum(t: float | np.ndarray, amplitude: float) -> np.ndarray:
+    """Angle and velocity of the single pendulum released at `amplitude`, by Jacobi's functions.
+
+    sin(θ/2) = k sn(K - ωt) with k = sin(amplitude/2) and ω² = g/l.
+    """
+    _, length, g = sp.DEFAULTS
+    k, omega = sin(amplitude / 2), sqrt(g / length)
+    sn, cn, _, _ = ellipj(ellipk(k**2) - omega * np.asarray(t), k**2)
+    return np.array([2 * np.arcsin(k * sn), -2 * k * omega * cn])
+
+
+def test_the_exact_solution_is_that_of_the_pendulum() -> None:
+    # an oracle of its own: the second derivative by differences is the equation of motion
+    _, length, g = sp.DEFAULTS
+    before, now, after = (exact_pendulum(1.0 + d, 2.0)[0] for d in (-1e-4, 0.0, 1e-4))
+    assert (before - 2 * now + after) / 1e-8 == pytest.approx(-g / length * sin(now), rel=1e-6)
+    assert exact_pendulum(0.0, 2.0) == pytest.approx([2.0, 0.0], abs=1e-7)
+
+
+def pendulum_error(method: str, form: str, steps: int) -> float:
+    found = integrate(
+        sp, (0, 2), (2.0, 0.0), sp.DEFAULTS, method=method, form=form, h=2 / steps, t_eval=[2.0]
+    )
+    return float(np.abs(found.y[:, 0] - exact_pendulum(2.0, 2.0)).max())
+
+
+#: Steps with which each method has converged, in double precision, to the exact solution's order.
+CONVERGED = {
+    "rk1": 640, "midpoint": 640, "ralston": 640, "heun": 10_000, "gauss1": 160, "rk3": 160,
+    "bs32": 160, "radau2": 160, "rk4": 320, "rk4_38": 320, "gauss2": 80, "dp54": 160,
+    "radau3": 80, "gauss3": 40,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("form", ["lagrangian", "hamiltonian"])
+@pytest.mark.parametrize("method", CONVERGED)
+def test_fixed_steps_converge_with_the_order_of_the_method(method: str, form: str) -> None:
+    steps = CONVERGED[method]
+    errors = [pendulum_error(method, form, n) for n in (steps, 2 * steps)]
+    assert log2(errors[0] / errors[1]) == pytest.approx(load(method).order, abs=0.1)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("method", ["tsit54", "dop853", "verner87", "verner98"])
+def test_methods_that_reach_rounding_first_fall_at_least_with_their_order(
+    method: str, form: str
+) -> None:
+    # their order itself is observed with 50 digits, in the tests of the methods
+    errors = [pendulum_error(method, form, n) for n in (10, 14)]
+    slope = np.log(errors[0] / errors[1]) / np.log(1.4)
+    assert slope > load(method).order - 0.2
+
+
+@pytest.mark.parametrize("method", ["rk1", "midpoint", "rk3", "rk4", "dp54", "verner98"])
+def test_the_rational_form_is_as_accurate(method: str) -> None:
+    errors = [pendulum_error(method, form, 100) for form in ("lagrangian", "rational")]
+    assert errors[1] < 10 * errors[0] + 1e-13
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("method", EXPLICIT_PAIRS)
+def test_tolerances_bring_the_report_s_scene_to_its_known_end(method: str, form: str) -> None:
+    errors = []
+    for rtol in (1e-6, 1e-9):
+        found = integrate(
+            dp, (0, 5), REPORT, dp.DEFAULTS, method=method, form=form, rtol=rtol, atol=rtol,
+            max_steps=10_000_000,
+        )  # fmt: skip
+        assert found.status is Status.FINISHED
+        assert found.t[-1] == 5.0
+        errors.append(np.abs(found.y[:, -1] - END).max())
+    assert errors[1] < 100 * 1e-9 * 10
+    assert errors[1] < errors[0] / 50 or errors[1] < 1e-11
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_samples_are_as_accurate_as_steps(form: str) -> None:
+    times = np.linspace(0, 2, 41)
+    found = integrate(
+        sp, (0, 2), (2.0, 0.0), sp.DEFAULTS, form=form, rtol=1e-10, t_eval=times, energy=True
+    )
+    assert np.array_equal(found.t, times)
+    assert np.abs(found.y - exact_pendulum(times, 2.0)).max() < 1e-8
+    assert found.energy is not None
+    assert np.ptp(found.energy) < 1e-8
+    steps = integrate(sp, (0, 2), (2.0, 0.0), sp.DEFAULTS, form=form, rtol=1e-10)
+    assert found.steps == steps.steps == len(steps.t) - 1
+
+
+def test_time_runs_backwards_and_not_at_all() -> None:
+    there = integrate(dp, (0, 3), REPORT, dp.DEFAULTS, rtol=1e-12).y[:, -1]
+    back = integrate(dp, (3, 0), there, dp.DEFAULTS, rtol=1e-12, t_eval=[3, 1.5, 0])
+    assert np.abs(back.y[:, -1] - REPORT).max() < 1e-8
+    assert back.t.tolist() == [3, 1.5, 0]
+    still = integrate(dp, (1, 1), REPORT, dp.DEFAULTS)
+    assert still.t.tolist() == [1.0]
+    assert still.y[:, 0].tolist() == list(REPORT)
+
+
+def test_fixed_steps_end_at_the_end_and_do_not_drift() -> None:
+    found = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.3)
+    assert found.t == pytest.approx([0, 0.3, 0.6, 0.9, 1.0])
+    assert found.t[-1] == 1.0
+    tenths = integrate(sp, (0, 100), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.1)
+    assert tenths.steps == 1000
+    assert tenths.t[-2] == pytest.approx(99.9, abs=1e-12)
+
+
+def test_the_report_s_runge_kutta_is_reproduced_step_for_step() -> None:
+    # its program 3: h = 0.01, from rest at (0, -π/4); written out here with its own formulas
+    m, length, g, h = 1.0, 2.0, 9.81, 0.01
+
+    def slope(y: np.ndarray) -> np.ndarray:
+        x, u, a, b = y
+        d = length * (2 * m + m - m * np.cos(2 * x - 2 * u))
+        return np.array([
+            a, b,
+            (-g * 3 * m * sin(x) - m * g * sin(x - 2 * u)
+             - 2 * sin(x - u) * m * (b**2 * length + a**2 * length * np.cos(x - u))) / d,
+            2 * sin(x - u) * (a**2 * length * 2 * m + g * 2 * m * np.cos(x)
+                              + b**2 * length * m * np.cos(x - u)) / d,
+        ])  # fmt: skip
+
+    y = np.array([0.0, -pi / 4, 0.0, 0.0])
+    expected = [y]
+    for _ in range(500):
+        k1 = slope(y)
+        k2 = slope(y + h / 2 * k1)
+        k3 = slope(y + h / 2 * k2)
+        k4 = slope(y + h * k3)
+        y = y + h * (k1 + 2 * k2 + 2 * k3 + k4) / 6
+        expected.append(y)
+    found = integrate(dp, (0, 5), expected[0], dp.DEFAULTS, method="rk4", h=h)
+    assert np.abs(found.y - np.array(expected).T).max() < 1e-11
+
+
+def test_angles_come_back_unwrapped_from_the_rational_form() -> None:
+    # fast enough to turn over: three turns say so
+    spinning = [
+        integrate(sp, (0, 4), (0.0, 7.0), sp.DEFAULTS, form=form, rtol=1e-11).y[0, -1]
+        for form in ("lagrangian", "rational")
+    ]
+    assert spinning[0] > 2 * pi
+    assert spinning[1] == pytest.approx(spinning[0], abs=1e-8)
+
+
+def test_the_rational_form_keeps_sine_and_cosine_together() -> None:
+    found = integrate(dp, (0, 50), (2.0, 1.0, 0.0, 0.0), dp.DEFAULTS, form="rational", rtol=1e-6)
+    energy = dp.energy_many(found.y, dp.DEFAULTS)
+    assert np.abs(energy - energy[0]).max() < 0.01 * abs(energy[0])
+
+
+def test_implicit_midpoint_keeps_the_energy_where_euler_does_not() -> None:
+    def drift(method: str) -> float:
+        found = integrate(sp, (0, 60), (1.0, 0.0), sp.DEFAULTS, method=method, h=0.05, energy=True)
+        assert found.energy is not None
+        return float(np.abs(found.energy - found.energy[0])[-100:].max())
+
+    assert drift("gauss1") < 0.02
+    assert drift("rk1") > 1
+
+
+def test_events_are_found_to_rounding() -> None:
+    def bottom(t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    period = 4 * ellipk(sin(1.0) ** 2) / sqrt(sp.DEFAULTS[2] / sp.DEFAULTS[1])
+    found = integrate(
+        sp, (0, 3 * period), (2.0, 0.0), sp.DEFAULTS, events=bottom, rtol=1e-12, atol=1e-13
+    )
+    assert found.t_events[0] == pytest.approx(period * (np.arange(6) / 2 + 0.25), abs=1e-9)
+    assert np.abs(found.y_events[0][:, 0]).max() < 1e-12
+
+
+def test_events_have_a_direction_and_may_end_the_run() -> None:
+    def bottom(t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    bottom.direction, bottom.terminal = 1, True  # type: ignore[attr-defined]
+    found = integrate(sp, (0, 20), (2.0, 0.0), sp.DEFAULTS, events=[bottom])
+    assert found.status is Status.EVENT
+    assert found.success
+    assert found.y[1, -1] > 0
+    assert found.t[-1] == found.t_events[0][0] == found.end[0]
+    assert len(found.t_events[0]) == 1
+
+
+def test_the_caller_s_arrays_are_left_alone() -> None:
+    y0, params, times = np.array(REPORT), np.array(dp.DEFAULTS), np.array([0.0, 1.0])
+    found = integrate(dp, (0, 1), y0, params, t_eval=times)
+    found.y[:] = 0
+    assert y0.tolist() == list(REPORT)
+    assert params.tolist() == list(dp.DEFAULTS)
+    assert times.tolist() == [0.0, 1.0]
+
+
+def scene(**changes: object) -> dict[str, object]:
+    return {"module": dp, "t_span": (0, 1), "y0": REPORT, "params": dp.DEFAULTS} | changes
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"y0": (1, 2, 3)}, r"y0 has shape \(3,\): give 4 numbers, theta1, theta2, theta1_dot"),
+        ({"y0": (1, 2, 3, np.nan)}, "y0 = .*nan.* must be finite"),
+        ({"y0": "abcd"}, "y0 = abcd must be real numbers"),
+        ({"y0": (1j, 0, 0, 0)}, "must be real numbers"),
+        ({"y0": (True, False, True, True)}, "must be real numbers"),
+        ({"params": (1, 1, 2, 2)}, "params has shape .* m1, m2, l1, l2, g"),
+        ({"params": (1, 1, 2, 2, np.inf)}, "params = .* must be finite"),
+        ({"t_span": (0, np.inf)}, "t_span"),
+        ({"t_span": 1}, "t_span has shape"),
+        ({"t_eval": [0.5, 0.2]}, "must go from t_span's beginning to its end"),
+        ({"t_eval": [0.2, 0.2]}, "no time twice"),
+        ({"t_eval": [0.2, 2.0]}, r"t_eval has 2.0, outside of t_span = \(0.0, 1.0\)"),
+        ({"t_eval": [0.2, np.nan]}, "t_eval = .* must be finite"),
+        ({"rtol": 0, "atol": 0}, "both 0"),
+        ({"rtol": -1e-6}, "rtol = -1e-06 must not be negative"),
+        ({"rtol": np.nan}, "rtol = nan must be finite"),
+        ({"atol": [1e-6, 1e-6]}, "atol a number or 4 of them"),
+        ({"rtol": 1e-17}, "below the resolution of numbers"),
+        ({"h": 0}, "h = 0 must be a positive number"),
+        ({"h": -0.1}, "h = -0.1 must be a positive number"),
+        ({"h": np.nan}, "h = nan"),
+        ({"h": 1e-18}, "below the resolution"),
+        ({"method": "rk4"}, "does not estimate its error: give a fixed step h"),
+        ({"method": "gauss2", "form": "rational", "h": 0.1}, "needs a Jacobian"),
+        ({"form": "linear"}, "form 'linear': .* has lagrangian, hamiltonian, rational"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_before_anything_runs(
+    changes: dict[str, object], message: str
+) -> None:
+    calls = []
+    watched = SimpleNamespace(**{name: getattr(dp, name) for name in dir(dp)})
+    watched.__name__ = "generated.double_pendulum"
+    watched.rhs = lambda *arguments: calls.append(arguments) or dp.rhs(*arguments)
+    with pytest.raises(ValueError, match=message):
+        integrate(**(scene(module=watched) | changes))  # type: ignore[arg-type]
+    assert not calls
+
+
+def test_an_unknown_method_is_refused() -> None:
+    with pytest.raises(UnknownMethodError, match="did you mean 'verner"):
+        integrate(**scene(method="verner78"))  # type: ignore[arg-type]
+
+
+def made_up(rhs: object) -> ModuleType:
+    """A module with one coordinate whose right-hand side is `rhs`."""
+    module = ModuleType("made_up")
+    module.__dict__.update(COORDINATES=("x",), STATE=("x", "x_dot"), PARAMETERS=("a",), rhs=rhs)
+    return module
+
+
+def test_a_blow_up_stops_with_what_there_is() -> None:
+    # x' = x² from 1 has x = 1/(1 - t)
+    module = made_up(lambda t, y, params: (y[0] ** 2, 0.0))
+    found = integrate(module, (0, 2), (1.0, 0.0), (1.0,), rtol=1e-8)
+    assert found.status in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
+    assert not found.success
+    assert found.t[-1] == pytest.approx(1.0, abs=1e-6)
+    assert np.isfinite(found.y).all()
+    assert "t = " in found.message
+
+
+@pytest.mark.parametrize("h", [None, 0.1])
+def test_a_right_hand_side_that_is_not_finite_ends_the_run(h: float | None) -> None:
+    module = made_up(lambda t, y, params: (1.0, np.nan if y[0] > 0.55 else 0.0))
+    found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), h=h)
+    assert found.status in (Status.NOT_FINITE, Status.STEP_TOO_SMALL)
+    assert np.isfinite(found.y).all()
+    assert 0.4 < found.t[-1] < 0.56
+
+
+def test_an_exception_in_the_right_hand_side_is_the_caller_s() -> None:
+    def failing(t: float, y: object, params: object) -> tuple[float, float]:
+        raise RuntimeError("broken model")
+
+    with pytest.raises(RuntimeError, match="broken model"):
+        integrate(made_up(failing), (0, 1), (0.0, 0.0), (1.0,))
+
+
+def test_the_step_limit_leaves_a_state_to_go_on_from() -> None:
+    short = integrate(dp, (0, 5), REPORT, dp.DEFAULTS, rtol=1e-11, max_steps=50, t_eval=[5.0])
+    assert short.status is Status.STEP_LIMIT
+    assert short.steps == 50
+    assert short.y.shape == (4, 0)
+    t, y = short.end
+    rest = integrate(dp, (t, 5), y, dp.DEFAULTS, rtol=1e-11)
+    assert np.abs(rest.y[:, -1] - END).max() < 1e-8
+
+
+@pytest.mark.parametrize("method", EXPLICIT_PAIRS)
+def test_every_pair_works_inside_solve_ivp(method: str) -> None:
+    found = solve_ivp(
+        dp.rhs, (0, 5), REPORT, method=ode_solver(method), rtol=1e-8, atol=1e-8,
+        t_eval=[1.0, 2.5, 5.0], args=(dp.DEFAULTS,),
+    )  # fmt: skip
+    assert found.success
+    assert np.abs(found.y[:, -1] - END).max() < 1e-4
+    reference = solve_ivp(
+        dp.rhs, (0, 2.5), REPORT, method="DOP853", rtol=1e-12, atol=1e-12, args=(dp.DEFAULTS,)
+    )
+    assert np.abs(found.y[:, 1] - reference.y[:, -1]).max() < 1e-4
+
+
+def test_solve_ivp_runs_our_methods_backwards_with_events_and_refuses_unknown_options() -> None:
+    def bottom(t: float, y: np.ndarray, params: object) -> float:
+        return float(y[0])
+
+    back = solve_ivp(sp.rhs, (2, 0), exact_pendulum(2.0, 2.0), method=ode_solver("tsit54"),
+                     rtol=1e-10, atol=1e-10, events=bottom, args=(sp.DEFAULTS,))  # fmt: skip
+    assert back.y[:, -1] == pytest.approx([2.0, 0.0], abs=1e-7)
+    assert len(back.t_events[0]) == 1
+    with pytest.raises(ValueError, match="no option lband"):
+        solve_ivp(sp.rhs, (0, 1), (1, 0), method=ode_solver("dp54"), args=(sp.DEFAULTS,), lband=1)
+    with pytest.raises(ValueError, match="does not estimate"):
+        ode_solver("rk4")
+
+
+def test_small_angles_have_the_textbook_period() -> None:
+    amplitude = 1e-4
+    found = integrate(sp, (0, 10), (amplitude, 0.0), sp.DEFAULTS, rtol=1e-11, atol=1e-16)
+    omega = sqrt(sp.DEFAULTS[2] / sp.DEFAULTS[1])
+    assert asin(sin(found.y[0, -1])) == pytest.approx(amplitude * np.cos(omega * 10), abs=1e-11)
