@@ -6,23 +6,21 @@ samples, events. Compiled loops are to agree with it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from solvers import request
 from solvers.catalogue import load
 from solvers.control import Controller
 from solvers.forms import Form
+from solvers.record import Event, Record
 from solvers.solution import Solution, Status
 from solvers.stepper import NoConvergenceError, NotFiniteError, Stepper
 
 Array = NDArray[np.float64]
-Event = Callable[[float, Array], float]
 
 #: How often a step is cut to a quarter because a stage fails, before the run stops.
 MOST_CUTS = 25
@@ -111,7 +109,7 @@ def integrate(
     samples = None if t_eval is None else request.times(t_eval, span)
     watched = [events] if callable(events) else list(events)
     stepper = Stepper(tableau, equations.rhs, equations.jacobian)
-    record = _Record(equations, stepper, start, span[0], samples, watched)
+    record = Record(equations, stepper, start, span[0], samples, watched)
     status, message, steps, rejected = _run(record, span[1], h, controller, max_steps)
     t, y = np.array(record.t), np.array(record.y).reshape(-1, len(start)).T
     return Solution(
@@ -131,78 +129,8 @@ def integrate(
     )
 
 
-@dataclass
-class _Record:
-    """Where a run is, and what it has seen."""
-
-    form: Form
-    stepper: Stepper
-    place: Array
-    now: float
-    samples: Array | None
-    events: list[Event]
-    t: list[float] = field(default_factory=list)
-    y: list[Array] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        self.t_events: list[list[float]] = [[] for _ in self.events]
-        self.y_events: list[list[Array]] = [[] for _ in self.events]
-        self._taken = 0
-        if self.samples is None or (len(self.samples) and self.samples[0] == self.now):
-            self._keep(self.now, self.place)
-            self._taken = 1
-        self._values = [event(self.now, self.place) for event in self.events]
-
-    def _keep(self, t: float, y: Array) -> None:
-        self.t.append(t)
-        self.y.append(y.copy())
-
-    def advance(self, t: float, z: Array, first: Array, end: float, z_end: Array) -> bool:
-        """Take in a step from (t, z) to (end, z_end); tell whether an event ends the run."""
-
-        def between(time: float) -> Array:
-            if time == end:
-                return self.form.outside(z_end, self.place)
-            if time == t:
-                return self.place
-            inner, _, _ = self.stepper.step(t, z, time - t, first)
-            return self.form.outside(self.form.settled(inner), self.place)
-
-        stop = self._happened(t, end, between)
-        until = end if stop is None else stop
-        if self.samples is None:
-            self._keep(until, between(until))
-        else:
-            while self._taken < len(self.samples) and (
-                abs(self.samples[self._taken] - t) <= abs(until - t)
-            ):
-                time = float(self.samples[self._taken])
-                self._keep(time, between(time))
-                self._taken += 1
-        self.now, self.place = until, between(until)
-        return stop is not None
-
-    def _happened(self, t: float, end: float, between: Callable[[float], Array]) -> float | None:
-        """Note the events of a step; the time of the first one that is terminal."""
-        found = []
-        for k, event in enumerate(self.events):
-            before, after = self._values[k], event(end, between(end))
-            self._values[k] = after
-            if before * after < 0 or (after == 0 and before != 0):
-                if (after - before) * getattr(event, "direction", 0) < 0:
-                    continue
-                root = float(brentq(lambda s, e=event: e(s, between(s)), t, end, xtol=1e-300))
-                found.append((abs(root - t), k, root))
-        for _, k, root in sorted(found):
-            self.t_events[k].append(root)
-            self.y_events[k].append(between(root))
-            if getattr(self.events[k], "terminal", False):
-                return root
-        return None
-
-
 def _run(
-    record: _Record, end: float, h: float | None, controller: Controller | None, max_steps: int
+    record: Record, end: float, h: float | None, controller: Controller | None, max_steps: int
 ) -> tuple[Status, str, int, int]:
     stepper, form = record.stepper, record.form
     t, begin = record.now, record.now
