@@ -14,7 +14,8 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers import compiler
-from solvers.compiler import DIGEST, LIBRARY, NoCompilerError, build, cache_folder
+from solvers.cache import DIGEST, LIBRARY, cache_folder
+from solvers.compiler import NoCompilerError, build
 from solvers.native import native_rhs
 
 ROOT = Path(__file__).parent.parent
