@@ -165,8 +165,10 @@ def _run(
             norm = 0.0 if controller is None else controller.norm(error, z, z_end)
             if not np.isfinite(z_end).all() or not np.isfinite(norm):
                 raise NotFiniteError("the state is not finite")
+            stop = False
             if norm <= 1:
                 following = stepper.slope(aim, z_end) if last is None else last
+                stop = record.advance(t, z, first, aim, z_end)
         except (NotFiniteError, NoConvergenceError) as failure:
             rejected, cuts = rejected + 1, cuts + 1
             if controller is None or cuts > MOST_CUTS:
@@ -179,7 +181,6 @@ def _run(
             size = abs(aim - t) * controller.factor(norm)
             continue
         steps, cuts = steps + 1, 0
-        stop = record.advance(t, z, first, aim, z_end)
         if stop:
             return ended(Status.EVENT)
         t, z, first = aim, z_end, following

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import takewhile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +60,13 @@ class Record:
         self.y.append(y.copy())
 
     def advance(self, t: float, z: Array, first: Array, end: float, z_end: Array) -> bool:
-        """Take in a step from (t, z) to (end, z_end); tell whether an event ends the run."""
+        """Take in a step from (t, z) to (end, z_end); tell whether an event ends the run.
+
+        Raises
+        ------
+        ArithmeticError
+            When a state within the step cannot be computed; then nothing is taken in.
+        """
 
         def between(time: float) -> Array:
             if time == end:
@@ -69,34 +76,45 @@ class Record:
             inner, _, _ = self.stepper.step(t, z, time - t, first)
             return self.form.outside(self.form.settled(inner), self.place)
 
-        stop = self._happened(t, end, between)
-        until = end if stop is None else stop
-        if self.samples is None:
-            self._keep(until, between(until))
-        else:
-            while self._taken < len(self.samples) and (
-                abs(self.samples[self._taken] - t) <= abs(until - t)
-            ):
-                time = float(self.samples[self._taken])
-                self._keep(time, between(time))
-                self._taken += 1
-        self.now, self.place = until, between(until)
-        return stop is not None
-
-    def _happened(self, t: float, end: float, between: Callable[[float], Array]) -> float | None:
-        """Note the events of a step; the time of the first one that is terminal."""
-        found = []
-        for k, event in enumerate(self.events):
-            before, after = self._values[k], event(end, between(end))
-            self._values[k] = after
-            if before * after < 0 or (after == 0 and before != 0):
-                if (after - before) * getattr(event, "direction", 0) < 0:
-                    continue
-                root = float(brentq(lambda s, e=event: e(s, between(s)), t, end, xtol=1e-300))
-                found.append((abs(root - t), k, root))
-        for _, k, root in sorted(found):
+        values = [event(end, between(end)) for event in self.events]
+        happened = self._happened(t, end, values, between)
+        stop = bool(happened) and getattr(self.events[happened[-1][0]], "terminal", False)
+        until = happened[-1][1] if stop else end
+        times = [until] if self.samples is None else self._due(t, until)
+        kept = [(time, between(time)) for time in times]
+        seen = [(k, root, between(root)) for k, root in happened]
+        place = between(until)
+        for time, y in kept:
+            self._keep(time, y)
+        for k, root, y in seen:
             self.t_events[k].append(root)
-            self.y_events[k].append(between(root))
+            self.y_events[k].append(y)
+        self._values, self._taken = values, self._taken + len(times)
+        self.now, self.place = until, place
+        return stop
+
+    def _due(self, t: float, until: float) -> list[float]:
+        """The samples that are asked for up to `until` and not yet taken."""
+        assert self.samples is not None
+        waiting = self.samples[self._taken :]
+        reached = takewhile(lambda time: abs(time - t) <= abs(until - t), waiting)
+        return [float(time) for time in reached]
+
+    def _happened(
+        self, t: float, end: float, values: list[float], between: Callable[[float], Array]
+    ) -> list[tuple[int, float]]:
+        """The events of a step and their times, in order, up to the first that is terminal."""
+        found = []
+        for k, (event, before, after) in enumerate(
+            zip(self.events, self._values, values, strict=True)
+        ):
+            crossed = before * after < 0 or (after == 0 and before != 0)
+            if crossed and (after - before) * getattr(event, "direction", 0) >= 0:
+                root = brentq(lambda s, e=event: e(s, between(s)), t, end, xtol=1e-300)
+                found.append((abs(root - t), k, float(root)))
+        happened = []
+        for _, k, root in sorted(found):
+            happened.append((k, root))
             if getattr(self.events[k], "terminal", False):
-                return root
-        return None
+                break
+        return happened
