@@ -27,13 +27,15 @@ def cache_folder() -> Path:
     """A folder that only this user can write to: the usual cache, or one until the process ends."""
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     folder = Path(home) / "holonomic"
+    if not folder.is_absolute():
+        return _private_folder()
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError:
         return _private_folder()
-    return folder if folder.is_absolute() and _is_private(folder) else _private_folder()
+    return folder if _is_private(folder) else _private_folder()
 
 
 def _is_private(folder: Path) -> bool:
@@ -56,7 +58,8 @@ def is_intact(place: Path) -> bool:
     """Whether a finished library stands there, as it was built, and only we could change it."""
     try:
         expected = (place / DIGEST).read_text(encoding="ascii")
-        return _is_private(place) and digest(place / LIBRARY) == expected
+        is_file = stat.S_ISREG((place / LIBRARY).lstat().st_mode)
+        return is_file and _is_private(place) and digest(place / LIBRARY) == expected
     except (OSError, UnicodeDecodeError):
         return False
 

@@ -89,7 +89,7 @@ def compilers() -> Iterator[tuple[str, ...]]:
     """Commands that compile C: the system's own, then the one that comes as a Python package."""
     found = shutil.which("cc")
     if found:
-        yield (found,)
+        yield (os.path.abspath(found),)
     if find_spec("ziglang"):
         yield (sys.executable, "-m", "ziglang", "cc")
 

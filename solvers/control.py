@@ -33,8 +33,7 @@ class Controller:
 
     def norm(self, error: Array, y: Array, end: Array) -> float:
         """Root mean square of the error in parts of what is allowed."""
-        allowed = self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end))
-        return float(np.sqrt(np.mean((error / allowed) ** 2)))
+        return _rms(error, self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end)))
 
     def factor(self, norm: float) -> float:
         """By what the step changes, after one whose error has this norm.
@@ -53,7 +52,12 @@ class Controller:
     def first_step(self, slope: Array, y: Array, duration: float) -> float:
         """A step to begin with: a change of a hundredth of the state, or of what is allowed."""
         allowed = self.atol + self.rtol * np.abs(y)
-        size = float(np.sqrt(np.mean((y / allowed) ** 2)))
-        speed = float(np.sqrt(np.mean((slope / allowed) ** 2)))
-        h = 0.01 * size / speed if size > 1e-5 and speed > 1e-5 else 1e-6
+        size, speed = _rms(y, allowed), _rms(slope, allowed)
+        h = 0.01 * size / speed if size > 1e-5 and 1e-5 < speed < np.inf else 1e-6
         return min(h, abs(duration))
+
+
+def _rms(values: Array, allowed: Array) -> float:
+    """Root mean square of values in parts of what is allowed; a value of 0 always is."""
+    parts = np.divide(values, allowed, out=np.zeros_like(values), where=values != 0)
+    return float(np.sqrt(np.mean(parts**2)))

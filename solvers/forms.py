@@ -78,18 +78,24 @@ class Form:
             z[i : i + 2] /= np.hypot(z[i], z[i + 1])
         return z
 
-    def outside(self, z: Array, near: Array) -> Array:
-        """The ordinary state of `z`, each angle less than half a turn from that of `near`."""
+    def outside(self, z: Array, before: Array, elapsed: float) -> Array:
+        """The ordinary state of `z`.
+
+        Turns of angles that are known by sine and cosine only are counted from the
+        state `before`, `elapsed` seconds ago, with the mean of both velocities.
+        """
         if self.name == "lagrangian":
-            return z
+            return z.copy()
         if self.name == "hamiltonian":
             return np.array(self._module.lagrangian_state(z, self._params))
-        y = np.empty_like(near)
+        y = np.empty_like(before)
         for k, i in self._others:
             y[k] = z[i]
+        half = len(y) // 2
         for k, i in self._angles:
             angle = np.arctan2(z[i], z[i + 1])
-            y[k] = angle + 2 * np.pi * np.round((near[k] - angle) / (2 * np.pi))
+            expected = before[k] + elapsed * (before[half + k] + y[half + k]) / 2
+            y[k] = angle + 2 * np.pi * np.round((expected - angle) / (2 * np.pi))
         return y
 
 

@@ -17,6 +17,7 @@ from solvers.catalogue import load
 from solvers.control import Controller
 from solvers.forms import Form
 from solvers.record import Event, Record
+from solvers.request import SHORTEST
 from solvers.solution import Solution, Status
 from solvers.stepper import NoConvergenceError, NotFiniteError, Stepper
 
@@ -24,9 +25,6 @@ Array = NDArray[np.float64]
 
 #: How often a step is cut to a quarter because a stage fails, before the run stops.
 MOST_CUTS = 25
-
-#: The shortest step, in parts of the time's last digit: below it a shorter step rounds to itself.
-SHORTEST = 10
 
 
 def integrate(
@@ -71,9 +69,9 @@ def integrate(
         Times of the states that are returned; every step's end by default. States
         between steps are as accurate as the method.
     events : callable or sequence of callables, optional
-        ``event(t, y)`` is zero where the event occurs. Attributes as in SciPy:
-        ``terminal`` (the integration ends there), ``direction`` (1: only upwards,
-        -1: only downwards).
+        ``event(t, y)`` changes its sign where the event occurs; of several changes
+        within one step one is found. It may have the attributes ``terminal`` (true: the
+        integration ends there) and ``direction`` (1: only upwards, -1: only downwards).
     energy : bool
         Whether to return the energy at these times.
     max_steps : int
@@ -107,7 +105,8 @@ def integrate(
     if not tableau.is_explicit and not equations.has_jacobian:
         raise ValueError(f"method {method!r} needs a Jacobian, which form {form!r} does not have")
     samples = None if t_eval is None else request.times(t_eval, span)
-    watched = [events] if callable(events) else list(events)
+    watched = request.callables(events)
+    max_steps = request.count(max_steps)
     stepper = Stepper(tableau, equations.rhs, equations.jacobian)
     record = Record(equations, stepper, start, span[0], samples, watched)
     status, message, steps, rejected = _run(record, span[1], h, controller, max_steps)
@@ -148,7 +147,8 @@ def _run(
         first = stepper.slope(t, z)
     except NotFiniteError:
         return ended(Status.NOT_FINITE)
-    size = h if controller is None else controller.first_step(first, z, end - t)
+    shortest = SHORTEST * np.spacing(max(abs(t), abs(end)))
+    size = h if controller is None else max(controller.first_step(first, z, end - t), 2 * shortest)
     assert size is not None
     while t != end:
         if steps == max_steps:
@@ -157,7 +157,7 @@ def _run(
         aim = begin + (steps + 1) * size * direction if controller is None else t + size * direction
         if (end - aim) * direction < 1e-9 * size:
             aim = end
-        if abs(aim - t) < SHORTEST * np.spacing(abs(t)) and aim != end:
+        if abs(aim - t) < shortest and aim != end:
             return ended(Status.STEP_TOO_SMALL)
         try:
             z_end, error, last = stepper.step(t, z, aim - t, first)
@@ -167,7 +167,9 @@ def _run(
                 raise NotFiniteError("the state is not finite")
             stop = False
             if norm <= 1:
-                following = stepper.slope(aim, z_end) if last is None else last
+                following = first if last is None else last
+                if last is None and aim != end:  # the end of the run needs no slope
+                    following = stepper.slope(aim, z_end)
                 stop = record.advance(t, z, first, aim, z_end)
         except (NotFiniteError, NoConvergenceError) as failure:
             rejected, cuts = rejected + 1, cuts + 1

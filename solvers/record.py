@@ -53,7 +53,7 @@ class Record:
         if self.samples is None or (len(self.samples) and self.samples[0] == self.now):
             self._keep(self.now, self.place)
             self._taken = 1
-        self._values = [event(self.now, self.place) for event in self.events]
+        self._values = [event(self.now, self.place.copy()) for event in self.events]
 
     def _keep(self, t: float, y: Array) -> None:
         self.t.append(t)
@@ -70,11 +70,11 @@ class Record:
 
         def between(time: float) -> Array:
             if time == end:
-                return self.form.outside(z_end, self.place)
+                return self.form.outside(z_end, self.place, end - t)
             if time == t:
-                return self.place
+                return self.place.copy()
             inner, _, _ = self.stepper.step(t, z, time - t, first)
-            return self.form.outside(self.form.settled(inner), self.place)
+            return self.form.outside(self.form.settled(inner), self.place, time - t)
 
         values = [event(end, between(end)) for event in self.events]
         happened = self._happened(t, end, values, between)
@@ -108,13 +108,28 @@ class Record:
         for k, (event, before, after) in enumerate(
             zip(self.events, self._values, values, strict=True)
         ):
-            crossed = before * after < 0 or (after == 0 and before != 0)
-            if crossed and (after - before) * getattr(event, "direction", 0) >= 0:
-                root = brentq(lambda s, e=event: e(s, between(s)), t, end, xtol=1e-300)
-                found.append((abs(root - t), k, float(root)))
+            crossed = before != 0 and np.sign(before) != np.sign(after)
+            if crossed and np.sign(after - before) * getattr(event, "direction", 0) >= 0:
+                root = _root(event, between, t, end)
+                found.append((abs(root - t), k, root))
         happened = []
         for _, k, root in sorted(found):
             happened.append((k, root))
             if getattr(self.events[k], "terminal", False):
                 break
         return happened
+
+
+def _root(event: Event, state: Callable[[float], Array], t: float, end: float) -> float:
+    """Where `event` changes its sign, or the next time after it: a new start is past the event."""
+
+    def value(time: float) -> float:
+        return event(time, state(time))
+
+    resolution = 4 * float(np.spacing(max(abs(t), abs(end))))
+    root = float(brentq(value, t, end, xtol=resolution, maxiter=1000))
+    for shift in (0, 1, 2, 4):
+        later = root + shift * resolution * np.sign(end - t)
+        if abs(later - t) < abs(end - t) and np.sign(value(later)) != np.sign(value(t)):
+            return float(later)
+    return end

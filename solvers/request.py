@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+
+#: The shortest step, in parts of the time's last digit: below it a shorter step rounds to itself.
+SHORTEST = 10
 
 
 def numbers(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
@@ -65,10 +69,25 @@ def step(h: float, span: tuple[float, float]) -> float:
     array = _floats("h", h)
     if array.ndim or not np.isfinite(array) or array <= 0:
         raise ValueError(f"h = {h} must be a positive number (the direction follows from t_span)")
-    resolution = float(np.spacing(np.abs(span).max()))
+    resolution = SHORTEST * float(np.spacing(np.abs(span).max()))
     if array < resolution and span[0] != span[1]:
         raise ValueError(f"h = {h} is below the resolution {resolution} of times in {span}")
     return float(array)
+
+
+def count(max_steps: int) -> int:
+    """A number of steps."""
+    if not isinstance(max_steps, int) or isinstance(max_steps, bool) or max_steps < 0:
+        raise ValueError(f"max_steps = {max_steps!r} must be a whole number, 0 or more")
+    return max_steps
+
+
+def callables(events: object) -> list[Callable[..., float]]:
+    """Events as a list."""
+    found: list[Any] = list(events) if isinstance(events, Sequence) else [events]
+    if not all(map(callable, found)):
+        raise ValueError(f"events = {events!r} must be functions event(t, y), one or a list")
+    return found
 
 
 def parameters(module: ModuleType, params: ArrayLike) -> Array:

@@ -10,7 +10,7 @@ from scipy.integrate import DenseOutput, OdeSolver
 
 from solvers.catalogue import load
 from solvers.control import Controller
-from solvers.integration import SHORTEST
+from solvers.request import SHORTEST, tolerances
 from solvers.stepper import NoConvergenceError, NotFiniteError, Stepper
 
 Array = NDArray[np.float64]
@@ -47,23 +47,33 @@ def ode_solver(method: str) -> type[OdeSolver]:
             if unknown:
                 raise ValueError(f"method {method!r} has no option {', '.join(sorted(unknown))}")
             super().__init__(fun, t0, y0, t_bound, vectorized)
+            relative, absolute = tolerances(rtol, atol, self.n)
+            for name, value in (("max_step", max_step), ("first_step", first_step)):
+                if value is not None and not value > 0:
+                    raise ValueError(f"{name} = {value} must be positive")
             self._stepper = Stepper(tableau, self.fun)
-            self._control = Controller(min(tableau.order, tableau.embedded_order), rtol, atol)
+            self._control = Controller(
+                min(tableau.order, tableau.embedded_order), relative, absolute
+            )
             self._slope = self._stepper.slope(self.t, self.y)
             self._longest = max_step
-            self._size = first_step or self._control.first_step(self._slope, self.y, t_bound - t0)
+            self._shortest = SHORTEST * float(np.spacing(max(abs(t0), abs(t_bound))))
+            guess = self._control.first_step(self._slope, self.y, t_bound - t0)
+            self._size = first_step or max(guess, 2 * self._shortest)
 
         def _step_impl(self) -> tuple[bool, str | None]:
             while True:
                 size = min(self._size, self._longest, abs(self.t_bound - self.t))
                 aim = self.t + size * self.direction
-                if abs(aim - self.t) < SHORTEST * np.spacing(abs(self.t)) and aim != self.t_bound:
+                if abs(aim - self.t) < self._shortest and aim != self.t_bound:
                     return False, self.TOO_SMALL_STEP
                 try:
                     end, error, slope = self._stepper.step(
                         self.t, self.y, aim - self.t, self._slope
                     )
                     norm = self._control.norm(error, self.y, end)
+                    if not np.isfinite(norm):
+                        raise NotFiniteError(f"the error at t = {self.t} is {error}")
                     if norm <= 1:
                         following = self._stepper.slope(aim, end) if slope is None else slope
                 except (NotFiniteError, NoConvergenceError):

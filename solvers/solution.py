@@ -17,9 +17,9 @@ class Status(Enum):
     FINISHED = "the end of the time span was reached"
     EVENT = "an event that ends the integration occurred"
     STEP_LIMIT = "the number of steps was used up; go on from the last state"
-    NOT_FINITE = "the right-hand side or the state was not finite, however small the step"
+    NOT_FINITE = "the right-hand side or the state was not finite in the next step"
     STEP_TOO_SMALL = "the step fell below the resolution of the time: a singularity, most likely"
-    NO_CONVERGENCE = "the stage equations could not be solved, however small the step"
+    NO_CONVERGENCE = "the stage equations of the next step could not be solved"
 
 
 @dataclass(frozen=True)

@@ -63,7 +63,12 @@ class Stepper:
             When an entry is NaN or infinite.
         """
         self.nfev += 1
-        value = np.asarray(self._rhs(t, y), dtype=float)
+        if not np.isfinite(y).all():
+            raise NotFiniteError(f"the state at t = {t} is {y}")
+        try:
+            value = np.asarray(self._rhs(t, y), dtype=float)
+        except ArithmeticError as error:
+            raise NotFiniteError(f"the right-hand side at t = {t}, y = {y}: {error}") from error
         if not np.isfinite(value).all():
             raise NotFiniteError(f"the right-hand side at t = {t}, y = {y} is {value}")
         return value
@@ -109,9 +114,13 @@ class Stepper:
             values = np.array([
                 self.slope(t + c * h, place) for c, place in zip(self._c, places, strict=True)
             ])  # fmt: skip
-            change = np.linalg.solve(matrix, (values - slopes).ravel()).reshape(stages, n)
+            try:
+                change = np.linalg.solve(matrix, (values - slopes).ravel()).reshape(stages, n)
+            except np.linalg.LinAlgError as error:
+                raise NoConvergenceError(f"stages at t = {t}, h = {h}: {error}") from error
             slopes = slopes + change
-            size = float(np.abs(h * change).max() / (1 + np.abs(y).max()))
+            scale = np.abs(y).max() + np.abs(h * slopes).max()
+            size = float(np.abs(h * change).max() / scale) if scale else 0.0
             # rounding may keep it from getting closer: then it is as close as it gets
             if size <= CLOSE or (size < 100 * CLOSE and size >= previous / 2):
                 return slopes

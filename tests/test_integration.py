@@ -209,6 +209,84 @@ def test_events_have_a_direction_and_may_end_the_run() -> None:
     assert len(found.t_events[0]) == 1
 
 
+def test_angles_are_counted_even_where_a_step_turns_by_more_than_half() -> None:
+    # 3.15 rad a step: so long a step blurs the angle, but counting by halves loses every turn
+    found = integrate(
+        sp, (0, 10), (0.0, 35.0), (1, 2, 0), method="verner98", h=0.09, form="rational"
+    )
+    assert found.y[0, -1] == pytest.approx(350.0, abs=2)
+
+
+def test_an_event_function_may_spoil_what_it_is_given() -> None:
+    def spoiling(t: float, y: np.ndarray) -> float:
+        y[:] = 0
+        return 1.0
+
+    plain = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.1)
+    watched = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.1, events=spoiling)
+    assert np.array_equal(plain.y, watched.y)
+
+
+def test_a_run_can_go_on_from_an_event_that_ended_it() -> None:
+    def bottom(t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    bottom.terminal = True  # type: ignore[attr-defined]
+    t, y, times = 0.0, np.array([2.0, 0.0]), []
+    for _ in range(20):
+        found = integrate(sp, (t, 100), y, sp.DEFAULTS, events=bottom, rtol=1e-10)
+        t, y = found.end
+        times.append(t)
+    assert np.diff(times) == pytest.approx(np.diff(times)[0], rel=1e-6)
+
+
+def test_flat_and_abrupt_events_are_found() -> None:
+    module = made_up(lambda t, y, params: (1.0, 0.0))
+    for event in (lambda t, y: (t - 0.35) ** 5, lambda t, y: 1.0 if t > 0.35 else -1.0,
+                  lambda t, y: 1e-170 * (t - 0.35)):  # fmt: skip
+        found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=0.3, events=event)
+        assert found.t_events[0] == pytest.approx([0.35], abs=1e-3)
+
+
+def test_rest_stays_rest_at_any_time_and_with_any_tolerance() -> None:
+    for options in ({}, {"atol": 0.0}):
+        found = integrate(dp, (1e9, 1e9 + 10), (0, 0, 0, 0), dp.DEFAULTS, **options)
+        assert found.status is Status.FINISHED
+        assert not found.y.any()
+
+
+def test_a_step_that_cannot_be_filled_ends_with_a_status() -> None:
+    hole = made_up(lambda t, y, params: (1.0, np.nan if 0.501 < t < 0.502 else 0.0))
+    found = integrate(hole, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=1.0, t_eval=[0.5015])
+    assert found.status is Status.NOT_FINITE
+    singular = integrate(sp, (0, 4), (pi, 0), (1, 1, 1), method="gauss1", h=2.0)
+    assert singular.status in (Status.NO_CONVERGENCE, Status.FINISHED)
+    dividing = integrate(sp, (0, 1), (1, 0), (1, 0, 9.81), method="rk4", h=0.1)
+    assert dividing.status is Status.NOT_FINITE
+
+
+def test_nothing_is_evaluated_beyond_what_the_last_step_needs() -> None:
+    edge = made_up(lambda t, y, params: (sqrt(1 - t) if t < 1 else np.nan, 0.0))
+    found = integrate(edge, (0, 1), (0.0, 0.0), (1.0,), method="midpoint", h=0.1)
+    assert found.status is Status.FINISHED
+
+
+def test_small_motions_of_implicit_methods_are_solved_as_well_as_large_ones() -> None:
+    ends = [
+        integrate(sp, (0, 3), (size, 0), sp.DEFAULTS, method="gauss3", h=0.05).y[0, -1] / size
+        for size in (1e-12, 1e-6)
+    ]
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("options", [{"first_step": np.nan}, {"first_step": -0.1},
+                                     {"max_step": -1}, {"rtol": -1}])  # fmt: skip
+def test_senseless_options_inside_solve_ivp_are_refused(options: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match="must"):
+        solve_ivp(sp.rhs, (0, 1), (1, 0), method=ode_solver("verner87"), args=(sp.DEFAULTS,),
+                  **options)  # fmt: skip
+
+
 def test_the_caller_s_arrays_are_left_alone() -> None:
     y0, params, times = np.array(REPORT), np.array(dp.DEFAULTS), np.array([0.0, 1.0])
     found = integrate(dp, (0, 1), y0, params, t_eval=times)
@@ -247,6 +325,11 @@ def scene(**changes: object) -> dict[str, object]:
         ({"h": -0.1}, "h = -0.1 must be a positive number"),
         ({"h": np.nan}, "h = nan"),
         ({"h": 1e-18}, "below the resolution"),
+        ({"h": 1e-15}, "below the resolution"),
+        ({"max_steps": -1}, "max_steps = -1 must be a whole number"),
+        ({"max_steps": 1.5}, "max_steps = 1.5"),
+        ({"events": None}, "events = None must be functions"),
+        ({"events": [3]}, r"events = \[3\] must be functions"),
         ({"method": "rk4"}, "does not estimate its error: give a fixed step h"),
         ({"method": "gauss2", "form": "rational", "h": 0.1}, "needs a Jacobian"),
         ({"form": "linear"}, "form 'linear': .* has lagrangian, hamiltonian, rational"),
