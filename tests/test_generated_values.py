@@ -29,8 +29,8 @@ FUNCTIONS = (
     "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "lagrangian_state", "linear",
 )  # fmt: skip
 
-#: How many rounding errors, in units of ε times the condition number, are a few.
-FEW = 16
+#: How many rounding errors, in units of ε times the condition number, are allowed (0.5 occur).
+FEW = 1
 
 
 def formulas(derivation: Derivation) -> dict[str, Sequence[sp.Expr]]:
