@@ -20,7 +20,6 @@ from math import gcd
 from typing import Any
 
 Number = int | Fraction
-Terms = tuple[tuple["Node", Fraction], ...]
 Factors = tuple[tuple["Node", int], ...]
 
 PARTNER = {"sin": "cos", "cos": "sin"}
