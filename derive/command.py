@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
+from shlex import quote
 
 from derive.c import header
 from derive.catalogue import UnknownSystemError, load, names
@@ -118,12 +119,12 @@ def _files(count: int) -> str:
 
 
 def _removal(path: Path) -> str:
-    return f"rm {'-r ' if path.is_dir() else ''}{path}"
+    return f"rm {'-r ' if path.is_dir() else ''}{quote(str(path))}"
 
 
 def _mending(difference: Difference, arguments: argparse.Namespace) -> str:
     if difference.reason == "orphan":
         return _removal(difference.path)
     systems = [name for name in names() if difference.path.stem == name]
-    output = ["--output", str(arguments.output)] if arguments.output else []
+    output = ["--output", quote(str(arguments.output))] if arguments.output else []
     return " ".join(["holonomic", "derive", *systems, *output])

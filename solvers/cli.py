@@ -48,7 +48,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.close()  # the reader has gone: nothing to tell, and nobody to tell it to
         return 0
     except OSError as error:
-        print(f"holonomic {name}: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"holonomic {name}: {error}", file=sys.stderr)
         return 4
 
 

@@ -174,6 +174,17 @@ def test_the_rational_form_keeps_sine_and_cosine_together() -> None:
     assert np.abs(energy - energy[0]).max() < 0.01 * abs(energy[0])
 
 
+@pytest.mark.parametrize("method", ["gauss1", "gauss2", "gauss3", "radau2", "radau3"])
+def test_implicit_methods_solve_stages_that_iteration_alone_could_not(method: str) -> None:
+    # x' = -1e4 (x - cos t): steps a thousand times those of any explicit method
+    module = made_up(lambda t, y, params: (-1e4 * (y[0] - np.cos(t)), 0.0))
+    module.__dict__["jacobian"] = lambda t, y, params: ((-1e4, 0.0), (0.0, 0.0))
+    found = integrate(module, (0, 2), (1.0, 0.0), (1.0,), method=method, h=0.1)
+    assert found.status is Status.FINISHED
+    assert found.njev == found.steps == 20
+    assert found.y[0, -1] == pytest.approx(np.cos(2.0), abs=1e-2)
+
+
 def test_implicit_midpoint_keeps_the_energy_where_euler_does_not() -> None:
     def drift(method: str) -> float:
         found = integrate(sp, (0, 60), (1.0, 0.0), sp.DEFAULTS, method=method, h=0.05, energy=True)
