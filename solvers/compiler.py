@@ -28,7 +28,12 @@ from solvers.cache import (
 )
 
 #: ``-ffast-math`` would switch the whole process to flushing small numbers to zero.
-FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC")
+#: Vectors of states are written as such; what a compiler makes of loops over a small state is
+#: slower than the loops themselves.
+FLAGS = (
+    *("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC"),
+    *("-fno-tree-vectorize", "-Wno-psabi"),
+)
 #: Seconds that a compiler may take.
 PATIENCE = 120
 

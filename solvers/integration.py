@@ -1,30 +1,23 @@
-"""Integrate a generated module's equations of motion, step by step in Python.
+"""Integrate a generated module's equations of motion: the front door.
 
-This is the plain reference: every method, every form, fixed or adaptive steps,
-samples, events. Compiled loops are to agree with it.
+Three rungs do the work, and the solution says which one did: a compiled loop, the
+plain reference in Python, or a solver of SciPy's.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from types import ModuleType
+from warnings import warn
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from solvers import request
-from solvers.catalogue import load
-from solvers.control import Controller
-from solvers.forms import Form
-from solvers.record import Event, Record
-from solvers.request import SHORTEST
-from solvers.solution import Solution, Status
-from solvers.stepper import NoConvergenceError, NotFiniteError, Stepper
-
-Array = NDArray[np.float64]
-
-#: How often a step is cut to a quarter because a stage fails, before the run stops.
-MOST_CUTS = 25
+from solvers import compiled, reference, request, scipy_runs
+from solvers.compiler import NoCompilerError
+from solvers.problem import Event, Outcome, Problem
+from solvers.solution import Interrupted, Solution, Status
+from solvers.tableau import Tableau
 
 
 def integrate(
@@ -34,7 +27,7 @@ def integrate(
     params: ArrayLike,
     *,
     method: str = "verner87",
-    form: str = "lagrangian",
+    form: str | None = None,
     rtol: float = 1e-9,
     atol: ArrayLike = 1e-12,
     h: float | None = None,
@@ -42,6 +35,8 @@ def integrate(
     events: Event | Sequence[Event] = (),
     energy: bool = False,
     max_steps: int = 1_000_000,
+    backend: str | None = None,
+    compensated: bool = False,
 ) -> Solution:
     """Integrate from `y0` over `t_span`.
 
@@ -56,9 +51,10 @@ def integrate(
     params : array_like of shape (parameters,)
         In the order of ``module.PARAMETERS``.
     method : str
-        One of ``solvers.catalogue.names()``.
-    form : {"lagrangian", "hamiltonian", "rational"}
-        The equations that are integrated.
+        One of ``solvers.catalogue.names()``, or a method of SciPy's ``solve_ivp``.
+    form : {"lagrangian", "hamiltonian", "rational"}, optional
+        The equations that are integrated; by default rational ones in a compiled loop,
+        where they exist, and Lagrange's otherwise.
     rtol, atol : float
         A step's error in a component may be atol + rtol |y|; `atol` may be an array.
         They have no effect on fixed steps.
@@ -72,10 +68,16 @@ def integrate(
         ``event(t, y)`` changes its sign where the event occurs; of several changes
         within one step one is found. It may have the attributes ``terminal`` (true: the
         integration ends there) and ``direction`` (1: only upwards, -1: only downwards).
+        ``solvers.crossing.Crossing`` makes events that compiled loops know.
     energy : bool
         Whether to return the energy at these times.
     max_steps : int
         After so many steps the integration stops with what it has.
+    backend : {"compiled", "python"}, optional
+        Where the loop runs; by default compiled if that is possible.
+    compensated : bool
+        Whether a compiled loop carries the state's rounding errors along, which pays
+        over very many steps.
 
     Returns
     -------
@@ -87,105 +89,62 @@ def integrate(
         When an argument makes no sense, before anything is computed.
     solvers.catalogue.UnknownMethodError
         When no method has this name.
+    solvers.compiler.NoCompilerError
+        When ``backend="compiled"`` and no compiler could build the loop.
+    solvers.solution.Interrupted
+        When the user interrupts; it holds the solution up to there.
     """
-    span = request.time_span(t_span)
-    start = request.numbers("y0", y0, module.STATE)
-    constants = request.parameters(module, params)
-    tableau, equations = load(method), Form(module, form, constants.tolist())
-    controller = None
-    if h is not None:
-        h = request.step(h, span)
-    elif not tableau.b_hat:
-        raise ValueError(f"method {method!r} does not estimate its error: give a fixed step h")
-    else:
-        relative, absolute = request.tolerances(rtol, atol, len(start))
-        if absolute.ndim and form != "lagrangian":
-            raise ValueError("atol for each component has a meaning in form 'lagrangian' only")
-        controller = Controller(min(tableau.order, tableau.embedded_order), relative, absolute)
-    if not tableau.is_explicit and not equations.has_jacobian:
-        raise ValueError(f"method {method!r} needs a Jacobian, which form {form!r} does not have")
-    samples = None if t_eval is None else request.times(t_eval, span)
-    watched = request.callables(events)
-    max_steps = request.count(max_steps)
-    stepper = Stepper(tableau, equations.rhs, equations.jacobian)
-    record = Record(equations, stepper, start, span[0], samples, watched)
-    status, message, steps, rejected = _run(record, span[1], h, controller, max_steps)
-    t, y = np.array(record.t), np.array(record.y).reshape(-1, len(start)).T
-    return Solution(
-        t=t,
-        y=y,
-        t_events=[np.array(found) for found in record.t_events],
-        y_events=[np.array(found).reshape(-1, len(start)) for found in record.y_events],
-        nfev=stepper.nfev,
-        njev=stepper.njev,
-        status=status,
-        message=message,
-        steps=steps,
-        rejected=rejected,
-        run=f"{tableau.title}, {form} form, " + (f"h = {h}" if h else f"rtol = {rtol}"),
-        energy=np.asarray(module.energy_many(y, constants)) if energy else None,
-        end=(record.now, record.place),
-    )
+    where = request.rung(backend, compensated)
 
+    def asked(form: str) -> Problem:
+        return request.problem(
+            module, t_span, y0, params, method, form, rtol, atol, h, t_eval, events, max_steps
+        )
 
-def _run(
-    record: Record, end: float, h: float | None, controller: Controller | None, max_steps: int
-) -> tuple[Status, str, int, int]:
-    stepper, form = record.stepper, record.form
-    t, begin = record.now, record.now
-    direction = np.sign(end - t)
-    z = form.inside(record.place)
-    steps = rejected = cuts = 0
-
-    def ended(status: Status) -> tuple[Status, str, int, int]:
-        where = "" if status is Status.FINISHED else f" (t = {record.now}, y = {record.place})"
-        return status, status.value + where, steps, rejected
-
-    if t == end:
-        return ended(Status.FINISHED)
+    problem, outcome = asked(form or "lagrangian"), Outcome()
+    obstacle = compiled.obstacle(problem)
+    if where == "compiled" and obstacle:
+        raise ValueError(f"no compiled loop can do this: {obstacle}")
     try:
-        first = stepper.slope(t, z)
-    except NotFiniteError:
-        return ended(Status.NOT_FINITE)
-    shortest = SHORTEST * np.spacing(max(abs(t), abs(end)))
-    size = h if controller is None else max(controller.first_step(first, z, end - t), 2 * shortest)
-    assert size is not None
-    while t != end:
-        if steps == max_steps:
-            return ended(Status.STEP_LIMIT)
-        # fixed steps are counted, so that their ends do not drift
-        aim = begin + (steps + 1) * size * direction if controller is None else t + size * direction
-        if (end - aim) * direction < 1e-9 * size:
-            aim = end
-        if abs(aim - t) < shortest and aim != end:
-            return ended(Status.STEP_TOO_SMALL)
-        try:
-            z_end, error, last = stepper.step(t, z, aim - t, first)
-            z_end = form.settled(z_end)
-            norm = 0.0 if controller is None else controller.norm(error, z, z_end)
-            if not np.isfinite(z_end).all() or not np.isfinite(norm):
-                raise NotFiniteError("the state is not finite")
-            stop = False
-            if norm <= 1:
-                following = first if last is None else last
-                if last is None and aim != end:  # the end of the run needs no slope
-                    following = stepper.slope(aim, z_end)
-                stop = record.advance(t, z, first, aim, z_end)
-        except (NotFiniteError, NoConvergenceError) as failure:
-            rejected, cuts = rejected + 1, cuts + 1
-            if controller is None or cuts > MOST_CUTS:
-                lost = isinstance(failure, NoConvergenceError)
-                return ended(Status.NO_CONVERGENCE if lost else Status.NOT_FINITE)
-            size = abs(aim - t) / 4
-            continue
-        if norm > 1 and controller is not None:
-            rejected += 1
-            size = abs(aim - t) * controller.factor(norm)
-            continue
-        steps, cuts = steps + 1, 0
-        if stop:
-            return ended(Status.EVENT)
-        t, z, first = aim, z_end, following
-        if controller is not None:
-            size = abs(size) * controller.factor(norm)
-    return ended(Status.FINISHED)
+        if where != "python" and not obstacle:
+            quick = asked(form or fastest_form(module))
+            try:
+                compiled.run(quick, outcome, method, compensated)
+                return _solution(quick, outcome, energy)
+            except NoCompilerError as error:
+                if where == "compiled":
+                    raise
+                warn(f"integrating in Python: {error}", stacklevel=2)
+        rung = reference if isinstance(problem.method, Tableau) else scipy_runs
+        rung.run(problem, outcome)
+    except KeyboardInterrupt as interruption:
+        raise Interrupted(_solution(problem, outcome, energy)) from interruption
+    return _solution(problem, outcome, energy)
+
+
+def fastest_form(module: ModuleType) -> str:
+    """The form that a compiled loop runs fastest."""
+    return "rational" if hasattr(module, "rhs_rational") else "lagrangian"
+
+
+def _solution(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
+    form, width = problem.form, len(problem.start)
+    y = np.array(outcome.y).reshape(-1, width).T
+    t, place = outcome.end
+    where = "" if outcome.status is Status.FINISHED else f" (t = {t}, y = {place})"
+    return Solution(
+        t=np.array(outcome.t),
+        y=y,
+        t_events=[np.array(found) for found in outcome.t_events],
+        y_events=[np.array(found).reshape(-1, width) for found in outcome.y_events],
+        nfev=outcome.nfev,
+        njev=outcome.njev,
+        status=outcome.status,
+        message=outcome.status.value + where,
+        steps=outcome.steps,
+        rejected=outcome.rejected,
+        run=f"{problem.description}, {outcome.backend}",
+        backend=outcome.backend.partition(" ")[0],
+        energy=np.asarray(form.module.energy_many(y, form.params)) if energy else None,
+        end=outcome.end,
+    )

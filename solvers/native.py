@@ -9,12 +9,14 @@ from types import ModuleType
 from typing import Any
 
 from solvers.compiler import Library, build
+from solvers.forms import Form
+from solvers.kernel_source import Equations
 
 WRAPPER = """
 void rhs(double t, const double *y, double *dy, const double *params);
 void rhs(double t, const double *y, double *dy, const double *params)
 {{
-    {name}_rhs{suffix}(t, y, dy, params);
+    {rhs}(t, y, dy, params);
 }}
 """
 
@@ -38,6 +40,33 @@ class NativeRhs:
     library: Library
 
 
+def header(module: ModuleType) -> Path | None:
+    """The C header beside a generated module; None where there is no such file."""
+    source = getattr(module, "__file__", None)
+    place = Path(source or "none").with_suffix(".h")
+    return place if source and place.is_file() else None
+
+
+def equations(module: ModuleType, form: str) -> Equations:
+    """One form of a generated module in C.
+
+    Raises
+    ------
+    ValueError
+        When there is no header beside the module, or no such form.
+    """
+    place = header(module)
+    if place is None:
+        name = module.__name__.rpartition(".")[2]
+        raise ValueError(f"{name}.h is missing: write it with holonomic derive {name}")
+    text = place.read_text(encoding="utf-8")
+    rhs = f"{place.stem}_rhs" + ("" if form == "lagrangian" else f"_{form}")
+    if f"static inline void {rhs}(" not in text:
+        raise ValueError(f"form {form!r}: {place} has no {rhs}")
+    described = Form(module, form, (0.0,) * len(module.PARAMETERS))
+    return Equations(text, rhs, len(described.state), len(module.PARAMETERS), described.angles)
+
+
 def native_rhs(
     module: ModuleType, form: str = "lagrangian", *, reproducible: bool = False
 ) -> NativeRhs:
@@ -59,15 +88,9 @@ def native_rhs(
     solvers.compiler.NoCompilerError
         When no compiler could build it.
     """
-    header = Path(module.__file__ or "").with_suffix(".h")
-    name = header.stem
-    suffix = "" if form == "lagrangian" else f"_{form}"
-    if not header.is_file():
-        raise ValueError(f"{header} is missing: write it with holonomic derive {name}")
-    text = header.read_text(encoding="utf-8")
-    if f"static inline void {name}_rhs{suffix}(" not in text:
-        raise ValueError(f"form {form!r}: {header} has no {name}_rhs{suffix}")
-    library = build(text + WRAPPER.format(name=name, suffix=suffix), reproducible=reproducible)
+    source = equations(module, form)
+    text = source.header + WRAPPER.format(rhs=source.rhs)
+    library = build(text, reproducible=reproducible)
     function = ctypes.CDLL(str(library.path)).rhs
     function.restype = None
     function.argtypes = [ctypes.c_double, *[ctypes.c_void_p] * 3]

@@ -1,80 +1,72 @@
-"""What an integration has passed: samples, events, and where it is now."""
+"""Take in the steps of an integration: samples, events, and where it is now."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from itertools import takewhile
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from solvers.forms import Form
-from solvers.stepper import Stepper
+from solvers.problem import Event, Outcome, Problem
 
 Array = NDArray[np.float64]
-Event = Callable[[float, Array], float]
 
 
-@dataclass
 class Record:
-    """States outside, (q, q̇), that a run has passed.
+    """Takes in steps; keeps the samples and events in them in an `Outcome`.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is wanted.
+    outcome : Outcome
+        Where it is kept.
 
     Attributes
     ----------
-    form, stepper : Form and Stepper
-        They give states within a step: the step itself, taken with a shorter h.
-    place, now : ndarray and float
-        The last state and its time.
-    samples : ndarray or None
-        Times to keep; every step's end if None.
-    events : list of callable
-        What to watch.
-    t, y : list
-        Times and states that were kept.
-    t_events, y_events : list of lists
-        Times and states of each event.
+    now, place : float and ndarray
+        Time and ordinary state (q, q̇) where the last step ended.
     """
 
-    form: Form
-    stepper: Stepper
-    place: Array
-    now: float
-    samples: Array | None
-    events: list[Event]
-    t: list[float] = field(default_factory=list)
-    y: list[Array] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        self.t_events: list[list[float]] = [[] for _ in self.events]
-        self.y_events: list[list[Array]] = [[] for _ in self.events]
-        self._taken = 0
+    def __init__(self, problem: Problem, outcome: Outcome) -> None:
+        self.form, self.samples, self.events = problem.form, problem.samples, problem.events
+        self.now, self.place = problem.span[0], problem.start
+        self._outcome, self._taken = outcome, 0
+        outcome.end = self.now, self.place
+        outcome.t_events = [[] for _ in self.events]
+        outcome.y_events = [[] for _ in self.events]
         if self.samples is None or (len(self.samples) and self.samples[0] == self.now):
             self._keep(self.now, self.place)
             self._taken = 1
         self._values = [event(self.now, self.place.copy()) for event in self.events]
 
     def _keep(self, t: float, y: Array) -> None:
-        self.t.append(t)
-        self.y.append(y.copy())
+        self._outcome.t.append(t)
+        self._outcome.y.append(y.copy())
 
-    def advance(self, t: float, z: Array, first: Array, end: float, z_end: Array) -> bool:
-        """Take in a step from (t, z) to (end, z_end); tell whether an event ends the run.
+    def advance(self, end: float, inside: Callable[[float], Array]) -> bool:
+        """Take in a step; tell whether an event ends the run.
+
+        Parameters
+        ----------
+        end : float
+            When the step ends.
+        inside : callable
+            The state within the step at a time, up to its end, in the form that runs.
 
         Raises
         ------
         ArithmeticError
             When a state within the step cannot be computed; then nothing is taken in.
         """
+        t = self.now
 
         def between(time: float) -> Array:
-            if time == end:
-                return self.form.outside(z_end, self.place, end - t)
             if time == t:
                 return self.place.copy()
-            inner, _, _ = self.stepper.step(t, z, time - t, first)
-            return self.form.outside(self.form.settled(inner), self.place, time - t)
+            return self.form.outside(inside(time), self.place, time - t)
 
         values = [event(end, between(end)) for event in self.events]
         happened = self._happened(t, end, values, between)
@@ -87,10 +79,10 @@ class Record:
         for time, y in kept:
             self._keep(time, y)
         for k, root, y in seen:
-            self.t_events[k].append(root)
-            self.y_events[k].append(y)
+            self._outcome.t_events[k].append(root)
+            self._outcome.y_events[k].append(y)
         self._values, self._taken = values, self._taken + len(times)
-        self.now, self.place = until, place
+        self.now, self.place = self._outcome.end = until, place
         return stop
 
     def _due(self, t: float, until: float) -> list[float]:

@@ -9,10 +9,49 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from solvers.catalogue import load
+from solvers.forms import Form
+from solvers.problem import SHORTEST, Problem
+
 Array = NDArray[np.float64]
 
-#: The shortest step, in parts of the time's last digit: below it a shorter step rounds to itself.
-SHORTEST = 10
+#: Methods of SciPy's ``solve_ivp``.
+SCIPY = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
+
+
+def problem(
+    module: ModuleType, t_span: ArrayLike, y0: ArrayLike, params: ArrayLike, method: str,
+    form: str, rtol: float, atol: ArrayLike, h: float | None, t_eval: ArrayLike | None,
+    events: object, max_steps: int,
+) -> Problem:  # fmt: skip
+    """The problem that `solvers.integration.integrate` is asked to solve.
+
+    Raises
+    ------
+    ValueError
+        When an argument makes no sense.
+    solvers.catalogue.UnknownMethodError
+        When no method has this name.
+    """
+    span = time_span(t_span)
+    start = numbers("y0", y0, module.STATE)
+    equations = Form(module, form, numbers("params", params, module.PARAMETERS).tolist())
+    tableau = None if method in SCIPY else load(method)
+    relative, absolute = tolerances(rtol, atol, len(start)) if h is None else (0.0, np.array(0.0))
+    if h is not None:
+        if tableau is None:
+            raise ValueError(f"method {method!r} is SciPy's and controls its steps: leave out h")
+        h = step(h, span)
+    elif tableau is not None and not tableau.b_hat:
+        raise ValueError(f"method {method!r} does not estimate its error: give a fixed step h")
+    elif absolute.ndim and form != "lagrangian":
+        raise ValueError("atol for each component has a meaning in form 'lagrangian' only")
+    if tableau is not None and not tableau.is_explicit and not equations.has_jacobian:
+        raise ValueError(f"method {method!r} needs a Jacobian, which form {form!r} does not have")
+    return Problem(
+        equations, tableau or method, span, start, h, relative, absolute,
+        None if t_eval is None else times(t_eval, span), callables(events), count(max_steps),
+    )  # fmt: skip
 
 
 def numbers(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
@@ -21,6 +60,27 @@ def numbers(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
     if array.shape != (len(expected),):
         raise ValueError(
             f"{name} has shape {array.shape}: give {len(expected)} numbers, {', '.join(expected)}"
+        )
+    _finite(name, array)
+    return array
+
+
+def rung(backend: str | None, compensated: bool) -> str | None:
+    """Where a loop must run, ``compiled`` or ``python``; None if it may be either."""
+    if backend not in (None, "compiled", "python"):
+        raise ValueError(f"backend {backend!r} must be 'compiled' or 'python'")
+    if compensated and backend == "python":
+        raise ValueError("compensated = True needs a compiled loop, not backend 'python'")
+    return "compiled" if compensated else backend
+
+
+def table(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
+    """`values` as a new array of rows of finite floats, one column for each name in `expected`."""
+    array = _floats(name, values)
+    if array.ndim != 2 or array.shape[1] != len(expected):
+        raise ValueError(
+            f"{name} has shape {array.shape}: give rows of {len(expected)} numbers, "
+            + ", ".join(expected)
         )
     _finite(name, array)
     return array
@@ -88,11 +148,6 @@ def callables(events: object) -> list[Callable[..., float]]:
     if not all(map(callable, found)):
         raise ValueError(f"events = {events!r} must be functions event(t, y), one or a list")
     return found
-
-
-def parameters(module: ModuleType, params: ArrayLike) -> Array:
-    """Parameters in the order of the module."""
-    return numbers("params", params, module.PARAMETERS)
 
 
 def _floats(name: str, values: ArrayLike) -> Array:

@@ -10,7 +10,8 @@ from scipy.integrate import DenseOutput, OdeSolver
 
 from solvers.catalogue import load
 from solvers.control import Controller
-from solvers.request import SHORTEST, tolerances
+from solvers.problem import SHORTEST
+from solvers.request import tolerances
 from solvers.stepper import NoConvergenceError, NotFiniteError, Stepper
 
 Array = NDArray[np.float64]

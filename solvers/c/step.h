@@ -1,0 +1,146 @@
+/* One step of an explicit method in every lane, and how long the next one is.
+
+   Before this file stand the right-hand side RHS, the sizes STATE, PARAMETERS and ANGLES, where in
+   the state the sine of each angle (its cosine follows) and its velocity are (SINE, RATE), and the
+   method: STAGES, IS_FSAL, ERROR_ORDER, stages(), increment() and estimate(). */
+
+static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
+static const double PI = 3.14159265358979324;
+
+/* Where a motion is. Nothing but numbers, so that it can be copied number by number. */
+typedef struct {
+    real t, t_low;                          /* time, and what it was rounded by */
+    real z[STATE], low[COMPENSATED*STATE];  /* state, and what it was rounded by */
+    real turns[ANGLES];                     /* whole turns of angles known by sine and cosine */
+    real first[IS_FSAL*STATE];              /* the slope here, left by the last step */
+} Place;
+
+enum { PLACE = sizeof(Place)/sizeof(real) };
+
+/* x + change; `low` receives what the sum is rounded by (D. E. Knuth, The Art of Computer
+   Programming, volume 2, theorem 4.2.2B). */
+static inline real sum(real x, real change, real *low)
+{
+    const real total = x + change, part = total - x;
+    *low = (x - (total - part)) + (change - part);
+    return total;
+}
+
+static inline void add(Place *place, int n, real change)
+{
+#if COMPENSATED
+    real low;
+    place->z[n] = sum(place->z[n], change + place->low[n], &low);
+    place->low[n] = low;
+#else
+    place->z[n] += change;
+#endif
+}
+
+/* Bring sin^2 + cos^2 back to 1: by the series of 1/sqrt(1 - d) where d is small, as it nearly
+   always is. */
+static inline void settle(Place *place)
+{
+    for (int a = 0; a < ANGLES; a++) {
+        const real s = place->z[SINE[a]], c = place->z[SINE[a] + 1];
+        const real square = s*s + c*c, d = 1.0 - square;
+        real excess = d*(0.5 + d*(0.375 + d*0.3125));
+        const mask far = below(every(1e-4), size(d));
+        if (any(far)) {
+            excess = chosen(far, 1.0/root(square) - 1.0, excess);
+        }
+        add(place, SINE[a], s*excess);
+        add(place, SINE[a] + 1, c*excess);
+    }
+}
+
+/* The angle within 0.05 of its value between -pi and pi: enough to count turns. */
+static inline real rough_angle(const Place *place, int a)
+{
+    const real s = place->z[SINE[a]], c = place->z[SINE[a] + 1];
+    const real acute = s*(PI/2 - (PI/2 - 1)*size(c));
+    return chosen(below(c, every(0.0)), signed_as(every(PI), s) - acute, acute);
+}
+
+/* An angle turns by about its mean velocity times h; the rest is whole turns. */
+static inline void count_turns(const Place *start, real h, Place *end)
+{
+    for (int a = 0; a < ANGLES; a++) {
+        const real turned = h*(start->z[RATE[a]] + end->z[RATE[a]])*0.5;
+        const real gap = rough_angle(start, a) + turned - rough_angle(end, a);
+        end->turns[a] = start->turns[a] + nearest_whole(gap*(0.5/PI));
+    }
+}
+
+/* The place after h, and the estimate of the local error. */
+static __attribute__((noinline)) void step(
+    const Place *start, real h, const real *params, int estimates, Place *end, real *error)
+{
+    real k[STAGES][STATE];
+    for (int n = 0; n < STATE && IS_FSAL; n++) {
+        k[0][n] = start->first[n];
+    }
+    if (!IS_FSAL) {
+        RHS(start->t, start->z, k[0], params);
+    }
+    stages(start->t, start->z, h, k, params);
+    for (int n = 0; n < STATE; n++) {
+        end->z[n] = start->z[n];
+#if COMPENSATED
+        end->low[n] = start->low[n];
+#endif
+        add(end, n, increment(h, k, n));
+    }
+    settle(end);
+    count_turns(start, h, end);
+    for (int n = 0; n < STATE && IS_FSAL; n++) {
+        end->first[n] = k[STAGES - 1][n];
+    }
+    for (int n = 0; n < STATE && estimates; n++) {
+        error[n] = estimate(h, k, n);
+    }
+    end->t = sum(start->t, h + start->t_low, &end->t_low);
+}
+
+/* Mean square of `values` in parts of what is allowed at states x and y. */
+static inline real mean_square(
+    const real *values, const real *x, const real *y, double rtol, double atol)
+{
+    real allowed[STATE], total = every(0.0);
+    for (int n = 0; n < STATE; n++) {
+        allowed[n] = larger(atol + rtol*larger(size(x[n]), size(y[n])), every(1e-75));
+    }
+    /* two parts by one division, which takes as long as a dozen products */
+    for (int n = 0; n + 1 < STATE; n += 2) {
+        const real u = values[n]*allowed[n + 1], v = values[n + 1]*allowed[n];
+        const real both = allowed[n]*allowed[n + 1];
+        total += (u*u + v*v)/(both*both);
+    }
+    if (STATE % 2) {
+        const real part = values[STATE - 1]/allowed[STATE - 1];
+        total += part*part;
+    }
+    return total*(1.0/STATE);
+}
+
+/* By what the step changes after an error of this mean square: PI control if it was kept, else the
+   plain rule. `previous` is the binary logarithm of the last kept step's error. */
+static inline real factor(real square, mask kept, real *previous)
+{
+    const double share = 1.0/(ERROR_ORDER + 1);
+    const real now = 0.5*binary_logarithm(square + 1e-20);
+    const real exponent = chosen(kept, share*(0.4**previous - 0.7*now), -share*now);
+    const real least = every(log2(SHRINK/SAFETY)), most = every(log2(GROW/SAFETY));
+    *previous = chosen(kept, now, *previous);
+    return SAFETY*power_of_two(smaller(larger(exponent, least), most));
+}
+
+/* A step to begin with: a change of a hundredth of the state, or of what is allowed. */
+static real first_step(const Place *place, const real *slope, double rtol, double atol)
+{
+    const real *z = place->z;
+    const real allowance = root(mean_square(z, z, z, rtol, atol));
+    const real speed = root(mean_square(slope, z, z, rtol, atol));
+    const mask usual = below(every(1e-5), smaller(allowance, speed)) & below(speed, every(INFINITY));
+    return chosen(usual, 0.01*allowance/speed, every(1e-6));
+}

@@ -1,0 +1,87 @@
+"""One motion in a compiled loop."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solvers.crossing import Crossing
+from solvers.kernel import MOST_EVENTS, STATUSES, Batch, kernel
+from solvers.native import header
+from solvers.problem import Outcome, Problem
+from solvers.solution import Status
+from solvers.tableau import Tableau
+
+#: Steps, and occurrences of an event, that are written before Python collects them.
+ROOM, ROOM_FOR_EVENTS = 4096, 64
+#: Seconds between looks whether the user has interrupted.
+PATIENCE = 0.05
+
+
+def obstacle(problem: Problem) -> str:
+    """Why the problem cannot be run in a compiled loop; empty if it can."""
+    if not isinstance(problem.method, Tableau):
+        return "the method is SciPy's"
+    if not problem.method.is_explicit:
+        return f"{problem.method.title} is implicit"
+    if problem.atol.ndim:
+        return "atol differs by component"
+    if len(problem.events) > MOST_EVENTS:
+        return f"there are more than {MOST_EVENTS} events"
+    if header(problem.form.module) is None:
+        return "there is no C header beside the module"
+    for event in problem.events:
+        if not isinstance(event, Crossing):
+            return "an event is a Python function; solvers.crossing.Crossing is known in C"
+        if problem.form.where(event.name) is None:
+            return f"the {problem.form.name} form does not hold {event.name}"
+    return ""
+
+
+def run(problem: Problem, outcome: Outcome, method: str, compensated: bool) -> None:
+    """Integrate `problem`, keeping in `outcome` what is found as it is found."""
+    form, samples = problem.form, problem.samples
+    program = kernel(
+        form.module, form.name, method, lanes=False, compensated=compensated, reproducible=False
+    )
+    outcome.backend = f"compiled by {program.library.compiler}"
+    batch = Batch(
+        program, problem, form, problem.start[np.newaxis],
+        capacity=ROOM if samples is None else len(samples), occurrences=ROOM_FOR_EVENTS,
+        pauses=True,
+    )  # fmt: skip
+    outcome.t_events = [[] for _ in problem.events]
+    outcome.y_events = [[] for _ in problem.events]
+    outcome.end = problem.span[0], problem.start
+    if problem.span[0] == problem.span[1]:
+        wanted = 1 if samples is None else len(samples)
+        outcome.t, outcome.y = wanted * [problem.span[0]], wanted * [problem.start]
+        outcome.status = Status.FINISHED
+        return
+    status = None
+    while status is None:
+        batch.restart(PATIENCE)
+        batch.go()
+        status = STATUSES[batch.motions["status"][0]]
+        _collect(batch, problem, outcome)
+    outcome.status = status
+
+
+def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
+    """Move what the motion has written into `outcome`, and make room for more."""
+    motion = batch.motions[0]
+    if problem.samples is None:
+        rows = batch.rows[0, : motion["rows"]]
+        motion["rows"] = 0
+    else:  # the number of rows says which sample is next
+        rows = batch.rows[0, len(outcome.t) : motion["rows"]]
+    outcome.t += rows["t"].tolist()
+    outcome.y += list(batch.form.outside_many(rows["z"], rows["turns"]))
+    for k, occurred in enumerate(motion["occurred"][: len(problem.events)]):
+        rows = batch.event_rows[0, k, :occurred]
+        outcome.t_events[k] += rows["t"].tolist()
+        outcome.y_events[k] += list(batch.form.outside_many(rows["z"], rows["turns"]))
+    motion["occurred"] = 0
+    place = batch.form.outside_many(motion["z"][np.newaxis], motion["turns"][np.newaxis])[0]
+    outcome.end = float(motion["t"]), place
+    outcome.nfev = int(batch.nfev[0])
+    outcome.steps, outcome.rejected = int(motion["steps"]), int(motion["rejected"])

@@ -1,0 +1,64 @@
+"""An event that compiled loops understand, too: a component of the state crosses a value."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from math import isfinite
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A coordinate or velocity crosses a value; angles are unwrapped, so that π is not -π.
+
+    Parameters
+    ----------
+    module : module
+        The generated module.
+    name : str
+        One of ``module.STATE``.
+    value : float
+        In the unit of that component.
+    direction : {0, 1, -1}
+        Both ways, only upwards, only downwards.
+    terminal : bool
+        Whether the motion ends there.
+
+    Raises
+    ------
+    ValueError
+        When there is no such component, or a value makes no sense.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> flip = Crossing(dp, "theta2", 3.14159, terminal=True)
+    >>> round(flip(0.0, [0.0, 3.0, 0.0, 0.0]), 5)
+    -0.14159
+    """
+
+    module: ModuleType
+    name: str
+    value: float
+    direction: int = 0
+    terminal: bool = False
+
+    def __post_init__(self) -> None:
+        if self.name not in self.module.STATE:
+            close = get_close_matches(str(self.name), self.module.STATE, n=1)
+            hint = f" (did you mean {close[0]!r}?)" if close else ""
+            known = ", ".join(self.module.STATE)
+            raise ValueError(f"no component is called {self.name!r}{hint}; known are: {known}")
+        if isinstance(self.value, bool) or not isfinite(self.value):
+            raise ValueError(f"value = {self.value!r} of {self.name} must be a finite number")
+        if self.direction not in (0, 1, -1):
+            raise ValueError(f"direction = {self.direction!r} must be 0, 1 or -1")
+
+    def __call__(self, t: float, y: Sequence[float] | NDArray[np.float64]) -> float:
+        """By how much the component exceeds the value."""
+        return float(y[self.module.STATE.index(self.name)]) - self.value

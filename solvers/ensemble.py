@@ -1,0 +1,187 @@
+"""Many motions at once: in vector lanes, over all cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
+from types import ModuleType
+from warnings import warn
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solvers import compiled, request
+from solvers.compiler import NoCompilerError
+from solvers.crossing import Crossing
+from solvers.forms import Form
+from solvers.integration import fastest_form, integrate
+from solvers.kernel import STATUSES, Batch, kernel
+from solvers.problem import Problem
+from solvers.solution import Ensemble, Interrupted, Solution, Status
+
+
+def ensemble(
+    module: ModuleType,
+    t_span: ArrayLike,
+    Y0: ArrayLike,
+    params: ArrayLike,
+    *,
+    method: str = "verner87",
+    form: str | None = None,
+    rtol: float = 1e-9,
+    atol: float = 1e-12,
+    h: float | None = None,
+    t_eval: ArrayLike = (),
+    events: Crossing | Sequence[Crossing] = (),
+    occurrences: int = 1,
+    max_steps: int = 1_000_000,
+    backend: str | None = None,
+    compensated: bool = False,
+    workers: int | None = None,
+) -> Ensemble:
+    """Integrate many motions over the same time span.
+
+    What a motion's numbers are depends neither on the other motions nor on `workers`.
+
+    Parameters
+    ----------
+    module, t_span, method, form, rtol, atol, h, max_steps, backend, compensated
+        As in `solvers.integration.integrate`.
+    Y0 : array_like of shape (n, state)
+        Coordinates and velocities at the beginning of each motion.
+    params : array_like of shape (parameters,) or (n, parameters)
+        In the order of ``module.PARAMETERS``; the same for all motions or a row for each.
+    t_eval : array_like of shape (times,)
+        Times at which states are wanted, none by default.
+    events : Crossing or sequence of Crossing
+        What to watch.
+    occurrences : int
+        How many occurrences of each event to keep, counted from the beginning.
+    workers : int, optional
+        Number of threads; by default one for each processor.
+
+    Returns
+    -------
+    Ensemble
+
+    Raises
+    ------
+    ValueError
+        When an argument makes no sense, before anything is computed.
+    solvers.catalogue.UnknownMethodError
+        When no method has this name.
+    solvers.compiler.NoCompilerError
+        When ``backend="compiled"`` and no compiler could build the loop.
+    solvers.solution.Interrupted
+        When the user interrupts; it holds the `Ensemble` up to there.
+    """
+    starts = request.table("Y0", Y0, module.STATE)
+    constants = request.table("params", np.atleast_2d(np.asarray(params)), module.PARAMETERS)
+    if len(constants) not in (1, len(starts)):
+        raise ValueError(
+            f"params has {len(constants)} rows: give one, or one for each of {len(starts)} motions"
+        )
+    for name, value in (("occurrences", occurrences), ("workers", workers)):
+        if value is not None and (isinstance(value, bool) or value < 1):
+            raise ValueError(f"{name} = {value!r} must be a whole number, 1 or more")
+    where = request.rung(backend, compensated)
+
+    def asked(form: str) -> Problem:
+        rest = (0.0,) * len(module.STATE)
+        return request.problem(
+            module, t_span, rest, module.DEFAULTS, method, form, rtol, atol, h, t_eval, events,
+            max_steps,
+        )  # fmt: skip
+
+    problem = asked(form or "lagrangian")
+    obstacle = compiled.obstacle(problem)
+    if where == "compiled" and obstacle:
+        raise ValueError(f"no compiled loop can do this: {obstacle}")
+    if where != "python" and not obstacle:
+        problem = asked(form or fastest_form(module))
+    program = None
+    if where != "python" and not obstacle:
+        try:
+            program = kernel(
+                module, problem.form.name, method,
+                lanes=True, compensated=compensated, reproducible=False,
+            )  # fmt: skip
+        except NoCompilerError as error:
+            if where == "compiled":
+                raise
+            warn(f"integrating in Python: {error}", stacklevel=2)
+    assert problem.samples is not None
+    rung = f"compiled by {program.library.compiler}" if program else "python"
+    result = Ensemble.unknown(
+        len(starts), len(module.STATE), len(problem.samples), len(problem.events), occurrences,
+        f"{problem.description}, {rung}",
+    )  # fmt: skip
+    try:
+        if program:
+            batch = Batch(
+                program, problem, Form(module, problem.form.name, list(constants.T)), starts,
+                capacity=len(problem.samples), occurrences=occurrences, pauses=False,
+            )  # fmt: skip
+            try:
+                _run(batch, workers or len(os.sched_getaffinity(0)))
+            finally:
+                _collect(batch, result)
+            return result
+        for k, start in enumerate(starts):
+            found = integrate(
+                module, t_span, start, constants[k % len(constants)], method=method, form=form,
+                rtol=rtol, atol=atol, h=h, t_eval=t_eval, events=events, max_steps=max_steps,
+                backend="python",
+            )  # fmt: skip
+            _take(found, k, result)
+    except KeyboardInterrupt as interruption:
+        raise Interrupted(result) from interruption
+    return result
+
+
+def _run(batch: Batch, workers: int) -> None:
+    """Run all motions in threads; C works without Python's lock, this thread hears the user."""
+    batch.restart()
+    with ThreadPoolExecutor(workers) as pool:
+        running = [pool.submit(batch.go) for _ in range(workers)]
+        try:
+            wait(running)
+        except KeyboardInterrupt:
+            batch.stop[0] = 1
+            raise
+    for future in running:
+        future.result()
+
+
+def _collect(batch: Batch, result: Ensemble) -> None:
+    """What the motions of a batch have found."""
+    motions, outside = batch.motions, batch.form.outside_many
+    result.t[:], result.y[:] = motions["t"], outside(motions["z"], motions["turns"])
+    result.status[:] = np.array(STATUSES, object)[motions["status"]]
+    result.status[motions["status"] < STATUSES.index(Status.FINISHED)] = Status.INTERRUPTED
+    for name in ("steps", "rejected"):
+        getattr(result, name)[:] = motions[name]
+    result.nfev[:] = batch.nfev
+    for k in range(result.samples.shape[-1]):
+        there = motions["rows"] > k
+        states = outside(batch.rows["z"][:, k], batch.rows["turns"][:, k])
+        result.samples[there, :, k] = states[there]
+    result.occurred[:] = motions["occurred"][:, : result.occurred.shape[1]]
+    for event, k in np.ndindex(result.t_events.shape[1:]):
+        rows, there = batch.event_rows[:, event, k], result.occurred[:, event] > k
+        result.t_events[there, event, k] = rows["t"][there]
+        result.y_events[there, event, k] = outside(rows["z"], rows["turns"])[there]
+
+
+def _take(found: Solution, k: int, result: Ensemble) -> None:
+    """What one motion, integrated by itself, has found."""
+    result.t[k], result.y[k] = found.end
+    result.status[k], result.nfev[k] = found.status, found.nfev
+    result.steps[k], result.rejected[k] = found.steps, found.rejected
+    result.samples[k, :, : len(found.t)] = found.y
+    for event, (times, states) in enumerate(zip(found.t_events, found.y_events, strict=True)):
+        kept = result.t_events.shape[-1]
+        result.occurred[k, event] = len(times)
+        result.t_events[k, event, : len(times)] = times[:kept]
+        result.y_events[k, event, : len(times)] = states[:kept]

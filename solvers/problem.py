@@ -1,0 +1,90 @@
+"""An integration that makes sense, ready to be run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.control import Controller
+from solvers.forms import Form
+from solvers.solution import Status
+from solvers.tableau import Tableau
+
+Array = NDArray[np.float64]
+#: The shortest step, in parts of the time's last digit: below it a shorter step rounds to itself.
+SHORTEST = 10
+Event = Callable[[float, Array], float]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is integrated, how, and what is wanted of it.
+
+    Attributes
+    ----------
+    form : Form
+        The equations, with parameters.
+    method : Tableau or str
+        One of ours, or the name of one of SciPy's.
+    span : pair of float
+        Beginning and end.
+    start : ndarray of shape (state,)
+        Coordinates and velocities at the beginning.
+    h : float or None
+        Length of fixed steps.
+    rtol, atol : float and ndarray
+        Tolerances of steps that are controlled.
+    samples : ndarray or None
+        Times that are wanted; the end of every step if None.
+    events : list of callable
+        What to watch.
+    max_steps : int
+        How many steps may be taken.
+    """
+
+    form: Form
+    method: Tableau | str
+    span: tuple[float, float]
+    start: Array
+    h: float | None
+    rtol: float
+    atol: Array
+    samples: Array | None
+    events: list[Event]
+    max_steps: int
+
+    @property
+    def controller(self) -> Controller | None:
+        """What controls the steps, with nothing behind it yet."""
+        assert isinstance(self.method, Tableau)
+        if self.h is not None:
+            return None
+        order = min(self.method.order, self.method.embedded_order)
+        return Controller(order, self.rtol, self.atol)
+
+    @property
+    def description(self) -> str:
+        """Method, form and step control in words."""
+        title = self.method.title if isinstance(self.method, Tableau) else self.method
+        steps = f"rtol = {self.rtol}" if self.h is None else f"h = {self.h}"
+        return f"{title}, {self.form.name} form, {steps}"
+
+
+@dataclass
+class Outcome:
+    """What a run has found so far; its fields are those of `Solution`, events as lists."""
+
+    status: Status = Status.INTERRUPTED
+    t: list[float] = field(default_factory=list)
+    y: list[Array] = field(default_factory=list)
+    t_events: list[list[float]] = field(default_factory=list)
+    y_events: list[list[Array]] = field(default_factory=list)
+    end: tuple[float, Array] = (0.0, np.empty(0))
+    nfev: int = 0
+    njev: int = 0
+    steps: int = 0
+    rejected: int = 0
+    backend: str = "python"

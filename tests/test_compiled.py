@@ -1,0 +1,411 @@
+"""Compiled loops: their coefficients, their agreement with the reference, events, lanes, faults."""
+
+import ctypes
+import os
+import signal
+import threading
+from collections.abc import Callable
+from math import pi
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from mpmath import asin, ellipfun, ellipk, mpf, sqrt, workdps
+from mpmath import sin as mpsin
+
+import generated.double_pendulum as dp
+import generated.single_pendulum as sp
+from solvers import compiler, request
+from solvers.catalogue import load, names
+from solvers.crossing import Crossing
+from solvers.ensemble import ensemble
+from solvers.integration import integrate
+from solvers.kernel import Batch, Kernel, kernel
+from solvers.prepared import NotFinishedError, prepare
+from solvers.solution import Ensemble, Interrupted, Solution, Status
+
+EXPLICIT = [name for name in names() if load(name).is_explicit]
+FORMS = ("lagrangian", "hamiltonian", "rational")
+REPORT = (pi / 2, pi, 0.0, 0.0)
+
+#: A right-hand side that notes where it is asked, and answers with one chosen number.
+PROBE = """
+double probe_places[64][64], probe_times[64];
+int probe_calls;
+
+static inline void probe_rhs(
+    {real} t, const {real} *state, {real} *result, const {real} *params)
+{{
+    for (int n = 0; n < {stages}; n++) {{
+        result[n] = ({real}){{0}} + (double)(n == probe_calls);
+        if (probe_calls >= 0) {{
+            probe_places[probe_calls][n] = *(const double *)&state[n];
+        }}
+    }}
+    if (probe_calls >= 0) {{
+        probe_times[probe_calls] = *(const double *)&t;
+    }}
+    probe_calls++;
+    (void)params;
+}}
+"""
+
+
+def probe(folder: Path, stages: int) -> ModuleType:
+    """A module with one number of state a stage, and the header for it."""
+    (folder / "probe.h").write_text(PROBE.format(real="HOLONOMIC_REAL", stages=stages))
+    module = ModuleType("probe")
+    vars(module).update(
+        __file__=str(folder / "probe.py"), COORDINATES=(), rhs=None,
+        STATE=tuple(f"s{k}" for k in range(stages)), PARAMETERS=("p",), DEFAULTS=(1.0,),
+    )  # fmt: skip
+    return module
+
+
+@pytest.mark.parametrize("lanes", [False, True])
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_coefficients_are_read_back_from_the_running_loop(
+    name: str, lanes: bool, tmp_path: Path
+) -> None:
+    # slope k is the unit vector k: then the place of stage i is row i of A, the step's end is b
+    method = load(name)
+    module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
+    kernel = Kernel(module, "lagrangian", name, lanes=lanes, compensated=False, reproducible=False)
+    library = ctypes.CDLL(str(kernel.library.path))
+    # the loop asks once before the first step, which matters if that is the first stage, too
+    ctypes.c_int.in_dll(library, "probe_calls").value = 0 if method.is_fsal else -1
+    options = {"method": name, "h": 1.0, "backend": "compiled"}
+    if lanes:
+        end = ensemble(module, (0, 1), [rest], (1.0,), workers=1, **options).y[0]
+    else:
+        end = integrate(module, (0, 1), rest, (1.0,), **options).y[:, -1]
+    places = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_places"))
+    times = np.array((ctypes.c_double * 64).in_dll(library, "probe_times"))
+    stages = slice(0, method.stages)
+    assert np.array_equal(places[stages, stages], np.array(method.A, float))
+    assert np.array_equal(times[stages], np.array(method.c, float))
+    assert np.array_equal(end, np.array(method.b, float))
+
+
+def scatter(n: int, seed: int = 1) -> np.ndarray:
+    """Initial states: any angles, moderate velocities."""
+    return np.random.default_rng(seed).uniform(-3, 3, (n, 4))
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("method", ["rk1", "rk4", "dp54", "verner87", "verner98"])
+def test_loops_agree_to_rounding_times_the_condition_of_the_run(method: str, form: str) -> None:
+    # the condition is observed: what becomes of a change of 1e-10 in the start
+    starts, params, span, h = scatter(40), dp.DEFAULTS, (0.0, 2.0), 0.02
+    options = {"method": method, "h": h, "form": form}
+    lanes = ensemble(dp, span, starts, params, **options).y
+    moved = ensemble(dp, span, starts * (1 + 1e-10), params, **options).y
+    condition = 1 + np.abs(moved - lanes).max(axis=1) / 1e-10
+    for backend in ("python", "compiled"):
+        one_by_one = np.array([
+            integrate(dp, span, start, params, backend=backend, **options).y[:, -1]
+            for start in starts
+        ])  # fmt: skip
+        apart = np.abs(one_by_one - lanes).max(axis=1)
+        # a hundred steps, each of a few roundings of numbers up to ten
+        assert (apart < 100 * 10 * 2.2e-16 * condition).all()
+
+
+def test_what_a_motion_is_depends_on_no_other_motion_and_no_thread() -> None:
+    starts, n = scatter(101), 101
+    rng = np.random.default_rng(2)
+    params = dp.DEFAULTS * rng.uniform(0.5, 1.5, (n, 5))
+    options = {
+        "events": [Crossing(dp, "theta1", pi), Crossing(dp, "theta2", -pi, terminal=True)],
+        "t_eval": np.linspace(0, 3, 7), "occurrences": 2,
+    }  # fmt: skip
+    for method in ("verner87", "tsit54"):
+        first = ensemble(dp, (0, 3), starts, params, method=method, workers=1, **options)
+        for workers in (2, 5):
+            order = rng.permutation(n)
+            again = ensemble(
+                dp, (0, 3), starts[order], params[order], method=method, workers=workers, **options
+            )
+            for name, values in vars(first).items():
+                if name == "status":
+                    assert (values[order] == again.status).all()
+                elif name != "run":
+                    found = getattr(again, name)
+                    assert np.array_equal(values[order], found, equal_nan=True), name
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_lanes_find_the_events_and_samples_of_the_reference(form: str) -> None:
+    starts, times = scatter(20, 3), np.linspace(0, 3, 31)
+    events = [Crossing(dp, "theta1", 0.5, direction=1), Crossing(dp, "theta2", pi, terminal=True)]
+    if form != "hamiltonian":
+        events.append(Crossing(dp, "theta1_dot", 1.0))
+    options = {"form": form, "events": events, "t_eval": times, "rtol": 1e-11, "atol": 1e-13}
+    found = ensemble(dp, (0, 3), starts, dp.DEFAULTS, occurrences=9, **options)
+    expected = ensemble(dp, (0, 3), starts, dp.DEFAULTS, occurrences=9, backend="python", **options)
+    assert "python" in expected.run
+    assert "compiled" in found.run
+    assert (found.status == expected.status).all()
+    assert set(found.status) == {Status.FINISHED, Status.EVENT}
+    assert np.array_equal(found.occurred, expected.occurred)
+    for name in ("t", "y", "samples", "t_events", "y_events"):
+        ours, theirs = getattr(found, name), getattr(expected, name)
+        assert np.array_equal(np.isnan(ours), np.isnan(theirs)), name
+        assert np.nanmax(np.abs(ours - theirs)) < 1e-6, name
+    # an event is where its value is, and on its far side
+    flips = found.y_events[:, 1, 0, 1]
+    assert np.nanmax(np.abs(flips - pi)) < 1e-13
+
+
+def test_a_motion_and_the_same_motion_in_lanes_have_the_same_history() -> None:
+    events = [Crossing(sp, "theta", 0.0)]
+    alone = integrate(sp, (0, 30), (2.0, 0.0), sp.DEFAULTS, events=events, rtol=1e-10)
+    many = ensemble(sp, (0, 30), [(2.0, 0.0)] * 3, sp.DEFAULTS, events=events, rtol=1e-10,
+                    occurrences=50)  # fmt: skip
+    assert alone.backend == "compiled"
+    assert many.occurred.tolist() == [[len(alone.t_events[0])]] * 3
+    kept = many.t_events[2, 0, : len(alone.t_events[0])]
+    assert np.abs(kept - alone.t_events[0]).max() < 1e-9
+    # half a period lies between passages of the bottom
+    assert np.ptp(np.diff(alone.t_events[0])) < 1e-8
+
+
+def test_more_steps_and_events_than_there_is_room_for_are_collected_in_turns() -> None:
+    events = Crossing(sp, "theta_dot", 0.0)
+    found = integrate(
+        sp, (0, 500), (1.0, 0.1), sp.DEFAULTS, method="rk4", h=0.02, events=events, energy=True
+    )
+    assert (found.steps, len(found.t)) == (25_000, 25_001)
+    assert np.abs(np.diff(found.t) - 0.02).max() < 1e-12
+    assert len(found.t_events[0]) > 300
+    assert np.ptp(found.energy) < 1e-3
+
+
+def test_a_prepared_run_ends_where_the_integration_does() -> None:
+    for form in FORMS:
+        run = prepare(dp, dp.DEFAULTS, form=form, rtol=1e-11)
+        for span in ((0.0, 5.0), (2.0, -3.0), (1.0, 1.0)):
+            start = (1.0, 8 * pi + 2.0, -0.5, 20.0)  # an angle that has turned, and goes on to
+            expected = integrate(dp, span, start, dp.DEFAULTS, form=form, rtol=1e-11)
+            assert run(span, start) == pytest.approx(expected.end[1], abs=1e-13)
+
+
+def test_a_prepared_run_refuses_what_makes_no_sense_and_says_where_it_stopped() -> None:
+    run = prepare(dp, dp.DEFAULTS, max_steps=3)
+    with pytest.raises(ValueError, match="theta1, theta2, theta1_dot, theta2_dot"):
+        run((0, 1), (1.0, 2.0))
+    with pytest.raises(ValueError, match="must be finite"):
+        run((0, float("nan")), REPORT)
+    with pytest.raises(NotFinishedError, match="number of steps") as stopped:
+        run((0, 5), REPORT)
+    assert stopped.value.status is Status.STEP_LIMIT
+    assert 0 < stopped.value.t < 5
+    with pytest.raises(ValueError, match="Gauss"):
+        prepare(dp, dp.DEFAULTS, method="gauss2", h=0.1)
+    fixed = prepare(sp, sp.DEFAULTS, method="rk4", h=1e-3)
+    with pytest.raises(ValueError, match="resolution"):
+        fixed((1e15, 2e15), (1.0, 0.0))
+
+
+def test_angles_are_unwrapped_even_where_a_step_turns_by_more_than_half() -> None:
+    # 20 rad/s for 1000 s are about 3143 turns
+    rough = integrate(
+        sp, (0, 1000), (0.0, 20.0), sp.DEFAULTS, rtol=1e-2, atol=0.1, method="verner87"
+    )
+    plain = integrate(sp, (0, 1000), (0.0, 20.0), sp.DEFAULTS, rtol=1e-12, form="lagrangian")
+    fine = integrate(sp, (0, 1000), (0.0, 20.0), sp.DEFAULTS, rtol=1e-12)
+    assert "rational" in rough.run
+    assert "rational" in fine.run
+    assert np.diff(rough.t).max() * 20 > pi
+    assert plain.y[0, -1] > 3000 * 2 * pi
+    assert fine.y[0, -1] == pytest.approx(plain.y[0, -1], abs=1e-6)
+    assert rough.y[0, -1] == pytest.approx(plain.y[0, -1], rel=0.01)
+
+
+@pytest.mark.parametrize("compensated", [False, True])
+def test_sine_and_cosine_stay_on_the_circle_over_long_runs(compensated: bool) -> None:
+    program = kernel(
+        sp, "rational", "rk4", lanes=False, compensated=compensated, reproducible=False
+    )
+    span, start = (0.0, 1000.0), (2.0, 0.0)
+    problem = request.problem(
+        sp, span, start, sp.DEFAULTS, "rk4", "rational", 0, 0, 0.01, None, (), 10**6
+    )
+    batch = Batch(
+        program, problem, problem.form, problem.start[np.newaxis],
+        capacity=200_000, occurrences=0, pauses=False,
+    )  # fmt: skip
+    batch.restart()
+    batch.go()
+    sine, cosine = batch.rows["z"][0, : batch.motions["rows"][0], :2].T
+    assert len(sine) == 100_001
+    assert np.abs(sine**2 + cosine**2 - 1).max() < 5e-16
+
+
+def test_compensated_sums_keep_what_rounding_loses() -> None:
+    # over 40 000 steps rounding outgrows the method's error, unless it is carried along
+    _, length, g = map(mpf, sp.DEFAULTS)
+    with workdps(30):
+        k, rate = mpsin(1), sqrt(g / length)
+        sn = ellipfun("sn", ellipk(k**2) - rate * 40, k=k)
+        exact = float(2 * asin(k * sn))
+    for form in ("lagrangian", "rational"):
+        errors = [
+            abs(
+                integrate(
+                    sp, (0, 40), (2.0, 0.0), sp.DEFAULTS, method="verner98", h=1e-3,
+                    t_eval=[40.0], form=form, compensated=compensated,
+                ).y[0, 0] - exact
+            )
+            for compensated in (False, True)
+        ]  # fmt: skip
+        assert errors[1] < 1e-14, form
+        assert errors[1] < errors[0] / 3, form
+
+
+def test_time_does_not_drift_over_a_million_steps() -> None:
+    run = prepare(sp, sp.DEFAULTS, method="rk1", h=0.1, max_steps=10**7)
+    found = integrate(
+        sp, (0, 1e5), (0.0, 0.0), sp.DEFAULTS, method="rk1", h=0.1,
+        t_eval=[5e4, 1e5 - 0.1, 1e5], max_steps=10**7,
+    )  # fmt: skip
+    assert found.steps == 10**6
+    assert found.nfev == 10**6 + 1  # one to begin with; the samples are ends of steps
+    assert run((0.0, 1e5), (0.0, 0.0)) == (0.0, 0.0)
+
+
+def interrupted_after(seconds: float, run: Callable[[], object]) -> Interrupted:
+    """What an interruption by the user leaves behind."""
+    timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        with pytest.raises(Interrupted) as stopped:
+            run()
+    finally:
+        timer.cancel()
+    return stopped.value
+
+
+@pytest.mark.parametrize("backend", ["compiled", "python"])
+def test_an_interrupted_integration_keeps_what_it_has(backend: str) -> None:
+    def endless() -> Solution:
+        return integrate(
+            sp, (0, 1e12), (1.0, 0.0), sp.DEFAULTS, backend=backend, max_steps=10**12,
+            t_eval=[0.0, 1.0, 1e12],
+        )  # fmt: skip
+
+    kept = interrupted_after(0.3, endless).solution
+    assert isinstance(kept, Solution)
+    assert kept.status is Status.INTERRUPTED
+    assert kept.end[0] > 1.0
+    assert kept.t.tolist() == [0.0, 1.0]
+    # and the run can go on from there
+    on = integrate(sp, (kept.end[0], kept.end[0] + 1), kept.end[1], sp.DEFAULTS)
+    assert on.success
+
+
+def test_an_interrupted_ensemble_keeps_what_it_has() -> None:
+    starts = [(1.0, 0.0)] * 40
+    kept = interrupted_after(
+        0.3, lambda: ensemble(sp, (0, 1e12), starts, sp.DEFAULTS, max_steps=10**12)
+    ).solution
+    assert isinstance(kept, Ensemble)
+    assert set(kept.status) == {Status.INTERRUPTED}
+    assert (kept.t > 0).sum() >= 16
+    assert not kept.success.any()
+
+
+def test_without_a_compiler_it_runs_in_python_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler, "compilers", lambda: iter(()))
+    span, start, params = (0.0, 0.7), (1.0, 0.0), sp.DEFAULTS
+    options = {"method": "rk4", "h": 0.0703125}  # not built by any other test
+    kernel.cache_clear()
+    with pytest.warns(UserWarning, match="integrating in Python: no C compiler"):
+        found = integrate(sp, span, start, params, **options)
+    assert (found.backend, found.success) == ("python", True)
+    assert "lagrangian" in found.run
+    with pytest.warns(UserWarning, match="no C compiler"):
+        many = ensemble(sp, span, [start] * 2, params, **options)
+    assert many.success.all()
+    assert np.array_equal(many.y[1], found.y[:, -1])
+    for forced in (
+        lambda: integrate(sp, span, start, params, backend="compiled", **options),
+        lambda: integrate(sp, span, start, params, compensated=True, **options),
+        lambda: ensemble(sp, span, [start], params, backend="compiled", **options),
+        lambda: prepare(sp, params, **options),
+    ):
+        with pytest.raises(compiler.NoCompilerError, match="install one as `cc`"):
+            forced()
+    kernel.cache_clear()
+
+
+def test_what_c_does_not_know_runs_in_python() -> None:
+    def passes(t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    found = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, events=passes)
+    assert found.backend == "python"
+    for options, reason in (
+        ({"events": passes}, "an event is a Python function"),
+        ({"atol": [1e-9, 1e-9], "form": "lagrangian"}, "atol differs"),
+        ({"method": "gauss2", "h": 0.1}, "implicit"),
+        ({"method": "DOP853"}, "SciPy's"),
+        ({"events": [Crossing(sp, "theta", k) for k in range(9)]}, "more than 8 events"),
+        ({"events": Crossing(sp, "theta_dot", 0.0), "form": "hamiltonian"}, "does not hold"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, backend="compiled", **options)
+    with pytest.raises(ValueError, match="backend 'c' must be"):
+        integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, backend="c")
+    with pytest.raises(ValueError, match="needs a compiled loop"):
+        integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, backend="python", compensated=True)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"Y0": [1.0, 0.0]}, "Y0 has shape .* theta, theta_dot"),
+        ({"Y0": [(1.0, float("inf"))]}, "finite"),
+        ({"params": [(1.0, 2.0, 9.81)] * 3}, "params has 3 rows"),
+        ({"params": (1.0, 2.0)}, "m, l, g"),
+        ({"workers": 0}, "workers = 0"),
+        ({"occurrences": True}, "occurrences = True"),
+        ({"t_eval": [2.0]}, "outside of t_span"),
+        ({"method": "rk4"}, "give a fixed step h"),
+        ({"backend": "gpu"}, "backend 'gpu'"),
+    ],
+)
+def test_an_ensemble_that_makes_no_sense_is_refused(
+    arguments: dict[str, object], message: str
+) -> None:
+    usual = {"t_span": (0, 1), "Y0": [(1.0, 0.0)] * 2, "params": sp.DEFAULTS}
+    with pytest.raises(ValueError, match=message):
+        ensemble(sp, **{**usual, **arguments})
+
+
+def test_crossings_say_what_they_cannot_be() -> None:
+    for arguments, message in (
+        (("theta3", 0.0), "did you mean 'theta2'"),
+        (("theta1", float("nan")), "must be a finite number"),
+        (("theta1", 0.0, 2), "direction = 2"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            Crossing(dp, *arguments)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize(("backend", "lanes"), [("compiled", 1), ("compiled", 3), ("python", 1)])
+def test_a_motion_that_leaves_the_numbers_ends_with_a_status(
+    backend: str, lanes: int, form: str
+) -> None:
+    # Euler with steps far too long, from a huge velocity; its neighbours are left alone
+    starts = [(1.0, 1.0, 1e200, -1e200)] + [(0.0, 0.0, 0.0, 0.0)] * (lanes - 1)
+    options = {"form": form, "backend": backend}
+    fixed = ensemble(dp, (0, 9), starts, dp.DEFAULTS, method="rk1", h=0.5, **options)
+    assert fixed.status[0] is Status.NOT_FINITE
+    assert all(status is Status.FINISHED for status in fixed.status[1:])
+    assert np.isfinite(fixed.y).all()
+    controlled = ensemble(dp, (0, 9), starts, dp.DEFAULTS, **options)
+    assert controlled.status[0] in (Status.NOT_FINITE, Status.STEP_TOO_SMALL, Status.STEP_LIMIT)
+    assert all(status is Status.FINISHED for status in controlled.status[1:])
