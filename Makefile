@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test derive lint types check clean
+.PHONY: help demo test derive bench lint types check clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -16,6 +16,9 @@ test: .venv/ready  ## set up and run the tests
 
 derive: .venv/ready  ## write the generated modules anew
 	$(BIN)/holonomic derive
+
+bench: .venv/bench  ## time compiled loops beside other programs (two minutes, idle machine)
+	$(BIN)/holonomic bench
 
 lint: .venv/ready  ## style and common mistakes
 	$(BIN)/ruff check
@@ -36,4 +39,9 @@ clean:  ## remove the environment and what the tools left behind
 	$(PYTHON) -m venv .venv
 	PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install \
 		--quiet --disable-pip-version-check --editable '.[test]'
+	@touch $@
+
+.venv/bench: .venv/ready
+	PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install \
+		--quiet --disable-pip-version-check --editable '.[test,bench]'
 	@touch $@

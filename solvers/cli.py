@@ -8,8 +8,10 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 USAGE = """\
@@ -22,6 +24,7 @@ commands:
   derive   write the generated modules from the systems' positions, or check them
   verify   judge every equation, program and claim of the double-pendulum report
   demo     the whole way on one screen, in about ten seconds
+  bench    time compiled loops beside other programs, at equal error
 
 holonomic COMMAND --help shows a command's options and an example.
 """
@@ -205,8 +208,31 @@ def _integrated(picture: Path) -> list[str]:
     ]
 
 
+def _bench(argv: Sequence[str]) -> int:
+    import sympy
+
+    import generated.double_pendulum as module
+    from derive import Derivation, load
+    from solvers.bench_table import main as bench
+
+    def lambdified() -> Callable[..., Any]:
+        derivation = Derivation(load("double_pendulum"))
+        system = derivation.system
+        rates = [*system.qdot, *derivation.accelerations]
+        return sympy.lambdify([[*system.q, *system.qdot], system.params], rates, "numpy")
+
+    def heyoka() -> ModuleType:
+        try:
+            return import_module("heyoka")
+        except ImportError as error:
+            raise OSError(f"{error}: install it with pip install -e '.[bench]'") from error
+
+    return bench(argv, module, lambdified, heyoka)
+
+
 COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {
     "derive": _derive,
     "verify": _verify,
     "demo": _demo,
+    "bench": _bench,
 }

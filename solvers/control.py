@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Rhs = Callable[[float, Array], Array]
 
 #: Part of the ideal step that is tried, and limits to its change (E. Hairer, S. P. Nørsett,
 #: G. Wanner, Solving Ordinary Differential Equations I, section II.4).
@@ -49,12 +51,33 @@ class Controller:
         self._previous = floor
         return min(GROW, max(SHRINK, factor))
 
-    def first_step(self, slope: Array, y: Array, duration: float) -> float:
-        """A step to begin with: a change of a hundredth of the state, or of what is allowed."""
+    def first_step(self, rhs: Rhs, t: float, y: Array, slope: Array, duration: float) -> float:
+        """A step to begin with, from how the slope changes over a very short one.
+
+        E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
+        section II.4.
+
+        Parameters
+        ----------
+        rhs : callable
+            ``rhs(t, y)``.
+        t, y, slope : float and ndarray
+            Time, state and slope at the beginning.
+        duration : float
+            Of the whole run, negative backwards.
+        """
         allowed = self.atol + self.rtol * np.abs(y)
         size, speed = _rms(y, allowed), _rms(slope, allowed)
         h = 0.01 * size / speed if size > 1e-5 and 1e-5 < speed < np.inf else 1e-6
-        return min(h, abs(duration))
+        h = min(h, abs(duration))
+        ahead = float(np.copysign(h, duration))
+        try:
+            change = rhs(t + ahead, y + ahead * slope) - slope
+        except ArithmeticError:
+            return h
+        bend = max(speed, _rms(change, allowed) / h)
+        longer = (0.01 / max(bend, 1e-15)) ** (1 / (self.order + 1))
+        return min(100 * h, longer, abs(duration))
 
 
 def _rms(values: Array, allowed: Array) -> float:

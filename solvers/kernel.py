@@ -75,6 +75,8 @@ class Kernel:
     ----------
     run : ctypes function
         Takes a task; releases Python's lock while it runs.
+    once : ctypes function or None
+        Takes a task of one motion, its span, start and room for its end; not with lanes.
     trajectory, row : numpy.dtype
         Layout of a motion in memory, and of a place that it passes.
     library : Library
@@ -96,6 +98,7 @@ class Kernel:
         library = ctypes.CDLL(str(self.library.path))
         self.run = library.run
         self.run.restype, self.run.argtypes = None, [ctypes.POINTER(_Task)]
+        self.once = None if lanes else library.once
         state, angles = (source.state,), (len(source.angles),)
         fields: list[tuple[str, type, tuple[int, ...]]] = [
             ("t", float, ()), ("t_low", float, ()), ("z", float, state),
@@ -146,6 +149,8 @@ class Batch:
         What they have written.
     stop : ndarray of shape (1,)
         Anything but 0 makes all motions wait.
+    task : ctypes structure
+        What C is given.
     """
 
     def __init__(
@@ -164,7 +169,7 @@ class Batch:
         self.stop = np.zeros(1, np.int64)
         self._times = np.empty(0) if problem.samples is None else problem.samples
         self._events = np.array([_event(form, crossing) for crossing in events], EVENT)
-        self._task = _Task(
+        self.task = _Task(
             count=n, trajectories=self.motions.ctypes.data,
             rtol=problem.rtol, atol=float(problem.atol), fixed=problem.h or 0.0,
             most_steps=problem.max_steps,
@@ -176,17 +181,18 @@ class Batch:
 
     def restart(self, patience: float = 0.0) -> None:
         """Let the next `go` begin with the first motion; it returns after `patience` seconds."""
-        self._task.next, self._task.patience = 0, patience
+        self.task.next, self.task.patience = 0, patience
 
     def go(self) -> None:
         """Go on with motions that are not done; several threads may do so at once."""
-        self._kernel.run(self._task)
+        self._kernel.run(self.task)
 
     @property
     def nfev(self) -> NDArray[np.int64]:
         """Evaluations of the right-hand side by each motion."""
         trials = self.motions["trials"].astype(np.int64)
-        return trials * self._kernel.slopes + (trials > 0)
+        first = 1 if self.task.fixed else 2  # the slope at the beginning, and one to choose h
+        return trials * self._kernel.slopes + first * (trials > 0)
 
 
 def _event(form: Form, crossing: Crossing) -> tuple[float | int, ...]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 from solvers.order_conditions import Number
+from solvers.problem import SHORTEST
 from solvers.tableau import Tableau
 
 PROGRAM = """\
@@ -32,6 +33,24 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 {motion_h}
 {errand_h}
 {integrator_c}
+{once}"""
+
+#: Between ordinary states and those of the form, for single motions.
+ONCE = """\
+enum {{ ORDINARY = {ordinary}, SHORTEST = {shortest} }};
+
+static void enter(const double *y, double *z, double *turns, const double *params)
+{{
+{enter}
+    (void)turns; (void)params;
+}}
+
+static void leave(const double *z, const double *turns, double *y, const double *params)
+{{
+{leave}
+    (void)turns; (void)params;
+}}
+{once_h}
 """
 
 METHOD = """\
@@ -58,7 +77,7 @@ static inline real estimate(real h, real (*k)[STATE], int n)
 
 STAGE = """\
     for (int n = 0; n < STATE; n++) {{
-        place[n] = z[n] + ({sum});
+        place[n] = z[n] + {sum};
     }}
     RHS(t + h*{c}, place, k[{i}], params);
 """
@@ -76,16 +95,24 @@ class Equations:
         The right-hand side in it.
     state, parameters : int
         How many numbers it takes.
+    ordinary : int
+        How many numbers an ordinary state (q, q̇) has.
     angles : sequence of pairs of int
         For every angle that is known by sine and cosine: where in the state its sine
         is, which its cosine follows, and where its velocity is.
+    enter, leave : sequence of str
+        Statements that compute the state z of this form and the turns of its angles from
+        the ordinary state y, and y from these.
     """
 
     header: str
     rhs: str
     state: int
     parameters: int
+    ordinary: int
     angles: Sequence[tuple[int, int]]
+    enter: Sequence[str]
+    leave: Sequence[str]
 
     @property
     def vectorises(self) -> bool:
@@ -95,7 +122,9 @@ class Equations:
 
 
 def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated: bool) -> str:
-    """The text of the program; its functions are ``run`` and ``trajectory_size``.
+    """The text of the program.
+
+    Its functions are ``run``, ``trajectory_size`` and, without lanes, ``once``.
 
     Parameters
     ----------
@@ -109,7 +138,17 @@ def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated:
         Whether rounding errors of the state are carried along, as those of time are.
     """
     sines, rates = ([pair[part] for pair in equations.angles] or [0] for part in (0, 1))
-    folder = files("solvers") / "c"
+    texts = {
+        name.replace(".", "_"): (files("solvers") / "c" / name).read_text(encoding="utf-8")
+        for name in ("lanes.h", "step.h", "motion.h", "errand.h", "integrator.c", "once.h")
+    }
+    once = ONCE.format(
+        ordinary=equations.ordinary,
+        shortest=SHORTEST,
+        enter="\n".join(f"    {line}" for line in equations.enter),
+        leave="\n".join(f"    {line}" for line in equations.leave),
+        once_h=texts.pop("once_h"),
+    )
     return PROGRAM.format(
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
         header=equations.header,
@@ -121,10 +160,8 @@ def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated:
         rate=", ".join(map(str, rates)),
         compensated=int(compensated),
         method=_method(tableau),
-        **{
-            name.replace(".", "_"): (folder / name).read_text(encoding="utf-8")
-            for name in ("lanes.h", "step.h", "motion.h", "errand.h", "integrator.c")
-        },
+        once="" if lanes else once,
+        **texts,
     )
 
 
@@ -146,7 +183,7 @@ def _method(tableau: Tableau) -> str:
 
 
 def _sum(weights: Sequence[Number]) -> str:
-    """Σ h w k: each product with h is ready before the slope is, which saves a rounding's time."""
+    """Σ h w k: all but the last product are ready before the last slope is."""
     terms = [f"(h*{_real(w)})*k[{j}][n]" for j, w in enumerate(weights) if w != 0]
     return "\n            + ".join(terms) or "0.0*h"
 

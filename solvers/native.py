@@ -64,7 +64,18 @@ def equations(module: ModuleType, form: str) -> Equations:
     if f"static inline void {rhs}(" not in text:
         raise ValueError(f"form {form!r}: {place} has no {rhs}")
     described = Form(module, form, (0.0,) * len(module.PARAMETERS))
-    return Equations(text, rhs, len(described.state), len(module.PARAMETERS), described.angles)
+    enter = [f"{place.stem}_{form}_state(y, z, params);"]
+    leave = [f"y[{k}] = z[{i}];" for k, i in described.kept]
+    for a, (k, i) in enumerate(described.turning):
+        wrapped = f"atan2(z[{i}], z[{i + 1}])"
+        enter.append(f"turns[{a}] = nearest_whole((y[{k}] - {wrapped})*(0.5/PI));")
+        leave.append(f"y[{k}] = {wrapped} + 2*PI*turns[{a}];")
+    if form == "lagrangian":
+        enter = [f"z[{k}] = y[{k}];" for k in range(len(module.STATE))]
+    if form == "hamiltonian":
+        leave = [f"{place.stem}_lagrangian_state(z, y, params);"]
+    sizes = len(described.state), len(module.PARAMETERS), len(module.STATE)
+    return Equations(text, rhs, *sizes, described.angles, enter, leave)
 
 
 def native_rhs(

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Sequence
-from math import atan2, isfinite, pi, ulp
+from math import ulp
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -91,65 +93,44 @@ def prepare(
         program, problem, equations, problem.start[np.newaxis],
         capacity=0, occurrences=0, pauses=False,
     )  # fmt: skip
-    return _Prepared(batch, problem).run
+    return _Prepared(program.once, batch, problem).run
 
 
 class _Prepared:
-    """One motion in memory, written and read as plain numbers."""
+    """One motion in memory."""
 
-    def __init__(self, batch: Batch, problem: Problem) -> None:
-        form, motions = problem.form, batch.motions
-        self._batch, self._form, self._h = batch, form, problem.h
-        self._size, self._params = len(problem.start), form.params
-        if form.name != "lagrangian":
-            self._inside = getattr(form.module, f"{form.name}_state")
-        self._blank = motions.tobytes()
-        self._memory = motions.data.cast("B")
-        self._numbers, self._words = self._memory.cast("d"), self._memory.cast("q")
-        fields = motions.dtype.fields
-        assert fields is not None
-        self._at = {name: field[1] // 8 for name, field in fields.items()}
-        self._z = slice(self._at["z"], self._at["z"] + len(form.state))
+    def __init__(self, once: Any, batch: Batch, problem: Problem) -> None:
+        self._batch, self._problem = batch, problem
+        room = ctypes.c_double * len(problem.start)
+        self._start, self._end = room(), room()
+        once.argtypes = [ctypes.c_void_p, *[ctypes.c_double] * 2, *[ctypes.c_void_p] * 2]
+        once.restype = ctypes.c_int64
+        batch.task.patience = compiled.PATIENCE
+        self._once, self._task = once, ctypes.addressof(batch.task)
+        self._from, self._to = map(ctypes.addressof, (self._start, self._end))
 
     def run(self, t_span: tuple[float, float], y0: Sequence[float]) -> tuple[float, ...]:
         """The state at the end of `t_span` of the motion that begins with `y0`."""
         begin, end = t_span
-        if len(y0) != self._size or not all(map(isfinite, (begin, end, *y0))):
-            request.time_span(t_span)
-            request.numbers("y0", y0, self._form.module.STATE)
+        if len(y0) != len(self._start):
+            self._refuse(t_span, y0)
+        self._start[:] = list(y0)
         if begin == end:
-            return tuple(y0)
-        resolution = SHORTEST * ulp(max(abs(begin), abs(end)))
-        if self._h is not None and self._h < resolution:
-            request.step(self._h, t_span)
-        numbers, at = self._numbers, self._at
-        self._memory[:] = self._blank
-        numbers[0], numbers[at["t_end"]], numbers[at["shortest"]] = begin, end, resolution
-        z = y0 if self._form.name == "lagrangian" else self._inside(y0, self._params)
-        for k, value in enumerate(z, at["z"]):
-            numbers[k] = value
-        for k, (angle, sine) in enumerate(self._form.turning, at["turns"]):
-            wrapped = atan2(z[sine], z[sine + 1])
-            numbers[k] = round((y0[angle] - wrapped) / (2 * pi))
-        status = None
-        while status is None:
-            self._batch.restart(compiled.PATIENCE)
-            self._batch.go()
-            status = STATUSES[self._words[at["status"]]]
-        y = self._outside(list(numbers[self._z]))
+            return tuple(self._start)
+        h = self._problem.h
+        if h is not None and h < SHORTEST * ulp(max(abs(begin), abs(end))):
+            request.step(h, t_span)
+        code = self._once(self._task, begin, end, self._from, self._to)
+        if code < 0:
+            self._refuse(t_span, y0)
+        while STATUSES[code] is None:
+            code = self._once(self._task, begin, end, None, self._to)
+        y, status = tuple(self._end), STATUSES[code]
         if status is not Status.FINISHED:
-            raise NotFinishedError(status, numbers[0], y)
+            assert status is not None
+            raise NotFinishedError(status, float(self._batch.motions["t"][0]), y)
         return y
 
-    def _outside(self, z: Sequence[float]) -> tuple[float, ...]:
-        form = self._form
-        if form.name == "lagrangian":
-            return tuple(z)
-        if form.name == "hamiltonian":
-            return form.module.lagrangian_state(z, self._params)
-        y = [0.0] * self._size
-        for k, i in form.kept:
-            y[k] = z[i]
-        for turns, (k, i) in enumerate(form.turning, self._at["turns"]):
-            y[k] = atan2(z[i], z[i + 1]) + 2 * pi * self._numbers[turns]
-        return tuple(y)
+    def _refuse(self, t_span: tuple[float, float], y0: Sequence[float]) -> None:
+        request.time_span(t_span)
+        request.numbers("y0", y0, self._problem.form.module.STATE)

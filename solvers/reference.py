@@ -46,7 +46,8 @@ def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
         assert problem.h is not None
         size = problem.h
     else:
-        size = max(controller.first_step(first, z, end - t), 2 * shortest)
+        guess = controller.first_step(stepper.slope, t, z, first, end - t)
+        size = max(guess, 2 * shortest)
     while t != end:
         if outcome.steps == problem.max_steps:
             return Status.STEP_LIMIT
@@ -59,8 +60,8 @@ def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
             return Status.STEP_TOO_SMALL
         try:
             z_end, error, last = stepper.step(t, z, aim - t, first)
-            z_end = form.settled(z_end)
             norm = 0.0 if controller is None else controller.norm(error, z, z_end)
+            z_end = form.settled(z_end)
             if not np.isfinite(z_end).all() or not np.isfinite(norm):
                 raise NotFiniteError("the state is not finite")
             stop = False

@@ -59,8 +59,12 @@ def ode_solver(method: str) -> type[OdeSolver]:
             self._slope = self._stepper.slope(self.t, self.y)
             self._longest = max_step
             self._shortest = SHORTEST * float(np.spacing(max(abs(t0), abs(t_bound))))
-            guess = self._control.first_step(self._slope, self.y, t_bound - t0)
-            self._size = first_step or max(guess, 2 * self._shortest)
+            self._size = first_step or max(
+                2 * self._shortest,
+                self._control.first_step(
+                    self._stepper.slope, t0, self.y, self._slope, t_bound - t0
+                ),
+            )
 
         def _step_impl(self) -> tuple[bool, str | None]:
             while True:

@@ -42,7 +42,23 @@ def test_a_step_in_vain_leaves_no_trace_in_the_memory() -> None:
 
 
 def test_the_first_step_is_within_the_run_and_finite() -> None:
-    first = controller().first_step
-    assert first(np.array([1.0]), np.array([1.0]), 10.0) == pytest.approx(0.01)
-    assert first(np.array([1.0]), np.array([1.0]), -0.001) == 0.001
-    assert first(np.array([0.0]), np.array([0.0]), 10.0) == 1e-6
+    def first(y: float, rate: float, duration: float) -> float:
+        state = np.array([y])
+        return controller().first_step(
+            lambda t, y: rate * y, 0.0, state, rate * state, duration
+        )  # fmt: skip
+
+    # y' = -y: bend and speed are 1 in parts of the state, 1/rtol in parts of what is allowed
+    assert first(1.0, -1.0, 1e-3) == 1e-3
+    assert first(1.0, -1.0, -1e-3) == 1e-3
+    assert first(0.0, 0.0, 10.0) == pytest.approx(1e-4)
+    gentle, lively = first(1.0, -1.0, 10.0), first(1.0, -100.0, 10.0)
+    assert 0 < lively < gentle < 1.0
+
+
+def test_a_slope_that_cannot_be_told_ahead_leaves_the_cautious_step() -> None:
+    def broken(t: float, y: np.ndarray) -> np.ndarray:
+        raise ArithmeticError
+
+    one = np.array([1.0])
+    assert controller().first_step(broken, 0.0, one, one, 10.0) == pytest.approx(0.01)

@@ -62,7 +62,8 @@ static void begin(Lanes *lanes)
     const real duration = motion->t_end - place->t;
     real h = every(task->fixed);
     if (!task->fixed) {
-        h = smaller(first_step(place, slope, task->rtol, task->atol), size(duration));
+        h = first_step(place, slope, motion->params, duration, lanes->fresh, task->rtol,
+                       task->atol);
         h = larger(h, 2.0*motion->shortest);
     }
     motion->h = chosen(lanes->fresh, signed_as(h, duration), motion->h);
@@ -184,7 +185,7 @@ static int conclude(Lanes *lanes, int lane, int leaving)
 }
 
 /* One step in every lane; returns the lanes that must be looked at one by one. */
-static mask advance(Lanes *lanes, mask *kept, mask *broken)
+static __attribute__((noinline)) mask advance(Lanes *lanes, mask *kept, mask *broken)
 {
     const Task *task = lanes->task;
     Motion *motion = &lanes->motion;
@@ -211,6 +212,8 @@ static mask advance(Lanes *lanes, mask *kept, mask *broken)
         const real h = chosen(*kept, motion->h, lanes->trial)*change;
         motion->h = chosen(advancing & ~*broken, h, motion->h);
     }
+    settle(end);
+    count_turns(place, lanes->trial, end);
     const real one = every(1.0);
     motion->trials += one;
     motion->rejected += chosen(advancing & ~*kept, one, every(0.0));
@@ -231,6 +234,9 @@ static mask advance(Lanes *lanes, mask *kept, mask *broken)
 /* Move the motions that are kept to where their steps end. */
 static void move(Lanes *lanes, mask kept)
 {
+    if (!any(kept)) {
+        return;
+    }
     real *to = (real *)&lanes->motion.place;
     const real *from = (const real *)&lanes->end;
     for (int k = 0; k < PLACE; k++) {

@@ -115,40 +115,37 @@ static inline real nearest_whole(real x)
     return (x + ROUND) - ROUND;
 }
 
-/* Square root, lane by lane: seldom needed. */
-static real root(real x)
+/* Square root in some lanes, one by one: it is seldom needed. */
+static real root(real x, mask where)
 {
     for (int lane = 0; lane < LANES; lane++) {
-        NUMBER(x, lane) = sqrt(NUMBER(x, lane));
+        if (WORD(where, lane)) {
+            NUMBER(x, lane) = sqrt(NUMBER(x, lane));
+        }
     }
     return x;
 }
 
-/* Binary logarithm of a positive normal number, to about a rounding error.
+/* Binary logarithm of a positive normal number within 1e-7, more than the control of steps needs.
 
    The mantissa m is taken between the roots of 1/2 and 2; with u = (m - 1)/(m + 1),
    ln m = 2 (u + u^3/3 + u^5/5 + ...), and u^2 < 0.03. */
 static inline real binary_logarithm(real x)
 {
+    const double scale = 2.8853900817779268;    /* 2/ln 2 */
     const mask exponent = (word(x) - 0x3fe6a09e667f3bcd) >> 52;
     const real m = number(word(x) - (exponent << 52));
     const real whole = number(exponent + 0x4338000000000000) - ROUND;
-    const real u = (m - 1.0)/(m + 1.0);
-    const real s = u*u, s2 = s*s, s4 = s2*s2;
-    const real series = ((1.0/3 + s*(1.0/5)) + s2*(1.0/7 + s*(1.0/9)))
-        + s4*((1.0/11 + s*(1.0/13)) + s2*(1.0/15 + s*(1.0/17) + s2*(1.0/19)));
-    return whole + u*(2.8853900817779268 + s*series*2.8853900817779268);
+    const real u = (m - 1.0)/(m + 1.0), s = u*u;
+    return whole + u*((scale + s*(scale/3)) + (s*s)*(scale/5 + s*(scale/7)));
 }
 
-/* 2^x for |x| < 1000: 2^n by the exponent, the rest by the exponential series up to x^13/13!. */
+/* 2^x within 1e-8 for |x| < 1000: 2^n by the exponent, the rest by the exponential series. */
 static inline real power_of_two(real x)
 {
     const real shifted = x + ROUND;
-    const real f = (x - (shifted - ROUND))*0.6931471805599453;
-    const real f2 = f*f, f4 = f2*f2;
+    const real f = (x - (shifted - ROUND))*0.6931471805599453, f2 = f*f;
     const real low = (1.0 + f) + f2*(1.0/2 + f*(1.0/6));
-    const real middle = (1.0/24 + f*(1.0/120)) + f2*(1.0/720 + f*(1.0/5040));
-    const real high = (1.0/40320 + f*(1.0/362880)) + f2*(1.0/3628800 + f*(1.0/39916800))
-        + f4*(1.0/479001600 + f*(1.0/6227020800));
-    return number(word(low + f4*(middle + f4*high)) + (word(shifted) << 52));
+    const real high = (1.0/24 + f*(1.0/120)) + f2*(1.0/720 + f*(1.0/5040));
+    return number(word(low + (f2*f2)*high) + (word(shifted) << 52));
 }

@@ -47,7 +47,7 @@ static inline void settle(Place *place)
         real excess = d*(0.5 + d*(0.375 + d*0.3125));
         const mask far = below(every(1e-4), size(d));
         if (any(far)) {
-            excess = chosen(far, 1.0/root(square) - 1.0, excess);
+            excess = chosen(far, 1.0/root(square, far) - 1.0, excess);
         }
         add(place, SINE[a], s*excess);
         add(place, SINE[a] + 1, c*excess);
@@ -74,7 +74,8 @@ static inline void count_turns(const Place *start, real h, Place *end)
 
 /* The place after h, and the estimate of the local error. */
 static __attribute__((noinline)) void step(
-    const Place *start, real h, const real *params, int estimates, Place *end, real *error)
+    const Place *restrict start, real h, const real *restrict params, int estimates,
+    Place *restrict end, real *restrict error)
 {
     real k[STAGES][STATE];
     for (int n = 0; n < STATE && IS_FSAL; n++) {
@@ -91,8 +92,6 @@ static __attribute__((noinline)) void step(
 #endif
         add(end, n, increment(h, k, n));
     }
-    settle(end);
-    count_turns(start, h, end);
     for (int n = 0; n < STATE && IS_FSAL; n++) {
         end->first[n] = k[STAGES - 1][n];
     }
@@ -135,12 +134,30 @@ static inline real factor(real square, mask kept, real *previous)
     return SAFETY*power_of_two(smaller(larger(exponent, least), most));
 }
 
-/* A step to begin with: a change of a hundredth of the state, or of what is allowed. */
-static real first_step(const Place *place, const real *slope, double rtol, double atol)
+/* In some lanes, a step to begin with, from how the slope changes over a very short one (E. Hairer,
+   S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4). */
+static real first_step(
+    const Place *place, const real *slope, const real *params, real duration, mask where,
+    double rtol, double atol)
 {
     const real *z = place->z;
-    const real allowance = root(mean_square(z, z, z, rtol, atol));
-    const real speed = root(mean_square(slope, z, z, rtol, atol));
-    const mask usual = below(every(1e-5), smaller(allowance, speed)) & below(speed, every(INFINITY));
-    return chosen(usual, 0.01*allowance/speed, every(1e-6));
+    real ahead[STATE], later[STATE];
+    const real allowance = root(mean_square(z, z, z, rtol, atol), where);
+    const real speed = root(mean_square(slope, z, z, rtol, atol), where);
+    const mask usual =
+        below(every(1e-5), smaller(allowance, speed)) & below(speed, every(INFINITY));
+    real h = chosen(usual, 0.01*allowance/speed, every(1e-6));
+    h = smaller(h, size(duration));
+    for (int n = 0; n < STATE; n++) {
+        ahead[n] = z[n] + signed_as(h, duration)*slope[n];
+    }
+    RHS(place->t + signed_as(h, duration), ahead, later, params);
+    for (int n = 0; n < STATE; n++) {
+        later[n] -= slope[n];
+    }
+    const real bend = larger(speed, root(mean_square(later, z, z, rtol, atol), where)/h);
+    const real longer =
+        power_of_two(binary_logarithm(0.01/larger(bend, every(1e-15)))*(1.0/(ERROR_ORDER + 1)));
+    const real found = smaller(smaller(100.0*h, longer), size(duration));
+    return chosen(below(bend, every(INFINITY)), found, h);
 }
