@@ -5,20 +5,23 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import replace
 from types import ModuleType
 from warnings import warn
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from solvers import compiled, request
+from solvers import compiled, reference, request, scipy_runs
 from solvers.compiler import NoCompilerError
 from solvers.crossing import Crossing
-from solvers.forms import Form
-from solvers.integration import fastest_form, integrate
+from solvers.forms import Form, fastest_form
 from solvers.kernel import STATUSES, Batch, kernel
-from solvers.problem import Problem
-from solvers.solution import Ensemble, Interrupted, Solution, Status
+from solvers.problem import Outcome, Problem
+from solvers.solution import Ensemble, Interrupted, Status
+from solvers.tableau import Tableau
+
+Array = NDArray[np.float64]
 
 
 def ensemble(
@@ -111,6 +114,7 @@ def ensemble(
             if where == "compiled":
                 raise
             warn(f"integrating in Python: {error}", stacklevel=2)
+            problem = asked(form or "lagrangian")
     assert problem.samples is not None
     rung = f"compiled by {program.library.compiler}" if program else "python"
     result = Ensemble.unknown(
@@ -128,13 +132,7 @@ def ensemble(
             finally:
                 _collect(batch, result)
             return result
-        for k, start in enumerate(starts):
-            found = integrate(
-                module, t_span, start, constants[k % len(constants)], method=method, form=form,
-                rtol=rtol, atol=atol, h=h, t_eval=t_eval, events=events, max_steps=max_steps,
-                backend="python",
-            )  # fmt: skip
-            _take(found, k, result)
+        _run_one_by_one(problem, starts, constants, result)
     except KeyboardInterrupt as interruption:
         raise Interrupted(result) from interruption
     return result
@@ -152,6 +150,20 @@ def _run(batch: Batch, workers: int) -> None:
             raise
     for future in running:
         future.result()
+
+
+def _run_one_by_one(
+    problem: Problem, starts: Array, constants: Array, result: Ensemble
+) -> None:  # fmt: skip
+    rung = reference if isinstance(problem.method, Tableau) else scipy_runs
+    for k, start in enumerate(starts):
+        params = constants[k % len(constants)].tolist()
+        form = Form(problem.form.module, problem.form.name, params)
+        outcome = Outcome()
+        try:
+            rung.run(replace(problem, start=start, form=form), outcome)
+        finally:
+            _take(outcome, k, result)
 
 
 def _collect(batch: Batch, result: Ensemble) -> None:
@@ -174,14 +186,15 @@ def _collect(batch: Batch, result: Ensemble) -> None:
         result.y_events[there, event, k] = outside(rows["z"], rows["turns"])[there]
 
 
-def _take(found: Solution, k: int, result: Ensemble) -> None:
+def _take(found: Outcome, k: int, result: Ensemble) -> None:
     """What one motion, integrated by itself, has found."""
     result.t[k], result.y[k] = found.end
     result.status[k], result.nfev[k] = found.status, found.nfev
     result.steps[k], result.rejected[k] = found.steps, found.rejected
-    result.samples[k, :, : len(found.t)] = found.y
+    for column, y in enumerate(found.y):
+        result.samples[k, :, column] = y
+    kept = result.t_events.shape[-1]
     for event, (times, states) in enumerate(zip(found.t_events, found.y_events, strict=True)):
-        kept = result.t_events.shape[-1]
         result.occurred[k, event] = len(times)
-        result.t_events[k, event, : len(times)] = times[:kept]
-        result.y_events[k, event, : len(times)] = states[:kept]
+        for which, (t, y) in enumerate(zip(times[:kept], states[:kept], strict=True)):
+            result.t_events[k, event, which], result.y_events[k, event, which] = t, y

@@ -135,5 +135,10 @@ class Form:
         return y
 
 
+def fastest_form(module: ModuleType) -> str:
+    """The form that a compiled loop runs fastest."""
+    return "rational" if hasattr(module, "rhs_rational") else "lagrangian"
+
+
 def _has(module: ModuleType, form: str) -> bool:
     return hasattr(module, "rhs" if form == "lagrangian" else f"rhs_{form}")

@@ -7,6 +7,7 @@ plain reference in Python, or a solver of SciPy's.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from types import ModuleType
 from warnings import warn
 
@@ -15,8 +16,11 @@ from numpy.typing import ArrayLike
 
 from solvers import compiled, reference, request, scipy_runs
 from solvers.compiler import NoCompilerError
+from solvers.forms import fastest_form
+from solvers.horizon import HorizonWarning, horizon
 from solvers.problem import Event, Outcome, Problem
 from solvers.solution import Interrupted, Solution, Status
+from solvers.stability import unstable
 from solvers.tableau import Tableau
 
 
@@ -83,6 +87,13 @@ def integrate(
     -------
     Solution
 
+    Warns
+    -----
+    solvers.horizon.HorizonWarning
+        When errors of the size of the tolerances outgrow the motion before its end.
+    UserWarning
+        When no compiler could build the loop, and it runs in Python.
+
     Raises
     ------
     ValueError
@@ -110,7 +121,7 @@ def integrate(
             quick = asked(form or fastest_form(module))
             try:
                 compiled.run(quick, outcome, method, compensated)
-                return _solution(quick, outcome, energy)
+                return _judged(quick, outcome, energy)
             except NoCompilerError as error:
                 if where == "compiled":
                     raise
@@ -119,19 +130,32 @@ def integrate(
         rung.run(problem, outcome)
     except KeyboardInterrupt as interruption:
         raise Interrupted(_solution(problem, outcome, energy)) from interruption
-    return _solution(problem, outcome, energy)
+    return _judged(problem, outcome, energy)
 
 
-def fastest_form(module: ModuleType) -> str:
-    """The form that a compiled loop runs fastest."""
-    return "rational" if hasattr(module, "rhs_rational") else "lagrangian"
+def _judged(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
+    """The solution, with what its trajectory is worth."""
+    complaint = unstable(problem, failed=outcome.status is Status.NOT_FINITE)
+    if complaint:
+        outcome.status = Status.UNSTABLE
+    until = horizon(problem) if outcome.status in (Status.FINISHED, Status.EVENT) else inf
+    if abs(until - problem.span[0]) < abs(outcome.end[0] - problem.span[0]):
+        warn(
+            f"beyond t = {until:.4g} this trajectory means nothing: there errors of "
+            f"{max(problem.rtol, float(problem.atol.max())):.1g} have grown as large as it; "
+            "tighten rtol and atol, or ask for energies and statistics only",
+            HorizonWarning,
+            stacklevel=3,
+        )
+    return _solution(problem, outcome, energy, complaint)
 
 
-def _solution(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
+def _solution(problem: Problem, outcome: Outcome, energy: bool, complaint: str = "") -> Solution:
     form, width = problem.form, len(problem.start)
     y = np.array(outcome.y).reshape(-1, width).T
     t, place = outcome.end
-    where = "" if outcome.status is Status.FINISHED else f" (t = {t}, y = {place})"
+    where = complaint or f"t = {t}, y = {place}"
+    where = "" if outcome.status is Status.FINISHED else f" ({where})"
     return Solution(
         t=np.array(outcome.t),
         y=y,

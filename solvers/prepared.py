@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers import compiled, request
-from solvers.integration import fastest_form
+from solvers.forms import fastest_form
 from solvers.kernel import STATUSES, Batch, kernel
 from solvers.problem import SHORTEST, Problem
 from solvers.solution import Status

@@ -20,6 +20,7 @@ class Status(Enum):
     NOT_FINITE = "the right-hand side or the state was not finite in the next step"
     STEP_TOO_SMALL = "the step fell below the resolution of the time: a singularity, most likely"
     INTERRUPTED = "it was interrupted; go on from the last state"
+    UNSTABLE = "the fixed step is too long: small deviations explode"
     NO_CONVERGENCE = "the stage equations of the next step could not be solved"
 
 

@@ -1,5 +1,6 @@
 """Integrations against exact solutions; samples, events, and what bad input and faults get."""
 
+import re
 from functools import partial
 from math import asin, log2, pi, sin, sqrt
 from types import ModuleType, SimpleNamespace
@@ -12,6 +13,7 @@ from scipy.special import ellipj, ellipk
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.catalogue import UnknownMethodError, load, names
+from solvers.horizon import HorizonWarning
 from solvers.integration import integrate
 from solvers.scipy_methods import ode_solver
 from solvers.solution import Status
@@ -21,6 +23,8 @@ FORMS = ("lagrangian", "hamiltonian", "rational")
 REPORT = (pi / 2, pi, 0.0, 0.0)
 #: The report's scene at 5 s, from an 80-bit Taylor series.
 END = (2.2280642400930692, -0.2670447339117043, -1.9694093323354762, -2.9859792219408772)
+
+TIMES = np.linspace(0, 60, 601)
 
 
 def exact_pendulum(t: float | np.ndarray, amplitude: float) -> np.ndarray:
@@ -207,7 +211,10 @@ def test_angles_come_back_unwrapped_from_the_rational_form() -> None:
 
 
 def test_the_rational_form_keeps_sine_and_cosine_together() -> None:
-    found = integrate(dp, (0, 50), (2.0, 1.0, 0.0, 0.0), dp.DEFAULTS, form="rational", rtol=1e-6)
+    with pytest.warns(HorizonWarning):  # its energy means something all the same
+        found = integrate(
+            dp, (0, 50), (2.0, 1.0, 0.0, 0.0), dp.DEFAULTS, form="rational", rtol=1e-6
+        )
     energy = dp.energy_many(found.y, dp.DEFAULTS)
     assert np.abs(energy - energy[0]).max() < 0.01 * abs(energy[0])
 
@@ -481,3 +488,54 @@ def test_small_angles_have_the_textbook_period() -> None:
     found = integrate(sp, (0, 10), (amplitude, 0.0), sp.DEFAULTS, rtol=1e-11, atol=1e-16)
     omega = sqrt(sp.DEFAULTS[2] / sp.DEFAULTS[1])
     assert asin(sin(found.y[0, -1])) == pytest.approx(amplitude * np.cos(omega * 10), abs=1e-11)
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+@pytest.mark.parametrize(("method", "interval"), [("rk3", sqrt(3)), ("rk4", 2 * sqrt(2))])
+def test_a_step_beyond_the_stability_limit_is_called_unstable(
+    method: str, interval: float, backend: str
+) -> None:
+    # the imaginary stability interval of the textbook, and a pendulum's small motion
+    _, length, g = sp.DEFAULTS
+    limit = interval / sqrt(g / length)
+    run = partial(integrate, sp, (0, 100), (0.01, 0.0), sp.DEFAULTS, method=method, backend=backend)
+    stable, broken = run(h=0.9 * limit), run(h=1.1 * limit)
+    assert stable.status is Status.FINISHED
+    assert np.abs(stable.y).max() < 0.03
+    assert broken.status is Status.UNSTABLE
+    assert np.abs(broken.y).max() > 0.1
+    assert not broken.success
+    found = re.search(r"good up to t = (\S+);.* at most (\S+)\)", broken.message)
+    assert found
+    good, longest = map(float, found.groups())
+    assert longest == pytest.approx(limit, rel=0.05)
+    grown = np.abs(broken.y[0][broken.t <= good]).max()
+    assert 0.02 < grown < 0.5
+
+
+def test_methods_that_no_step_makes_stable_are_judged_by_what_grows_over_the_run() -> None:
+    # Euler multiplies an oscillation by about exp(h w^2 t/2)
+    short = integrate(sp, (0, 10), (0.01, 0.0), sp.DEFAULTS, method="rk1", h=0.05)
+    long = integrate(sp, (0, 1000), (0.01, 0.0), sp.DEFAULTS, method="rk1", h=0.05)
+    assert (short.status, long.status) == (Status.FINISHED, Status.UNSTABLE)
+    assert "at most 0.000939" in long.message  # 2 ln 10 / (w^2 t)
+
+
+def test_a_chaotic_run_beyond_its_horizon_warns() -> None:
+    start = (3.0, 3.0, 0.0, 0.0)
+    with pytest.warns(HorizonWarning, match="beyond t = ") as caught:
+        rough = integrate(dp, (0, 60), start, dp.DEFAULTS, rtol=1e-6, atol=1e-6, t_eval=TIMES)
+    horizon = float(str(caught[0].message).split()[3])
+    with pytest.warns(HorizonWarning):
+        fine = integrate(dp, (0, 60), start, dp.DEFAULTS, rtol=1e-13, atol=1e-13, t_eval=TIMES,
+                         method="verner98")  # fmt: skip
+    apart = np.abs(rough.y - fine.y).max(axis=0)
+    # before half of it the motion is right, after twice it is not
+    assert apart[0.5 * horizon > TIMES].max() < 0.1
+    assert apart[2 * horizon < TIMES].max() > 1.0
+    assert 2 * horizon < 50
+
+
+def test_a_regular_run_does_not_warn_however_long() -> None:
+    integrate(dp, (0, 500), (0.1, 0.1, 0.0, 0.0), dp.DEFAULTS, rtol=1e-8)
+    integrate(sp, (0, 2000), (1.0, 0.0), sp.DEFAULTS, rtol=1e-8)

@@ -38,9 +38,10 @@ static inline void add(Place *place, int n, real change)
 }
 
 /* Bring sin^2 + cos^2 back to 1: by the series of 1/sqrt(1 - d) where d is small, as it nearly
-   always is. */
-static inline void settle(Place *place)
+   always is. Returns 0 where that is possible, NaN where a square is beyond all numbers. */
+static inline real settle(Place *place)
 {
+    real nothing = every(0.0);
     for (int a = 0; a < ANGLES; a++) {
         const real s = place->z[SINE[a]], c = place->z[SINE[a] + 1];
         const real square = s*s + c*c, d = 1.0 - square;
@@ -51,7 +52,9 @@ static inline void settle(Place *place)
         }
         add(place, SINE[a], s*excess);
         add(place, SINE[a] + 1, c*excess);
+        nothing += d - d;
     }
+    return nothing;
 }
 
 /* The angle within 0.05 of its value between -pi and pi: enough to count turns. */
@@ -62,14 +65,18 @@ static inline real rough_angle(const Place *place, int a)
     return chosen(below(c, every(0.0)), signed_as(every(PI), s) - acute, acute);
 }
 
-/* An angle turns by about its mean velocity times h; the rest is whole turns. */
-static inline void count_turns(const Place *start, real h, Place *end)
+/* An angle turns by about its mean velocity times h; the rest is whole turns. Returns 0, or NaN
+   where they cannot be counted. */
+static inline real count_turns(const Place *start, real h, Place *end)
 {
+    real nothing = every(0.0);
     for (int a = 0; a < ANGLES; a++) {
         const real turned = h*(start->z[RATE[a]] + end->z[RATE[a]])*0.5;
         const real gap = rough_angle(start, a) + turned - rough_angle(end, a);
         end->turns[a] = start->turns[a] + nearest_whole(gap*(0.5/PI));
+        nothing += gap - gap;
     }
+    return nothing;
 }
 
 /* The place after h, and the estimate of the local error. */
