@@ -3,8 +3,10 @@
 import ctypes
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable
+from importlib.util import find_spec
 from math import pi
 from pathlib import Path
 from types import ModuleType
@@ -22,7 +24,7 @@ from solvers.crossing import Crossing
 from solvers.ensemble import ensemble
 from solvers.horizon import HorizonWarning
 from solvers.integration import integrate
-from solvers.kernel import Batch, Kernel, kernel
+from solvers.kernel import STATUSES, Batch, Kernel, kernel
 from solvers.prepared import NotFinishedError, prepare
 from solvers.solution import Ensemble, Interrupted, Solution, Status
 
@@ -411,3 +413,37 @@ def test_a_motion_that_leaves_the_numbers_ends_with_a_status(
     controlled = ensemble(dp, (0, 9), starts, dp.DEFAULTS, **options)
     assert controlled.status[0] in (Status.NOT_FINITE, Status.STEP_TOO_SMALL, Status.STEP_LIMIT)
     assert all(status is Status.FINISHED for status in controlled.status[1:])
+
+
+def bits(form: str, method: str, *, lanes: bool) -> bytes:
+    """What a reproducible loop, built now, makes of some motions with events and samples."""
+    program = Kernel(dp, form, method, lanes=lanes, compensated=True, reproducible=True)
+    events, times = [Crossing(dp, "theta1", 0.3)], np.linspace(0, 3, 7)
+    problem = request.problem(
+        dp, (0.0, 3.0), REPORT, dp.DEFAULTS, method, form, 1e-9, 1e-9, None, times, events, 10**6
+    )
+    batch = Batch(
+        program, problem, problem.form, scatter(40), capacity=7, occurrences=3, pauses=False
+    )
+    batch.restart()
+    batch.go()
+    assert (batch.motions["status"] == STATUSES.index(Status.FINISHED)).all()
+    return b"".join(part.tobytes() for part in (batch.motions, batch.rows, batch.event_rows))
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("method", ["tsit54", "verner87"])
+def test_a_reproducible_build_gives_the_same_bits_from_every_compiler_and_in_lanes(
+    form: str, method: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usual = bits(form, method, lanes=False)
+    assert bits(form, method, lanes=True) == usual
+    # as far from the usual translation as this compiler goes
+    monkeypatch.setattr(compiler, "FLAGS", ("-std=c99", "-O0", "-fPIC", "-Wno-psabi"))
+    assert bits(form, method, lanes=False) == usual
+    monkeypatch.undo()
+    if find_spec("ziglang"):
+        zig = (sys.executable, "-m", "ziglang", "cc")
+        monkeypatch.setattr(compiler, "compilers", lambda: iter([zig]))
+        assert bits(form, method, lanes=False) == usual
+        assert bits(form, method, lanes=True) == usual
