@@ -82,7 +82,7 @@ def peak_share(module: ModuleType) -> dict[str, float]:
     operations = int(re.findall(r"(\d+) operations", module.rhs_rational.__doc__ or "")[0])
     state = len(module.STATE_RATIONAL)
     step = 2 * state * sum(w != 0 for w in weights) + operations * tableau.stages
-    controlled = step + 2 * state * sum(w != 0 for w in tableau.error_weights)
+    controlled = step + 2 * state * sum(w != 0 for row in tableau.error_weights for w in row)
     run = partial(ensemble, module, (0, END), starts, module.DEFAULTS, method=method, workers=1)
     free, held = run(rtol=1e-11, atol=1e-11), run(h=0.01)
     times = timed(

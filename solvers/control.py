@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ class Controller:
     Parameters
     ----------
     order : int
-        Order of the error estimate, the lower one of the pair.
+        Order of the error estimate.
     rtol, atol : float or ndarray
         The error of a component may be atol + rtol |y|.
     """
@@ -34,8 +35,15 @@ class Controller:
     _previous: float = 1.0
 
     def norm(self, error: Array, y: Array, end: Array) -> float:
-        """Root mean square of the error in parts of what is allowed."""
-        return _rms(error, self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end)))
+        """Root mean square of the error in parts of what is allowed.
+
+        Of two estimates, shape (2, state), the first a and the second b combine to
+        a²/√(a² + b²/100) (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary
+        Differential Equations I, section II.10).
+        """
+        allowed = self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end))
+        a, *others = (_rms(estimate, allowed) for estimate in np.atleast_2d(error))
+        return a * a / hypot(a, others[0] / 10) if others and a else a
 
     def factor(self, norm: float) -> float:
         """By what the step changes, after one whose error has this norm.

@@ -55,7 +55,8 @@ static void leave(const double *z, const double *turns, double *y, const double 
 
 METHOD = """\
 /* {title} */
-enum {{ STAGES = {stages}, IS_FSAL = {is_fsal}, ERROR_ORDER = {error_order} }};
+enum {{ STAGES = {stages}, IS_FSAL = {is_fsal} }};
+enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
 
 static inline void stages(
     real t, const real *z, real h, real (*k)[STATE], const real *params)
@@ -72,6 +73,11 @@ static inline real increment(real h, real (*k)[STATE], int n)
 static inline real estimate(real h, real (*k)[STATE], int n)
 {{
     return {estimate};
+}}
+
+static inline real second_estimate(real h, real (*k)[STATE], int n)
+{{
+    return {second_estimate};
 }}
 """
 
@@ -175,10 +181,12 @@ def _method(tableau: Tableau) -> str:
         title=tableau.title,
         stages=tableau.stages,
         is_fsal=int(tableau.is_fsal),
-        error_order=min(tableau.order, tableau.embedded_order),
+        error_order=tableau.error_order,
+        estimates=len(tableau.error_weights),
         rows="".join(rows),
         increment=_sum(tableau.b),
-        estimate=_sum(tableau.error_weights),
+        estimate=_sum(tableau.error_weights[0]) if tableau.b_hat else "0.0*h",
+        second_estimate=_sum(tableau.error_weights[1]) if tableau.b_low else "0.0*h",
     )
 
 

@@ -62,8 +62,7 @@ class Problem:
         assert isinstance(self.method, Tableau)
         if self.h is not None:
             return None
-        order = min(self.method.order, self.method.embedded_order)
-        return Controller(order, self.rtol, self.atol)
+        return Controller(self.method.error_order, self.rtol, self.atol)
 
     @property
     def description(self) -> str:

@@ -53,9 +53,7 @@ def ode_solver(method: str) -> type[OdeSolver]:
                 if value is not None and not value > 0:
                     raise ValueError(f"{name} = {value} must be positive")
             self._stepper = Stepper(tableau, self.fun)
-            self._control = Controller(
-                min(tableau.order, tableau.embedded_order), relative, absolute
-            )
+            self._control = Controller(tableau.error_order, relative, absolute)
             self._slope = self._stepper.slope(self.t, self.y)
             self._longest = max_step
             self._shortest = SHORTEST * float(np.spacing(max(abs(t0), abs(t_bound))))

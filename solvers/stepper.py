@@ -50,7 +50,7 @@ class Stepper:
     def __init__(self, tableau: Tableau, rhs: Rhs, jacobian: Rhs | None = None) -> None:
         self._A = np.array([[float(a) for a in row] for row in tableau.A])
         self._b, self._c = (np.array([float(x) for x in xs]) for xs in (tableau.b, tableau.c))
-        self._error_weights = np.array([float(w) for w in tableau.error_weights])
+        self._error_weights = np.array([[float(w) for w in row] for row in tableau.error_weights])
         self._tableau, self._rhs, self._jacobian = tableau, rhs, jacobian
         self.nfev = self.njev = 0
 
@@ -74,7 +74,9 @@ class Stepper:
         return value
 
     def step(self, t: float, y: Array, h: float, first: Array) -> tuple[Array, Array, Array | None]:
-        """The state after `h`, the estimate of its local error, and the slope there if known.
+        """The state after `h`, estimates of its local error, and the slope there if known.
+
+        The estimates have shape (estimates, state).
 
         Parameters
         ----------
@@ -90,7 +92,7 @@ class Stepper:
         else:
             slopes = self._implicit(t, y, h, first)
         end = y + h * (self._b @ slopes)
-        error = h * (self._error_weights @ slopes) if self._tableau.b_hat else np.zeros_like(y)
+        error = h * (self._error_weights @ slopes) if self._tableau.b_hat else np.zeros((1, len(y)))
         return end, error, slopes[-1] if self._tableau.is_fsal else None
 
     def _explicit(self, t: float, y: Array, h: float, first: Array) -> Array:

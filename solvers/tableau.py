@@ -30,6 +30,9 @@ class Tableau:
         Weights of the solution.
     b_hat : tuple, optional
         Weights of the embedded solution.
+    b_low : tuple, optional
+        Weights of a second embedded solution of lower order, for methods that combine
+        two estimates of their error.
 
     Notes
     -----
@@ -42,17 +45,20 @@ class Tableau:
     A: tuple[tuple[Number, ...], ...]
     b: tuple[Number, ...]
     b_hat: tuple[Number, ...] = ()
+    b_low: tuple[Number, ...] = ()
 
     @classmethod
-    def explicit(cls, title: str, rows: str, b: str, b_hat: str = "") -> Tableau:
+    def explicit(
+        cls, title: str, rows: str, b: str, b_hat: str = "", b_low: str = ""
+    ) -> Tableau:  # fmt: skip
         """A tableau from text: numbers between spaces, rows of later stages between semicolons."""
         lines = [[], *(row.split() for row in rows.split(";") if row.strip())]
         numbers = [*(number for line in lines for number in line), *b.split()]
         rounded = any(len(number) > LONG and "/" not in number for number in numbers)
         read = _decimal if rounded else Fraction
         A = [[read(n) for n in line] + [read("0")] * (len(lines) - len(line)) for line in lines]
-        weights, embedded = (tuple(map(read, text.split())) for text in (b, b_hat))
-        return cls(title, tuple(map(tuple, A)), weights, embedded)
+        weights = (tuple(map(read, text.split())) for text in (b, b_hat, b_low))
+        return cls(title, tuple(map(tuple, A)), *weights)
 
     @property
     def stages(self) -> int:
@@ -77,11 +83,22 @@ class Tableau:
         return order(self.A, self.b_hat) if self.b_hat else 0
 
     @cached_property
-    def error_weights(self) -> tuple[Number, ...]:
-        """The weights b - b_hat of the error estimate."""
+    def error_order(self) -> int:
+        """Order of the error estimate, 0 without one; of two combined, see `Controller.norm`."""
+        if self.b_low:
+            return 2 * self.embedded_order - order(self.A, self.b_low)
+        return min(self.order, self.embedded_order)
+
+    @cached_property
+    def error_weights(self) -> tuple[tuple[Number, ...], ...]:
+        """The weights b - b_hat of the error estimate, and b - b_low of a second one."""
         with localcontext() as context:
             context.prec = WORKING_DIGITS
-            return tuple(b - e for b, e in zip(self.b, self.b_hat, strict=False))
+            return tuple(
+                tuple(b - e for b, e in zip(self.b, embedded, strict=True))
+                for embedded in (self.b_hat, self.b_low)
+                if embedded
+            )
 
     @property
     def is_explicit(self) -> bool:

@@ -62,3 +62,12 @@ def test_a_slope_that_cannot_be_told_ahead_leaves_the_cautious_step() -> None:
 
     one = np.array([1.0])
     assert controller().first_step(broken, 0.0, one, one, 10.0) == pytest.approx(0.01)
+
+
+def test_two_estimates_combine_as_published() -> None:
+    y = np.array([1.0, 1.0])
+    a, b = np.array([2e-3, 1e-3]), np.array([5e-2, 4e-2])
+    first, second = (controller().norm(e, y, y) for e in (a, b))
+    expected = first**2 / np.sqrt(first**2 + 0.01 * second**2)
+    assert controller().norm(np.array([a, b]), y, y) == pytest.approx(expected, rel=1e-14)
+    assert controller().norm(np.zeros((2, 2)), y, y) == 0.0

@@ -54,7 +54,7 @@ def test_each_method_has_its_published_properties_by_proof(name: str) -> None:
 @pytest.mark.parametrize("name", names())
 def test_coefficients_that_can_be_exact_are(name: str) -> None:
     method = load(name)
-    kinds = {type(x) for row in (*method.A, method.b, method.b_hat) for x in row}
+    kinds = {type(x) for row in (*method.A, method.b, method.b_hat, method.b_low) for x in row}
     decimals = name in ("tsit54", "dop853", "verner87", "verner98")
     assert kinds <= ({Decimal} if decimals else {Fraction, Surd})
 
@@ -71,7 +71,11 @@ def test_a_mistake_in_any_coefficient_loses_the_order(name: str) -> None:
                 assert order(wrong, method.b) < method.order or (
                     method.b_hat and order(wrong, method.b_hat) < method.embedded_order
                 )
-    for weights, expected in ((method.b, method.order), (method.b_hat, method.embedded_order)):
+    low = order(method.A, method.b_low) if method.b_low else 0
+    assert low == (3 if name == "dop853" else 0)
+    for weights, expected in (
+        (method.b, method.order), (method.b_hat, method.embedded_order), (method.b_low, low),
+    ):  # fmt: skip
         for j, b in enumerate(weights):
             if b != 0:
                 changed = [*weights[:j], b + abs(b) / 10**15, *weights[j + 1 :]]
@@ -184,8 +188,9 @@ def test_error_weights_estimate_nothing_where_the_solution_is_constant() -> None
     for name in names():
         method = load(name)
         if method.b_hat:
-            assert abs(float(sum(method.error_weights))) < 1e-25
-            assert any(w != 0 for w in method.error_weights)
+            for weights in method.error_weights:
+                assert abs(float(sum(weights))) < 1e-25
+                assert any(w != 0 for w in weights)
 
 
 def test_an_unknown_method_is_refused_with_those_that_exist() -> None:

@@ -194,7 +194,7 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *kept, mask *br
     const real left = (motion->t_end - place->t) - place->t_low;
     const mask last = advancing & ~below(size(motion->h)*(1 + 1e-9), size(left));
     lanes->trial = chosen(advancing, chosen(last, left, motion->h), lanes->trial);
-    real error[STATE];
+    real error[2][STATE];
     step(place, lanes->trial, motion->params, !task->fixed, end, error);
     end->t = chosen(last, motion->t_end, end->t);
     end->t_low = chosen(last, every(0.0), end->t_low);
@@ -205,7 +205,7 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *kept, mask *br
     *broken = ~below(size(nothing), every(1.0));
     *kept = advancing & ~*broken;
     if (!task->fixed) {
-        const real square = mean_square(error, place->z, end->z, task->rtol, task->atol);
+        const real square = error_square(error, place->z, end->z, task->rtol, task->atol);
         *broken |= advancing & ~below(square, every(INFINITY));
         *kept &= ~below(every(1.0), square) & ~*broken;
         const real change = factor(square, *kept, &motion->previous);

@@ -2,7 +2,8 @@
 
    Before this file stand the right-hand side RHS, the sizes STATE, PARAMETERS and ANGLES, where in
    the state the sine of each angle (its cosine follows) and its velocity are (SINE, RATE), and the
-   method: STAGES, IS_FSAL, ERROR_ORDER, stages(), increment() and estimate(). */
+   method: STAGES, IS_FSAL, ERROR_ORDER, ESTIMATES, stages(), increment(), estimate() and, where
+   there are two, second_estimate(). */
 
 static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
 static const double PI = 3.14159265358979324;
@@ -82,7 +83,7 @@ static inline real count_turns(const Place *start, real h, Place *end)
 /* The place after h, and the estimate of the local error. */
 static __attribute__((noinline)) void step(
     const Place *restrict start, real h, const real *restrict params, int estimates,
-    Place *restrict end, real *restrict error)
+    Place *restrict end, real (*restrict error)[STATE])
 {
     real k[STAGES][STATE];
     for (int n = 0; n < STATE && IS_FSAL; n++) {
@@ -103,7 +104,8 @@ static __attribute__((noinline)) void step(
         end->first[n] = k[STAGES - 1][n];
     }
     for (int n = 0; n < STATE && estimates; n++) {
-        error[n] = estimate(h, k, n);
+        error[0][n] = estimate(h, k, n);
+        error[1][n] = ESTIMATES > 1 ? second_estimate(h, k, n) : error[0][n];
     }
     end->t = sum(start->t, h + start->t_low, &end->t_low);
 }
@@ -127,6 +129,19 @@ static inline real mean_square(
         total += part*part;
     }
     return total*(1.0/STATE);
+}
+
+/* Mean square of the error; of two estimates combined (E. Hairer, S. P. Norsett, G. Wanner, Solving
+   Ordinary Differential Equations I, section II.10). */
+static inline real error_square(
+    real (*error)[STATE], const real *x, const real *y, double rtol, double atol)
+{
+    const real first = mean_square(error[0], x, y, rtol, atol);
+    if (ESTIMATES < 2) {
+        return first;
+    }
+    const real second = mean_square(error[1], x, y, rtol, atol);
+    return first*first/(first + 0.01*second + 1e-300);
 }
 
 /* By what the step changes after an error of this mean square: PI control if it was kept, else the

@@ -1,14 +1,13 @@
-"""Dormand and Prince's method of order 8 in 12 stages, with an error estimate of order 5.
+"""Dormand and Prince's method of order 8 in 12 stages, with error estimates of orders 5 and 3.
 
 E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.10;
-the decimals are those of their program DOP853. The program combines two estimates; here the
-one of order 5 stands alone.
+the decimals are those of their program DOP853.
 """
 
 from solvers.tableau import Tableau
 
 tableau = Tableau.explicit(
-    "Dormand-Prince 8(5)",
+    "Dormand-Prince 8(5,3)",
     rows="""
         0.0526001519587677318785587544488;
         0.0197250569845378994544595329183 0.0591751709536136983633785987549;
@@ -50,5 +49,9 @@ tableau = Tableau.explicit(
         2.38727684897175057456422398564 -7.4655811424655713184287418377
         0.66149321570779357609756479137 -0.486340068375533557585910690905
         0.119442194318914635909069111371 0.0670659235916588857765328353543
+    """,
+    b_low="""
+        0.244094488188976377952755905512 0 0 0 0 0 0 0 0.733846688281611857341361741547 0 0
+        0.0220588235294117647058823529412
     """,
 )
