@@ -213,7 +213,7 @@ def _bench(argv: Sequence[str]) -> int:
 
     import generated.double_pendulum as module
     from derive import Derivation, load
-    from solvers.bench_table import main as bench
+    from solvers.bench.table import main as bench
 
     def lambdified() -> Callable[..., Any]:
         derivation = Derivation(load("double_pendulum"))

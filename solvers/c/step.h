@@ -58,7 +58,7 @@ static inline real settle(Place *place)
     return nothing;
 }
 
-/* The angle within 0.06 of its value between -pi and pi: enough to count turns. */
+/* The angle within 0.08 of its value between -pi and pi: enough to count turns. */
 static inline real rough_angle(const Place *place, int a)
 {
     const real s = place->z[SINE[a]], c = place->z[SINE[a] + 1];

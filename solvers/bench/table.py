@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
-from solvers import bench, bench_rates
+from solvers.bench import curves, rates
 
 #: Global errors at which both sides are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -51,21 +51,21 @@ def figures(module: ModuleType, lambdified: Callable[..., object], hy: Any) -> d
     return {
         "machine": f"{platform.machine()}, Python {platform.python_version()}",
         "peers": {"heyoka": hy.__version__},
-        "one motion": _compared(bench.one_motion(module, hy)),
-        "many motions": _compared(bench.many_motions(module, hy)),
-        "right-hand side in Python": bench_rates.calls(module, lambdified),
-        "operations a second": bench_rates.peak_share(module),
-        "preparation": bench_rates.preparation(module, hy),
+        "one motion": _compared(curves.one_motion(module, hy)),
+        "many motions": _compared(curves.many_motions(module, hy)),
+        "right-hand side in Python": rates.calls(module, lambdified),
+        "operations a second": rates.peak_share(module),
+        "preparation": rates.preparation(module, hy),
     }
 
 
-def _compared(curves: Mapping[str, bench.Curve]) -> list[dict[str, Any]]:
+def _compared(found: Mapping[str, curves.Curve]) -> list[dict[str, Any]]:
     """At each error the cheapest of our methods, and by what factor others take longer."""
     rows = []
     for error in ERRORS:
-        ours = {name: curves[name].at(error) for name in bench.METHODS}
+        ours = {name: found[name].at(error) for name in curves.METHODS}
         method = min((name for name in ours if ours[name] > 0), key=ours.__getitem__)
-        peers = {name: c.at(error) for name, c in curves.items() if name not in ours}
+        peers = {name: curve.at(error) for name, curve in found.items() if name not in ours}
         rows.append({
             "global_error": error, "method": method, "seconds": ours[method],
             "peers": {name: seconds for name, seconds in peers.items() if seconds > 0},
@@ -80,7 +80,7 @@ def text(found: Mapping[str, Any]) -> str:
     lines = [f"{found['machine']}; heyoka {found['peers']['heyoka']}", ""]
     for title, part in (
         ("One motion: the report's scene, 5 s", "one motion"),
-        (f"{bench.MOTIONS} motions from rest, 5 s: one of them, on one core", "many motions"),
+        (f"{curves.MOTIONS} motions from rest, 5 s: one of them, on one core", "many motions"),
     ):
         names = list(dict.fromkeys(name for row in found[part] for name in row["ratios"]))
         lines.append(f"{title}. Times as long as holonomic, at equal global error:")
@@ -97,11 +97,11 @@ def text(found: Mapping[str, Any]) -> str:
         f"Right-hand side in Python, one state: {call['holonomic'] * 1e6:.2f} us; "
         f"lambdify with NumPy takes {call['lambdify'] / call['holonomic']:.1f} times as long."
     )
-    rates = found["operations a second"]
-    peak = rates.pop("peak")
+    speeds = dict(found["operations a second"])
+    peak = speeds.pop("peak")
     lines.append(f"Multiply-add peak of one core: {peak / 1e9:.0f}e9 operations a second.")
     lines += [
-        f"  {name}: {rate / 1e9:.0f}e9, {rate / peak:.0%} of it" for name, rate in rates.items()
+        f"  {name}: {rate / 1e9:.0f}e9, {rate / peak:.0%} of it" for name, rate in speeds.items()
     ]
     lines.append("Left out above, once for each system and method:")
     lines += [f"  {name}: {seconds:.2f} s" for name, seconds in found["preparation"].items()]

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from solvers import peers
-from solvers.bench import END, MOTIONS, START, timed
+from solvers.bench import peers
+from solvers.bench.curves import END, MOTIONS, START, timed
 from solvers.catalogue import load
 from solvers.compiler import build
 from solvers.ensemble import ensemble

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from solvers import peers
+from solvers.bench import peers
 from solvers.ensemble import ensemble
 from solvers.prepared import NotFinishedError, prepare
 

@@ -1,0 +1,1 @@
+"""How fast compiled loops are beside other programs and beside what the machine can do."""
