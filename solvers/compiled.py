@@ -51,37 +51,46 @@ def run(problem: Problem, outcome: Outcome, method: str, compensated: bool) -> N
     )  # fmt: skip
     outcome.t_events = [[] for _ in problem.events]
     outcome.y_events = [[] for _ in problem.events]
-    outcome.end = problem.span[0], problem.start
-    if problem.span[0] == problem.span[1]:
-        wanted = 1 if samples is None else len(samples)
-        outcome.t, outcome.y = wanted * [problem.span[0]], wanted * [problem.start]
-        outcome.status = Status.FINISHED
+    begin = problem.span[0]
+    outcome.end = begin, problem.start
+    if problem.span[0] == problem.span[1] or not problem.max_steps:
+        if samples is None or (samples.size and samples[0] == begin):
+            outcome.t, outcome.y = [begin], [problem.start]
+        done = problem.span[0] == problem.span[1]
+        outcome.status = Status.FINISHED if done else Status.STEP_LIMIT
         return
     status = None
     while status is None:
         batch.restart(PATIENCE)
-        batch.go()
-        status = STATUSES[batch.motions["status"][0]]
-        _collect(batch, problem, outcome)
+        try:
+            batch.go()
+        finally:  # an interruption is heard when C returns: keep what C has done
+            status = STATUSES[batch.motions["status"][0]]
+            _collect(batch, problem, outcome)
     outcome.status = status
 
 
 def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
     """Move what the motion has written into `outcome`, and make room for more."""
-    motion = batch.motions[0]
-    if problem.samples is None:
-        rows = batch.rows[0, : motion["rows"]]
-        motion["rows"] = 0
-    else:  # the number of rows says which sample is next
-        rows = batch.rows[0, len(outcome.t) : motion["rows"]]
-    outcome.t += rows["t"].tolist()
-    outcome.y += list(batch.form.outside_many(rows["z"], rows["turns"]))
-    for k, occurred in enumerate(motion["occurred"][: len(problem.events)]):
-        rows = batch.event_rows[0, k, :occurred]
-        outcome.t_events[k] += rows["t"].tolist()
-        outcome.y_events[k] += list(batch.form.outside_many(rows["z"], rows["turns"]))
-    motion["occurred"] = 0
+    motion, events = batch.motions[0], range(len(problem.events))
+    taken = 0 if problem.samples is None else len(outcome.t)
+    rows = batch.rows[0, taken : motion["rows"]]
+    times = rows["t"] if problem.samples is None else problem.samples[taken : motion["rows"]]
+    states = list(batch.form.outside_many(rows["z"], rows["turns"]))
+    if states and not outcome.t and times[0] == problem.span[0]:
+        states[0] = problem.start  # as it was given, not as sine and cosine give it back
+    occurred = [batch.event_rows[0, k, : motion["occurred"][k]] for k in events]
+    places = [list(batch.form.outside_many(rows["z"], rows["turns"])) for rows in occurred]
     place = batch.form.outside_many(motion["z"][np.newaxis], motion["turns"][np.newaxis])[0]
-    outcome.end = float(motion["t"]), place
+    outcome.t += times.tolist()
+    outcome.y += states
+    for k in events:
+        outcome.t_events[k] += occurred[k]["t"].tolist()
+        outcome.y_events[k] += places[k]
+    if motion["steps"]:
+        outcome.end = float(motion["t"]), place
     outcome.nfev = int(batch.nfev[0])
     outcome.steps, outcome.rejected = int(motion["steps"]), int(motion["rejected"])
+    motion["occurred"] = 0
+    if problem.samples is None:  # else the number of rows says which sample is next
+        motion["rows"] = 0

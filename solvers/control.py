@@ -54,7 +54,7 @@ class Controller:
         k = self.order + 1
         if norm > 1:
             return max(SHRINK, SAFETY * norm ** (-1 / k))
-        floor = max(norm, 1e-10)
+        floor = hypot(norm, 1e-10)
         factor = SAFETY * floor ** (-0.7 / k) * self._previous ** (0.4 / k)
         self._previous = floor
         return min(GROW, max(SHRINK, factor))
@@ -90,5 +90,6 @@ class Controller:
 
 def _rms(values: Array, allowed: Array) -> float:
     """Root mean square of values in parts of what is allowed; a value of 0 always is."""
-    parts = np.divide(values, allowed, out=np.zeros_like(values), where=values != 0)
-    return float(np.sqrt(np.mean(parts**2)))
+    with np.errstate(over="ignore"):  # infinity tells that it is too large
+        parts = np.divide(values, allowed, out=np.zeros_like(values), where=values != 0)
+        return float(np.sqrt(np.mean(parts**2)))

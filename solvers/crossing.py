@@ -54,7 +54,7 @@ class Crossing:
             hint = f" (did you mean {close[0]!r}?)" if close else ""
             known = ", ".join(self.module.STATE)
             raise ValueError(f"no component is called {self.name!r}{hint}; known are: {known}")
-        if isinstance(self.value, bool) or not isfinite(self.value):
+        if isinstance(self.value, bool) or not _is_finite(self.value):
             raise ValueError(f"value = {self.value!r} of {self.name} must be a finite number")
         if self.direction not in (0, 1, -1):
             raise ValueError(f"direction = {self.direction!r} must be 0, 1 or -1")
@@ -62,3 +62,10 @@ class Crossing:
     def __call__(self, t: float, y: Sequence[float] | NDArray[np.float64]) -> float:
         """By how much the component exceeds the value."""
         return float(y[self.module.STATE.index(self.name)]) - self.value
+
+
+def _is_finite(value: object) -> bool:
+    try:
+        return isfinite(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return False

@@ -35,7 +35,7 @@ def ensemble(
     rtol: float = 1e-9,
     atol: float = 1e-12,
     h: float | None = None,
-    t_eval: ArrayLike = (),
+    t_eval: ArrayLike | None = None,
     events: Crossing | Sequence[Crossing] = (),
     occurrences: int = 1,
     max_steps: int = 1_000_000,
@@ -55,7 +55,7 @@ def ensemble(
         Coordinates and velocities at the beginning of each motion.
     params : array_like of shape (parameters,) or (n, parameters)
         In the order of ``module.PARAMETERS``; the same for all motions or a row for each.
-    t_eval : array_like of shape (times,)
+    t_eval : array_like of shape (times,), optional
         Times at which states are wanted, none by default.
     events : Crossing or sequence of Crossing
         What to watch.
@@ -85,15 +85,16 @@ def ensemble(
         raise ValueError(
             f"params has {len(constants)} rows: give one, or one for each of {len(starts)} motions"
         )
-    for name, value in (("occurrences", occurrences), ("workers", workers)):
-        if value is not None and (isinstance(value, bool) or value < 1):
-            raise ValueError(f"{name} = {value!r} must be a whole number, 1 or more")
+    occurrences = request.count("occurrences", occurrences, 1)
+    threads = len(os.sched_getaffinity(0)) if workers is None else workers
+    threads = request.count("workers", threads, 1)
+    times = () if t_eval is None else t_eval
     where = request.rung(backend, compensated)
 
     def asked(form: str) -> Problem:
         rest = (0.0,) * len(module.STATE)
         return request.problem(
-            module, t_span, rest, module.DEFAULTS, method, form, rtol, atol, h, t_eval, events,
+            module, t_span, rest, module.DEFAULTS, method, form, rtol, atol, h, times, events,
             max_steps,
         )  # fmt: skip
 
@@ -121,6 +122,11 @@ def ensemble(
         len(starts), len(module.STATE), len(problem.samples), len(problem.events), occurrences,
         f"{problem.description}, {rung}",
     )  # fmt: skip
+    begin, end = problem.span
+    if begin == end:
+        result.t[:], result.y[:], result.status[:] = begin, starts, Status.FINISHED
+        result.samples[:] = starts[:, :, np.newaxis]
+        return result
     try:
         if program:
             batch = Batch(
@@ -128,9 +134,11 @@ def ensemble(
                 capacity=len(problem.samples), occurrences=occurrences, pauses=False,
             )  # fmt: skip
             try:
-                _run(batch, workers or len(os.sched_getaffinity(0)))
+                _run(batch, threads)
             finally:
                 _collect(batch, result)
+                if len(problem.samples) and problem.samples[0] == begin:
+                    result.samples[:, :, 0] = starts  # as they were given
             return result
         _run_one_by_one(problem, starts, constants, result)
     except KeyboardInterrupt as interruption:

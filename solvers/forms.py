@@ -117,16 +117,23 @@ class Form:
         """As `inside`, of states (n, state); and the turns of angles, shape (n, angles)."""
         if self.name == "lagrangian":
             return y, np.empty((len(y), 0))
-        z = np.asarray(getattr(self.module, f"{self.name}_state_many")(y.T, self.params)).T
+        z = self._many(f"{self.name}_state_many", y)
         wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.turning]
-        return z, np.round(np.reshape(wrapped, (-1, len(y))).T / (2 * np.pi))
+        turns = np.reshape(wrapped, (len(self.turning), len(y))).T / (2 * np.pi)
+        return z, np.round(turns)
+
+    def _many(self, function: str, states: Array) -> Array:
+        """A function of the module over states in rows; what is not a number stays so."""
+        params = [np.asarray(p, float) for p in self.params]
+        with np.errstate(all="ignore"):
+            return np.asarray(getattr(self.module, function)(states.T, params)).T
 
     def outside_many(self, z: Array, turns: Array) -> Array:
         """The ordinary states, shape (n, state), of `z` and `turns` as `inside_many` gives them."""
         if self.name == "lagrangian":
             return z.copy()
         if self.name == "hamiltonian":
-            return np.asarray(self.module.lagrangian_state_many(z.T, self.params)).T
+            return self._many("lagrangian_state_many", z)
         y = np.empty((len(z), len(self.module.STATE)))
         for k, i in self.kept:
             y[:, k] = z[:, i]

@@ -17,6 +17,9 @@ from solvers.kernel import STATUSES, Batch, kernel
 from solvers.problem import SHORTEST, Problem
 from solvers.solution import Status
 
+#: What C answers to a span or state that is not finite.
+NOT_NUMBERS = -1
+
 
 class NotFinishedError(ArithmeticError):
     """A motion did not reach its end.
@@ -111,17 +114,23 @@ class _Prepared:
 
     def run(self, t_span: tuple[float, float], y0: Sequence[float]) -> tuple[float, ...]:
         """The state at the end of `t_span` of the motion that begins with `y0`."""
-        begin, end = t_span
-        if len(y0) != len(self._start):
+        try:
+            begin, end = t_span
+            self._start[:] = list(y0)
+        except (TypeError, ValueError):
             self._refuse(t_span, y0)
-        self._start[:] = list(y0)
+            raise
         if begin == end:
+            self._refuse(t_span, y0)
             return tuple(self._start)
         h = self._problem.h
         if h is not None and h < SHORTEST * ulp(max(abs(begin), abs(end))):
             request.step(h, t_span)
-        code = self._once(self._task, begin, end, self._from, self._to)
-        if code < 0:
+        try:
+            code = self._once(self._task, begin, end, self._from, self._to)
+        except ctypes.ArgumentError:
+            code = NOT_NUMBERS
+        if code == NOT_NUMBERS:
             self._refuse(t_span, y0)
         while STATUSES[code] is None:
             code = self._once(self._task, begin, end, None, self._to)
@@ -132,5 +141,6 @@ class _Prepared:
         return y
 
     def _refuse(self, t_span: tuple[float, float], y0: Sequence[float]) -> None:
+        """Raise for what makes no sense in a span or a state."""
         request.time_span(t_span)
         request.numbers("y0", y0, self._problem.form.module.STATE)

@@ -120,8 +120,10 @@ def _root(event: Event, state: Callable[[float], Array], t: float, end: float) -
 
     resolution = 4 * float(np.spacing(max(abs(t), abs(end))))
     root = float(brentq(value, t, end, xtol=resolution, maxiter=1000))
-    for shift in (0, 1, 2, 4):
-        later = root + shift * resolution * np.sign(end - t)
-        if abs(later - t) < abs(end - t) and np.sign(value(later)) != np.sign(value(t)):
-            return float(later)
+    # rounding may leave the sign as it was for a little longer
+    shift, before = 0.0, np.sign(value(t))
+    while abs(root + shift - t) < abs(end - t):
+        if np.sign(value(root + shift)) != before:
+            return root + shift
+        shift = 2 * shift or resolution * float(np.sign(end - t))
     return end

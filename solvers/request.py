@@ -18,6 +18,9 @@ Array = NDArray[np.float64]
 #: Methods of SciPy's ``solve_ivp``.
 SCIPY = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 
+#: The largest number that loops count to.
+MOST = 2**53
+
 
 def problem(
     module: ModuleType, t_span: ArrayLike, y0: ArrayLike, params: ArrayLike, method: str,
@@ -36,7 +39,7 @@ def problem(
     span = time_span(t_span)
     start = numbers("y0", y0, module.STATE)
     equations = Form(module, form, numbers("params", params, module.PARAMETERS).tolist())
-    tableau = None if method in SCIPY else load(method)
+    tableau = None if method in SCIPY else load(str(method))
     relative, absolute = tolerances(rtol, atol, len(start)) if h is None else (0.0, np.array(0.0))
     if h is not None:
         if tableau is None:
@@ -50,7 +53,8 @@ def problem(
         raise ValueError(f"method {method!r} needs a Jacobian, which form {form!r} does not have")
     return Problem(
         equations, tableau or method, span, start, h, relative, absolute,
-        None if t_eval is None else times(t_eval, span), callables(events), count(max_steps),
+        None if t_eval is None else times(t_eval, span), callables(events, module),
+        count("max_steps", max_steps, 0),
     )  # fmt: skip
 
 
@@ -135,18 +139,23 @@ def step(h: float, span: tuple[float, float]) -> float:
     return float(array)
 
 
-def count(max_steps: int) -> int:
-    """A number of steps."""
-    if not isinstance(max_steps, int) or isinstance(max_steps, bool) or max_steps < 0:
-        raise ValueError(f"max_steps = {max_steps!r} must be a whole number, 0 or more")
-    return max_steps
+def count(name: str, value: object, least: int) -> int:
+    """A whole number, `least` or more."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise ValueError(f"{name} = {value!r} must be a whole number, {least} or more")
+    if not least <= value <= MOST:
+        raise ValueError(f"{name} = {value} must be from {least} to {MOST}")
+    return int(value)
 
 
-def callables(events: object) -> list[Callable[..., float]]:
+def callables(events: object, module: ModuleType) -> list[Callable[..., float]]:
     """Events as a list."""
     found: list[Any] = list(events) if isinstance(events, Sequence) else [events]
     if not all(map(callable, found)):
         raise ValueError(f"events = {events!r} must be functions event(t, y), one or a list")
+    for event in found:
+        if getattr(event, "name", None) and getattr(event, "module", module) is not module:
+            raise ValueError(f"{event.name} of {event.module.__name__} is not of {module.__name__}")
     return found
 
 

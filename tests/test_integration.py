@@ -384,7 +384,7 @@ def scene(**changes: object) -> dict[str, object]:
         ({"h": np.nan}, "h = nan"),
         ({"h": 1e-18}, "below the resolution"),
         ({"h": 1e-15}, "below the resolution"),
-        ({"max_steps": -1}, "max_steps = -1 must be a whole number"),
+        ({"max_steps": -1}, "max_steps = -1 must be from 0"),
         ({"max_steps": 1.5}, "max_steps = 1.5"),
         ({"events": None}, "events = None must be functions"),
         ({"events": [3]}, r"events = \[3\] must be functions"),

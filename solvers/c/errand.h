@@ -80,7 +80,9 @@ static int next_event(const Task *task, Errand *errand)
 /* The event is found: it ends the motion, or it is kept, unless the motion ends before. */
 static void found_event(const Task *task, Errand *errand)
 {
-    if (fabs(errand->far) > fabs(errand->until)) {
+    /* of events at the same time those count that come first in their list */
+    const double later = fabs(errand->far) - fabs(errand->until);
+    if (later > 0 || (later == 0 && errand->stopping >= 0 && errand->event > errand->stopping)) {
         return;
     }
     if (task->event[errand->event].terminal) {
@@ -152,6 +154,7 @@ static void take_try(const Task *task, Errand *errand, double h, const double *p
 /* Forget what the step has kept. */
 static void undo_errand(Errand *errand)
 {
+    errand->stopping = -1;
     errand->trajectory->rows = errand->rows;
     memcpy(errand->trajectory->occurred, errand->occurred, sizeof errand->occurred);
 }

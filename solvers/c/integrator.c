@@ -77,6 +77,13 @@ static void begin(Lanes *lanes)
             keep_row(task, errand->trajectory, start);
         }
     }
+    real nothing = every(0.0);
+    for (int n = 0; n < STATE; n++) {
+        nothing += (slope[n] - slope[n]) + (place->z[n] - place->z[n]);
+    }
+    /* a motion without a slope has used up all its tries */
+    const mask hopeless = lanes->fresh & ~below(size(nothing), every(1.0));
+    motion->cuts = chosen(hopeless, every(MOST_CUTS), motion->cuts);
     lanes->fresh = (mask){0};
 }
 

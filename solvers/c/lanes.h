@@ -39,6 +39,16 @@ static inline mask word(real x)
     return (Bits){.number = x}.word;
 }
 
+/* Bits moved towards the high end, as of an unsigned number. */
+static inline mask moved_up(mask x, int places)
+{
+#ifdef ONE_LANE
+    return (mask)((uint64_t)x << places);
+#else
+    return x << places;
+#endif
+}
+
 static inline real number(mask x)
 {
     return (Bits){.word = x}.number;
@@ -134,7 +144,7 @@ static inline real binary_logarithm(real x)
 {
     const double scale = 2.8853900817779268;    /* 2/ln 2 */
     const mask exponent = (word(x) - 0x3fe6a09e667f3bcd) >> 52;
-    const real m = number(word(x) - (exponent << 52));
+    const real m = number(word(x) - moved_up(exponent, 52));
     const real whole = number(exponent + 0x4338000000000000) - ROUND;
     const real u = (m - 1.0)/(m + 1.0), s = u*u;
     return whole + u*((scale + s*(scale/3)) + (s*s)*(scale/5 + s*(scale/7)));
@@ -147,5 +157,5 @@ static inline real power_of_two(real x)
     const real f = (x - (shifted - ROUND))*0.6931471805599453, f2 = f*f;
     const real low = (1.0 + f) + f2*(1.0/2 + f*(1.0/6));
     const real high = (1.0/24 + f*(1.0/120)) + f2*(1.0/720 + f*(1.0/5040));
-    return number(word(low + (f2*f2)*high) + (word(shifted) << 52));
+    return number(word(low + (f2*f2)*high) + moved_up(word(shifted), 52));
 }

@@ -98,7 +98,10 @@ static real event_value(const Event *event, const Place *place)
     }
     const real s = place->z[SINE[i]], c = place->z[SINE[i] + 1];
     const real rough = rough_angle(place, (int)i) + 2*PI*place->turns[i] - event->value;
-    return chosen(below(size(rough), every(1.0)), s*event->cosine - c*event->sine, rough);
+    /* on the event itself rounding leaves a few parts in 1e16: that is not before it */
+    const real sine = s*event->cosine - c*event->sine;
+    const real exact = chosen(below(size(sine), every(5e-16)), every(0.0), sine);
+    return chosen(below(size(rough), every(1.0)), exact, rough);
 }
 
 /* Where a value that was x and is y has passed the event. */

@@ -39,21 +39,24 @@ static inline void add(Place *place, int n, real change)
 }
 
 /* Bring sin^2 + cos^2 back to 1: by the series of 1/sqrt(1 - d) where d is small, as it nearly
-   always is. Returns 0 where that is possible, NaN where a square is beyond all numbers. */
+   always is, after a division where it is not. Returns 0, or NaN where that is impossible. */
 static inline real settle(Place *place)
 {
     real nothing = every(0.0);
     for (int a = 0; a < ANGLES; a++) {
-        const real s = place->z[SINE[a]], c = place->z[SINE[a] + 1];
-        const real square = s*s + c*c, d = 1.0 - square;
-        real excess = d*(0.5 + d*(0.375 + d*0.3125));
-        const mask far = below(every(1e-4), size(d));
+        real *s = &place->z[SINE[a]], *c = &place->z[SINE[a] + 1];
+        real square = *s**s + *c**c;
+        const mask far = below(every(1e-4), size(1.0 - square));
         if (any(far)) {
-            excess = chosen(far, 1.0/root(square, far) - 1.0, excess);
+            const real length = root(square, far);
+            *s = chosen(far, *s/length, *s);
+            *c = chosen(far, *c/length, *c);
+            square = *s**s + *c**c;
         }
-        add(place, SINE[a], s*excess);
-        add(place, SINE[a] + 1, c*excess);
-        nothing += d - d;
+        const real d = 1.0 - square, excess = d*(0.5 + d*(0.375 + d*0.3125));
+        add(place, SINE[a], *s*excess);
+        add(place, SINE[a] + 1, *c*excess);
+        nothing += (d - d) + chosen(below(size(d), every(0.5)), every(0.0), every(NAN));
     }
     return nothing;
 }

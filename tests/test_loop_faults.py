@@ -1,0 +1,262 @@
+"""Compiled loops where it gets narrow: each case once went wrong, or could."""
+
+import os
+import signal
+import threading
+from functools import partial
+from math import pi
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import generated.double_pendulum as dp
+import generated.single_pendulum as sp
+from solvers.crossing import Crossing
+from solvers.ensemble import ensemble
+from solvers.integration import integrate
+from solvers.prepared import NotFinishedError, prepare
+from solvers.solution import Interrupted, Solution, Status
+
+BACKENDS = ("python", "compiled")
+FORMS = ("lagrangian", "hamiltonian", "rational")
+
+
+def written_by_hand(folder: Path, slopes: str) -> ModuleType:
+    """A module with one number of state, y, and its slope in C."""
+    (folder / "hand.h").write_text(
+        "static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,\n"
+        "    HOLONOMIC_REAL *result, const HOLONOMIC_REAL *params)\n"
+        f"{{ result[0] = {slopes}; (void)t; (void)state; (void)params; }}\n"
+    )
+    module = ModuleType("hand")
+    vars(module).update(
+        __file__=str(folder / "hand.py"), COORDINATES=(), rhs=None, STATE=("y",),
+        PARAMETERS=("p",), DEFAULTS=(1.0,),
+    )  # fmt: skip
+    return module
+
+
+@pytest.mark.parametrize("lanes", [1, 20])
+def test_a_blow_up_in_finite_time_stops_with_what_there_is(lanes: int, tmp_path: Path) -> None:
+    # y' = y² ends at t = 1/y0; neighbours that begin lower go on
+    module = written_by_hand(tmp_path, "state[0]*state[0]*params[0]")
+    starts = [[1.0 / (k + 1)] for k in range(lanes)]
+    found = ensemble(module, (0, 1.5), starts, (1.0,), backend="compiled", rtol=1e-10)
+    assert found.status[0] in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
+    assert found.t[0] == pytest.approx(1.0, abs=1e-6)
+    assert np.isfinite(found.y).all()
+    for k in range(1, lanes):
+        assert found.status[k] is Status.FINISHED
+        assert found.y[k, 0] == pytest.approx(1 / (k + 1 - 1.5), rel=1e-7)
+    if lanes == 1:
+        alone = integrate(module, (0, 1.5), [1.0], (1.0,), backend="compiled", rtol=1e-10)
+        assert not alone.success
+        assert alone.t[-1] == pytest.approx(1.0, abs=1e-6)
+        assert np.isfinite(alone.y).all()
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_coarse_fixed_steps_never_return_what_is_not_a_number(form: str) -> None:
+    rng = np.random.default_rng(4)
+    for method in ("rk1", "heun", "midpoint", "rk4", "verner87"):
+        starts = rng.uniform(-3, 3, (60, 4)) * [1, 1, 1, 1e3]
+        for h in (0.5, 1.0, 2.0):
+            found = ensemble(dp, (0, 10), starts, dp.DEFAULTS, method=method, h=h, form=form)
+            assert np.isfinite(found.y).all(), (method, h)
+            assert set(found.status) <= {Status.FINISHED, Status.NOT_FINITE}
+    steps = integrate(dp, (0, 10), (2, 2, 0, 0), dp.DEFAULTS, method="rk4", h=1.0)
+    assert not steps.success
+    assert np.isfinite(steps.y).all()
+    assert np.isfinite(steps.end[1]).all()
+
+
+def test_sine_and_cosine_far_from_the_circle_come_back_to_it() -> None:
+    found = integrate(sp, (0, 1), (0.5, 1e160), sp.DEFAULTS, method="rk1", h=0.5, form="rational")
+    assert np.isfinite(found.y).all()
+    # Euler's step from the bottom goes along the tangent: sin = 1000, cos = 1
+    one = ensemble(sp, (0, 0.5), [(0.0, 2e3)], sp.DEFAULTS, method="rk1", h=0.5, form="rational")
+    assert np.tan(one.y[0, 0]) == pytest.approx(1e3, rel=1e-6)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_motion_that_begins_on_an_event_has_not_passed_it(backend: str) -> None:
+    for angle in np.linspace(-3, 3, 61):
+        for velocity in (1.0, -1.0):
+            found = integrate(
+                sp, (0, 0.01), (angle, velocity), sp.DEFAULTS, backend=backend, form="rational",
+                events=Crossing(sp, "theta", angle, terminal=True),
+            )  # fmt: skip
+            assert found.status is Status.FINISHED, (angle, velocity)
+
+
+def test_an_event_at_the_very_end_of_a_step_is_found_once(tmp_path: Path) -> None:
+    module = written_by_hand(tmp_path, "params[0]")
+    for direction in (0, 1):
+        found = integrate(
+            module, (0, 1), [0.0], (1.0,), method="rk4", h=0.25, backend="compiled",
+            events=Crossing(module, "y", 0.5, direction),
+        )  # fmt: skip
+        assert found.t_events[0] == pytest.approx([0.5], abs=1e-14)
+    down = Crossing(module, "y", 0.5, -1)
+    assert (
+        not integrate(
+            module, (0, 1), [0.0], (1.0,), method="rk4", h=0.25, backend="compiled", events=down
+        )
+        .t_events[0]
+        .size
+    )
+
+
+def test_a_step_whose_inside_cannot_be_computed_is_taken_back_whole(tmp_path: Path) -> None:
+    # a hole that the step jumps over, but not the sample within it
+    hole = "(*(const double *)&t > 0.2099 && *(const double *)&t < 0.2101) ? 0.0/0.0 : params[0]"
+    module = written_by_hand(tmp_path, hole)
+    found = integrate(
+        module, (0, 5), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", t_eval=[0.21],
+        events=Crossing(module, "y", 0.4, terminal=True),
+    )  # fmt: skip
+    assert found.status is Status.NOT_FINITE
+    assert (found.t.size, found.t_events[0].size, found.end[0]) == (0, 0, 0.0)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_an_event_is_located_where_rounding_blurs_its_sign(backend: str) -> None:
+    found = integrate(
+        sp, (-1, -3), (17.880152717337147, -0.3221897508884375), sp.DEFAULTS, t_eval=[],
+        form="lagrangian", rtol=1e-8, atol=1e-10, backend=backend,
+        events=Crossing(sp, "theta_dot", -1.3767516817975083),
+    )  # fmt: skip
+    assert found.t_events[0] == pytest.approx([-1.28150329, -2.06916657], abs=1e-8)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_of_events_at_the_same_time_the_first_in_the_list_counts(backend: str) -> None:
+    stops, passes = (Crossing(sp, "theta", 0.2, terminal=end) for end in (True, False))
+    for events, expected in (
+        ([stops, stops, passes], [1, 0, 0]), ([passes, stops, passes], [1, 1, 0]),
+    ):  # fmt: skip
+        found = integrate(sp, (0, 5), (1.0, 0.0), sp.DEFAULTS, events=events, backend=backend)
+        assert [len(times) for times in found.t_events] == expected
+
+
+@pytest.mark.parametrize(
+    ("method", "rtol"),
+    [("bs32", 1e-6), ("dp54", 1e-6), ("tsit54", 1e-6), ("dop853", 1e-1), ("verner98", 1e-1)],
+)
+def test_both_loops_choose_the_same_steps(method: str, rtol: float) -> None:
+    # so coarse that estimates are not rounding errors, which the loops do not share
+    start = (1.0, 2.0, 0.5, 0.0)
+    run = partial(integrate, dp, (0, 2), start, dp.DEFAULTS, method=method, rtol=rtol, atol=rtol)
+    for form in FORMS:
+        python, compiled = (run(form=form, backend=backend) for backend in BACKENDS)
+        assert compiled.rejected == python.rejected
+        assert compiled.nfev == pytest.approx(python.nfev, abs=python.rejected + 1)
+        assert compiled.t == pytest.approx(python.t, rel=1e-5)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_step_limit_of_none_takes_none(backend: str) -> None:
+    found = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, max_steps=0, backend=backend)
+    assert (found.steps, found.status) == (0, Status.STEP_LIMIT)
+    assert found.t.tolist() == [0.0]
+    many = ensemble(sp, (0, 1), [(1.0, 0.0)] * 3, sp.DEFAULTS, max_steps=0, backend=backend)
+    assert many.steps.tolist() == [0, 0, 0]
+    assert set(many.status) == {Status.STEP_LIMIT}
+    for senseless in (2**63, 10**20, 2.0):
+        with pytest.raises(ValueError, match="max_steps = "):
+            integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, max_steps=senseless, backend=backend)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(
+    ("start", "params", "form"),
+    [
+        ((1.0, 0.0), (1.0, 0.0, 9.8), "lagrangian"),
+        ((1.0, 0.0), (0.0, 1.0, 9.8), "hamiltonian"),
+        ((1.0, 1e200), (1.0, 1.0, 9.8), "rational"),
+    ],
+)
+def test_a_motion_without_a_slope_ends_where_it_begins(
+    start: tuple[float, float], params: tuple[float, ...], form: str, backend: str
+) -> None:
+    found = integrate(sp, (0, 1), start, params, form=form, backend=backend)
+    if form == "rational":  # huge, but a number: the steps become too short, or not finite
+        assert not found.success
+        return
+    assert found.status is Status.NOT_FINITE
+    assert found.end[0] == 0.0
+    assert found.end[1].tolist() == list(start)
+
+
+def test_an_interruption_leaves_rows_that_fit_together() -> None:
+    for seconds in (0.05, 0.11, 0.17):
+        timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with pytest.raises(Interrupted) as stopped:
+            integrate(sp, (0, 1e9), (1.0, 0.0), sp.DEFAULTS, max_steps=10**12)
+        timer.cancel()
+        kept = stopped.value.solution
+        assert isinstance(kept, Solution)
+        assert kept.y.shape[1] == len(kept.t)
+        assert kept.t[-1] == kept.end[0]
+        assert np.array_equal(kept.y[:, -1], kept.end[1])
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_samples_have_the_times_that_were_asked_for(backend: str) -> None:
+    for span, times in (
+        ((-1.0, 1.0), [1e-20]), ((10.0, 0.0), np.linspace(0, 10, 3001)[::-1]),
+        ((0.0, 1.0), [0.0, 5e-324, 1.0]),
+    ):  # fmt: skip
+        start = (1e6 + 0.1, 1.0, 0.0, 0.0)
+        found = integrate(dp, span, start, dp.DEFAULTS, t_eval=times, backend=backend)
+        assert np.array_equal(found.t, times)
+        if times[0] == span[0]:
+            assert found.y[:, 0].tolist() == list(start)
+
+
+def test_an_ensemble_of_nothing_or_over_no_time_is_what_it_should_be() -> None:
+    assert ensemble(sp, (0, 1), np.zeros((0, 2)), sp.DEFAULTS).y.shape == (0, 2)
+    still = ensemble(sp, (2, 2), [(1.0, 0.5)], sp.DEFAULTS, t_eval=[2.0])
+    assert (still.steps[0], still.nfev[0], still.status[0]) == (0, 0, Status.FINISHED)
+    assert still.samples[0, :, 0].tolist() == still.y[0].tolist() == [1.0, 0.5]
+    for arguments, message in (
+        ({"workers": 1.5}, "workers = 1.5"), ({"workers": "2"}, "workers = '2'"),
+        ({"occurrences": 1.5}, "occurrences = 1.5"),
+        ({"events": Crossing(dp, "theta1", 0.0)}, "is not of generated.single_pendulum"),
+        ({"method": None}, "no method is called 'None'"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=message):
+            ensemble(sp, (0, 1), [(1.0, 0.0)], sp.DEFAULTS, **arguments)
+    with pytest.raises(ValueError, match="must be a finite number"):
+        Crossing(sp, "theta", "a")
+
+
+def test_a_prepared_run_names_what_it_refuses() -> None:
+    run = prepare(sp, sp.DEFAULTS)
+    for span, start, message in (
+        ((0, 0), (float("nan"), 0), "y0 = .* must be finite"),
+        ((float("inf"),) * 2, (1, 0), "t_span = .* must be finite"),
+        ((0, 1), (None, 0), "y0 = .* must be real numbers"),
+        ((0, 1), ("1", 0), "y0 = .* must be real numbers"),
+        (("0", 1), (1, 0), "t_span = .* must be real numbers"),
+        ((0, 1, 2), (1, 0), "t_span has shape"),
+        ((0, 1), 1.0, "y0 has shape"),
+        ((0, 1), (1, 2, 3), "y0 has shape"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            run(span, start)
+    assert run((0, 1), np.array([1.0, 0.0])) == run((0, 1), [1, 0])
+    with pytest.raises(NotFinishedError) as stopped:
+        prepare(sp, (0.0, 1.0, 9.8), form="hamiltonian")((0, 1), (1.0, 0.0))
+    assert stopped.value.status is Status.NOT_FINITE
+
+
+def test_angles_of_pi_are_events_on_either_side() -> None:
+    spinning = ensemble(
+        sp, (0, 3), [(0.0, 9.0), (0.0, -9.0)], sp.DEFAULTS, occurrences=9,
+        events=[Crossing(sp, "theta", turn * pi) for turn in (-3, -1, 1, 3)],
+    )  # fmt: skip
+    assert spinning.occurred.tolist() == [[0, 0, 1, 1], [1, 1, 0, 0]]
