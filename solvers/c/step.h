@@ -44,19 +44,18 @@ static inline real settle(Place *place)
 {
     real nothing = every(0.0);
     for (int a = 0; a < ANGLES; a++) {
-        real *s = &place->z[SINE[a]], *c = &place->z[SINE[a] + 1];
-        real square = *s**s + *c**c;
+        real s = place->z[SINE[a]], c = place->z[SINE[a] + 1], square = s*s + c*c;
         const mask far = below(every(1e-4), size(1.0 - square));
         if (any(far)) {
             const real length = root(square, far);
-            *s = chosen(far, *s/length, *s);
-            *c = chosen(far, *c/length, *c);
-            square = *s**s + *c**c;
+            place->z[SINE[a]] = s = chosen(far, s/length, s);
+            place->z[SINE[a] + 1] = c = chosen(far, c/length, c);
+            square = s*s + c*c;
         }
         const real d = 1.0 - square, excess = d*(0.5 + d*(0.375 + d*0.3125));
-        add(place, SINE[a], *s*excess);
-        add(place, SINE[a] + 1, *c*excess);
-        nothing += (d - d) + chosen(below(size(d), every(0.5)), every(0.0), every(NAN));
+        add(place, SINE[a], s*excess);
+        add(place, SINE[a] + 1, c*excess);
+        nothing += d - d;
     }
     return nothing;
 }
@@ -108,7 +107,9 @@ static __attribute__((noinline)) void step(
     }
     for (int n = 0; n < STATE && estimates; n++) {
         error[0][n] = estimate(h, k, n);
-        error[1][n] = ESTIMATES > 1 ? second_estimate(h, k, n) : error[0][n];
+        if (ESTIMATES > 1) {
+            error[1][n] = second_estimate(h, k, n);
+        }
     }
     end->t = sum(start->t, h + start->t_low, &end->t_low);
 }
