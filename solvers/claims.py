@@ -105,7 +105,7 @@ class Evidence:
     ) -> Array:
         solution = integrate(
             self._module, (0.0, setting.duration), setting.y0, setting.params,
-            method=METHODS[method], h=h, t_eval=times,
+            method=METHODS[method], form="lagrangian", h=h, t_eval=times,
         )  # fmt: skip
         if not solution.success:
             raise RuntimeError(f"{method} with h = {h}: {solution.message}")
