@@ -118,14 +118,15 @@ def integrate(
         raise ValueError(f"no compiled loop can do this: {obstacle}")
     try:
         if where != "python" and not obstacle:
-            quick = asked(form or fastest_form(module))
+            plain, problem = problem, asked(form or fastest_form(module))
             try:
-                compiled.run(quick, outcome, method, compensated)
-                return _judged(quick, outcome, energy)
+                compiled.run(problem, outcome, method, compensated)
+                return _judged(problem, outcome, energy)
             except NoCompilerError as error:
                 if where == "compiled":
                     raise
                 warn(f"integrating in Python: {error}", stacklevel=2)
+                problem = plain
         rung = reference if isinstance(problem.method, Tableau) else scipy_runs
         rung.run(problem, outcome)
     except KeyboardInterrupt as interruption:
