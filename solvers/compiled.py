@@ -55,7 +55,7 @@ def run(problem: Problem, outcome: Outcome, method: str, compensated: bool) -> N
     outcome.end = begin, problem.start
     if problem.span[0] == problem.span[1] or not problem.max_steps:
         if samples is None or (samples.size and samples[0] == begin):
-            outcome.t, outcome.y = [begin], [problem.start]
+            outcome.t, outcome.y = [np.array([begin])], [problem.start[np.newaxis]]
         done = problem.span[0] == problem.span[1]
         outcome.status = Status.FINISHED if done else Status.STEP_LIMIT
         return
@@ -73,17 +73,17 @@ def run(problem: Problem, outcome: Outcome, method: str, compensated: bool) -> N
 def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
     """Move what the motion has written into `outcome`, and make room for more."""
     motion, events = batch.motions[0], range(len(problem.events))
-    taken = 0 if problem.samples is None else len(outcome.t)
+    taken = 0 if problem.samples is None else sum(map(len, outcome.t))
     rows = batch.rows[0, taken : motion["rows"]]
     times = rows["t"] if problem.samples is None else problem.samples[taken : motion["rows"]]
-    states = list(batch.form.outside_many(rows["z"], rows["turns"]))
-    if states and not outcome.t and times[0] == problem.span[0]:
+    states = batch.form.outside_many(rows["z"], rows["turns"])
+    if len(states) and not outcome.t and times[0] == problem.span[0]:
         states[0] = problem.start  # as it was given, not as sine and cosine give it back
     occurred = [batch.event_rows[0, k, : motion["occurred"][k]] for k in events]
     places = [list(batch.form.outside_many(rows["z"], rows["turns"])) for rows in occurred]
     place = batch.form.outside_many(motion["z"][np.newaxis], motion["turns"][np.newaxis])[0]
-    outcome.t += times.tolist()
-    outcome.y += states
+    outcome.t.append(times.copy())
+    outcome.y.append(states)
     for k in events:
         outcome.t_events[k] += occurred[k]["t"].tolist()
         outcome.y_events[k] += places[k]

@@ -199,8 +199,8 @@ def _take(found: Outcome, k: int, result: Ensemble) -> None:
     result.t[k], result.y[k] = found.end
     result.status[k], result.nfev[k] = found.status, found.nfev
     result.steps[k], result.rejected[k] = found.steps, found.rejected
-    for column, y in enumerate(found.y):
-        result.samples[k, :, column] = y
+    _, rows = found.rows()
+    result.samples[k, :, : len(rows)] = rows.T
     kept = result.t_events.shape[-1]
     for event, (times, states) in enumerate(zip(found.t_events, found.y_events, strict=True)):
         result.occurred[k, event] = len(times)

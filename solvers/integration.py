@@ -153,13 +153,13 @@ def _judged(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
 
 def _solution(problem: Problem, outcome: Outcome, energy: bool, complaint: str = "") -> Solution:
     form, width = problem.form, len(problem.start)
-    y = np.array(outcome.y).reshape(-1, width).T
-    times = outcome.t[: y.shape[1]]  # an interruption may come between the two
+    times, rows = outcome.rows()
+    y = rows.T
     t, place = outcome.end
     where = complaint or f"t = {t}, y = {place}"
     where = "" if outcome.status is Status.FINISHED else f" ({where})"
     return Solution(
-        t=np.array(times),
+        t=times,
         y=y,
         t_events=[np.array(found) for found in outcome.t_events],
         y_events=[np.array(found).reshape(-1, width) for found in outcome.y_events],

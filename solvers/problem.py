@@ -74,10 +74,14 @@ class Problem:
 
 @dataclass
 class Outcome:
-    """What a run has found so far; its fields are those of `Solution`, events as lists."""
+    """What a run has found so far.
+
+    Its fields are those of `Solution`; times and states are kept in blocks, of shape
+    (rows,) and (rows, state), events as lists.
+    """
 
     status: Status = Status.INTERRUPTED
-    t: list[float] = field(default_factory=list)
+    t: list[Array] = field(default_factory=list)
     y: list[Array] = field(default_factory=list)
     t_events: list[list[float]] = field(default_factory=list)
     y_events: list[list[Array]] = field(default_factory=list)
@@ -87,3 +91,9 @@ class Outcome:
     steps: int = 0
     rejected: int = 0
     backend: str = "python"
+
+    def rows(self) -> tuple[Array, Array]:
+        """All times, and all states in rows."""
+        y = np.concatenate([np.empty((0, len(self.end[1]))), *self.y])
+        # an interruption may come when times are kept and their states are not yet
+        return np.concatenate([np.empty(0), *self.t])[: len(y)], y

@@ -43,8 +43,8 @@ class Record:
         self._values = [event(self.now, self.place.copy()) for event in self.events]
 
     def _keep(self, t: float, y: Array) -> None:
-        self._outcome.t.append(t)
-        self._outcome.y.append(y.copy())
+        self._outcome.t.append(np.array([t]))
+        self._outcome.y.append(y.copy()[np.newaxis])
 
     def advance(self, end: float, inside: Callable[[float], Array]) -> bool:
         """Take in a step; tell whether an event ends the run.
