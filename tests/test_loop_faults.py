@@ -100,22 +100,45 @@ def test_an_event_at_the_very_end_of_a_step_is_found_once(tmp_path: Path) -> Non
             events=Crossing(module, "y", 0.5, direction),
         )  # fmt: skip
         assert found.t_events[0] == pytest.approx([0.5], abs=1e-14)
-    down = Crossing(module, "y", 0.5, -1)
-    assert (
-        not integrate(
-            module, (0, 1), [0.0], (1.0,), method="midpoint", h=0.25, backend="compiled", events=down
-        )
-        .t_events[0]
-        .size
-    )
+    down = integrate(
+        module, (0, 1), [0.0], (1.0,), method="midpoint", h=0.25, backend="compiled",
+        events=Crossing(module, "y", 0.5, -1),
+    )  # fmt: skip
+    assert not down.t_events[0].size
+
+
+def test_what_comes_after_the_end_of_a_motion_within_its_last_step_does_not_count(
+    tmp_path: Path,
+) -> None:
+    module = written_by_hand(tmp_path, "params[0]")
+    events = [
+        Crossing(module, "y", value, terminal=end)
+        for value, end in ((0.7, True), (0.6, True), (0.8, True), (0.65, False), (0.55, False))
+    ]
+    found = integrate(
+        module, (0, 1), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", events=events,
+        t_eval=[0.52, 0.58, 0.62],
+    )  # fmt: skip
+    assert found.status is Status.EVENT
+    assert found.end[0] == pytest.approx(0.6, abs=1e-14)
+    assert [len(times) for times in found.t_events] == [0, 1, 0, 0, 1]
+    assert found.t.tolist() == [0.52, 0.58]
+
+
+def test_an_event_is_found_in_a_few_tries() -> None:
+    run = partial(integrate, sp, (0, 20), (1.0, 0.0), sp.DEFAULTS, backend="compiled", rtol=1e-10)
+    plain, watched = run(), run(events=Crossing(sp, "theta", 0.5))
+    tries = (watched.nfev - plain.nfev) / 13 / len(watched.t_events[0])
+    assert len(watched.t_events[0]) > 10
+    assert tries < 9
 
 
 def test_a_step_whose_inside_cannot_be_computed_is_taken_back_whole(tmp_path: Path) -> None:
-    # a hole that the step jumps over, but not the sample within it
+    # a hole that the step jumps over, but not the second sample within it
     hole = "(*(const double *)&t > 0.2099 && *(const double *)&t < 0.2101) ? 0.0/0.0 : params[0]"
     module = written_by_hand(tmp_path, hole)
     found = integrate(
-        module, (0, 5), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", t_eval=[0.21],
+        module, (0, 5), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", t_eval=[0.1, 0.21],
         events=Crossing(module, "y", 0.4, terminal=True),
     )  # fmt: skip
     assert found.status is Status.NOT_FINITE
