@@ -125,6 +125,18 @@ def test_what_comes_after_the_end_of_a_motion_within_its_last_step_does_not_coun
     assert found.t.tolist() == [0.52, 0.58]
 
 
+def test_steps_that_fail_now_and_then_do_not_end_a_run(tmp_path: Path) -> None:
+    # y = sin t, known only nearby: long steps ask for it too far away, again and again
+    near = "fabs(state[0] - sin(t)) < 0.01 ? cos(t)*params[0] : 0.0/0.0"
+    module = written_by_hand(tmp_path, near)
+    found = integrate(
+        module, (0, 60), [0.0], (1.0,), method="bs32", rtol=0.5, atol=0.5, backend="compiled"
+    )
+    assert found.status is Status.FINISHED
+    assert found.rejected > 30
+    assert np.abs(found.y[0] - np.sin(found.t)).max() < 0.01
+
+
 def test_an_event_is_found_in_a_few_tries() -> None:
     run = partial(integrate, sp, (0, 20), (1.0, 0.0), sp.DEFAULTS, backend="compiled", rtol=1e-10)
     plain, watched = run(), run(events=Crossing(sp, "theta", 0.5))
