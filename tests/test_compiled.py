@@ -298,6 +298,9 @@ def test_time_does_not_drift_over_a_million_steps() -> None:
     assert found.steps == 10**6
     assert found.nfev == 10**6 + 1  # one to begin with; the samples are ends of steps
     assert run((0.0, 1e5), (0.0, 0.0)) == (0.0, 0.0)
+    # ten times 0.1 is a little more than 1: no step is left for the difference
+    tenths = ensemble(sp, (0, 1), [(1.0, 0.0)] * 3, sp.DEFAULTS, method="rk4", h=0.1)
+    assert tenths.steps.tolist() == [10, 10, 10]
 
 
 def interrupted_after(seconds: float, run: Callable[[], object]) -> Interrupted:
