@@ -1,14 +1,18 @@
-"""One motion in a compiled loop."""
+"""Whether a loop can be compiled, and one motion in it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from warnings import warn
+
 import numpy as np
 
+from solvers.compiler import NoCompilerError
 from solvers.crossing import Crossing
-from solvers.kernel import MOST_EVENTS, STATUSES, Batch, kernel
+from solvers.forms import fastest_form
+from solvers.kernel import MOST_EVENTS, STATUSES, Batch, Kernel, kernel
 from solvers.native import header
 from solvers.problem import Outcome, Problem
-from solvers.solution import Status
 from solvers.tableau import Tableau
 
 #: Steps, and occurrences of an event, that are written before Python collects them.
@@ -37,28 +41,59 @@ def obstacle(problem: Problem) -> str:
     return ""
 
 
-def run(problem: Problem, outcome: Outcome, method: str, compensated: bool) -> None:
+def choice(
+    asked: Callable[[str], Problem], form: str | None, where: str | None, method: str,
+    *, lanes: bool, compensated: bool,
+) -> tuple[Problem, Kernel | None]:  # fmt: skip
+    """The problem in the form that will run, and the loop for it; None if it runs in Python.
+
+    Parameters
+    ----------
+    asked : callable
+        Gives the problem in a form.
+    form : str or None
+        The form that is wanted, if any.
+    where : {"compiled", "python"} or None
+        Where it must run, if that is not free.
+    method, lanes, compensated
+        As in `solvers.kernel.Kernel`.
+
+    Raises
+    ------
+    ValueError
+        When it must be compiled and cannot.
+    solvers.compiler.NoCompilerError
+        When it must be compiled and no compiler could.
+    """
+    plain = asked(form or "lagrangian")
+    reason = "" if where == "python" else obstacle(plain)
+    if reason and where == "compiled":
+        raise ValueError(f"no compiled loop can do this: {reason}")
+    if reason or where == "python":
+        return plain, None
+    module = plain.form.module
+    quick = asked(form or fastest_form(module))
+    try:
+        return quick, kernel(
+            module, quick.form.name, method,
+            lanes=lanes, compensated=compensated, reproducible=False,
+        )  # fmt: skip
+    except NoCompilerError as error:
+        if where == "compiled":
+            raise
+        warn(f"integrating in Python: {error}", stacklevel=3)
+        return plain, None
+
+
+def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     """Integrate `problem`, keeping in `outcome` what is found as it is found."""
-    form, samples = problem.form, problem.samples
-    program = kernel(
-        form.module, form.name, method, lanes=False, compensated=compensated, reproducible=False
-    )
+    samples = problem.samples
     outcome.backend = f"compiled by {program.library.compiler}"
     batch = Batch(
-        program, problem, form, problem.start[np.newaxis],
+        program, problem, problem.form, problem.start[np.newaxis],
         capacity=ROOM if samples is None else len(samples), occurrences=ROOM_FOR_EVENTS,
         pauses=True,
     )  # fmt: skip
-    outcome.t_events = [[] for _ in problem.events]
-    outcome.y_events = [[] for _ in problem.events]
-    begin = problem.span[0]
-    outcome.end = begin, problem.start
-    if problem.span[0] == problem.span[1] or not problem.max_steps:
-        if samples is None or (samples.size and samples[0] == begin):
-            outcome.t, outcome.y = [np.array([begin])], [problem.start[np.newaxis]]
-        done = problem.span[0] == problem.span[1]
-        outcome.status = Status.FINISHED if done else Status.STEP_LIMIT
-        return
     status = None
     while status is None:
         batch.restart(PATIENCE)

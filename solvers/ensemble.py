@@ -7,16 +7,14 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from types import ModuleType
-from warnings import warn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers import compiled, reference, request, scipy_runs
-from solvers.compiler import NoCompilerError
 from solvers.crossing import Crossing
-from solvers.forms import Form, fastest_form
-from solvers.kernel import STATUSES, Batch, kernel
+from solvers.forms import Form
+from solvers.kernel import STATUSES, Batch
 from solvers.problem import Outcome, Problem
 from solvers.solution import Ensemble, Interrupted, Status
 from solvers.tableau import Tableau
@@ -98,35 +96,15 @@ def ensemble(
             max_steps,
         )  # fmt: skip
 
-    problem = asked(form or "lagrangian")
-    obstacle = compiled.obstacle(problem)
-    if where == "compiled" and obstacle:
-        raise ValueError(f"no compiled loop can do this: {obstacle}")
-    if where != "python" and not obstacle:
-        problem = asked(form or fastest_form(module))
-    program = None
-    if where != "python" and not obstacle:
-        try:
-            program = kernel(
-                module, problem.form.name, method,
-                lanes=True, compensated=compensated, reproducible=False,
-            )  # fmt: skip
-        except NoCompilerError as error:
-            if where == "compiled":
-                raise
-            warn(f"integrating in Python: {error}", stacklevel=2)
-            problem = asked(form or "lagrangian")
+    problem, program = compiled.choice(
+        asked, form, where, method, lanes=True, compensated=compensated
+    )
     assert problem.samples is not None
     rung = f"compiled by {program.library.compiler}" if program else "python"
     result = Ensemble.unknown(
         len(starts), len(module.STATE), len(problem.samples), len(problem.events), occurrences,
         f"{problem.description}, {rung}",
     )  # fmt: skip
-    begin, end = problem.span
-    if begin == end:
-        result.t[:], result.y[:], result.status[:] = begin, starts, Status.FINISHED
-        result.samples[:] = starts[:, :, np.newaxis]
-        return result
     try:
         if program:
             batch = Batch(
@@ -137,8 +115,10 @@ def ensemble(
                 _run(batch, threads)
             finally:
                 _collect(batch, result)
-                if len(problem.samples) and problem.samples[0] == begin:
-                    result.samples[:, :, 0] = starts  # as they were given
+                # as they were given, not as sine and cosine give them back
+                result.y[result.steps == 0] = starts[result.steps == 0]
+                if len(problem.samples) and problem.samples[0] == problem.span[0]:
+                    result.samples[:, :, 0] = starts
             return result
         _run_one_by_one(problem, starts, constants, result)
     except KeyboardInterrupt as interruption:
@@ -167,9 +147,10 @@ def _run_one_by_one(
     for k, start in enumerate(starts):
         params = constants[k % len(constants)].tolist()
         form = Form(problem.form.module, problem.form.name, params)
-        outcome = Outcome()
+        one = replace(problem, start=start, form=form)
+        outcome = Outcome.begun(one)
         try:
-            rung.run(replace(problem, start=start, form=form), outcome)
+            rung.run(one, outcome)
         finally:
             _take(outcome, k, result)
 

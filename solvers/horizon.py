@@ -67,7 +67,7 @@ def horizon(problem: Problem) -> float:
     k = int(apart[0]) if apart.size else seen - 1
     elapsed = abs(batch.rows["t"][0, k] - begin)
     growth = np.log(max(distance[k], NEAR) / np.abs(near - problem.start).max())
-    allowed = max(problem.rtol, float(problem.atol.max()), np.finfo(float).eps)
+    allowed = max(problem.tolerance, np.finfo(float).eps)
     if growth <= 0 or np.log(1 / allowed) * elapsed / growth >= abs(end - begin):
         return inf
     return float(begin + np.sign(end - begin) * np.log(1 / allowed) * elapsed / growth)

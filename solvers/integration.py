@@ -15,8 +15,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers import compiled, reference, request, scipy_runs
-from solvers.compiler import NoCompilerError
-from solvers.forms import fastest_form
 from solvers.horizon import HorizonWarning, horizon
 from solvers.problem import Event, Outcome, Problem
 from solvers.solution import Interrupted, Solution, Status
@@ -112,23 +110,17 @@ def integrate(
             module, t_span, y0, params, method, form, rtol, atol, h, t_eval, events, max_steps
         )
 
-    problem, outcome = asked(form or "lagrangian"), Outcome()
-    obstacle = compiled.obstacle(problem)
-    if where == "compiled" and obstacle:
-        raise ValueError(f"no compiled loop can do this: {obstacle}")
+    problem, program = compiled.choice(
+        asked, form, where, method, lanes=False, compensated=compensated
+    )
+    outcome = Outcome.begun(problem)
     try:
-        if where != "python" and not obstacle:
-            plain, problem = problem, asked(form or fastest_form(module))
-            try:
-                compiled.run(problem, outcome, method, compensated)
-                return _judged(problem, outcome, energy)
-            except NoCompilerError as error:
-                if where == "compiled":
-                    raise
-                warn(f"integrating in Python: {error}", stacklevel=2)
-                problem = plain
-        rung = reference if isinstance(problem.method, Tableau) else scipy_runs
-        rung.run(problem, outcome)
+        if program:
+            compiled.run(problem, outcome, program)
+        elif isinstance(problem.method, Tableau):
+            reference.run(problem, outcome)
+        else:
+            scipy_runs.run(problem, outcome)
     except KeyboardInterrupt as interruption:
         raise Interrupted(_solution(problem, outcome, energy)) from interruption
     return _judged(problem, outcome, energy)
@@ -143,7 +135,7 @@ def _judged(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
     if abs(until - problem.span[0]) < abs(outcome.end[0] - problem.span[0]):
         warn(
             f"beyond t = {until:.4g} this trajectory means nothing: there errors of "
-            f"{max(problem.rtol, float(problem.atol.max())):.1g} have grown as large as it; "
+            f"{problem.tolerance:.1g} have grown as large as it; "
             "tighten rtol and atol, or ask for energies and statistics only",
             HorizonWarning,
             stacklevel=3,

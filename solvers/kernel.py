@@ -163,8 +163,6 @@ class Batch:
         self.motions["t"], self.motions["t_end"] = problem.span
         self.motions["shortest"] = SHORTEST * np.spacing(np.abs(problem.span).max())
         self.motions["z"], self.motions["turns"] = form.inside_many(starts)
-        if not problem.max_steps:
-            self.motions["status"] = STATUSES.index(Status.STEP_LIMIT)
         self.motions["params"] = np.stack(np.broadcast_arrays(*form.params), axis=-1)
         self.rows = np.zeros((n, capacity), kernel.row)
         self.event_rows = np.zeros((n, len(events), occurrences), kernel.row)

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers import compiled, request
-from solvers.forms import fastest_form
-from solvers.kernel import STATUSES, Batch, kernel
+from solvers.kernel import STATUSES, Batch
 from solvers.problem import SHORTEST, Problem
 from solvers.solution import Status
 
@@ -82,18 +81,12 @@ def prepare(
             module, (0.0, 1.0), rest, params, method, form, rtol, atol, h, [], (), max_steps
         )
 
-    problem = asked(form or "lagrangian")
-    obstacle = compiled.obstacle(problem)
-    if obstacle:
-        raise ValueError(f"no compiled loop can do this: {obstacle}")
-    if form is None:
-        problem = asked(fastest_form(module))
-    equations = problem.form
-    program = kernel(
-        module, equations.name, method, lanes=False, compensated=compensated, reproducible=False
+    problem, program = compiled.choice(
+        asked, form, "compiled", method, lanes=False, compensated=compensated
     )
+    assert program
     batch = Batch(
-        program, problem, equations, problem.start[np.newaxis],
+        program, problem, problem.form, problem.start[np.newaxis],
         capacity=0, occurrences=0, pauses=False,
     )  # fmt: skip
     return _Prepared(program.once, batch, problem).run

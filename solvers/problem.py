@@ -65,6 +65,11 @@ class Problem:
         return Controller(self.method.error_order, self.rtol, self.atol)
 
     @property
+    def tolerance(self) -> float:
+        """The largest error, absolute or relative, that a step may have."""
+        return max(self.rtol, float(self.atol.max()))
+
+    @property
     def description(self) -> str:
         """Method, form and step control in words."""
         title = self.method.title if isinstance(self.method, Tableau) else self.method
@@ -80,17 +85,26 @@ class Outcome:
     (rows,) and (rows, state), events as lists.
     """
 
-    status: Status = Status.INTERRUPTED
+    end: tuple[float, Array]
+    t_events: list[list[float]]
+    y_events: list[list[Array]]
     t: list[Array] = field(default_factory=list)
     y: list[Array] = field(default_factory=list)
-    t_events: list[list[float]] = field(default_factory=list)
-    y_events: list[list[Array]] = field(default_factory=list)
-    end: tuple[float, Array] = (0.0, np.empty(0))
+    status: Status = Status.INTERRUPTED
     nfev: int = 0
     njev: int = 0
     steps: int = 0
     rejected: int = 0
     backend: str = "python"
+
+    @classmethod
+    def begun(cls, problem: Problem) -> Outcome:
+        """Nothing but the beginning."""
+        nothing: tuple[list[list[float]], list[list[Array]]] = (
+            [[] for _ in problem.events],
+            [[] for _ in problem.events],
+        )
+        return cls((problem.span[0], problem.start), *nothing)
 
     def rows(self) -> tuple[Array, Array]:
         """All times, and all states in rows."""

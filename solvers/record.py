@@ -34,9 +34,6 @@ class Record:
         self.form, self.samples, self.events = problem.form, problem.samples, problem.events
         self.now, self.place = problem.span[0], problem.start
         self._outcome, self._taken = outcome, 0
-        outcome.end = self.now, self.place
-        outcome.t_events = [[] for _ in self.events]
-        outcome.y_events = [[] for _ in self.events]
         if self.samples is None or (len(self.samples) and self.samples[0] == self.now):
             self._keep(self.now, self.place)
             self._taken = 1

@@ -83,8 +83,7 @@ static void begin(Lanes *lanes)
     }
     /* a motion without a slope has used up all its tries */
     const mask hopeless = lanes->fresh & ~below(size(nothing), every(1.0));
-    motion->cuts = chosen(hopeless, every(MOST_CUTS), motion->cuts);
-    lanes->fresh = (mask){0};
+    motion->cuts = chosen(hopeless, every(MOST_CUTS + 1), motion->cuts);
 }
 
 /* Decide over the step that a lane has made; return whether its motion moves to its end. */
@@ -273,8 +272,16 @@ void run(Task *task)
         busy += lanes.errands[lane].mode != IDLE;
     }
     for (int64_t turn = 0; busy; turn++) {
-        if (any(lanes.fresh)) {
+        /* a motion may be over where it begins, and the next one, too */
+        while (any(lanes.fresh)) {
+            const mask fresh = lanes.fresh;
             begin(&lanes);
+            lanes.fresh = (mask){0};
+            for (int lane = 0; lane < LANES; lane++) {
+                if (WORD(fresh, lane)) {
+                    busy -= conclude(&lanes, lane, leaving);
+                }
+            }
         }
         if (turn % TURNS_BETWEEN_LOOKS == 0) {
             leaving |= must_leave(task, started);
