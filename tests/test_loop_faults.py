@@ -197,8 +197,8 @@ def test_a_step_limit_of_none_takes_none(backend: str) -> None:
     found = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, max_steps=0, backend=backend)
     assert (found.steps, found.status) == (0, Status.STEP_LIMIT)
     assert found.t.tolist() == [0.0]
-    many = ensemble(sp, (0, 1), [(1.0, 0.0)] * 3, sp.DEFAULTS, max_steps=0, backend=backend)
-    assert many.steps.tolist() == [0, 0, 0]
+    many = ensemble(sp, (0, 1), [(1.0, 0.0)] * 99, sp.DEFAULTS, max_steps=0, backend=backend)
+    assert many.steps.tolist() == [0] * 99
     assert set(many.status) == {Status.STEP_LIMIT}
     for senseless in (2**63, 10**20, 2.0):
         with pytest.raises(ValueError, match="max_steps = "):
@@ -258,6 +258,8 @@ def test_an_ensemble_of_nothing_or_over_no_time_is_what_it_should_be() -> None:
     still = ensemble(sp, (2, 2), [(1.0, 0.5)], sp.DEFAULTS, t_eval=[2.0])
     assert (still.steps[0], still.nfev[0], still.status[0]) == (0, 0, Status.FINISHED)
     assert still.samples[0, :, 0].tolist() == still.y[0].tolist() == [1.0, 0.5]
+    starts = np.random.default_rng(5).uniform(-9, 9, (50, 2))
+    assert np.array_equal(ensemble(sp, (2, 2), starts, sp.DEFAULTS).y, starts)
     for arguments, message in (
         ({"workers": 1.5}, "workers = 1.5"), ({"workers": "2"}, "workers = '2'"),
         ({"occurrences": 1.5}, "occurrences = 1.5"),

@@ -218,8 +218,8 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *kept, mask *br
         const real h = chosen(*kept, motion->h, lanes->trial)*change;
         motion->h = chosen(advancing & ~*broken, h, motion->h);
     }
-    nothing = settle(end);
-    nothing += count_turns(place, lanes->trial, end);
+    settle(end);
+    nothing = count_turns(place, lanes->trial, end);
     *broken |= ~below(size(nothing), every(1.0));
     *kept &= ~*broken;
     const real one = every(1.0);

@@ -39,10 +39,9 @@ static inline void add(Place *place, int n, real change)
 }
 
 /* Bring sin^2 + cos^2 back to 1: by the series of 1/sqrt(1 - d) where d is small, as it nearly
-   always is, after a division where it is not. Returns 0, or NaN where that is impossible. */
-static inline real settle(Place *place)
+   always is, after a division where it is not. */
+static inline void settle(Place *place)
 {
-    real nothing = every(0.0);
     for (int a = 0; a < ANGLES; a++) {
         real s = place->z[SINE[a]], c = place->z[SINE[a] + 1], square = s*s + c*c;
         const mask far = below(every(1e-4), size(1.0 - square));
@@ -55,9 +54,7 @@ static inline real settle(Place *place)
         const real d = 1.0 - square, excess = d*(0.5 + d*(0.375 + d*0.3125));
         add(place, SINE[a], s*excess);
         add(place, SINE[a] + 1, c*excess);
-        nothing += d - d;
     }
-    return nothing;
 }
 
 /* The angle within 0.08 of its value between -pi and pi: enough to count turns. */
