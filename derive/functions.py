@@ -11,7 +11,7 @@ from derive.lowering import Lowering
 from derive.mechanics import Mechanics
 from derive.system import System, SystemDefinitionError
 
-Form = Literal["lagrangian", "hamiltonian", "rational", "parameters"]
+Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "parameters"]
 
 #: name, form of the state, shape of the result, first line of the docstring, what comes back
 TABLE: tuple[tuple[str, Form, str, str, str], ...] = (
@@ -76,6 +76,16 @@ TABLE: tuple[tuple[str, Form, str, str, str], ...] = (
         "Time derivative of y.",
     ),
     (
+        "rhs_variational", "variational", "variational",
+        "Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.",
+        "Time derivative of y: the motion's, then that of the change, to first order.",
+    ),
+    (
+        "equilibrium", "parameters", "q",
+        "Coordinates at rest.",
+        "q = {equilibrium}.",
+    ),
+    (
         "linear", "parameters", "2 q q",
         "Matrices of small motions x about rest at q = {equilibrium}.",
         "M0 and K of M0 xddot + K x = 0.",
@@ -91,7 +101,7 @@ class Function:
     ----------
     name, summary, returns : str
         Its name, the first line of its docstring, and what it returns.
-    form : {"lagrangian", "hamiltonian", "rational", "parameters"}
+    form : {"lagrangian", "hamiltonian", "rational", "variational", "parameters"}
         Which state it takes as ``y``; ``parameters`` means none.
     state : tuple of str
         Names of the components of ``y``, in order.
@@ -127,7 +137,7 @@ class Contents:
         Names of the components of ``y`` in each form that exists.
     functions : tuple of Function
         The functions that exist: without angles there is no rational form, without a
-        known equilibrium no ``linear``.
+        known equilibrium no ``equilibrium`` and no ``linear``.
     """
 
     derivation: Derivation
@@ -149,6 +159,7 @@ def contents(derivation: Derivation) -> Contents:
         "q": len(system.q),
         "state": 2 * len(system.q),
         "rational": len(states.get("rational", ())),
+        "variational": len(states["variational"]),
         "masses": len(system.masses),
         "axes": system.dimension,
         "2": 2,
@@ -161,7 +172,7 @@ def contents(derivation: Derivation) -> Contents:
             Function(
                 name,
                 summary.format(equilibrium=at_rest),
-                returns,
+                returns.format(equilibrium=at_rest),
                 form,
                 states.get(form, ()),
                 tuple(sizes[word] for word in shape.split()),
@@ -169,13 +180,13 @@ def contents(derivation: Derivation) -> Contents:
             )
             for name, form, shape, summary, returns in TABLE
             if ("rational" not in (form, shape) or "rational" in states)
-            and (name != "linear" or at_rest)
+            and (form != "parameters" or at_rest)
         ),
     )
 
 
 def _equilibrium(derivation: Derivation) -> str:
-    """Where ``linear`` expands, in words; empty if no equilibrium is known."""
+    """Where the system rests, in words; empty if no equilibrium is known."""
     try:
         place = derivation.linearisation().equilibrium
     except SystemDefinitionError:
@@ -196,8 +207,10 @@ def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
         "lagrangian": tuple(s.name for s in system.q + system.qdot),
         "hamiltonian": tuple(s.name for s in system.q + system.p),
     }
+    rational = (*places, *(s.name for s in system.qdot))
     if angles:
-        states["rational"] = (*places, *(s.name for s in system.qdot))
+        states["rational"] = rational
+    states["variational"] = (*rational, *(s.name for s in system.variations))
     return states
 
 

@@ -11,12 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fractions import Fraction
+from typing import TypeVar
 
 from derive.graph import Node
 from derive.operation import Operation
 from derive.sharing import share_pairs
 
 ONE = Fraction(1)
+Count = TypeVar("Count", int, Fraction)
 
 
 class Lowering:
@@ -52,7 +54,7 @@ class Lowering:
                 constant = node.content in self._parameters
                 return self._add(Operation("leaf", label=node.content, constant=constant))
             case "number":
-                return self._add(Operation("number", value=node.content, constant=True))
+                return self._number(node.content)
             case "let":
                 return self._lower(node.content)
             case "call":
@@ -61,9 +63,14 @@ class Lowering:
                 constant = self._constant(operands)
                 return self._add(Operation("call", operands, label=function, constant=constant))
             case "sum":
-                return self._sum([(self._lower(term), c) for term, c in node.content])
+                terms = _merged([(self._lower(term), c) for term, c in node.content])
+                return self._sum(terms) if terms else self._number(0)
             case _:
-                return self._product([(self._lower(factor), p) for factor, p in node.content])
+                powers = _merged([(self._lower(factor), p) for factor, p in node.content])
+                return self._product(powers) if powers else self._number(1)
+
+    def _number(self, value: Fraction | int) -> int:
+        return self._add(Operation("number", value=Fraction(value), constant=True))
 
     def _sum(self, terms: list[tuple[int, Fraction]]) -> int:
         for part in self._parts(terms):
@@ -72,6 +79,8 @@ class Lowering:
                 inner = self._sum([(n, c / scale) for n, c in part])
                 return self._sum([(inner, scale), *(t for t in terms if t not in part)])
         operands, coefficients = zip(*sorted(terms), strict=True)
+        if coefficients == (ONE,):
+            return operands[0]
         return self._add(
             Operation("sum", operands, coefficients, constant=self._constant(operands))
         )
@@ -109,3 +118,11 @@ class Lowering:
     def _quotient(self, above: int | None, below: int) -> int:
         operands = (below,) if above is None else (above, below)
         return self._add(Operation("quotient", operands, constant=self._constant(operands)))
+
+
+def _merged(parts: list[tuple[int, Count]]) -> list[tuple[int, Count]]:
+    """Terms or factors, each but once: a ``let`` may hide that two are the same."""
+    totals: dict[int, Count] = {}
+    for number, count in parts:
+        totals[number] = totals[number] + count if number in totals else count
+    return [(number, count) for number, count in totals.items() if count]

@@ -109,13 +109,17 @@ class Mechanics:
         return tuple(q for q in self._system.q if q.name in names)
 
     @property
-    def rhs_rational(self) -> list[Node]:
-        """(cos q, -sin q) q̇ for every angle, q̇ for other coordinates, and q̈."""
+    def _rational_rates(self) -> list[Node]:
         rates: list[Node] = []
         for q, qdot in zip(self._system.q, self._qdot, strict=True):
             sine, cosine = self._node(sp.sin(q)), self._node(sp.cos(q))
             rates += [cosine * qdot, -sine * qdot] if q in self.angles else [qdot]
-        return rationalised([*rates, *self._accelerations], [q.name for q in self.angles])
+        return [*rates, *self._accelerations]
+
+    @property
+    def rhs_rational(self) -> list[Node]:
+        """(cos q, -sin q) q̇ for every angle, q̇ for other coordinates, and q̈."""
+        return rationalised(self._rational_rates, [q.name for q in self.angles])
 
     @property
     def rational_state(self) -> list[Node]:
@@ -194,6 +198,27 @@ class Mechanics:
             for i in self._n
         ]
         return [node for row in (*upper, *lower) for node in row]
+
+    @property
+    def rhs_variational(self) -> list[Node]:
+        """`rhs_rational` of the motion, then δq̇ and δq̈ = M⁻¹ (δf - δM q̈)."""
+        q, qdot, forcing = self._system.q, self._system.qdot, self._derivation.forcing
+        changes = dict(zip((*q, *qdot), self._nodes(self._system.variations), strict=True))
+        shifts = {s: self._product(self._mass_gradient(s), self._accelerations) for s in q}
+        change_of_forcing = [
+            self._graph.sum([
+                *((self._node(forcing[i].diff(s)) * change, 1) for s, change in changes.items()),
+                *((shift[i] * changes[s], -1) for s, shift in shifts.items()),
+            ])
+            for i in self._n
+        ]  # fmt: skip
+        tangent = [*(changes[s] for s in qdot), *self._factorisation.solve(change_of_forcing)]
+        return rationalised([*self._rational_rates, *tangent], [q.name for q in self.angles])
+
+    @property
+    def equilibrium(self) -> list[Node]:
+        """Q₀."""
+        return self._nodes(self._derivation.linearisation().equilibrium)
 
     @property
     def linear(self) -> list[Node]:

@@ -182,14 +182,14 @@ def _many(part: Function, assigned: Assignments, system: System) -> str:
         shape=f"({shape})",
         imports=f"    from numpy import {called}\n\n" if called else "",
         body=_body(part, assigned, system, plain=False),
-        outputs=_call(part, assigned.outputs),
+        outputs=_call(part, assigned.outputs, system),
     )
 
 
-def _call(part: Function, outputs: Sequence[str]) -> str:
+def _call(part: Function, outputs: Sequence[str], system: System) -> str:
     if not part.shape:
         return outputs[0]
-    like = "y[0]" if part.state else "0.0"
+    like = "y[0]" if part.state else "params[0]" if system.params else "0.0"
     return "_stacked" + _tuple([repr(part.shape), like, *outputs], depth=1)
 
 

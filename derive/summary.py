@@ -17,16 +17,19 @@ STATES: dict[Form, str] = {
     "lagrangian": "State y = (q, qdot)",
     "hamiltonian": "State y = (q, p), in functions of the Hamiltonian form",
     "rational": "State y in functions of the rational form",
+    "variational": "State y of `rhs_variational`: where the motion is, and a small change of it",
 }
 
 
 def units(system: System) -> dict[str, str]:
-    """Unit of every coordinate, velocity, momentum and parameter, by name."""
+    """Unit of everything that has a name."""
     rows = {parameter.symbol.name: parameter.unit for parameter in system.parameters}
     for coordinate, qdot, p in zip(system.coordinates, system.qdot, system.p, strict=True):
         rows[coordinate.symbol.name] = coordinate.unit
         rows[qdot.name] = f"{coordinate.unit}/s"
         rows[p.name] = MOMENTUM_UNIT.get(coordinate.unit, f"J s/({coordinate.unit})")
+        for changed in (coordinate.symbol.name, qdot.name):
+            rows[f"delta_{changed}"] = rows[changed]
         rows[f"sin_{coordinate.symbol.name}"] = rows[f"cos_{coordinate.symbol.name}"] = "1"
     return rows
 

@@ -42,6 +42,11 @@ def acceleration(coordinate: sp.Symbol) -> Rate:
     return Rate(f"{coordinate.name}_ddot", real=True)
 
 
+def variation(variable: sp.Symbol) -> sp.Symbol:
+    """The symbol of a small change of a coordinate or velocity."""
+    return sp.Symbol(f"delta_{variable.name}", real=True)
+
+
 def momentum(coordinate: sp.Symbol) -> Momentum:
     """The symbol of the momentum conjugate to a coordinate."""
     return Momentum(f"p_{coordinate.name}", real=True)

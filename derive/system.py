@@ -10,7 +10,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.symbols import acceleration, momentum, velocity
+from derive.symbols import acceleration, momentum, variation, velocity
 
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}\Z")
 
@@ -173,6 +173,11 @@ class System:
         return tuple(momentum(q) for q in self.q)
 
     @cached_property
+    def variations(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of small changes of the coordinates, then of the velocities."""
+        return tuple(variation(s) for s in self.q + self.qdot)
+
+    @cached_property
     def params(self) -> tuple[sp.Symbol, ...]:
         """The parameters' symbols."""
         return tuple(parameter.symbol for parameter in self.parameters)
@@ -195,12 +200,12 @@ class System:
                     "and then up to 39 letters, digits or underscores, and no word that Python, "
                     "C or the generated functions reserve"
                 )
-        names = declared + [s.name for s in self.qdot + self.qddot + self.p]
+        names = declared + [s.name for s in self.qdot + self.qddot + self.p + self.variations]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise SystemDefinitionError(
                 f"system {self.name!r} uses a name twice: {', '.join(twice)} (velocities are "
-                "named q_dot, accelerations q_ddot and momenta p_q)"
+                "named q_dot, accelerations q_ddot, momenta p_q, small changes delta_q)"
             )
 
     def _check_symbols(self) -> None:

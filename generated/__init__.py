@@ -3,5 +3,6 @@
 
 __all__ = [
     "double_pendulum",
+    "elastic_pendulum",
     "single_pendulum",
 ]

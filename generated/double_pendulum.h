@@ -26,6 +26,18 @@
        theta1_dot [rad/s]
        theta2_dot [rad/s]
 
+   State y of `rhs_variational`: where the motion is, and a small change of it:
+       sin_theta1 [1]
+       cos_theta1 [1]
+       sin_theta2 [1]
+       cos_theta2 [1]
+       theta1_dot [rad/s]
+       theta2_dot [rad/s]
+       delta_theta1 [rad]
+       delta_theta2 [rad]
+       delta_theta1_dot [rad/s]
+       delta_theta2_dot [rad/s]
+
    Parameters params:
        m1 [kg] > 0, default 1.0: mass of the first bob
        m2 [kg] > 0, default 1.0: mass of the second bob
@@ -75,6 +87,7 @@ enum {
     DOUBLE_PENDULUM_LAGRANGIAN_STATE = 4,
     DOUBLE_PENDULUM_HAMILTONIAN_STATE = 4,
     DOUBLE_PENDULUM_RATIONAL_STATE = 6,
+    DOUBLE_PENDULUM_VARIATIONAL_STATE = 10,
     DOUBLE_PENDULUM_PARAMETERS = 5,
 };
 
@@ -536,6 +549,86 @@ static inline void double_pendulum_rhs_rational(
     result[5] = -c3*(x2 - x1*x4);
     (void)t;
 }
+
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+   78 operations, 5 of them on parameters alone.
+   Time derivative of y: the motion's, then that of the change, to first order. */
+static inline void double_pendulum_rhs_variational(
+    double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+{
+    /* inputs */
+    const double_pendulum_real sin_theta1 = state[0];
+    const double_pendulum_real cos_theta1 = state[1];
+    const double_pendulum_real sin_theta2 = state[2];
+    const double_pendulum_real cos_theta2 = state[3];
+    const double_pendulum_real theta1_dot = state[4];
+    const double_pendulum_real theta2_dot = state[5];
+    const double_pendulum_real delta_theta1 = state[6];
+    const double_pendulum_real delta_theta2 = state[7];
+    const double_pendulum_real delta_theta1_dot = state[8];
+    const double_pendulum_real delta_theta2_dot = state[9];
+    const double_pendulum_real m1 = params[0];
+    const double_pendulum_real m2 = params[1];
+    const double_pendulum_real l1 = params[2];
+    const double_pendulum_real l2 = params[3];
+    const double_pendulum_real g = params[4];
+    /* terms of the parameters alone */
+    const double_pendulum_real c0 = 1.0/l1;
+    const double_pendulum_real c1 = (m1 + m2)*g;
+    const double_pendulum_real c2 = m2*l2;
+    const double_pendulum_real c3 = 1.0/l2;
+    /* intermediate terms */
+    const double_pendulum_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
+    const double_pendulum_real x1 = c2*theta2_dot;
+    const double_pendulum_real x2 = theta2_dot*x1;
+    const double_pendulum_real x3 = l1*theta1_dot;
+    const double_pendulum_real x4 = theta1_dot*x3;
+    const double_pendulum_real x5 = g*sin_theta2 - x0*x4;
+    const double_pendulum_real x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
+    const double_pendulum_real x7 = m2*x6;
+    const double_pendulum_real x8 = m2*x0;
+    const double_pendulum_real x9 = m1 + x0*x8;
+    const double_pendulum_real x10 = (c1*sin_theta1 + x0*x2 - x5*x7)/x9;
+    const double_pendulum_real x11 = x5 - x6*x10;
+    const double_pendulum_real x12 = x6*x2;
+    const double_pendulum_real x13 = x11*x8;
+    const double_pendulum_real x14 =
+        delta_theta1*(c1*cos_theta1 + x12) + 2.0*x0*delta_theta2_dot*x1 + delta_theta1*x13
+        - x12*delta_theta2 - delta_theta2*x13;
+    const double_pendulum_real x15 = x6*x4;
+    const double_pendulum_real x16 = x0*x10;
+    const double_pendulum_real x17 =
+        delta_theta1*x15 + 2.0*x0*delta_theta1_dot*x3 + delta_theta2*x16
+        - delta_theta2*(x15 + g*cos_theta2) - delta_theta1*x16;
+    const double_pendulum_real x18 = (x14 + x17*x7)/x9;
+    /* outputs */
+    result[0] = theta1_dot*cos_theta1;
+    result[1] = -theta1_dot*sin_theta1;
+    result[2] = theta2_dot*cos_theta2;
+    result[3] = -theta2_dot*sin_theta2;
+    result[4] = -c0*x10;
+    result[5] = -c3*x11;
+    result[6] = delta_theta1_dot;
+    result[7] = delta_theta2_dot;
+    result[8] = -c0*x18;
+    result[9] = c3*(x17 + x6*x18);
+    (void)t;
+}
+
+#ifndef HOLONOMIC_VECTOR
+/* Coordinates at rest.
+   0 operations, 0 of them on parameters alone.
+   q = (0, 0). */
+static inline void double_pendulum_equilibrium(
+    double_pendulum_real *result, const double_pendulum_real *params)
+{
+    /* inputs */
+    /* outputs */
+    result[0] = 0.0;
+    result[1] = 0.0;
+    (void)params;
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (0, 0).

@@ -26,6 +26,18 @@ State y in functions of the rational form:
     theta1_dot [rad/s]
     theta2_dot [rad/s]
 
+State y of `rhs_variational`: where the motion is, and a small change of it:
+    sin_theta1 [1]
+    cos_theta1 [1]
+    sin_theta2 [1]
+    cos_theta2 [1]
+    theta1_dot [rad/s]
+    theta2_dot [rad/s]
+    delta_theta1 [rad]
+    delta_theta2 [rad]
+    delta_theta1_dot [rad/s]
+    delta_theta2_dot [rad/s]
+
 Parameters params:
     m1 [kg] > 0, default 1.0: mass of the first bob
     m2 [kg] > 0, default 1.0: mass of the second bob
@@ -83,6 +95,18 @@ STATE_RATIONAL = (
     "theta1_dot",
     "theta2_dot",
 )
+STATE_VARIATIONAL = (
+    "sin_theta1",
+    "cos_theta1",
+    "sin_theta2",
+    "cos_theta2",
+    "theta1_dot",
+    "theta2_dot",
+    "delta_theta1",
+    "delta_theta2",
+    "delta_theta1_dot",
+    "delta_theta2_dot",
+)
 PARAMETERS = ("m1", "m2", "l1", "l2", "g")
 DEFAULTS = (1.0, 1.0, 2.0, 2.0, 9.81)
 UNITS = {
@@ -94,11 +118,15 @@ UNITS = {
     "theta1": "rad",
     "theta1_dot": "rad/s",
     "p_theta1": "J s",
+    "delta_theta1": "rad",
+    "delta_theta1_dot": "rad/s",
     "sin_theta1": "1",
     "cos_theta1": "1",
     "theta2": "rad",
     "theta2_dot": "rad/s",
     "p_theta2": "J s",
+    "delta_theta2": "rad",
+    "delta_theta2_dot": "rad/s",
     "sin_theta2": "1",
     "cos_theta2": "1",
 }
@@ -928,6 +956,156 @@ def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
+def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
+    """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+
+    78 operations, 5 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; nothing here depends on it.
+    y : iterable of 10 floats
+        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
+        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
+        rad/s.
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: the motion's, then that of the change, to first order.
+    """
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
+    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = (m1 + m2)*g
+    c2 = m2*l2
+    c3 = 1.0/l2
+    # intermediate terms
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x1 = c2*theta2_dot
+    x2 = theta2_dot*x1
+    x3 = l1*theta1_dot
+    x4 = theta1_dot*x3
+    x5 = g*sin_theta2 - x0*x4
+    x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x7 = m2*x6
+    x8 = m2*x0
+    x9 = m1 + x0*x8
+    x10 = (c1*sin_theta1 + x0*x2 - x5*x7)/x9
+    x11 = x5 - x6*x10
+    x12 = x6*x2
+    x13 = x11*x8
+    x14 = (
+        delta_theta1*(c1*cos_theta1 + x12) + 2.0*x0*delta_theta2_dot*x1 + delta_theta1*x13
+        - x12*delta_theta2 - delta_theta2*x13
+    )
+    x15 = x6*x4
+    x16 = x0*x10
+    x17 = (
+        delta_theta1*x15 + 2.0*x0*delta_theta1_dot*x3 + delta_theta2*x16
+        - delta_theta2*(x15 + g*cos_theta2) - delta_theta1*x16
+    )
+    x18 = (x14 + x17*x7)/x9
+    # outputs
+    return (
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        -c0*x10,
+        -c3*x11,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        -c0*x18,
+        c3*(x17 + x6*x18),
+    )
+
+
+def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+    """`rhs_variational` over arrays: the result has shape (10, ...)."""
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
+    m1, m2, l1, l2, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = (m1 + m2)*g
+    c2 = m2*l2
+    c3 = 1.0/l2
+    # intermediate terms
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x1 = c2*theta2_dot
+    x2 = theta2_dot*x1
+    x3 = l1*theta1_dot
+    x4 = theta1_dot*x3
+    x5 = g*sin_theta2 - x0*x4
+    x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x7 = m2*x6
+    x8 = m2*x0
+    x9 = m1 + x0*x8
+    x10 = (c1*sin_theta1 + x0*x2 - x5*x7)/x9
+    x11 = x5 - x6*x10
+    x12 = x6*x2
+    x13 = x11*x8
+    x14 = (
+        delta_theta1*(c1*cos_theta1 + x12) + 2.0*x0*delta_theta2_dot*x1 + delta_theta1*x13
+        - x12*delta_theta2 - delta_theta2*x13
+    )
+    x15 = x6*x4
+    x16 = x0*x10
+    x17 = (
+        delta_theta1*x15 + 2.0*x0*delta_theta1_dot*x3 + delta_theta2*x16
+        - delta_theta2*(x15 + g*cos_theta2) - delta_theta1*x16
+    )
+    x18 = (x14 + x17*x7)/x9
+    # outputs
+    return _stacked(
+        (10,),
+        y[0],
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        -c0*x10,
+        -c3*x11,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        -c0*x18,
+        c3*(x17 + x6*x18),
+    )
+
+
+def equilibrium(params: Numbers) -> Vector:
+    """Coordinates at rest.
+
+    0 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        q = (0, 0).
+    """
+    # inputs
+    # outputs
+    return (0.0, 0.0)
+
+
+def equilibrium_many(params: Arrays) -> Array:
+    """`equilibrium` over arrays: the result has shape (2, ...)."""
+    # inputs
+    # outputs
+    return _stacked((2,), params[0], 0.0, 0.0)
+
+
 def linear(params: Numbers) -> tuple[Matrix, ...]:
     """Matrices of small motions x about rest at q = (0, 0).
 
@@ -962,7 +1140,7 @@ def linear_many(params: Arrays) -> Array:
     c1 = m2*l2
     c2 = l1*c1
     # outputs
-    return _stacked((2, 2, 2), 0.0, l1*c0, c2, c2, l2*c1, g*c0, 0.0, 0.0, g*c1)
+    return _stacked((2, 2, 2), params[0], l1*c0, c2, c2, l2*c1, g*c0, 0.0, 0.0, g*c1)
 
 
 def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:

@@ -18,6 +18,13 @@
        cos_theta [1]
        theta_dot [rad/s]
 
+   State y of `rhs_variational`: where the motion is, and a small change of it:
+       sin_theta [1]
+       cos_theta [1]
+       theta_dot [rad/s]
+       delta_theta [rad]
+       delta_theta_dot [rad/s]
+
    Parameters params:
        m [kg] > 0, default 1.0: mass of the bob
        l [m] > 0, default 2.0: length of the rod
@@ -58,6 +65,7 @@ enum {
     SINGLE_PENDULUM_LAGRANGIAN_STATE = 2,
     SINGLE_PENDULUM_HAMILTONIAN_STATE = 2,
     SINGLE_PENDULUM_RATIONAL_STATE = 3,
+    SINGLE_PENDULUM_VARIATIONAL_STATE = 5,
     SINGLE_PENDULUM_PARAMETERS = 3,
 };
 
@@ -301,6 +309,45 @@ static inline void single_pendulum_rhs_rational(
     result[2] = -c0*(g*sin_theta);
     (void)t;
 }
+
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+   11 operations, 1 of them on parameters alone.
+   Time derivative of y: the motion's, then that of the change, to first order. */
+static inline void single_pendulum_rhs_variational(
+    single_pendulum_real t, const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+{
+    /* inputs */
+    const single_pendulum_real sin_theta = state[0];
+    const single_pendulum_real cos_theta = state[1];
+    const single_pendulum_real theta_dot = state[2];
+    const single_pendulum_real delta_theta = state[3];
+    const single_pendulum_real delta_theta_dot = state[4];
+    const single_pendulum_real l = params[1];
+    const single_pendulum_real g = params[2];
+    /* terms of the parameters alone */
+    const single_pendulum_real c0 = 1.0/l;
+    /* outputs */
+    result[0] = theta_dot*cos_theta;
+    result[1] = -theta_dot*sin_theta;
+    result[2] = -c0*(g*sin_theta);
+    result[3] = delta_theta_dot;
+    result[4] = -c0*(g*cos_theta*delta_theta);
+    (void)t;
+}
+
+#ifndef HOLONOMIC_VECTOR
+/* Coordinates at rest.
+   0 operations, 0 of them on parameters alone.
+   q = (0). */
+static inline void single_pendulum_equilibrium(
+    single_pendulum_real *result, const single_pendulum_real *params)
+{
+    /* inputs */
+    /* outputs */
+    result[0] = 0.0;
+    (void)params;
+}
+#endif
 
 /* Matrices of small motions x about rest at q = (0).
    3 operations, 3 of them on parameters alone.

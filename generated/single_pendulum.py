@@ -18,6 +18,13 @@ State y in functions of the rational form:
     cos_theta [1]
     theta_dot [rad/s]
 
+State y of `rhs_variational`: where the motion is, and a small change of it:
+    sin_theta [1]
+    cos_theta [1]
+    theta_dot [rad/s]
+    delta_theta [rad]
+    delta_theta_dot [rad/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     l [m] > 0, default 2.0: length of the rod
@@ -59,6 +66,13 @@ COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 STATE_HAMILTONIAN = ("theta", "p_theta")
 STATE_RATIONAL = ("sin_theta", "cos_theta", "theta_dot")
+STATE_VARIATIONAL = (
+    "sin_theta",
+    "cos_theta",
+    "theta_dot",
+    "delta_theta",
+    "delta_theta_dot",
+)
 PARAMETERS = ("m", "l", "g")
 DEFAULTS = (1.0, 2.0, 9.81)
 UNITS = {
@@ -68,6 +82,8 @@ UNITS = {
     "theta": "rad",
     "theta_dot": "rad/s",
     "p_theta": "J s",
+    "delta_theta": "rad",
+    "delta_theta_dot": "rad/s",
     "sin_theta": "1",
     "cos_theta": "1",
 }
@@ -549,6 +565,87 @@ def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
+def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
+    """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+
+    11 operations, 1 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; nothing here depends on it.
+    y : iterable of 5 floats
+        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
+        in rad/s.
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: the motion's, then that of the change, to first order.
+    """
+    # inputs
+    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # outputs
+    return (
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -c0*(g*sin_theta),
+        delta_theta_dot,
+        -c0*(g*cos_theta*delta_theta),
+    )
+
+
+def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+    """`rhs_variational` over arrays: the result has shape (5, ...)."""
+    # inputs
+    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
+    _, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # outputs
+    return _stacked(
+        (5,),
+        y[0],
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -c0*(g*sin_theta),
+        delta_theta_dot,
+        -c0*(g*cos_theta*delta_theta),
+    )
+
+
+def equilibrium(params: Numbers) -> Vector:
+    """Coordinates at rest.
+
+    0 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        q = (0).
+    """
+    # inputs
+    # outputs
+    return (0.0,)
+
+
+def equilibrium_many(params: Arrays) -> Array:
+    """`equilibrium` over arrays: the result has shape (1, ...)."""
+    # inputs
+    # outputs
+    return _stacked((1,), params[0], 0.0)
+
+
 def linear(params: Numbers) -> tuple[Matrix, ...]:
     """Matrices of small motions x about rest at q = (0).
 
@@ -579,7 +676,7 @@ def linear_many(params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = m*l
     # outputs
-    return _stacked((2, 1, 1), 0.0, l*c0, g*c0)
+    return _stacked((2, 1, 1), params[0], l*c0, g*c0)
 
 
 def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:

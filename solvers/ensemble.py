@@ -11,9 +11,9 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers import compiled, reference, request, scipy_runs
+from solvers import compiled, interpreted, request, scipy_runs
 from solvers.crossing import Crossing
-from solvers.forms import Form
+from solvers.forms import Form, ordinary_state
 from solvers.kernel import STATUSES, Batch
 from solvers.problem import Outcome, Problem
 from solvers.solution import Ensemble, Interrupted, Status
@@ -77,7 +77,8 @@ def ensemble(
     solvers.solution.Interrupted
         When the user interrupts; it holds the `Ensemble` up to there.
     """
-    starts = request.table("Y0", Y0, module.STATE)
+    names = ordinary_state(module, form or "")
+    starts = request.table("Y0", Y0, names)
     constants = request.table("params", np.atleast_2d(np.asarray(params)), module.PARAMETERS)
     if len(constants) not in (1, len(starts)):
         raise ValueError(
@@ -90,7 +91,7 @@ def ensemble(
     where = request.rung(backend, compensated)
 
     def asked(form: str) -> Problem:
-        rest = (0.0,) * len(module.STATE)
+        rest = (0.0,) * len(names)
         return request.problem(
             module, t_span, rest, module.DEFAULTS, method, form, rtol, atol, h, times, events,
             max_steps,
@@ -102,7 +103,7 @@ def ensemble(
     assert problem.samples is not None
     rung = f"compiled by {program.library.compiler}" if program else "python"
     result = Ensemble.unknown(
-        len(starts), len(module.STATE), len(problem.samples), len(problem.events), occurrences,
+        len(starts), len(names), len(problem.samples), len(problem.events), occurrences,
         f"{problem.description}, {rung}",
     )  # fmt: skip
     try:
@@ -143,7 +144,7 @@ def _run(batch: Batch, workers: int) -> None:
 def _run_one_by_one(
     problem: Problem, starts: Array, constants: Array, result: Ensemble
 ) -> None:  # fmt: skip
-    rung = reference if isinstance(problem.method, Tableau) else scipy_runs
+    rung = interpreted if isinstance(problem.method, Tableau) else scipy_runs
     for k, start in enumerate(starts):
         params = constants[k % len(constants)].tolist()
         form = Form(problem.form.module, problem.form.name, params)

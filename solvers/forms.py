@@ -1,4 +1,7 @@
-"""Forms of the equations of motion: the state outside is always (q, q̇), inside it may differ."""
+"""Forms of the equations of motion: the state outside is always (q, q̇), inside it may differ.
+
+Of the variational form, both hold a small change of that state, too.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+
+
 class Form:
     """One form of a generated module's equations, with fixed parameters.
 
@@ -20,7 +26,7 @@ class Form:
     module : module
         A generated module.
     name : str
-        ``lagrangian``, ``hamiltonian`` or ``rational``.
+        ``lagrangian``, ``hamiltonian``, ``rational`` or ``variational``.
     params : sequence of float or ndarray
         In the order of ``module.PARAMETERS``; arrays if motions differ in them.
 
@@ -33,12 +39,13 @@ class Form:
     def __init__(self, module: ModuleType, name: str, params: Sequence[Any]) -> None:
         suffix = "" if name == "lagrangian" else f"_{name}"
         if not hasattr(module, f"rhs{suffix}"):
-            known = [f for f in ("lagrangian", "hamiltonian", "rational") if _has(module, f)]
+            known = [f for f in FORMS if _has(module, f)]
             raise ValueError(f"form {name!r}: {module.__name__} has {', '.join(known)}")
         self.name, self.module, self.params = name, module, tuple(params)
         self._rhs = getattr(module, f"rhs{suffix}")
         self._jacobian = getattr(module, f"jacobian{suffix}", None)
         self.state: tuple[str, ...] = getattr(module, f"STATE{suffix.upper()}")
+        self.ordinary = ordinary_state(module, name)
         # where angles stand outside, and their sines inside; the same for all that stays as it is
         self.turning = [
             (k, self.state.index(f"sin_{q}"))
@@ -46,7 +53,9 @@ class Form:
             if f"sin_{q}" in self.state
         ]
         self.kept = [
-            (k, self.state.index(part)) for k, part in enumerate(module.STATE) if part in self.state
+            (k, self.state.index(part))
+            for k, part in enumerate(self.ordinary)
+            if part in self.state
         ]
 
     @property
@@ -57,8 +66,8 @@ class Form:
         return [(i, rates[half + k]) for k, i in self.turning]
 
     def where(self, component: str) -> tuple[bool, int] | None:
-        """Which angle a component of ``module.STATE`` is, or else which number of this state."""
-        k = self.module.STATE.index(component)
+        """Which angle an ordinary component is, or else which number of this state."""
+        k = self.ordinary.index(component)
         turning = [angle for angle, _ in self.turning]
         if k in turning:
             return True, turning.index(k)
@@ -80,14 +89,20 @@ class Form:
 
     def inside(self, y: Array) -> Array:
         """The state of this form that belongs to the ordinary state `y`."""
-        if self.name == "lagrangian":
-            return y.copy()
-        return np.array(getattr(self.module, f"{self.name}_state")(y, self.params))
+        if self.name == "hamiltonian":
+            return np.array(self.module.hamiltonian_state(y, self.params))
+        return self._regrouped(y[np.newaxis])[0]
+
+    def _regrouped(self, y: Array) -> Array:
+        z = np.empty((len(y), len(self.state)))
+        for k, i in self.kept:
+            z[:, i] = y[:, k]
+        for k, i in self.turning:
+            z[:, i], z[:, i + 1] = np.sin(y[:, k]), np.cos(y[:, k])
+        return z
 
     def settled(self, z: Array) -> Array:
         """`z` with sin² + cos² = 1 restored to rounding."""
-        if self.name != "rational":
-            return z
         z = z.copy()
         for _, i in self.turning:
             z[i : i + 2] /= np.hypot(z[i], z[i + 1])
@@ -99,14 +114,12 @@ class Form:
         Turns of angles that are known by sine and cosine only are counted from the
         state `before`, `elapsed` seconds ago, with the mean of both velocities.
         """
-        if self.name == "lagrangian":
-            return z.copy()
         if self.name == "hamiltonian":
             return np.array(self.module.lagrangian_state(z, self.params))
         y = np.empty_like(before)
         for k, i in self.kept:
             y[k] = z[i]
-        half = len(y) // 2
+        half = len(self.module.COORDINATES)
         for k, i in self.turning:
             angle = np.arctan2(z[i], z[i + 1])
             expected = before[k] + elapsed * (before[half + k] + y[half + k]) / 2
@@ -115,9 +128,9 @@ class Form:
 
     def inside_many(self, y: Array) -> tuple[Array, Array]:
         """As `inside`, of states (n, state); and the turns of angles, shape (n, angles)."""
-        if self.name == "lagrangian":
-            return y, np.empty((len(y), 0))
-        z = self._many(f"{self.name}_state_many", y)
+        if self.name == "hamiltonian":
+            return self._many("hamiltonian_state_many", y), np.empty((len(y), 0))
+        z = self._regrouped(y)
         wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.turning]
         turns = np.reshape(wrapped, (len(self.turning), len(y))).T / (2 * np.pi)
         return z, np.round(turns)
@@ -130,16 +143,20 @@ class Form:
 
     def outside_many(self, z: Array, turns: Array) -> Array:
         """The ordinary states, shape (n, state), of `z` and `turns` as `inside_many` gives them."""
-        if self.name == "lagrangian":
-            return z.copy()
         if self.name == "hamiltonian":
             return self._many("lagrangian_state_many", z)
-        y = np.empty((len(z), len(self.module.STATE)))
+        y = np.empty((len(z), len(self.ordinary)))
         for k, i in self.kept:
             y[:, k] = z[:, i]
         for (k, i), whole in zip(self.turning, turns.T, strict=True):
             y[:, k] = np.arctan2(z[:, i], z[:, i + 1]) + 2 * np.pi * whole
         return y
+
+
+def ordinary_state(module: ModuleType, form: str) -> tuple[str, ...]:
+    """What the state outside is made of: (q, q̇), and a small change of it where the form has it."""
+    changes = [f"delta_{name}" for name in module.STATE]
+    return (*module.STATE, *(changes if form == "variational" else ()))
 
 
 def fastest_form(module: ModuleType) -> str:

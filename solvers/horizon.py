@@ -51,9 +51,10 @@ def horizon(problem: Problem) -> float:
         program = kernel(module, form, METHOD, lanes=False, compensated=False, reproducible=False)
     except NoCompilerError:
         return inf
-    near = problem.start + NEAR * (1 + np.abs(problem.start))
+    start = problem.start[: len(module.STATE)]
+    near = start + NEAR * (1 + np.abs(start))
     batch = Batch(
-        program, companions, companions.form, np.array([problem.start, near]),
+        program, companions, companions.form, np.array([start, near]),
         capacity=LOOKS, occurrences=0, pauses=False,
     )  # fmt: skip
     batch.restart()
@@ -66,7 +67,7 @@ def horizon(problem: Problem) -> float:
     apart = np.flatnonzero(distance > APART)
     k = int(apart[0]) if apart.size else seen - 1
     elapsed = abs(batch.rows["t"][0, k] - begin)
-    growth = np.log(max(distance[k], NEAR) / np.abs(near - problem.start).max())
+    growth = np.log(max(distance[k], NEAR) / np.abs(near - start).max())
     allowed = max(problem.tolerance, np.finfo(float).eps)
     if growth <= 0 or np.log(1 / allowed) * elapsed / growth >= abs(end - begin):
         return inf

@@ -1,7 +1,7 @@
 """Integrate a generated module's equations of motion: the front door.
 
 Three rungs do the work, and the solution says which one did: a compiled loop, the
-plain reference in Python, or a solver of SciPy's.
+same method in Python, or a solver of SciPy's.
 """
 
 from __future__ import annotations
@@ -12,14 +12,17 @@ from types import ModuleType
 from warnings import warn
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from solvers import compiled, reference, request, scipy_runs
+from solvers import compiled, interpreted, request, scipy_runs
+from solvers.forms import Form
 from solvers.horizon import HorizonWarning, horizon
 from solvers.problem import Event, Outcome, Problem
 from solvers.solution import Interrupted, Solution, Status
-from solvers.stability import unstable
+from solvers.stability.judgement import unstable
 from solvers.tableau import Tableau
+
+Array = NDArray[np.float64]
 
 
 def integrate(
@@ -54,9 +57,10 @@ def integrate(
         In the order of ``module.PARAMETERS``.
     method : str
         One of ``solvers.catalogue.names()``, or a method of SciPy's ``solve_ivp``.
-    form : {"lagrangian", "hamiltonian", "rational"}, optional
+    form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
         The equations that are integrated; by default rational ones in a compiled loop,
-        where they exist, and Lagrange's otherwise.
+        where they exist, and Lagrange's otherwise. The variational form carries a small
+        change along: `y0` is then the state, followed by its change.
     rtol, atol : float
         A step's error in a component may be atol + rtol |y|; `atol` may be an array.
         They have no effect on fixed steps.
@@ -118,7 +122,7 @@ def integrate(
         if program:
             compiled.run(problem, outcome, program)
         elif isinstance(problem.method, Tableau):
-            reference.run(problem, outcome)
+            interpreted.run(problem, outcome)
         else:
             scipy_runs.run(problem, outcome)
     except KeyboardInterrupt as interruption:
@@ -163,6 +167,11 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, complaint: str =
         rejected=outcome.rejected,
         run=f"{problem.description}, {outcome.backend}",
         backend=outcome.backend.partition(" ")[0],
-        energy=np.asarray(form.module.energy_many(y, form.params)) if energy else None,
+        energy=_energy(form, y) if energy else None,
         end=outcome.end,
     )
+
+
+def _energy(form: Form, y: Array) -> Array:
+    states = y[: len(form.module.STATE)]
+    return np.asarray(form.module.energy_many(states, form.params))

@@ -64,17 +64,17 @@ def equations(module: ModuleType, form: str) -> Equations:
     if f"static inline void {rhs}(" not in text:
         raise ValueError(f"form {form!r}: {place} has no {rhs}")
     described = Form(module, form, (0.0,) * len(module.PARAMETERS))
-    enter = [f"{place.stem}_{form}_state(y, z, params);"]
+    enter = [f"z[{i}] = y[{k}];" for k, i in described.kept]
     leave = [f"y[{k}] = z[{i}];" for k, i in described.kept]
     for a, (k, i) in enumerate(described.turning):
         wrapped = f"atan2(z[{i}], z[{i + 1}])"
+        enter.append(f"z[{i}] = sin(y[{k}]); z[{i + 1}] = cos(y[{k}]);")
         enter.append(f"turns[{a}] = nearest_whole((y[{k}] - {wrapped})*(0.5/PI));")
         leave.append(f"y[{k}] = {wrapped} + 2*PI*turns[{a}];")
-    if form == "lagrangian":
-        enter = [f"z[{k}] = y[{k}];" for k in range(len(module.STATE))]
     if form == "hamiltonian":
+        enter = [f"{place.stem}_hamiltonian_state(y, z, params);"]
         leave = [f"{place.stem}_lagrangian_state(z, y, params);"]
-    sizes = len(described.state), len(module.PARAMETERS), len(module.STATE)
+    sizes = len(described.state), len(module.PARAMETERS), len(described.ordinary)
     return Equations(text, rhs, *sizes, described.angles, enter, leave)
 
 
@@ -87,7 +87,7 @@ def native_rhs(
     ----------
     module : module
         A generated module, whose header stands beside it.
-    form : {"lagrangian", "hamiltonian", "rational"}
+    form : {"lagrangian", "hamiltonian", "rational", "variational"}
         Which right-hand side.
     reproducible : bool
         Whether every compiler is to give the same bits, at some cost of speed.

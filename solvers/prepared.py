@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers import compiled, request
+from solvers.forms import ordinary_state
 from solvers.kernel import STATUSES, Batch
 from solvers.problem import SHORTEST, Problem
 from solvers.solution import Status
@@ -76,7 +77,7 @@ def prepare(
     """
 
     def asked(form: str) -> Problem:
-        rest = (0.0,) * len(module.STATE)
+        rest = (0.0,) * len(ordinary_state(module, form))
         return request.problem(
             module, (0.0, 1.0), rest, params, method, form, rtol, atol, h, [], (), max_steps
         )
@@ -136,4 +137,4 @@ class _Prepared:
     def _refuse(self, t_span: tuple[float, float], y0: Sequence[float]) -> None:
         """Raise for what makes no sense in a span or a state."""
         request.time_span(t_span)
-        request.numbers("y0", y0, self._problem.form.module.STATE)
+        request.numbers("y0", y0, self._problem.form.ordinary)

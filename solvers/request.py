@@ -37,8 +37,8 @@ def problem(
         When no method has this name.
     """
     span = time_span(t_span)
-    start = numbers("y0", y0, module.STATE)
     equations = Form(module, form, numbers("params", params, module.PARAMETERS).tolist())
+    start = numbers("y0", y0, equations.ordinary)
     tableau = None if method in SCIPY else load(str(method))
     relative, absolute = tolerances(rtol, atol, len(start)) if h is None else (0.0, np.array(0.0))
     if h is not None:

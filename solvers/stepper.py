@@ -19,6 +19,8 @@ Rhs = Callable[[float, Array], Array]
 
 #: Newton's iteration ends when a change is this small beside the state, or after so many rounds.
 CLOSE, ROUNDS = 1e-14, 30
+#: Numbers that are not much larger have fewer digits than others.
+FAINT = 1e-290
 
 
 class NotFiniteError(ArithmeticError):
@@ -121,8 +123,8 @@ class Stepper:
             except np.linalg.LinAlgError as error:
                 raise NoConvergenceError(f"stages at t = {t}, h = {h}: {error}") from error
             slopes = slopes + change
-            scale = np.abs(y).max() + np.abs(h * slopes).max()
-            size = float(np.abs(h * change).max() / scale) if scale else 0.0
+            scale = np.abs(y).max() + np.abs(h * slopes).max() + FAINT
+            size = float(np.abs(h * change).max() / scale)
             # rounding may keep it from getting closer: then it is as close as it gets
             if size <= CLOSE or (size < 100 * CLOSE and size >= previous / 2):
                 return slopes

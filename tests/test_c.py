@@ -14,6 +14,7 @@ import pytest
 
 from derive import Derivation
 from derive.functions import Function, contents
+from solvers.forms import Form
 
 GENERATED = Path(__file__).parent.parent / "generated"
 STRICT = ["-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic", "-ffp-contract=off"]
@@ -49,12 +50,15 @@ def wrapper(name: str, functions: tuple[Function, ...]) -> str:
 
 def cases(module: ModuleType, form: str) -> list[tuple[list[float], list[float]]]:
     generator = random.Random(5)
-    n = len(module.STATE)
+    n = 2 * len(module.STATE)
     found = []
     for _ in range(50):
         y = [generator.uniform(-7, 7) for _ in range(n)]
         params = [generator.uniform(0.2, 3) for _ in module.PARAMETERS]
-        found.append((list(module.rational_state(y, params)) if form == "rational" else y, params))
+        if form != "parameters":
+            equations = Form(module, form, params)
+            y = equations.inside(np.array(y[: len(equations.ordinary)])).tolist()
+        found.append((y, params))
     return found
 
 

@@ -18,6 +18,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
 from derive import Derivation
+from solvers.forms import Form
 
 #: The functions' annotations name types that exist for type checkers only.
 annotations = __future__.annotations.compiler_flag
@@ -26,7 +27,8 @@ EPS = float(np.finfo(float).eps)
 
 FUNCTIONS = (
     "rhs", "jacobian", "energy", "mass_matrix", "positions", "hamiltonian_state",
-    "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "lagrangian_state", "linear",
+    "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "lagrangian_state",
+    "equilibrium", "linear",
 )  # fmt: skip
 
 #: How many rounding errors, in units of ε times the condition number, are allowed (0.5 occur).
@@ -52,6 +54,7 @@ def formulas(derivation: Derivation) -> dict[str, Sequence[sp.Expr]]:
         "jacobian_hamiltonian": [f.diff(s) for f in rhs_hamiltonian for s in canonical],
         "energy_hamiltonian": [derivation.hamiltonian],
         "lagrangian_state": [*system.q, *velocities],
+        "equilibrium": list(linear.equilibrium),
         "linear": [*linear.mass_matrix, *linear.stiffness_matrix],
     }
 
@@ -67,13 +70,21 @@ def called(function: Callable[..., object], y: object, params: object) -> object
 def states(module: ModuleType) -> Iterator[tuple[list[float], list[float]]]:
     """Seeded random states, then degenerate ones: aligned, upright, far around, light masses."""
     n, generator = len(module.COORDINATES), random.Random(20)
+    lengths = [module.UNITS[q] == "m" for q in module.COORDINATES]
+
+    def possible(y: list[float]) -> list[float]:
+        return [
+            1 + abs(x) % 7 if positive else x
+            for x, positive in zip(y, [*lengths, *[False] * n], strict=True)
+        ]
+
     for _ in range(20):
         yield (
-            [generator.uniform(-7, 7) for _ in range(2 * n)],
+            possible([generator.uniform(-7, 7) for _ in range(2 * n)]),
             [generator.uniform(0.2, 3) for _ in module.PARAMETERS],
         )
     for angle, speed in product((0.0, pi / 2, pi, -pi, 1e6), (0.0, 1.5)):
-        yield [angle] * n + [speed, *[-speed] * (n - 1)], list(module.DEFAULTS)
+        yield possible([angle] * n + [speed, *[-speed] * (n - 1)]), list(module.DEFAULTS)
     light = [1e-9 if name == "m1" else value for name, value in
              zip(module.PARAMETERS, module.DEFAULTS, strict=True)]  # fmt: skip
     yield [1.0] * n + [0.5] * n, light
@@ -123,20 +134,25 @@ def test_the_rational_form_gives_the_same_rates(derivation: Derivation, module: 
         rational = module.rational_state(y, params)
         rates = module.rhs_rational(0.0, rational, params)
         expected = module.rhs(0.0, y, params)
-        for k, angle in enumerate(y[:n]):
-            assert rational[2 * k : 2 * k + 2] == (sin(angle), cos(angle))
-            assert rates[2 * k : 2 * k + 2] == (
-                pytest.approx(cos(angle) * y[n + k], rel=1e-15),
-                pytest.approx(-sin(angle) * y[n + k], rel=1e-15),
+        where = module.STATE_RATIONAL.index
+        for q, x, speed in zip(module.COORDINATES, y[:n], y[n:], strict=True):
+            if module.UNITS[q] != "rad":
+                assert (rational[where(q)], rates[where(q)]) == (x, speed)
+                continue
+            k = where(f"sin_{q}")
+            assert where(f"cos_{q}") == k + 1
+            assert rational[k : k + 2] == (sin(x), cos(x))
+            assert rates[k : k + 2] == (
+                pytest.approx(cos(x) * speed, rel=1e-15),
+                pytest.approx(-sin(x) * speed, rel=1e-15),
             )
-        for rate, value, weight in zip(
-            rates[2 * n :], expected[n:], weights(*y, *params), strict=True
-        ):
+        for rate, value, weight in zip(rates[-n:], expected[n:], weights(*y, *params), strict=True):
             assert abs(rate - value) <= 2 * FEW * EPS * (weight + abs(value))
 
 
-def test_the_rational_right_hand_side_calls_no_function(module: ModuleType) -> None:
-    source = ast.parse(inspect.getsource(module.rhs_rational))
+@pytest.mark.parametrize("name", ["rhs_rational", "rhs_variational"])
+def test_rational_right_hand_sides_call_no_function(module: ModuleType, name: str) -> None:
+    source = ast.parse(inspect.getsource(getattr(module, name)))
     called = {
         node.func.id
         for node in ast.walk(source)
@@ -156,11 +172,36 @@ def test_jacobians_agree_with_complex_steps(module: ModuleType, name: str) -> No
         assert_allclose(jacobian(0.0, y, params), expected, rtol=1e-9, atol=1e-11 * scale)
 
 
+def test_variational_equations_carry_a_small_change_along(module: ModuleType) -> None:
+    n, generator = len(module.STATE), np.random.default_rng(4)
+    for y, params in states(module):
+        change = generator.normal(size=n)
+        form = Form(module, "variational", params)
+        rates = form.rhs(0.0, form.inside(np.concatenate([y, change])))
+        motion = Form(module, "rational", params)
+        assert tuple(rates[:-n]) == pytest.approx(motion.rhs(0.0, motion.inside(np.array(y))))
+        # the derivative of the Lagrangian form in this direction, exact by a complex step
+        expected = module.rhs_many(0.0, np.array(y) + 1e-30j * change, params).imag / 1e-30
+        scale = np.abs(np.array(module.jacobian(0.0, y, params)) * change).max()
+        assert_allclose(rates[-n:], expected, rtol=1e-9, atol=1e-11 * scale)
+
+
+def test_nothing_moves_at_the_equilibrium(module: ModuleType) -> None:
+    for _, params in states(module):
+        rest = module.equilibrium(params)
+        rates = module.rhs(0.0, (*rest, *[0.0] * len(rest)), params)
+        assert np.abs(rates).max() < 1e-12
+
+
 def test_arrays_of_states_give_what_single_states_give(module: ModuleType) -> None:
     for name in formulas_names(module):
         cases = list(states(module))
-        if name == "rhs_rational":
-            cases = [(module.rational_state(y, params), params) for y, params in cases]
+        if name in ("rhs_rational", "rhs_variational"):
+            forms = [Form(module, name.removeprefix("rhs_"), params) for _, params in cases]
+            cases = [
+                (form.inside(np.resize(y, len(form.ordinary))), params)
+                for form, (y, params) in zip(forms, cases, strict=True)
+            ]
         y = np.array([y for y, _ in cases]).T
         params = np.array([params for _, params in cases]).T
         function, many = getattr(module, name), getattr(module, f"{name}_many")
@@ -277,7 +318,8 @@ class Planted(ast.NodeTransformer):
 
 
 @pytest.mark.parametrize("name", ["rhs", "rhs_hamiltonian", "energy", "energy_hamiltonian",
-                                  "mass_matrix", "jacobian", "jacobian_hamiltonian"])  # fmt: skip
+                                  "mass_matrix", "jacobian", "jacobian_hamiltonian",
+                                  "equilibrium", "linear"])  # fmt: skip
 def test_every_mistake_planted_in_a_function_changes_its_values(
     module: ModuleType, name: str
 ) -> None:

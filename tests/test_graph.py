@@ -164,3 +164,18 @@ def test_common_lengths_are_taken_out_of_rows_and_columns() -> None:
 def leaves(nodes: list[Node]) -> set[str]:
     lowering = Lowering(nodes, ())
     return {o.label for o in lowering.operations.values() if o.kind == "leaf"}
+
+
+def test_equal_terms_and_factors_under_names_of_their_own_are_brought_together() -> None:
+    graph = Graph()
+    p, q = graph.leaf("p"), graph.leaf("q")
+    named = graph.let(p + q)
+    outputs = [
+        graph.sum([(p + q, -1), (named, 2)]),  # p + q
+        graph.sum([(p + q, 1), (named, -1)]),  # 0
+        graph.sum([(p, 1), (named, 1), (p + q, -1)]),  # p
+        named * q / (p + q),  # q
+        named / (p + q),  # 1
+    ]
+    found = evaluated(Lowering(outputs, ()), {"p": 2.0, "q": 3.0})
+    assert found == [5.0, 0.0, 2.0, 3.0, 1.0]

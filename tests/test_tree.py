@@ -51,7 +51,7 @@ def test_the_bytes_do_not_depend_on_what_was_derived_before() -> None:
 def test_the_committed_files_are_what_the_generator_writes() -> None:
     run = derive("--check")
     assert run.returncode == 0, run.stdout
-    assert "5 files" in run.stdout
+    assert "7 files" in run.stdout
 
 
 def test_files_name_no_place_version_or_time() -> None:

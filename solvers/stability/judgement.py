@@ -27,7 +27,9 @@ def unstable(problem: Problem, failed: bool) -> str:
     begin, end = problem.span
     duration = abs(end - begin)
     try:
-        jacobian = np.array(module.jacobian(begin, problem.start, problem.form.params))
+        jacobian = np.array(
+            module.jacobian(begin, problem.start[: len(module.STATE)], problem.form.params)
+        )
     except ArithmeticError:
         return ""
     if not np.isfinite(jacobian).all():

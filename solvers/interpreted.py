@@ -1,4 +1,4 @@
-"""The plain reference: any of our methods, step by step in Python. Compiled loops agree with it."""
+"""Any of our methods, step by step in Python. Compiled loops agree with it."""
 
 from __future__ import annotations
 

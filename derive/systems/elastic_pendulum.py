@@ -1,0 +1,23 @@
+"""A point mass on a massless spring that can only stretch, turning in a vertical plane."""
+
+from sympy import cos, sin, symbols
+
+from derive.system import Coordinate, Parameter, PointMass, System
+
+theta, g = symbols("theta g", real=True)
+r, m, k, l = symbols("r m k l", positive=True)
+x, y = r * sin(theta), -r * cos(theta)
+
+system = System(
+    name="elastic_pendulum",
+    title="Elastic pendulum: a point mass on a massless spring in a vertical plane",
+    coordinates=[Coordinate(r, "m", "length of the spring"),
+                 Coordinate(theta, "rad", "angle of the spring from the downward vertical")],
+    parameters=[Parameter(m, "kg", 1.0, "mass of the bob"),
+                Parameter(k, "N/m", 100.0, "stiffness of the spring"),
+                Parameter(l, "m", 1.0, "length of the spring without load"),
+                Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
+    masses=[PointMass(m, (x, y))],
+    potential=k * (r - l)**2 / 2 + m * g * y,
+    equilibrium=(l + m * g / k, 0),
+)

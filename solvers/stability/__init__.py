@@ -1,0 +1,1 @@
+"""Stability of Runge–Kutta methods: exact regions, and what running steppers do."""

@@ -1,0 +1,88 @@
+"""References agree with each other: three families of methods that share only the physics."""
+
+from math import pi, sqrt
+from types import ModuleType
+
+import numpy as np
+import pytest
+from scipy.special import ellipk
+
+import generated.double_pendulum as dp
+import generated.single_pendulum as sp
+from solvers.references.extrapolation import extrapolated
+from solvers.references.pendulum import pendulum
+from solvers.references.taylor import sine_and_cosine, taylor
+
+REPORT = (pi / 2, pi, 0.0, 0.0)
+EXTENDED = np.finfo(np.longdouble).nmant > 60
+
+
+@pytest.mark.parametrize(("module", "start"), [
+    (dp, REPORT), (dp, (0.02, 0.01, 0.0, 0.0)), (dp, (-4.0, 9.0, 2.0, -1.0)), (sp, (2.0, 1.0)),
+])  # fmt: skip
+def test_taylor_and_extrapolation_agree_to_rounding(module: ModuleType, start: tuple) -> None:
+    times = [0.0, 1.5, 5.0]
+    series = taylor(module, module.DEFAULTS, start, times)
+    midpoints = extrapolated(module, module.DEFAULTS, start, times)
+    assert np.abs(series - midpoints).max() < (1e-14 if EXTENDED else 1e-11)
+    # and backwards they return
+    back = taylor(module, module.DEFAULTS, series[-1], times[::-1])
+    assert np.abs(back[-1] - start).max() < 1e-13
+
+
+def test_agreement_is_no_accident_it_is_lost_with_long_steps() -> None:
+    series = taylor(dp, dp.DEFAULTS, REPORT, [0, 5])
+    coarse = extrapolated(dp, dp.DEFAULTS, REPORT, [0, 5], h=0.05)
+    assert np.abs(series - coarse).max() > 1e-10
+
+
+def test_more_digits_change_nothing_but_the_last() -> None:
+    fewer, more = (taylor(dp, dp.DEFAULTS, REPORT, [0, 5], digits=d) for d in (10, 24))
+    most = taylor(dp, dp.DEFAULTS, REPORT, [0, 5], digits=40)
+    assert np.array_equal(more, most)
+    assert 1e-13 < np.abs(fewer - most).max() < 1e-6
+
+
+def test_energy_is_kept_to_the_last_bits() -> None:
+    y = taylor(dp, dp.DEFAULTS, REPORT, np.linspace(0, 5, 21)).T
+    energy = dp.energy_many(y, dp.DEFAULTS)
+    assert np.abs(energy - energy[0]).max() < 1e-13
+
+
+@pytest.mark.parametrize("start", [
+    (2.0, 0.0), (1.0, 3.0), (1.0, -3.0), (0.3, 7.0), (0.3, -7.0), (7.0, 1.0), (-4.0, 0.5),
+    (9.0, -8.0), (3.0, 0.0), (0.0, 0.0), (1e-9, 0.0),
+])  # fmt: skip
+def test_elliptic_functions_give_the_single_pendulum(start: tuple[float, float]) -> None:
+    times = np.linspace(0, 20, 9)
+    found = pendulum(2.0, 9.81, start, times)
+    assert np.abs(found - taylor(sp, sp.DEFAULTS, start, times)).max() < 3e-13
+
+
+def test_elliptic_functions_on_the_separatrix_rise_for_ever() -> None:
+    omega = sqrt(9.81 / 9.81)
+    motion = pendulum(9.81, 9.81, (0.0, 2 * omega), np.array([-1.0, 0.0, 1.0, 10.0, 40.0]))
+    # Gudermann's function: theta = 4 atan(tanh(omega t/2)), theta_dot = 2 omega/cosh(omega t)
+    assert motion[:, 0] == pytest.approx(4 * np.arctan(np.tanh([-0.5, 0, 0.5, 5, 20])), abs=1e-15)
+    assert motion[2, 1] == pytest.approx(2 / np.cosh(1.0), rel=1e-15)
+    assert pendulum(9.81, 9.81, (0.0, -2 * omega), 40.0)[0] == pytest.approx(-pi, abs=1e-15)
+
+
+def test_the_period_is_the_complete_elliptic_integral() -> None:
+    amplitude = 2.5
+    period = 4 * sqrt(2.0 / 9.81) * ellipk(np.sin(amplitude / 2) ** 2)
+    end = taylor(sp, sp.DEFAULTS, (amplitude, 0.0), [0, period])[-1]
+    assert end == pytest.approx([amplitude, 0.0], abs=1e-14)
+
+
+def test_decimal_sine_and_cosine() -> None:
+    from decimal import Decimal, localcontext
+
+    import mpmath
+
+    with localcontext() as context, mpmath.workdps(60):
+        context.prec = 50
+        for x in (0.0, 1e-30, 0.5, -3.25, 40.0):
+            sine, cosine = sine_and_cosine(Decimal(x))
+            assert abs(mpmath.mpf(str(sine)) - mpmath.sin(x)) < 1e-48
+            assert abs(mpmath.mpf(str(cosine)) - mpmath.cos(x)) < 1e-48

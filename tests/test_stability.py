@@ -1,0 +1,151 @@
+"""Stability functions are exact, and running steppers obey them."""
+
+from fractions import Fraction
+from math import inf, sqrt
+
+import numpy as np
+import pytest
+from numpy.polynomial import polynomial
+
+import generated.double_pendulum as dp
+import generated.elastic_pendulum as ep
+import generated.single_pendulum as sp
+from solvers.catalogue import load, names
+from solvers.integration import integrate
+from solvers.solution import Status
+from solvers.stability import critical
+from solvers.stability.critical import critical_step, limit
+from solvers.stability.function import StabilityFunction
+from solvers.stability.modes import Modes, along
+from solvers.stability.sign import first_fall
+from solvers.stepper import Stepper
+
+F = Fraction
+
+
+@pytest.mark.parametrize("method", names())
+def test_a_step_of_the_linear_test_equation_multiplies_by_the_stability_function(
+    method: str,
+) -> None:
+    function = StabilityFunction.of(load(method))
+    for z in (0.3j, 1.7j, -0.8, -1.1 + 0.9j):
+        # y' = λy as a real system
+        matrix = np.array([[z.real, -z.imag], [z.imag, z.real]])
+        stepper = Stepper(load(method), lambda _, y, A=matrix: A @ y, lambda _, y, A=matrix: A)
+        start = np.array([1.0, 0.0])
+        end, _, _ = stepper.step(0.0, start, 1.0, stepper.slope(0.0, start))
+        assert complex(*end) == pytest.approx(complex(function(z)), rel=1e-12)
+
+
+@pytest.mark.parametrize("method", names())
+def test_the_stability_function_agrees_with_the_exponential_to_the_order(method: str) -> None:
+    tableau, function = load(method), StabilityFunction.of(load(method))
+    order = tableau.order
+    # P - exp Q vanishes up to z^order and no further, in exact fractions
+    P, Q = function.numerator, function.denominator
+    exponential = [F(1)]
+    for k in range(1, order + 2):
+        exponential.append(exponential[-1] / k)
+
+    def defect(k: int) -> Fraction:
+        return (P[k] if k < len(P) else F(0)) - sum(
+            exponential[k - j] * q for j, q in enumerate(Q) if j <= k
+        )
+
+    assert all(defect(k) == 0 for k in range(order + 1))
+    assert defect(order + 1) != 0
+
+
+def test_intervals_are_those_of_the_textbooks() -> None:
+    # imaginary: E. Hairer, G. Wanner, section IV.2 and exercises; sqrt(3) and 2 sqrt(2) by hand
+    found = {name: StabilityFunction.of(load(name)) for name in names()}
+    for name, interval in {
+        "rk1": 0.0, "midpoint": 0.0, "heun": 0.0, "ralston": 0.0, "rk3": sqrt(3), "bs32": sqrt(3),
+        "rk4": 2 * sqrt(2), "rk4_38": 2 * sqrt(2), "gauss1": inf, "gauss2": inf, "gauss3": inf,
+        "radau2": inf, "radau3": inf,
+    }.items():  # fmt: skip
+        assert found[name].imaginary_stability_interval == pytest.approx(interval, rel=1e-14), name
+    for name, interval in {"rk1": 2.0, "midpoint": 2.0, "rk3": 2.5127453266183286,
+                           "rk4": 2.7852935634052817, "dp54": 3.3065678926, "gauss3": inf,
+                           "radau3": inf}.items():  # fmt: skip
+        assert found[name].real_stability_interval == pytest.approx(interval, rel=1e-10), name
+
+
+@pytest.mark.parametrize("method", names())
+def test_intervals_end_where_the_stability_function_leaves_the_unit_circle(method: str) -> None:
+    function = StabilityFunction.of(load(method))
+    for direction, interval in (
+        (1j, function.imaginary_stability_interval), (-1.0, function.real_stability_interval),
+    ):  # fmt: skip
+        inside = np.linspace(0, min(interval, 100.0), 2001)
+        assert np.abs(function(inside * direction)).max() <= 1 + 1e-13
+        if interval < inf:
+            beyond = max(interval * 1.01, 1.0)
+            assert np.abs(function(beyond * direction)) > 1 + 1e-11
+
+
+def test_a_fall_is_found_exactly_among_touches() -> None:
+    assert first_fall([F(1), F(-2), F(1)]) == inf  # (1 - x)²
+    assert first_fall([F(2), F(-5), F(4), F(-1)]) == 2.0  # (1 - x)² (2 - x)
+    assert first_fall([F(0), F(0), F(-1)]) == 0.0
+    assert first_fall([F(0)]) == first_fall([F(0), F(3)]) == inf
+    generator = np.random.default_rng(0)
+    for _ in range(100):
+        roots = generator.integers(-6, 7, generator.integers(1, 7))
+        sign = generator.choice([-1, 1])
+        p = [F(int(c)) * int(sign) for c in polynomial.polyfromroots(roots)]
+        ends = [0, *sorted({int(r) for r in roots if r > 0})]
+        middles = [(a + b) / 2 for a, b in zip(ends, [*ends[1:], ends[-1] + 2], strict=True)]
+        values = [sign * np.prod([m - r for r in roots]) for m in middles]
+        expected = next((a for a, value in zip(ends, values, strict=True) if value < 0), inf)
+        assert first_fall(p) == pytest.approx(expected, rel=1e-15)
+
+
+@pytest.mark.parametrize("method", names())
+def test_the_critical_step_is_what_the_interval_predicts(method: str) -> None:
+    found = critical_step(method, dp, (1.0, 3.0, 2.0, 0.7, 9.81))
+    if found.predicted in (0.0, inf):
+        assert found.linear == found.measured == found.predicted
+    else:
+        assert found.linear == pytest.approx(found.predicted, rel=1e-3)
+        assert found.measured == pytest.approx(found.predicted, rel=1e-3)
+    assert found.growth_measured == pytest.approx(found.growth_predicted, rel=1e-6, abs=1e-13)
+
+
+def test_another_system_has_other_critical_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    stiff = (1.0, 1e4, 1.0, 9.81)  # the spring's own frequency is 100 rad/s
+    found = critical_step("rk4", ep, stiff)
+    assert found.measured == pytest.approx(2 * sqrt(2) / 100, rel=1e-3)
+    # a method that is not the one of the prediction would be found out
+    monkeypatch.setattr(critical, "integrate", lambda *args, **options: integrate(
+        *args, **(options | {"method": "rk3"})
+    ))  # fmt: skip
+    other = critical_step("rk4", ep, stiff)
+    assert other.linear == pytest.approx(other.predicted, rel=1e-3)
+    assert other.measured == pytest.approx(sqrt(3) / 100, rel=1e-3)
+
+
+def test_limits_are_bisected_whatever_the_growth() -> None:
+    assert limit(lambda h: h - 0.7, 1.0) == pytest.approx(0.7, rel=2e-4)
+    assert limit(lambda h: 1.0, 1.0) == 0.0
+    assert limit(lambda h: -1.0, 1.0) == inf
+
+
+def test_modes_are_those_of_the_textbook() -> None:
+    # equal masses and lengths: omega² = (2 ∓ sqrt(2)) g/l (L. D. Landau, E. M. Lifshitz, § 23)
+    modes = Modes.at_rest(dp, dp.DEFAULTS)
+    assert modes.frequencies**2 == pytest.approx((2 + np.array([-1, 1]) * sqrt(2)) * 9.81 / 2)
+    assert modes.shapes.T @ modes.mass_matrix @ modes.shapes == pytest.approx(np.eye(2), abs=1e-15)
+    eigenvalues = np.sort_complex(np.linalg.eigvals(modes.matrix))
+    assert np.abs(eigenvalues.real).max() < 1e-14
+    rest = along(dp, dp.DEFAULTS, np.zeros((1, 4)))[0]
+    assert np.sort(rest.imag) == pytest.approx(np.sort(eigenvalues.imag))
+    with pytest.raises(ValueError, match="does not oscillate"):
+        Modes.at_rest(sp, (1.0, 2.0, -9.81))
+
+
+def test_motion_damped_to_nothing_is_still_a_motion() -> None:
+    # Radau's method damps fast oscillations: after 250 steps a number has lost its digits
+    run = integrate(sp, (0, 4000), (1e-7, 0.0), sp.DEFAULTS, method="radau2", h=8.0)
+    assert run.status is Status.FINISHED
+    assert 0 < np.abs(run.y[:, -1]).max() < 1e-290
