@@ -17,6 +17,8 @@ from solvers.tableau import Tableau
 
 #: Steps, and occurrences of an event, that are written before Python collects them.
 ROOM, ROOM_FOR_EVENTS = 4096, 64
+#: Unknowns of an implicit step that C solves for; more would not fit on a thread's stack.
+MOST_UNKNOWNS = 100
 #: Seconds between looks whether the user has interrupted.
 PATIENCE = 0.05
 
@@ -25,8 +27,9 @@ def obstacle(problem: Problem) -> str:
     """Why the problem cannot be run in a compiled loop; empty if it can."""
     if not isinstance(problem.method, Tableau):
         return "the method is SciPy's"
-    if not problem.method.is_explicit:
-        return f"{problem.method.title} is implicit"
+    unknowns = problem.method.stages * len(problem.form.state)
+    if not problem.method.is_explicit and unknowns > MOST_UNKNOWNS:
+        return f"its stages have {unknowns} unknowns, more than {MOST_UNKNOWNS}"
     if problem.atol.ndim:
         return "atol differs by component"
     if len(problem.events) > MOST_EVENTS:
@@ -72,7 +75,8 @@ def choice(
     if reason or where == "python":
         return plain, None
     module = plain.form.module
-    quick = asked(form or fastest_form(module))
+    assert isinstance(plain.method, Tableau)
+    quick = asked(form or (fastest_form(module) if plain.method.is_explicit else "lagrangian"))
     try:
         return quick, kernel(
             module, quick.form.name, method,
@@ -124,7 +128,7 @@ def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
         outcome.y_events[k] += places[k]
     if motion["steps"]:
         outcome.end = float(motion["t"]), place
-    outcome.nfev = int(batch.nfev[0])
+    outcome.nfev, outcome.njev = int(batch.nfev[0]), int(batch.njev[0])
     outcome.steps, outcome.rejected = int(motion["steps"]), int(motion["rejected"])
     motion["occurred"] = 0
     if problem.samples is None:  # else the number of rows says which sample is next

@@ -30,6 +30,7 @@ STATUSES = (
     Status.STEP_LIMIT,
     Status.NOT_FINITE,
     Status.STEP_TOO_SMALL,
+    Status.NO_CONVERGENCE,
 )
 MOST_EVENTS = 8
 
@@ -63,9 +64,9 @@ class Kernel:
     form : str
         One of its forms.
     method : str
-        An explicit method of ours.
+        One of ours.
     lanes : bool
-        Whether it is to run many motions at once, where the right-hand side allows it.
+        Whether it is to run many motions at once, where right-hand side and method allow it.
     compensated : bool
         Whether the state's rounding errors are carried along.
     reproducible : bool
@@ -93,7 +94,8 @@ class Kernel:
         lanes: bool, compensated: bool, reproducible: bool,
     ) -> None:  # fmt: skip
         tableau, source = load(method), equations(module, form)
-        text = program(source, tableau, lanes=lanes and source.vectorises, compensated=compensated)
+        vectors = lanes and source.vectorises and tableau.is_explicit
+        text = program(source, tableau, lanes=vectors, compensated=compensated)
         self.library = build(text, reproducible=reproducible)
         library = ctypes.CDLL(str(self.library.path))
         self.run = library.run
@@ -105,7 +107,7 @@ class Kernel:
             ("low", float, (compensated * source.state,)), ("turns", float, angles),
             ("first", float, (tableau.is_fsal * source.state,)),
             *((name, float, ()) for name in ("h", "previous", "steps", "rejected")),
-            *((name, float, ()) for name in ("trials", "cuts", "t_end", "shortest")),
+            *((name, float, ()) for name in ("trials", "rounds", "cuts", "t_end", "shortest")),
             ("params", float, (source.parameters,)),
             ("status", np.int64, ()), ("rows", np.int64, ()),
             ("occurred", np.int64, (MOST_EVENTS,)),
@@ -113,6 +115,7 @@ class Kernel:
         self.trajectory = np.dtype(fields)
         self.row = np.dtype([("t", float), ("z", float, state), ("turns", float, angles)])
         self.slopes = tableau.stages - tableau.is_fsal
+        self.is_explicit = tableau.is_explicit
         if library.trajectory_size() != self.trajectory.itemsize:
             raise AssertionError("C and Python disagree about the layout of a trajectory")
 
@@ -190,9 +193,14 @@ class Batch:
     @property
     def nfev(self) -> NDArray[np.int64]:
         """Evaluations of the right-hand side by each motion."""
-        trials = self.motions["trials"].astype(np.int64)
+        rounds = self.motions["rounds"].astype(np.int64)
         first = 1 if self.task.fixed else 2  # the slope at the beginning, and one to choose h
-        return trials * self._kernel.slopes + first * (trials > 0)
+        return rounds * self._kernel.slopes + self.njev + first * (rounds > 0)
+
+    @property
+    def njev(self) -> NDArray[np.int64]:
+        """Evaluations of the Jacobian; with each of them begins a guess, the slope there."""
+        return self.motions["trials"].astype(np.int64) * (not self._kernel.is_explicit)
 
 
 def _event(form: Form, crossing: Crossing) -> tuple[float | int, ...]:

@@ -25,6 +25,7 @@ PROGRAM = """\
 #define HOLONOMIC_REAL real
 {header}
 #define RHS {rhs}
+#define JACOBIAN {jacobian}
 enum {{ STATE = {state}, PARAMETERS = {parameters}, ANGLES = {angles} }};
 static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 #define COMPENSATED {compensated}
@@ -55,15 +56,10 @@ static void leave(const double *z, const double *turns, double *y, const double 
 
 METHOD = """\
 /* {title} */
-enum {{ STAGES = {stages}, IS_FSAL = {is_fsal} }};
+enum {{ STAGES = {stages}, IS_FSAL = {is_fsal}, IS_EXPLICIT = {is_explicit} }};
 enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
 
-static inline void stages(
-    real t, const real *z, real h, real (*k)[STATE], const real *params)
-{{
-    real place[STATE];
-{rows}    (void)t; (void)z; (void)h; (void)place; (void)k; (void)params;
-}}
+{solution}
 
 static inline real increment(real h, real (*k)[STATE], int n)
 {{
@@ -81,6 +77,23 @@ static inline real second_estimate(real h, real (*k)[STATE], int n)
 }}
 """
 
+EXPLICIT = """\
+static inline real stages(
+    real t, const real *z, real h, real (*k)[STATE], const real *params)
+{{
+    real place[STATE];
+{rows}    (void)t; (void)z; (void)h; (void)place; (void)k; (void)params;
+    return every(1.0);
+}}"""
+
+IMPLICIT = """\
+static const double A[STAGES][STAGES] = {{
+{rows}
+}};
+static const double C[STAGES] = {{{nodes}}};
+
+{newton_h}"""
+
 STAGE = """\
     for (int n = 0; n < STATE; n++) {{
         place[n] = z[n] + {sum};
@@ -97,8 +110,8 @@ class Equations:
     ----------
     header : str
         Text of the generated header.
-    rhs : str
-        The right-hand side in it.
+    rhs, jacobian : str
+        The right-hand side in it and its Jacobian, which is not there in every form.
     state, parameters : int
         How many numbers it takes.
     ordinary : int
@@ -113,6 +126,7 @@ class Equations:
 
     header: str
     rhs: str
+    jacobian: str
     state: int
     parameters: int
     ordinary: int
@@ -137,9 +151,10 @@ def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated:
     equations : Equations
         What is integrated.
     tableau : Tableau
-        An explicit method.
+        The method.
     lanes : bool
-        Whether as many motions are integrated at once as fill the processor's vectors.
+        Whether as many motions are integrated at once as fill the processor's vectors;
+        explicit methods only.
     compensated : bool
         Whether rounding errors of the state are carried along, as those of time are.
     """
@@ -159,6 +174,7 @@ def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated:
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
         header=equations.header,
         rhs=equations.rhs,
+        jacobian=equations.jacobian,
         state=equations.state,
         parameters=equations.parameters,
         angles=len(equations.angles),
@@ -171,19 +187,32 @@ def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated:
     )
 
 
-def _method(tableau: Tableau) -> str:
+def _explicit(tableau: Tableau) -> str:
     rows = [
         STAGE.format(sum=_sum(row), c=_real(c), i=i)
         for i, (row, c) in enumerate(zip(tableau.A, tableau.c, strict=True))
         if i
     ]
+    return EXPLICIT.format(rows="".join(rows))
+
+
+def _implicit(tableau: Tableau) -> str:
+    return IMPLICIT.format(
+        rows=",\n".join(f"    {{{', '.join(map(_real, row))}}}" for row in tableau.A),
+        nodes=", ".join(map(_real, tableau.c)),
+        newton_h=(files("solvers") / "c" / "newton.h").read_text(encoding="utf-8"),
+    )
+
+
+def _method(tableau: Tableau) -> str:
     return METHOD.format(
         title=tableau.title,
         stages=tableau.stages,
         is_fsal=int(tableau.is_fsal),
         error_order=tableau.error_order,
         estimates=len(tableau.error_weights),
-        rows="".join(rows),
+        is_explicit=int(tableau.is_explicit),
+        solution=_explicit(tableau) if tableau.is_explicit else _implicit(tableau),
         increment=_sum(tableau.b),
         estimate=_sum(tableau.error_weights[0]) if tableau.b_hat else "0.0*h",
         second_estimate=_sum(tableau.error_weights[1]) if tableau.b_low else "0.0*h",

@@ -75,7 +75,8 @@ def equations(module: ModuleType, form: str) -> Equations:
         enter = [f"{place.stem}_hamiltonian_state(y, z, params);"]
         leave = [f"{place.stem}_lagrangian_state(z, y, params);"]
     sizes = len(described.state), len(module.PARAMETERS), len(described.ordinary)
-    return Equations(text, rhs, *sizes, described.angles, enter, leave)
+    jacobian = rhs.replace("_rhs", "_jacobian")
+    return Equations(text, rhs, jacobian, *sizes, described.angles, enter, leave)
 
 
 def native_rhs(

@@ -115,12 +115,12 @@ class Stepper:
         previous = np.inf
         for _ in range(ROUNDS):
             places = y + h * (self._A @ slopes)
-            values = np.array([
-                self.slope(t + c * h, place) for c, place in zip(self._c, places, strict=True)
-            ])  # fmt: skip
             try:
+                values = np.array([
+                    self.slope(t + c * h, place) for c, place in zip(self._c, places, strict=True)
+                ])  # fmt: skip
                 change = np.linalg.solve(matrix, (values - slopes).ravel()).reshape(stages, n)
-            except np.linalg.LinAlgError as error:
+            except (NotFiniteError, np.linalg.LinAlgError) as error:
                 raise NoConvergenceError(f"stages at t = {t}, h = {h}: {error}") from error
             slopes = slopes + change
             scale = np.abs(y).max() + np.abs(h * slopes).max() + FAINT

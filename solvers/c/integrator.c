@@ -149,7 +149,7 @@ static enum Status status(const Lanes *lanes, int lane)
         return FINISHED;
     }
     if (NUMBER(motion->cuts, lane) > (task->fixed ? 0 : MOST_CUTS)) {
-        return NOT_FINITE;
+        return IS_EXPLICIT || NUMBER(motion->cuts, lane) > MOST_CUTS ? NOT_FINITE : NO_CONVERGENCE;
     }
     if (NUMBER(motion->steps, lane) >= (double)task->most_steps) {
         return STEP_LIMIT;
@@ -201,7 +201,7 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *kept, mask *br
     const mask last = advancing & ~below(size(motion->h)*(1 + 1e-9), size(left));
     lanes->trial = chosen(advancing, chosen(last, left, motion->h), lanes->trial);
     real error[2][STATE];
-    step(place, lanes->trial, motion->params, !task->fixed, end, error);
+    motion->rounds += step(place, lanes->trial, motion->params, !task->fixed, end, error);
     end->t = chosen(last, motion->t_end, end->t);
     end->t_low = chosen(last, every(0.0), end->t_low);
     real nothing = every(0.0);

@@ -6,13 +6,14 @@ enum { MOST_EVENTS = 8 };
 /* A motion in every lane: where it is, how it goes, where it is to go. */
 typedef struct {
     Place place;
-    real h, previous, steps, rejected, trials, cuts;
+    real h, previous, steps, rejected, trials, rounds, cuts;
     real t_end, shortest, params[PARAMETERS];
 } Motion;
 
 enum { MOTION = sizeof(Motion)/sizeof(real) };
 
-enum Status { WAITING, RUNNING, FINISHED, EVENT, STEP_LIMIT, NOT_FINITE, STEP_TOO_SMALL };
+enum Status { WAITING, RUNNING, FINISHED, EVENT, STEP_LIMIT, NOT_FINITE, STEP_TOO_SMALL,
+              NO_CONVERGENCE };
 
 /* A motion in memory. */
 typedef struct {

@@ -1,9 +1,9 @@
-/* One step of an explicit method in every lane, and how long the next one is.
+/* One step in every lane, and how long the next one is.
 
    Before this file stand the right-hand side RHS, the sizes STATE, PARAMETERS and ANGLES, where in
    the state the sine of each angle (its cosine follows) and its velocity are (SINE, RATE), and the
-   method: STAGES, IS_FSAL, ERROR_ORDER, ESTIMATES, stages(), increment(), estimate() and, where
-   there are two, second_estimate(). */
+   method: STAGES, IS_FSAL, IS_EXPLICIT, ERROR_ORDER, ESTIMATES, stages(), increment(), estimate() and,
+   where there are two, second_estimate(). */
 
 static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
 static const double PI = 3.14159265358979324;
@@ -79,8 +79,9 @@ static inline real count_turns(const Place *start, real h, Place *end)
     return nothing;
 }
 
-/* The place after h, and the estimate of the local error. */
-static __attribute__((noinline)) void step(
+/* The place after h, and the estimate of the local error. Returns how many rounds of all stages were
+   made, which is one unless the method is implicit. */
+static __attribute__((noinline)) real step(
     const Place *restrict start, real h, const real *restrict params, int estimates,
     Place *restrict end, real (*restrict error)[STATE])
 {
@@ -91,7 +92,10 @@ static __attribute__((noinline)) void step(
     if (!IS_FSAL) {
         RHS(start->t, start->z, k[0], params);
     }
-    stages(start->t, start->z, h, k, params);
+    for (int i = 1; i < STAGES && !IS_EXPLICIT; i++) {
+        memcpy(k[i], k[0], sizeof k[0]);
+    }
+    const real rounds = stages(start->t, start->z, h, k, params);
     for (int n = 0; n < STATE; n++) {
         end->z[n] = start->z[n];
 #if COMPENSATED
@@ -109,6 +113,7 @@ static __attribute__((noinline)) void step(
         }
     }
     end->t = sum(start->t, h + start->t_low, &end->t_low);
+    return rounds;
 }
 
 /* Mean square of `values` in parts of what is allowed at states x and y. */
