@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Rhs = Callable[[float, Array], Array]
 
 #: Newton's iteration ends when a change is this small beside the state, or after so many rounds.
-CLOSE, ROUNDS = 1e-14, 30
+CLOSE, ROUNDS = 1e-14, 100
 #: Numbers that are not much larger have fewer digits than others.
 FAINT = 1e-290
 

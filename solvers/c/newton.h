@@ -2,7 +2,7 @@
 
    Before this file stand the coefficients A and C, and JACOBIAN, the derivative of RHS. */
 
-enum { UNKNOWNS = STAGES*STATE, MOST_ROUNDS = 30 };
+enum { UNKNOWNS = STAGES*STATE, MOST_ROUNDS = 100 };
 
 /* The iteration ends when a change is this small beside the state; numbers that are not much
    larger than FAINT have fewer digits than others. */
