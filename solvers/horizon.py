@@ -10,14 +10,15 @@ import numpy as np
 from solvers.catalogue import load
 from solvers.compiled import obstacle
 from solvers.compiler import NoCompilerError
-from solvers.forms import Form, fastest_form
+from solvers.forms import Form
 from solvers.kernel import Batch, kernel
 from solvers.problem import Problem
 
-#: How far the companion begins from the motion, when both count as apart, and how often to look.
-NEAR, APART, LOOKS = 1e-8, 1e-3, 64
-#: What the companions run with, and how far they are followed.
-METHOD, MOST_STEPS = "verner87", 20_000
+#: What a small change of the start is integrated with, and how far.
+METHOD, TOLERANCE, MOST_STEPS = "verner87", 1e-9, 20_000
+#: Parts of the run: its beginning, in which every change grows somehow, and where to look.
+BEGINNING = 0.01
+LOOKS = np.concatenate([np.linspace(0, BEGINNING, 17)[1:], np.linspace(BEGINNING, 1, 100)[1:]])
 
 
 class HorizonWarning(UserWarning):
@@ -27,48 +28,50 @@ class HorizonWarning(UserWarning):
 def horizon(problem: Problem) -> float:
     """The time from which on the errors that are allowed have grown as large as the motion.
 
-    It is begin + ln(1/tolerance)/λ, where λ is the rate at which a companion leaves the
-    motion. Infinity if that is beyond the run, or not known: for fixed steps, and
-    without a compiled loop.
+    That is when a small change of the start, by the variational equations, has grown by
+    1/tolerance since the beginning of the run, and beyond a growth in proportion to time,
+    which happens in regular motion, too. Infinity if that is beyond the run, or not
+    known: for fixed steps, and without a compiled loop.
     """
     begin, end = problem.span
-    module, form = problem.form.module, fastest_form(problem.form.module)
-    if problem.h is not None or begin == end:
+    module = problem.form.module
+    if problem.h is not None or begin == end or not hasattr(module, "rhs_variational"):
         return inf
-    companions = replace(
+    start = problem.start[: len(module.STATE)]
+    variational = replace(
         problem,
-        form=Form(module, form, problem.form.params),
+        form=Form(module, "variational", problem.form.params),
         method=load(METHOD),
-        rtol=NEAR / 100,
-        atol=np.array(NEAR / 100),
-        samples=begin + (end - begin) * np.logspace(-3, 0, LOOKS),
+        rtol=TOLERANCE,
+        atol=np.array(TOLERANCE),
+        samples=begin + (end - begin) * LOOKS,
         events=[],
         max_steps=MOST_STEPS,
     )
-    if obstacle(companions):
+    if obstacle(variational):
         return inf
     try:
-        program = kernel(module, form, METHOD, lanes=False, compensated=False, reproducible=False)
+        program = kernel(
+            module, "variational", METHOD, lanes=False, compensated=False, reproducible=False
+        )
     except NoCompilerError:
         return inf
-    start = problem.start[: len(module.STATE)]
-    near = start + NEAR * (1 + np.abs(start))
     batch = Batch(
-        program, companions, companions.form, np.array([start, near]),
-        capacity=LOOKS, occurrences=0, pauses=False,
+        program, variational, variational.form, np.array([[*start, *np.ones_like(start)]]),
+        capacity=len(LOOKS), occurrences=0, pauses=False,
     )  # fmt: skip
     batch.restart()
     batch.go()
-    seen = int(batch.motions["rows"].min())
-    if not seen:
+    seen = int(batch.motions["rows"][0])
+    change = batch.rows["z"][0, :seen, -len(start) :]
+    early = LOOKS[:seen] <= BEGINNING
+    if early.all():
         return inf
-    motion, companion = (batch.form.outside_many(r["z"], r["turns"])[:seen] for r in batch.rows)
-    distance = np.abs(companion - motion).max(axis=1)
-    apart = np.flatnonzero(distance > APART)
-    k = int(apart[0]) if apart.size else seen - 1
-    elapsed = abs(batch.rows["t"][0, k] - begin)
-    growth = np.log(max(distance[k], NEAR) / np.abs(near - start).max())
-    allowed = max(problem.tolerance, np.finfo(float).eps)
-    if growth <= 0 or np.log(1 / allowed) * elapsed / growth >= abs(end - begin):
-        return inf
-    return float(begin + np.sign(end - begin) * np.log(1 / allowed) * elapsed / growth)
+    size = np.log(np.abs(change).max(axis=1))
+    growth = size - size[early].max() - np.log(LOOKS[:seen] / BEGINNING)
+    growth[early] = 0.0
+    allowed = np.log(1 / max(problem.tolerance, np.finfo(float).eps))
+    grown = np.flatnonzero(growth >= allowed)
+    # a change that is not followed to the end of the run goes on as before
+    part = LOOKS[grown[0]] if grown.size else LOOKS[seen - 1] * allowed / max(growth[-1], 1e-9)
+    return inf if part >= 1 else begin + float(part) * (end - begin)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import ulp
 from types import ModuleType
 from typing import Any
@@ -50,7 +50,7 @@ def prepare(
     h: float | None = None,
     max_steps: int = 1_000_000,
     compensated: bool = False,
-) -> Callable[[tuple[float, float], Sequence[float]], tuple[float, ...]]:
+) -> Prepared:
     """A function ``run((t0, t1), y0)`` that returns the state at t1, compiled now.
 
     Parameters
@@ -60,11 +60,8 @@ def prepare(
 
     Returns
     -------
-    callable
-        Takes a time span and an ordinary state, returns the state at the span's end as
-        a tuple. Raises `ValueError` for a state or span that makes no sense and
-        `NotFinishedError` where the motion does not reach its end. Each thread needs a
-        function of its own.
+    Prepared
+        Each thread needs one of its own.
 
     Raises
     ------
@@ -90,11 +87,16 @@ def prepare(
         program, problem, problem.form, problem.start[np.newaxis],
         capacity=0, occurrences=0, pauses=False,
     )  # fmt: skip
-    return _Prepared(program.once, batch, problem).run
+    return Prepared(program.once, batch, problem)
 
 
-class _Prepared:
-    """One motion in memory."""
+class Prepared:
+    """A function that integrates one motion after another: ``run((t0, t1), y0)``.
+
+    It takes a time span and an ordinary state, and returns the state at the span's end
+    as a tuple. It raises `ValueError` for a span or state that makes no sense and
+    `NotFinishedError` where the motion does not reach its end.
+    """
 
     def __init__(self, once: Any, batch: Batch, problem: Problem) -> None:
         self._batch, self._problem = batch, problem
@@ -106,7 +108,7 @@ class _Prepared:
         self._once, self._task = once, ctypes.addressof(batch.task)
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
 
-    def run(self, t_span: tuple[float, float], y0: Sequence[float]) -> tuple[float, ...]:
+    def __call__(self, t_span: tuple[float, float], y0: Sequence[float]) -> tuple[float, ...]:
         """The state at the end of `t_span` of the motion that begins with `y0`."""
         try:
             begin, end = t_span
@@ -133,6 +135,16 @@ class _Prepared:
             assert status is not None
             raise NotFinishedError(status, float(self._batch.motions["t"][0]), y)
         return y
+
+    @property
+    def steps(self) -> int:
+        """Steps of the last motion."""
+        return int(self._batch.motions["steps"][0])
+
+    @property
+    def nfev(self) -> int:
+        """Right-hand sides that the last motion evaluated."""
+        return int(self._batch.nfev[0])
 
     def _refuse(self, t_span: tuple[float, float], y0: Sequence[float]) -> None:
         """Raise for what makes no sense in a span or a state."""

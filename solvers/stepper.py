@@ -112,6 +112,8 @@ class Stepper:
         J = np.asarray(self._jacobian(t, y), dtype=float)
         matrix = np.eye(stages * n) - h * np.kron(self._A, J)
         slopes = np.tile(first, (stages, 1))
+        # rounding, which a steep slope multiplies, may keep the iteration from getting closer
+        rounding = CLOSE * (100 + np.abs(h * J).max())
         previous = np.inf
         for _ in range(ROUNDS):
             places = y + h * (self._A @ slopes)
@@ -125,8 +127,7 @@ class Stepper:
             slopes = slopes + change
             scale = np.abs(y).max() + np.abs(h * slopes).max() + FAINT
             size = float(np.abs(h * change).max() / scale)
-            # rounding may keep it from getting closer: then it is as close as it gets
-            if size <= CLOSE or (size < 100 * CLOSE and size >= previous / 2):
+            if size <= CLOSE or (size < rounding and size >= previous / 2):
                 return slopes
             previous = size
         raise NoConvergenceError(f"stages at t = {t}, h = {h} still change by {size:.1e}")

@@ -64,8 +64,11 @@ static double stages(
 {
     double jacobian[STATE*STATE], matrix[UNKNOWNS][UNKNOWNS], change[UNKNOWNS];
     int exchanged[UNKNOWNS], round = 0;
-    double largest = 0.0, previous = INFINITY;
+    double largest = 0.0, steepest = 0.0, previous = INFINITY;
     JACOBIAN(t, z, jacobian, params);
+    for (int n = 0; n < STATE*STATE; n++) {
+        steepest = fmax(steepest, fabs(h*jacobian[n]));
+    }
     for (int i = 0; i < UNKNOWNS; i++) {
         for (int j = 0; j < UNKNOWNS; j++) {
             matrix[i][j] =
@@ -100,9 +103,9 @@ static double stages(
             travelled = fmax(travelled, fabs(h*k[n/STATE][n % STATE]));
             solvable &= change[n] - change[n] == 0.0;
         }
-        /* rounding may keep it from getting closer: then it is as close as it gets */
+        /* rounding, which a steep slope multiplies, may keep it from getting closer */
         const double size = moved/(largest + travelled + FAINT);
-        if (solvable && (size <= CLOSE || (size < 100*CLOSE && size >= previous/2))) {
+        if (solvable && (size <= CLOSE || (size < CLOSE*(100 + steepest) && size >= previous/2))) {
             return round;
         }
         previous = size;

@@ -1,0 +1,101 @@
+"""One run, measured: where it ends, and what it costs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers import interpreted, request, scipy_runs
+from solvers.prepared import NotFinishedError, prepare
+from solvers.problem import Outcome, Problem
+from solvers.solution import Status
+from solvers.tableau import Tableau
+
+Array = NDArray[np.float64]
+
+#: No run takes more steps than this.
+MOST_STEPS = 10**8
+#: A run is timed so often at least, and until so many seconds have passed.
+TIMES, SECONDS = 3, 0.01
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a run costs.
+
+    Attributes
+    ----------
+    work_seconds : float
+        Its time: the median of several runs, with preparation left out.
+    work_rhs, steps : int
+        Right-hand sides evaluated, and steps taken.
+    end : ndarray of shape (state,)
+        The ordinary state at its end.
+    """
+
+    work_seconds: float
+    work_rhs: int
+    steps: int
+    end: Array
+
+
+def measured(
+    module: ModuleType, params: Sequence[float], y0: Sequence[float], duration: float,
+    *, method: str, form: str, backend: str, rtol: float = 0.0, h: float | None = None,
+) -> Measured | None:  # fmt: skip
+    """Run and time a motion from time 0; None if it does not reach its end.
+
+    Parameters
+    ----------
+    module, params, y0, method, form
+        As in `solvers.integration.integrate`.
+    duration : float
+        In s.
+    backend : {"compiled", "python", "scipy"}
+        Where it runs.
+    rtol : float
+        Relative and absolute tolerance.
+    h : float, optional
+        A fixed step instead.
+    """
+    span = (0.0, duration)
+    if backend == "compiled":
+        run = prepare(
+            module, params, method=method, form=form, rtol=rtol, atol=rtol, h=h,
+            max_steps=MOST_STEPS,
+        )  # fmt: skip
+        try:
+            end = run(span, y0)
+        except NotFinishedError:
+            return None
+        return Measured(_median(lambda: run(span, y0)), run.nfev, run.steps, np.array(end))
+    problem = request.problem(
+        module, span, y0, params, method, form, rtol, rtol, h, span[1:], (), MOST_STEPS
+    )
+    outcome = _outcome(problem)
+    if outcome.status is not Status.FINISHED:
+        return None
+    _, rows = outcome.rows()
+    return Measured(_median(lambda: _outcome(problem)), outcome.nfev, outcome.steps, rows[-1])
+
+
+def _outcome(problem: Problem) -> Outcome:
+    outcome = Outcome.begun(problem)
+    rung = interpreted if isinstance(problem.method, Tableau) else scipy_runs
+    rung.run(problem, outcome)
+    return outcome
+
+
+def _median(run: Callable[[], object]) -> float:
+    times: list[float] = []
+    until = time.perf_counter() + SECONDS
+    while len(times) < TIMES or time.perf_counter() < until:
+        before = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - before)
+    return float(np.median(times))
