@@ -10,7 +10,7 @@ from scipy.special import ellipk
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.references.extrapolation import extrapolated
-from solvers.references.pendulum import pendulum
+from solvers.references.pendulum import jacobi, pendulum
 from solvers.references.taylor import sine_and_cosine, taylor
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
@@ -51,7 +51,8 @@ def test_energy_is_kept_to_the_last_bits() -> None:
 
 @pytest.mark.parametrize("start", [
     (2.0, 0.0), (1.0, 3.0), (1.0, -3.0), (0.3, 7.0), (0.3, -7.0), (7.0, 1.0), (-4.0, 0.5),
-    (9.0, -8.0), (3.0, 0.0), (0.0, 0.0), (1e-9, 0.0),
+    (9.0, -8.0), (3.0, 0.0), (0.0, 0.0), (1e-9, 0.0), (pi - 1e-5, 0.0), (1e-7 - pi, 0.0),
+    (pi, 1e-5),
 ])  # fmt: skip
 def test_elliptic_functions_give_the_single_pendulum(start: tuple[float, float]) -> None:
     times = np.linspace(0, 20, 9)
@@ -66,6 +67,24 @@ def test_elliptic_functions_on_the_separatrix_rise_for_ever() -> None:
     assert motion[:, 0] == pytest.approx(4 * np.arctan(np.tanh([-0.5, 0, 0.5, 5, 20])), abs=1e-15)
     assert motion[2, 1] == pytest.approx(2 / np.cosh(1.0), rel=1e-15)
     assert pendulum(9.81, 9.81, (0.0, -2 * omega), 40.0)[0] == pytest.approx(-pi, abs=1e-15)
+
+
+@pytest.mark.parametrize("complement", [1.0, 0.5, 1e-3, 1e-8, 1e-20])
+def test_jacobis_functions_keep_their_digits_close_to_the_separatrix(complement: float) -> None:
+    import mpmath
+
+    with mpmath.workdps(50):
+        m = 1 - mpmath.mpf(complement)
+        quarter = float(mpmath.ellipk(m))
+        for part in (0.1, 0.4, 0.6, 0.97, 1.2, 2.7, -0.8):
+            u = part * quarter
+            for value, name in zip(jacobi(np.array(u), complement), ("sn", "cn", "dn"),
+                                   strict=False):  # fmt: skip
+                expected = float(mpmath.ellipfun(name, u, m=m))
+                # what rounding u does, and a few roundings where sn turns into cn
+                assert value == pytest.approx(
+                    expected, rel=1e-14 * (1 + quarter) / complement**0.25
+                )
 
 
 def test_the_period_is_the_complete_elliptic_integral() -> None:

@@ -103,8 +103,10 @@ def study(
                 cheapest = _cheapest(module, params, start, slow, truth, method)
                 if cheapest:
                     run, error = cheapest
-                    found.append(Cost(family, method, float(frequencies[-1] / frequencies[0]),
-                                      run.steps, run.work_rhs, run.work_seconds, error))  # fmt: skip
+                    found.append(Cost(
+                        family, method, float(frequencies[-1] / frequencies[0]),
+                        run.steps, run.work_rhs, run.work_seconds, error,
+                    ))  # fmt: skip
     return found
 
 

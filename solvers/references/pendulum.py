@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ellipj, ellipkinc
+from scipy.special import elliprf
 
 Array = NDArray[np.float64]
 
 
-def pendulum(
-    length: float, gravity: float, y0: tuple[float, float], times: ArrayLike
-) -> Array:  # fmt: skip
+def pendulum(length: float, gravity: float, y0: tuple[float, float], times: ArrayLike) -> Array:
     """States (theta, theta_dot) of a single pendulum that has the state `y0` at time 0.
 
     Parameters
@@ -30,34 +28,75 @@ def pendulum(
 
     Notes
     -----
-    With ω = √(g/l) and s = sin(θ/2), energy is k² = s² + (θ̇/2ω)². Swinging (k < 1),
-    sin(θ/2) = k sn(u, k²) with u = ωt + u₀; turning over (k > 1), θ/2 = am(ku, 1/k²);
-    on the separatrix (k = 1), tan(θ/4) = tanh(u/2) (NIST Digital Library of
-    Mathematical Functions, 22.19(i)).
+    With ω = √(g/l), energy is k² = sin²(θ/2) + (θ̇/2ω)². Swinging (k < 1),
+    sin(θ/2) = k sn(u, k) with u = ωt + u₀; turning over (k > 1), θ/2 = am(ku, 1/k) (NIST
+    Digital Library of Mathematical Functions, 22.19(i)); on the separatrix (k = 1),
+    θ = 2 gd(u). Everything is computed from 1 - k² = cos²(θ/2) - (θ̇/2ω)², so that motions
+    close to the separatrix are as accurate as others.
     """
     t = np.asarray(times, dtype=float)
     omega = np.sqrt(gravity / length)
-    theta, rate = y0
-    whole = np.round(theta / (2 * np.pi))
-    theta = theta - 2 * np.pi * whole
-    speed = rate / (2 * omega)
-    sine = np.sin(theta / 2)
-    k = np.hypot(sine, speed)
+    whole = np.round(y0[0] / (2 * np.pi))
+    half, speed = (y0[0] - 2 * np.pi * whole) / 2, y0[1] / (2 * omega)
+    sine, cosine = np.sin(half), np.cos(half)
+    k, below = np.hypot(sine, speed), (cosine - speed) * (cosine + speed)  # below = 1 - k²
     if k == 0:
         angle, velocity = np.zeros_like(t), np.zeros_like(t)
-    elif k < 1:
-        amplitude = np.arctan2(sine, speed)
-        u = omega * t + ellipkinc(amplitude, k * k)
-        sn, cn, dn, _ = ellipj(u, k * k)
+    elif below > 0:
+        u = omega * t + elliptic_integral(sine / k, speed / k, below)
+        sn, cn, dn = jacobi(u, below)[:3]
         angle, velocity = 2 * np.arctan2(k * sn, dn), 2 * omega * k * cn
-    elif k == 1:
-        way = np.sign(speed)
-        u = omega * t + way * 2 * np.arctanh(np.tan(theta / 4))
-        angle = 4 * np.arctan(np.tanh(way * u / 2))
-        velocity = way * 2 * omega / np.cosh(u)
+    elif below < 0:
+        way, rest = np.sign(speed), -below / k**2
+        u = omega * k * t + way * elliptic_integral(sine, cosine, rest)
+        _, _, dn, am = jacobi(u, rest)
+        angle, velocity = way * 2 * am, way * 2 * omega * k * dn
     else:
         way = np.sign(speed)
-        u = omega * k * t + way * ellipkinc(theta / 2, 1 / k**2)
-        _, _, dn, am = ellipj(u, 1 / k**2)
-        angle, velocity = way * 2 * am, way * 2 * omega * k * dn
+        u = way * omega * t + 2 * np.arctanh(np.tan(half / 2))
+        angle, velocity = 4 * np.arctan(np.tanh(u / 2)), way * 2 * omega / np.cosh(u)
     return np.stack([angle + 2 * np.pi * whole, velocity], axis=-1)
+
+
+def elliptic_integral(sine: float, cosine: float, complement: float) -> float:
+    """F(φ, k) for |φ| ≤ π by its sine and cosine, with complement = 1 - k² in (0, 1].
+
+    By Carlson's integral (NIST Digital Library of Mathematical Functions, 19.25.5).
+    """
+    if cosine < 0:
+        whole = np.copysign(2 * elliprf(0.0, complement, 1.0), sine)  # ±2K
+        return float(whole - elliptic_integral(sine, -cosine, complement))
+    return float(sine * elliprf(cosine**2, cosine**2 + complement * sine**2, 1.0))
+
+
+def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
+    """Jacobi's sn, cn, dn and am of real `u`, with complement = 1 - k² in (0, 1].
+
+    By the arithmetic-geometric mean (NIST Digital Library of Mathematical Functions,
+    22.20(ii)), after `u` has been brought to at most half a quarter period by 22.4(iii),
+    so that cn and dn keep their digits where they are small.
+    """
+    quarter = elliprf(0.0, complement, 1.0)  # K
+    halves = np.round(u / (2 * quarter))
+    rest = u - 2 * quarter * halves
+    turned = np.abs(rest) > quarter / 2
+    v = np.where(turned, quarter - np.abs(rest), np.abs(rest))
+    a, b, c = 1.0, np.sqrt(complement), np.sqrt(1 - complement)
+    ratios = []
+    while c > np.finfo(float).eps * a:
+        a, b, c = (a + b) / 2, np.sqrt(a * b), (a - b) / 2
+        ratios.append(c / a)
+    phi = 2 ** len(ratios) * a * v
+    for ratio in reversed(ratios):
+        phi = (phi + np.arcsin(ratio * np.sin(phi))) / 2
+    sn, cn = np.sin(phi), np.cos(phi)
+    dn = np.sqrt(cn**2 + complement * sn**2)
+    root = np.sqrt(complement)
+    sn, cn, dn = (
+        np.where(turned, beyond, before)
+        for beyond, before in ((cn / dn, sn), (root * sn / dn, cn), (root / dn, dn))
+    )
+    sn = np.copysign(sn, rest)
+    am = np.arctan2(sn, cn) + np.pi * halves
+    sign = np.where(halves % 2, -1.0, 1.0)
+    return sign * sn, sign * cn, dn, am

@@ -1,0 +1,222 @@
+"""Chaos: how fast errors grow, up to when a trajectory can be trusted, and what can be after it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import log
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.horizon import HorizonWarning
+from solvers.integration import integrate
+from solvers.prepared import prepare
+from solvers.references.taylor import taylor
+from solvers.solution import Solution
+
+Array = NDArray[np.float64]
+
+#: Seconds after which a small change is brought back to length 1, and those left out at first.
+STRETCH, TRANSIENT = 1.0, 100
+#: Parts of a long run that count as independent when uncertainty is estimated.
+BLOCKS = 40
+#: Digits of references; an ordinary number's are lost within 40 s. And how often to look, in 1/s.
+DIGITS, LOOKS = 30, 10
+#: Error in rad or rad/s from which on a trajectory is another one.
+APART = 1.0
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A mean over time, with its standard error."""
+
+    value: float
+    error: float
+
+    @classmethod
+    def of(cls, values: Array) -> Mean:
+        """The mean of `values`, of which neighbours are not independent: by means of blocks."""
+        blocks = np.array([part.mean() for part in np.array_split(values, BLOCKS)])
+        return cls(float(blocks.mean()), float(blocks.std(ddof=1) / np.sqrt(BLOCKS)))
+
+
+def lyapunov(
+    module: ModuleType, params: Sequence[float], y0: Sequence[float], duration: float,
+    rtol: float = 1e-9,
+) -> Mean:  # fmt: skip
+    """The largest Lyapunov exponent in 1/s, along the motion from `y0`.
+
+    A small change is carried along by the generated variational equations and brought
+    back to length 1 every second; the exponent is the mean of the logarithms by which it
+    has grown (G. Benettin, L. Galgani, J.-M. Strelcyn, Physical Review A 14, 2338, 1976).
+    """
+    run = prepare(module, params, form="variational", rtol=rtol, atol=rtol)
+    n = len(module.STATE)
+    state = np.array([*y0, *np.ones(n) / np.sqrt(n)])
+    growth = []
+    for _ in range(TRANSIENT + int(duration / STRETCH)):
+        state = np.array(run((0.0, STRETCH), state.tolist()))
+        length = float(np.linalg.norm(state[n:]))
+        state[n:] /= length
+        growth.append(log(length) / STRETCH)
+    return Mean.of(np.array(growth[TRANSIENT:]))
+
+
+@dataclass(frozen=True)
+class Separation:
+    """How two motions part.
+
+    Attributes
+    ----------
+    t : ndarray of shape (n,)
+        In s.
+    distance : ndarray of shape (n,)
+        Length of the difference of states, from two references.
+    predicted : ndarray of shape (n,)
+        The same by the variational equations, to first order.
+    rate : float
+        Slope of its logarithm in 1/s, as long as it is small.
+    """
+
+    t: Array
+    distance: Array
+    predicted: Array
+    rate: float
+
+
+def reference(
+    module: ModuleType, params: Sequence[float], y0: Sequence[float], duration: float
+) -> tuple[Array, Array]:  # fmt: skip
+    """Times, and states at them, shape (n, state), with more digits than chaos eats."""
+    t = np.linspace(0, duration, round(LOOKS * duration) + 1)
+    return t, taylor(module, params, y0, t, DIGITS)
+
+
+def separation(
+    module: ModuleType, params: Sequence[float], t: Array, truth: Array, offset: float = 1e-12
+) -> Separation:  # fmt: skip
+    """What becomes of `offset` in the first coordinate, beside a reference."""
+    n = truth.shape[1]
+    near = truth[0] + offset * np.eye(n)[0]
+    distance = np.linalg.norm(taylor(module, params, near.tolist(), t, DIGITS) - truth, axis=1)
+    carried = integrate(
+        module, (0, t[-1]), [*truth[0], *(near - truth[0])], params, form="variational",
+        rtol=1e-12, atol=1e-30, t_eval=t,
+    ).y[n:]  # fmt: skip
+    small = (distance < 1e-2) & (t > 0)
+    rate = np.polyfit(t[small], np.log(distance[small]), 1)[0]
+    return Separation(t, distance, np.linalg.norm(carried, axis=0), float(rate))
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """Up to when a trajectory is the right one.
+
+    Attributes
+    ----------
+    method : str
+        Which.
+    tolerance : float
+        Relative and absolute.
+    predicted : float
+        ln(1/tolerance)/λ, in s.
+    seen : float
+        When its error reached `APART`, in s.
+    energy_error : float
+        The largest over the whole run, in parts of the energy at its beginning above rest.
+    """
+
+    method: str
+    tolerance: float
+    predicted: float
+    seen: float
+    energy_error: float
+
+
+def _beyond_its_horizon(*args: Any, **options: Any) -> Solution:
+    """A run that is meant to be longer than its errors allow."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", HorizonWarning)
+        return integrate(*args, **options)
+
+
+def horizons(
+    module: ModuleType, params: Sequence[float], t: Array, truth: Array, exponent: float,
+    methods: Sequence[str] = ("bs32", "dp54", "tsit54", "dop853", "verner87",
+                                               "verner98"),
+    tolerances: Sequence[float] = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
+) -> list[Horizon]:  # fmt: skip
+    """Predicted and seen horizons of adaptive methods, beside a reference."""
+    rest = energy_at_rest(module, params)
+    found = []
+    for method in methods:
+        for tolerance in tolerances:
+            run = _beyond_its_horizon(
+                module, (0, t[-1]), truth[0], params, method=method, rtol=tolerance,
+                atol=tolerance, t_eval=t, energy=True,
+            )  # fmt: skip
+            assert run.energy is not None
+            apart = np.abs(run.y.T - truth).max(axis=1) > APART
+            energy = np.abs(run.energy - run.energy[0]).max() / (run.energy[0] - rest)
+            seen = float(t[np.argmax(apart)]) if apart.any() else float("inf")
+            found.append(
+                Horizon(method, tolerance, log(1 / tolerance) / exponent, seen, float(energy))
+            )
+    return found
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """What a long run says of the motion as a whole.
+
+    Attributes
+    ----------
+    run : str
+        Method and tolerance or step.
+    energy_error : float
+        At the end, in parts of the energy at the beginning above rest.
+    kinetic : Mean
+        Mean kinetic energy in J.
+    upright : Mean
+        Part of the time for which the second coordinate is above the horizontal.
+    """
+
+    run: str
+    energy_error: float
+    kinetic: Mean
+    upright: Mean
+
+
+def statistics(
+    module: ModuleType, params: Sequence[float], y0: Sequence[float], duration: float,
+    runs: Sequence[Mapping[str, Any]],
+) -> list[Statistics]:  # fmt: skip
+    """Means over a time that is many horizons long, by runs that agree in no trajectory."""
+    t = np.linspace(0, duration, int(2 * duration) + 1)
+    rest = energy_at_rest(module, params)
+    found = []
+    for options in runs:
+        run = _beyond_its_horizon(
+            module, (0, duration), y0, params, t_eval=t, energy=True, max_steps=10**8, **options
+        )
+        assert run.energy is not None
+        still = run.y.copy()
+        still[len(y0) // 2 :] = 0.0
+        kinetic = run.energy - module.energy_many(still, params)
+        found.append(Statistics(
+            run.run.rpartition(", ")[0],
+            float((run.energy[-1] - run.energy[0]) / (run.energy[0] - rest)),
+            Mean.of(kinetic),
+            Mean.of((np.cos(run.y[1]) < 0).astype(float)),
+        ))  # fmt: skip
+    return found
+
+
+def energy_at_rest(module: ModuleType, params: Sequence[float]) -> float:
+    """Energy of the system at its equilibrium, in J."""
+    place = module.equilibrium(params)
+    return float(module.energy((*place, *[0.0] * len(place)), params))

@@ -1,0 +1,200 @@
+"""Where methods fail: every study's numbers, and that they would notice if nothing failed."""
+
+from dataclasses import replace
+from math import log, pi, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+import generated.double_pendulum as dp
+import generated.elastic_pendulum as ep
+import generated.single_pendulum as sp
+from solvers.failures import chaos, drift, oscillation, separatrix, singular, stiffness, tolerances
+from solvers.failures.chaos import Mean
+from solvers.failures.studies import CHAOTIC, LONG_RUNS, SMALL, studies
+from solvers.stability.function import StabilityFunction
+
+
+@pytest.mark.parametrize(("method", "order"), [("rk1", 1), ("midpoint", 2)])
+def test_euler_and_rk2_let_oscillations_grow_with_any_step(method: str, order: int) -> None:
+    growths = [oscillation.growth(sp, method, float(steps)) for steps in (20, 40, 400)]
+    for found in growths:
+        assert found.measured > 0
+        assert found.measured == pytest.approx(found.predicted, rel=1e-4)
+    # halving the step makes it smaller by a power of two, but never nothing
+    ratio = growths[0].measured / growths[1].measured
+    assert ratio == pytest.approx(2 if order == 1 else 8, rel=0.2)
+
+
+@pytest.mark.parametrize("method", ["rk3", "rk4"])
+def test_rk3_and_rk4_grow_beyond_their_interval_and_not_within(method: str) -> None:
+    limit = 2 * pi / {"rk3": sqrt(3), "rk4": 2 * sqrt(2)}[method]
+    beyond, within = (oscillation.growth(sp, method, limit * f) for f in (0.98, 1.02))
+    assert within.measured < 0 < beyond.measured
+    for found in (beyond, within):
+        assert found.measured == pytest.approx(found.predicted, rel=1e-4)
+
+
+def test_stiff_scenes_make_explicit_steps_collapse_and_implicit_ones_not() -> None:
+    costs = stiffness.study(dp, ep, (30.0, 300.0), ("rk4", "verner87", "gauss2", "radau3"))
+    for family in ("short second rod", "light first mass", "stiff spring"):
+        steps = {(c.method, k): c.steps for c in costs if c.family == family
+                 for k in (0, 1) if (c.ratio > 150) == bool(k)}  # fmt: skip
+        for method in ("rk4", "verner87"):  # ten times as fast, ten times the steps, about
+            assert 6 < steps[method, 1] / steps[method, 0] < 16, (family, method)
+        for method in ("gauss2", "radau3"):
+            assert steps[method, 1] <= 1.5 * steps[method, 0], (family, method)
+    # where nothing is fast, nothing collapses: the study would show it
+    light = {(c.method, k): c.steps for k, c in enumerate(costs) if c.family == "light second mass"}
+    assert max(n for (m, _), n in light.items() if m == "rk4") < 100
+    crossing = stiffness.crossover(costs, "stiff spring", "work_rhs")
+    assert 30 <= crossing <= 300 or np.isnan(crossing)
+    assert np.isnan(stiffness.crossover(costs, "light second mass", "work_rhs"))
+
+
+def test_the_crossover_is_where_costs_are_equal() -> None:
+    base = stiffness.Cost("family", "rk4", 1.0, 1, 1, 1.0, 0.0)
+    costs = [
+        cost
+        for ratio in (1.0, 10.0, 100.0, 1000.0)
+        for cost in (replace(base, ratio=ratio, work_seconds=ratio),
+                     replace(base, method="radau3", ratio=ratio, work_seconds=30.0))
+    ]  # fmt: skip
+    assert stiffness.crossover(costs, "family", "work_seconds") == pytest.approx(30.0)
+    assert np.isnan(stiffness.crossover(costs[:4], "family", "work_seconds"))
+
+
+def test_energy_drifts_steadily_with_rk_and_stays_bounded_with_gauss() -> None:
+    cases = [case for case in drift.CASES if case[0] in ("rk4", "verner87", "gauss1", "gauss2")]
+    for found in drift.study(dp, 2000, cases):
+        if found.method.startswith("gauss"):
+            assert abs(found.exponent) < 0.01
+            assert found.whole == pytest.approx(found.first, rel=0.05)
+            assert abs(found.rate) * 2000 < 0.1 * found.whole
+        else:
+            assert found.exponent == pytest.approx(1.0, abs=0.1)
+            assert abs(found.rate) * 2000 == pytest.approx(found.whole, rel=0.2)
+
+
+def test_both_forms_lose_accuracy_as_the_mass_matrix_becomes_singular() -> None:
+    light, lighter = singular.study(dp, (1e-4, 1e-8))
+    eps = np.finfo(float).eps
+    for found in (light, lighter):
+        assert found.condition == pytest.approx(4 / found.m1, rel=0.01)
+        for error in (found.acceleration, found.velocity):
+            assert 0.01 * eps * found.condition < error < eps * found.condition
+    # over a motion, Hamilton's momenta lose more than Lagrange's velocities
+    assert light.hamiltonian > 3 * light.lagrangian > 0
+    assert np.isnan(lighter.lagrangian)
+
+
+def test_the_reference_for_accelerations_is_exact() -> None:
+    y, params = np.array([0.3, -1.0, 0.5, 2.0]), (1.0, 2.0, 1.5, 0.5, 9.81)
+    exact = singular.exact_accelerations(dp, y, params)
+    assert exact == pytest.approx(np.array(dp.rhs(0.0, y, params))[2:], rel=1e-14)
+
+
+def test_the_lyapunov_exponent_of_a_linear_saddle_is_its_rate() -> None:
+    # about upright at rest the single pendulum grows by e^(omega t), exactly
+    found = chaos.lyapunov(sp, (1.0, 9.81, -9.81), (0.0, 0.0), 50)
+    assert found.value == pytest.approx(1.0, rel=1e-7)
+    assert found.error < 1e-7
+    # and regular motion has none
+    regular = chaos.lyapunov(sp, sp.DEFAULTS, (1.0, 0.0), 20_000)
+    assert 0 <= regular.value < 1e-3
+
+
+def test_the_uncertainty_of_a_mean_is_what_repetition_shows() -> None:
+    generator = np.random.default_rng(1)
+    walk = generator.normal(size=(200, 4000))
+    for k in range(1, 4000):  # neighbours depend on each other
+        walk[:, k] += 0.8 * walk[:, k - 1]
+    means = [Mean.of(row) for row in walk]
+    spread = np.std([m.value for m in means])
+    assert np.mean([m.error for m in means]) == pytest.approx(spread, rel=0.15)
+
+
+@pytest.fixture(scope="module")
+def chaotic() -> dict[str, Any]:
+    found: dict[str, Any] = studies(dp, sp, ep, SMALL)["chaos"]()
+    return found
+
+
+def test_a_small_difference_grows_as_the_variational_equations_say(chaotic: dict[str, Any]) -> None:
+    exponent, apart = chaotic["exponent"], chaotic["separation"]
+    assert exponent.value == pytest.approx(0.883, abs=4 * exponent.error)
+    small = apart.distance < 1e-5
+    assert apart.distance[small] == pytest.approx(apart.predicted[small], rel=1e-3)
+    assert apart.distance[-1] > 1e5 * apart.distance[0]
+    assert apart.rate == pytest.approx(exponent.value, rel=0.3)
+
+
+def test_trajectories_are_lost_at_the_predicted_horizon_and_energy_is_not(
+    chaotic: dict[str, Any],
+) -> None:
+    seen = [h for h in chaotic["horizons"] if h.seen < np.inf]
+    assert len(seen) >= 4
+    for found in seen:
+        assert found.predicted == log(1 / found.tolerance) / chaotic["exponent"].value
+        assert 0.6 < found.seen / found.predicted < 1.4
+        assert found.energy_error < 1000 * found.tolerance
+
+
+def test_beyond_the_horizon_means_agree_unless_energy_drifts(chaotic: dict[str, Any]) -> None:
+    *accurate, drifting = chaotic["statistics"]
+    assert len(accurate) == len(LONG_RUNS) - 1
+    for first in accurate:
+        for second in accurate:
+            for name in ("kinetic", "upright"):
+                a, b = getattr(first, name), getattr(second, name)
+                assert abs(a.value - b.value) < 4 * np.hypot(a.error, b.error)
+    assert abs(drifting.energy_error) > 0.05
+    assert max(abs(run.energy_error) for run in accurate) < 0.01
+    apart = drifting.kinetic.value - accurate[0].kinetic.value
+    assert abs(apart) > 3 * np.hypot(drifting.kinetic.error, accurate[0].kinetic.error)
+
+
+def test_errors_near_upright_grow_as_the_motion_amplifies_them() -> None:
+    found = separatrix.sensitivity(sp)
+    far, near = found[0], found[-1]
+    assert near.amplification / far.amplification > 1e5
+    for row in found:
+        # ten seconds are one fall from very near, several from afar
+        assert 0.99 < row.amplification / row.predicted < (1.01 if row.distance < 2e-3 else 6)
+        assert row.error < 10 * separatrix.TOLERANCE * row.amplification
+
+
+def test_on_the_separatrix_every_run_turns_back_or_over_when_its_energy_says() -> None:
+    found = [fall for fall in separatrix.falls(sp) if abs(fall.defect) > 1e-13]
+    assert len(found) > 8
+    for fall in found:
+        assert fall.seen == pytest.approx(fall.predicted, rel=1e-3)
+    assert {np.sign(fall.defect) for fall in found} == {-1.0, 1.0}
+
+
+def test_upright_a_pendulum_falls_when_pi_is_rounded() -> None:
+    found = separatrix.upright(sp)
+    assert found.seen == pytest.approx(found.predicted, rel=1e-9)
+    assert 15 < found.seen < 20
+
+
+def test_tolerances_lie_more_or_less() -> None:
+    found = {
+        (h.method, h.tolerance): h
+        for h in tolerances.study(dp, ("bs32", "dop853", "verner98", "LSODA"), (1e-5, 1e-8), 8)
+    }
+    # where errors lie by orders of magnitude it is the motion that amplifies them
+    for row in found.values():
+        assert row.worst >= row.median > row.beside_motion
+    assert found["LSODA", 1e-8].median > 5 * found["verner98", 1e-8].median
+    assert found["bs32", 1e-8].median > 3
+    # a tolerance that is half as honest would be noticed
+    assert found["verner98", 1e-8].beside_motion < 0.5
+
+
+def test_the_growth_of_an_oscillation_is_the_stability_functions() -> None:
+    function = StabilityFunction.of(oscillation.load("rk4"))
+    found = oscillation.growth(sp, "rk4", 10.0)
+    assert found.predicted == pytest.approx(10 * log(abs(complex(function(0.2j * pi)))))
+    assert CHAOTIC[0] == pi / 2
