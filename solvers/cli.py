@@ -24,6 +24,7 @@ commands:
   derive   write the generated modules from the systems' positions, or check them
   verify   judge every equation, program and claim of the double-pendulum report
   demo     the whole way on one screen, in about ten seconds
+  stability  how long steps may be, exact and measured, and where methods fail
   bench    time compiled loops beside other programs, at equal error
 
 holonomic COMMAND --help shows a command's options and an example.
@@ -215,6 +216,16 @@ def _integrated(picture: Path) -> list[str]:
     ]
 
 
+def _module(name: str) -> ModuleType:
+    return import_module(f"generated.{name}")
+
+
+def _stability(argv: Sequence[str]) -> int:
+    from solvers.stability.command import main as stability
+
+    return stability(argv, _module)
+
+
 def _bench(argv: Sequence[str]) -> int:
     import sympy
 
@@ -241,5 +252,6 @@ COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {
     "derive": _derive,
     "verify": _verify,
     "demo": _demo,
+    "stability": _stability,
     "bench": _bench,
 }

@@ -1,4 +1,4 @@
-"""Pictures of a run."""
+"""Pictures: of a run, and how every picture is begun and saved."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 mpl.use("Agg")  # files only: no window, no display needed
 
 from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 #: Wong's palette, told apart by colour-blind eyes (Nature Methods 8, 441, 2011).
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
 Array = NDArray[np.float64]
 
@@ -63,7 +65,21 @@ def overview(
         space.plot(x, y, color=colour, linewidth=1)
         space.plot(x[-1], y[-1], "o", color=colour)
     space.plot(0, 0, "k+", markersize=10)
-    for axes in (over_time, drift, space):
+    save(figure, path)
+
+
+def panels(
+    title: str, *, rows: int = 1, columns: int = 1, size: tuple[float, float] = (10, 5)
+) -> tuple[Figure, list[Axes]]:  # fmt: skip
+    """A figure with a title and axes, row by row."""
+    figure, axes = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+    figure.suptitle(title)
+    return figure, list(axes.flat)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as a PNG file, beside its name first, and close it."""
+    for axes in figure.axes:
         axes.spines[["top", "right"]].set_visible(False)
     path.parent.mkdir(parents=True, exist_ok=True)
     passage = path.with_name(f".{path.name}.{os.getpid()}")

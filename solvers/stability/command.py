@@ -1,0 +1,143 @@
+"""``holonomic stability``: exact regions beside running steppers, and where methods fail."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from solvers.catalogue import names
+from solvers.failures.drawn import draw
+from solvers.failures.studies import FULL, studies
+from solvers.failures.told import TELL
+from solvers.integration import integrate
+from solvers.jsonable import jsonable
+from solvers.pictures import save
+from solvers.scenes import SCENES, Scene, UnknownSceneError, scene
+from solvers.stability.critical import CriticalStep, critical_step
+from solvers.stability.drawn import regions
+from solvers.stability.modes import Modes, along
+
+#: How often along a scene's motion its modes are looked at.
+LOOKS = 100
+
+
+def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
+    """Compute, draw and print.
+
+    Parameters
+    ----------
+    argv : sequence of str
+        Options.
+    module : callable
+        Gives a generated module by its name.
+    """
+    parser = argparse.ArgumentParser(
+        prog="holonomic stability",
+        description="For every method the exact stability function and its intervals, and the "
+        "longest stable step of a scene's small motions, predicted and measured. Without a scene: "
+        "the report's, and then where methods fail, which takes about two minutes.",
+        epilog=f"scenes: {', '.join(SCENES)}\n\nexample:\n  holonomic stability single --json",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="whose small motions to judge")
+    parser.add_argument("--output", type=Path, default=Path("out"), metavar="DIR",
+                        help="folder for the pictures (default: out)")  # fmt: skip
+    parser.add_argument("--json", action="store_true", help="print figures for programs")
+    arguments = parser.parse_args(argv)
+    try:
+        chosen = [scene(name) for name in arguments.scenes or ["report"]]
+    except UnknownSceneError as error:
+        parser.error(str(error))
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    found: dict[str, Any] = {"methods": [], "failures": {}, "pictures": []}
+    for one in chosen:
+        steps = scene_steps(one, module(one.system))
+        path = arguments.output / f"stability_{one.name}.png"
+        save(picture(one, module(one.system), steps), path)
+        found["methods"] += [row(one, step) for step in steps]
+        found["pictures"].append(str(path))
+        if not arguments.json:
+            print(*told(one, steps), f"picture: {path}", "", sep="\n", flush=True)
+    if not arguments.scenes:
+        double, single, elastic = (
+            module(f"{kind}_pendulum") for kind in ("double", "single", "elastic")
+        )
+        for name, study in studies(double, single, elastic, FULL).items():
+            result = study()
+            path = draw(name, result, arguments.output)
+            found["failures"][name] = result
+            found["pictures"].append(str(path))
+            if not arguments.json:
+                print(*TELL[name](result), f"picture: {path}", "", sep="\n", flush=True)
+    if arguments.json:
+        json.dump(jsonable(found), sys.stdout, indent=2)
+        print()
+    return 0
+
+
+def scene_steps(one: Scene, module: ModuleType) -> list[CriticalStep]:
+    """Every method's critical step in small motion with a scene's parameters."""
+    return [critical_step(method, module, one.params(module)) for method in names()]
+
+
+def row(one: Scene, step: CriticalStep) -> dict[str, Any]:
+    """A method's figures; None stands for no limit."""
+    function = step.function
+    return {
+        "scene": one.name,
+        "method": step.method,
+        "title": step.title,
+        "order": step.order,
+        "stages": step.stages,
+        "stability_function": {
+            "numerator": [str(c) for c in function.numerator],
+            "denominator": [str(c) for c in function.denominator],
+        },
+        "real_stability_interval": function.real_stability_interval,
+        "imaginary_stability_interval": function.imaginary_stability_interval,
+        "critical_step_predicted": step.predicted,
+        "critical_step_measured": step.measured,
+        "critical_step_measured_linear": step.linear,
+        "probe": {
+            "h": step.probe,
+            "growth_predicted": step.growth_predicted,
+            "growth_measured": step.growth_measured,
+        },
+    }
+
+
+def told(one: Scene, steps: Sequence[CriticalStep]) -> Iterator[str]:
+    """The same as text."""
+    yield f"Longest stable steps of {one.title}: its fastest small motion, in s"
+    yield (
+        f"{'method':<10}{'order':>5}{'real':>9}{'imaginary':>11}{'predicted':>12}"
+        f"{'linear':>10}{'nonlinear':>11}   growth a step, at h"
+    )
+    for s in steps:
+        function = s.function
+        yield (
+            f"{s.method:<10}{s.order:>5}{function.real_stability_interval:>9.4g}"
+            f"{function.imaginary_stability_interval:>11.5g}{s.predicted:>12.5g}{s.linear:>10.5g}"
+            f"{s.measured:>11.5g}   {s.growth_measured:>8.1e} ({s.growth_predicted:.1e}), "
+            f"{s.probe:.3g}"
+        )
+    yield "0: oscillations grow with every step; inf: with none; growth measured (predicted)"
+
+
+def picture(one: Scene, module: ModuleType, steps: Sequence[CriticalStep]) -> Any:
+    """Regions of all methods with the scene's modes."""
+    params = one.params(module)
+    t = np.linspace(0, one.duration, LOOKS)
+    motion = integrate(module, (0, one.duration), one.y0, params, t_eval=t)
+    return regions(
+        f"|R(hλ)| ≤ 1, small motions (dots) and the motion (grey) of {one.title}",
+        steps, Modes.at_rest(module, params).frequencies,
+        along(module, params, motion.y.T).ravel(),
+    )  # fmt: skip

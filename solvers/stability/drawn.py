@@ -1,0 +1,73 @@
+"""Stability regions, with a scene's modes laid over them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from solvers.pictures import COLOURS, panels
+from solvers.stability.critical import CriticalStep
+
+#: What of the complex plane is shown, and how finely.
+LEFT, RIGHT, TOP, POINTS = -7.0, 4.0, 7.0, 221
+
+
+def regions(
+    title: str, steps: Sequence[CriticalStep], frequencies: NDArray[np.float64],
+    along: NDArray[np.complex128],
+) -> Figure:  # fmt: skip
+    """One panel for each stability function: |R| ≤ 1 in colour, h λ on it.
+
+    Parameters
+    ----------
+    title : str
+        Of the picture.
+    steps : sequence of CriticalStep
+        Methods; those with the same function share a panel.
+    frequencies : ndarray
+        Of the modes about rest: dots, with h at the limit, or 1/frequency if there is none.
+    along : ndarray
+        Eigenvalues along the scene's motion, with the same h.
+    """
+    shared: dict[object, list[CriticalStep]] = {}
+    for step in steps:
+        shared.setdefault(step.function, []).append(step)
+    columns = min(5, len(shared))
+    figure, axes = panels(
+        title, rows=-(-len(shared) // columns), columns=columns, size=(2.6 * columns, 9)
+    )
+    for panel, group in zip(axes, shared.values(), strict=False):
+        _region(panel, group, frequencies, along)
+    for panel in axes[len(shared) :]:
+        panel.set_axis_off()
+    figure.supxlabel("Re h λ")
+    figure.supylabel("Im h λ")
+    return figure
+
+
+def _region(
+    panel: Axes, group: Sequence[CriticalStep], frequencies: NDArray[np.float64],
+    along: NDArray[np.complex128],
+) -> None:  # fmt: skip
+    first = group[0]
+    x, y = np.linspace(LEFT, RIGHT, POINTS), np.linspace(-TOP, TOP, POINTS)
+    size = np.abs(first.function(x + 1j * y[:, None]))
+    panel.contourf(x, y, size, levels=[0, 1], colors=["#cfe3f2"])
+    panel.contour(x, y, size, levels=[1], colors=[COLOURS[0]], linewidths=0.8)
+    panel.axhline(0, color="#bbbbbb", linewidth=0.5)
+    panel.axvline(0, color="#bbbbbb", linewidth=0.5)
+    limited = 0 < first.predicted < inf
+    h = first.predicted if limited else 1 / frequencies[-1]
+    panel.plot(h * along.real, h * along.imag, ".", color="#999999", markersize=1.5)
+    modes = h * np.concatenate([frequencies, -frequencies])
+    panel.plot(np.zeros_like(modes), modes, "o", color=COLOURS[1], markersize=3)
+    panel.set(xlim=(LEFT, RIGHT), ylim=(-TOP, TOP), aspect="equal")
+    limit = f"h ≤ {first.predicted:.3g} s" if limited else (
+        "no step is stable" if first.predicted == 0 else "every step is stable"
+    )  # fmt: skip
+    panel.set_title(f"{', '.join(step.method for step in group)}\n{limit}", fontsize="small")
