@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from solvers.bench import peers
+from solvers.chart.curve import work_at
 from solvers.ensemble import ensemble
 from solvers.prepared import NotFinishedError, prepare
 
@@ -52,16 +53,8 @@ class Curve:
             self.error.append(error)
 
     def at(self, error: float) -> float:
-        """Seconds for this error; NaN beyond the curve.
-
-        An error that a tighter tolerance exceeds again was luck: each point counts with
-        the largest error from there on.
-        """
-        honest = np.maximum.accumulate(self.error[::-1])
-        if not honest[0] <= error <= honest[-1]:
-            return float("nan")
-        found = np.interp(np.log(error), np.log(honest), np.log(self.seconds[::-1]))
-        return float(np.exp(found))
+        """Seconds for this error; NaN beyond the curve."""
+        return work_at(error, self.error, self.seconds)
 
 
 def timed(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[str, float]:

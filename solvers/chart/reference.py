@@ -1,0 +1,54 @@
+"""The end of a scene's motion as it is, and how sure that is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.references.extrapolation import extrapolated
+from solvers.references.pendulum import pendulum
+from solvers.references.taylor import taylor
+from solvers.scenes import Scene
+
+Array = NDArray[np.float64]
+
+#: Digits of the reference, and of the one that tells its error.
+DIGITS, FEWER = 32, 24
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A state at the end, by Taylor series.
+
+    Attributes
+    ----------
+    end : ndarray of shape (state,)
+        Coordinates and velocities.
+    global_error : float
+        Its own: the difference from a run with fewer digits, and the last rounding.
+    apart : dict of str to float
+        Differences from references of other families.
+    """
+
+    end: Array
+    global_error: float
+    apart: dict[str, float]
+
+    METHOD = f"Taylor series, {DIGITS} digits"
+
+
+def reference(scene: Scene, module: ModuleType) -> Reference:
+    """The end of a scene's motion, and differences between three families of references."""
+    params, span = scene.params(module), (0.0, scene.duration)
+    end, rough = (taylor(module, params, scene.y0, span, digits)[-1] for digits in (DIGITS, FEWER))
+    error = max(float(np.abs(end - rough).max()), float(np.spacing(np.abs(end).max())))
+    others = {"extrapolated midpoint rule": extrapolated(module, params, scene.y0, span)[-1]}
+    if scene.system == "single_pendulum":
+        _, length, gravity = params
+        start = (scene.y0[0], scene.y0[1])
+        others["elliptic functions"] = pendulum(length, gravity, start, scene.duration)
+    apart = {name: float(np.abs(end - other).max()) for name, other in others.items()}
+    return Reference(end, error, apart)
