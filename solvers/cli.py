@@ -21,11 +21,12 @@ usage: holonomic COMMAND [OPTION ...]
 Positions in, motion out: equations of motion derived, verified, generated and integrated.
 
 commands:
-  derive   write the generated modules from the systems' positions, or check them
-  verify   judge every equation, program and claim of the double-pendulum report
-  demo     the whole way on one screen, in about ten seconds
+  derive     write the generated modules from the systems' positions, or check them
+  verify     judge every equation, program and claim of the double-pendulum report
+  demo       the whole way on one screen, in about ten seconds
+  chart      what each method, form and backend costs for an error
   stability  how long steps may be, exact and measured, and where methods fail
-  bench    time compiled loops beside other programs, at equal error
+  bench      time compiled loops beside other programs, at equal error
 
 holonomic COMMAND --help shows a command's options and an example.
 """
@@ -220,6 +221,19 @@ def _module(name: str) -> ModuleType:
     return import_module(f"generated.{name}")
 
 
+def _package(name: str) -> ModuleType | None:
+    try:
+        return import_module(name)
+    except ImportError:
+        return None
+
+
+def _chart(argv: Sequence[str]) -> int:
+    from solvers.chart.command import main as chart
+
+    return chart(argv, _module, _package)
+
+
 def _stability(argv: Sequence[str]) -> int:
     from solvers.stability.command import main as stability
 
@@ -252,6 +266,7 @@ COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {
     "derive": _derive,
     "verify": _verify,
     "demo": _demo,
+    "chart": _chart,
     "stability": _stability,
     "bench": _bench,
 }

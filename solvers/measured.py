@@ -73,7 +73,7 @@ def measured(
             end = run(span, y0)
         except NotFinishedError:
             return None
-        return Measured(_median(lambda: run(span, y0)), run.nfev, run.steps, np.array(end))
+        return Measured(median_seconds(lambda: run(span, y0)), run.nfev, run.steps, np.array(end))
     problem = request.problem(
         module, span, y0, params, method, form, rtol, rtol, h, span[1:], (), MOST_STEPS
     )
@@ -83,7 +83,7 @@ def measured(
     if outcome.status is not Status.FINISHED:
         return None
     _, rows = outcome.rows()
-    seconds = first if first > SECONDS else _median(lambda: _outcome(problem))
+    seconds = first if first > SECONDS else median_seconds(lambda: _outcome(problem))
     return Measured(seconds, outcome.nfev, outcome.steps, rows[-1])
 
 
@@ -94,7 +94,8 @@ def _outcome(problem: Problem) -> Outcome:
     return outcome
 
 
-def _median(run: Callable[[], object]) -> float:
+def median_seconds(run: Callable[[], object]) -> float:
+    """Median time of a call."""
     times: list[float] = []
     until = time.perf_counter() + SECONDS
     while not times or time.perf_counter() < until:

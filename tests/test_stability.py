@@ -1,7 +1,9 @@
 """Stability functions are exact, and running steppers obey them."""
 
+import json
 from fractions import Fraction
 from math import inf, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +13,11 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.catalogue import load, names
+from solvers.cli import main
+from solvers.failures.studies import SMALL
 from solvers.integration import integrate
 from solvers.solution import Status
-from solvers.stability import critical
+from solvers.stability import command, critical
 from solvers.stability.critical import critical_step, limit
 from solvers.stability.function import StabilityFunction
 from solvers.stability.modes import Modes, along
@@ -99,6 +103,48 @@ def test_a_fall_is_found_exactly_among_touches() -> None:
         values = [sign * np.prod([m - r for r in roots]) for m in middles]
         expected = next((a for a, value in zip(ends, values, strict=True) if value < 0), inf)
         assert first_fall(p) == pytest.approx(expected, rel=1e-15)
+
+
+def test_the_command_prints_every_method_and_where_methods_fail(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, "names", lambda: ("gauss1", "rk1", "rk4"))
+    assert main(["stability", "single", "light_above", "--json", "--output", str(tmp_path)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    keys = ("scene", "method", "order", "imaginary_stability_interval", "critical_step_predicted")
+    assert [tuple(row[key] for key in keys) for row in found["methods"][:3]] == [
+        ("single", "gauss1", 2, None, None),
+        ("single", "rk1", 1, 0.0, 0.0),
+        ("single", "rk4", 4, pytest.approx(2 * sqrt(2)), pytest.approx(sqrt(8 * 2 / 9.81))),
+    ]
+    assert [row["scene"] for row in found["methods"]] == ["single"] * 3 + ["light_above"] * 3
+    for row in found["methods"]:
+        expected = row["critical_step_predicted"]
+        assert row["critical_step_measured"] == (expected and pytest.approx(expected, rel=1e-2))
+    assert found["methods"][2]["stability_function"]["numerator"] == [
+        "1",
+        "1",
+        "1/2",
+        "1/6",
+        "1/24",
+    ]
+    assert found["failures"] == {}
+    assert {Path(path).name for path in found["pictures"]} == {
+        path.name for path in tmp_path.iterdir()
+    }
+    # and all of it, in small
+    monkeypatch.setattr(command, "FULL", SMALL)
+    assert main(["stability", "--output", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    for line in ("Longest stable steps of the report's scene", "largest Lyapunov exponent 0.8",
+                 "implicit methods cost less from a ratio of", "Energy of the double pendulum over",
+                 "Aligned rods", "released upright", "Achieved over asked"):  # fmt: skip
+        assert line in text
+    drawn = {path.name for path in tmp_path.iterdir()}
+    assert {"stability_report.png", "drift.png", "chaos.png", "tolerances.png"} <= drawn
+    with pytest.raises(SystemExit, match="2"):
+        main(["stability", "repotr"])
+    assert "did you mean 'report'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("method", names())

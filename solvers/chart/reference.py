@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 #: Digits of the reference, and of the one that tells its error.
 DIGITS, FEWER = 32, 24
+#: Steps of the extrapolated midpoint rule, in s.
+STEP = 0.01
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ def reference(scene: Scene, module: ModuleType) -> Reference:
     params, span = scene.params(module), (0.0, scene.duration)
     end, rough = (taylor(module, params, scene.y0, span, digits)[-1] for digits in (DIGITS, FEWER))
     error = max(float(np.abs(end - rough).max()), float(np.spacing(np.abs(end).max())))
-    others = {"extrapolated midpoint rule": extrapolated(module, params, scene.y0, span)[-1]}
+    others = {"extrapolated midpoint rule": extrapolated(module, params, scene.y0, span, STEP)[-1]}
     if scene.system == "single_pendulum":
         _, length, gravity = params
         start = (scene.y0[0], scene.y0[1])

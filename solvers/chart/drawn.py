@@ -1,0 +1,93 @@
+"""Work-precision diagrams, and what they say of steps and of energy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from solvers.chart.curve import Curve
+from solvers.chart.findings import WRONG
+from solvers.chart.measurement import FORMS, REPORT
+from solvers.chart.peers import PEERS
+from solvers.pictures import COLOURS, panels
+
+#: Methods that are drawn, one a line; others are close to one of them.
+METHODS = ("rk1", "midpoint", "rk3", "rk4", "bs32", "dp54", "tsit54", "dop853", "verner87",
+           "verner98", "gauss3", "radau3")  # fmt: skip
+STYLES = ("-", "--", ":")
+#: The method whose forms and backends are compared.
+EXAMPLE = "verner87"
+
+
+def work_precision(title: str, curves: Sequence[Curve]) -> Figure:
+    """Methods in seconds and in calls; forms and backends; other programs."""
+    figure, (seconds, calls, choices, peers) = panels(title, rows=2, columns=2, size=(14, 10))
+    for n, method in enumerate(METHODS):
+        style = {"color": COLOURS[n % len(COLOURS)], "linestyle": STYLES[n // len(COLOURS)]}
+        own = [c for c in curves if (c.method, c.backend) == (method, "compiled")]
+        if not own:
+            continue
+        curve = max(own, key=lambda c: FORMS.index(c.form))  # rational where there is one
+        _draw(seconds, curve, "work_seconds", method, **style)
+        _draw(calls, curve, "work_rhs", method, **style)
+    seconds.set(title="methods, compiled, fastest form", xlabel="time / s")
+    calls.set(title="the same", xlabel="calls of the right-hand side")
+    calls.legend(frameon=False, fontsize="small")
+    for n, (backend, method) in enumerate((
+        ("compiled", EXAMPLE), ("python", EXAMPLE), ("scipy", "DOP853"),
+    )):  # fmt: skip
+        for form, colour in zip(FORMS, COLOURS, strict=False):
+            for curve in curves:
+                if (curve.method, curve.form, curve.backend) == (method, form, backend):
+                    label = f"{method}, {backend}, {form}"
+                    _draw(choices, curve, "work_seconds", label, color=colour, linestyle=STYLES[n])
+    choices.set(title="forms and backends", xlabel="time / s")
+    choices.legend(frameon=False, fontsize="small")
+    for curve in curves:
+        if (curve.method, curve.form, curve.backend) == (EXAMPLE, "rational", "compiled"):
+            _draw(peers, curve, "work_seconds", f"holonomic {EXAMPLE}", color="black")
+    others = [curve for curve in curves if curve.backend in PEERS]
+    for n, curve in enumerate(others):
+        _draw(peers, curve, "work_seconds", f"{curve.backend} {curve.method}",
+              color=COLOURS[n % 6], linestyle=STYLES[n // 6])  # fmt: skip
+    peers.set(title="other programs" if others else "other programs: none is installed",
+              xlabel="time / s")  # fmt: skip
+    peers.legend(frameon=False, fontsize="small")
+    for panel in (seconds, calls, choices, peers):
+        panel.set_ylabel("global error / rad, rad/s")
+    return figure
+
+
+def _draw(panel: Axes, curve: Curve, work: str, label: str, **style: str) -> None:
+    points = [p for p in curve.points if getattr(p, work) is not None]
+    panel.loglog([getattr(p, work) for p in points], [p.global_error for p in points],
+                 marker=".", label=label, **style)  # fmt: skip
+
+
+def steps(title: str, curves: Sequence[Curve]) -> Figure:
+    """Errors of the report's rules over the step."""
+    figure, (axes,) = panels(title, size=(7.5, 5))
+    for (name, method), colour in zip(REPORT.items(), COLOURS, strict=False):
+        for curve in curves:
+            if (curve.method, curve.form, curve.backend) == (method, "lagrangian", "compiled"):
+                axes.loglog([p.setting["h"] for p in curve.points],
+                            [p.global_error for p in curve.points], marker=".", color=colour,
+                            label=f"{name} ({method})")  # fmt: skip
+    axes.set(xlabel="step / s", ylabel="global error / rad, rad/s")
+    axes.legend(frameon=False)
+    return figure
+
+
+def energy(title: str, curves: Sequence[Curve]) -> Figure:
+    """Global over energy error of every run: right below, wrong above."""
+    figure, (axes,) = panels(title, size=(7.5, 5))
+    for backend, colour in zip(("compiled", "python", "scipy"), COLOURS, strict=False):
+        points = [p for c in curves if c.backend == backend for p in c.points]
+        axes.loglog([p.energy_error for p in points], [p.global_error for p in points], ".",
+                    color=colour, markersize=4, label=backend)  # fmt: skip
+    axes.axhline(WRONG, color="#888888", label="above: not right in any digit")
+    axes.set(xlabel="energy error, relative", ylabel="global error / rad, rad/s")
+    axes.legend(frameon=False)
+    return figure

@@ -1,0 +1,181 @@
+"""Other programs on the same scenes, with the equations that holonomic generates for them.
+
+heyoka's Taylor series and diffrax's methods take the rational right-hand side, called with their
+own numbers; numba compiles the Lagrangian one, as Python, into a loop of RK4 steps; numbalsoda's
+LSODA and DOP853 take its machine code. All are compiled before they are timed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.bench.peers import generated, single
+from solvers.chart.curve import Curve, Point
+from solvers.chart.measurement import LONGEST, STEPS, TOLERANCES, judged
+from solvers.chart.reference import Reference
+from solvers.compiler import NoCompilerError
+from solvers.forms import Form, fastest_form
+from solvers.measured import Measured, median_seconds
+from solvers.native import native_rhs
+from solvers.scenes import Scene
+
+Array = NDArray[np.float64]
+#: A run with a tolerance or step: a function that returns the state, and right-hand sides if known.
+Run = Callable[[], tuple[Array, int | None]]
+Peer = Callable[[Any, ModuleType, Scene], Iterator[tuple[str, str, Callable[[float], Run]]]]
+
+#: Most steps that diffrax may take.
+MOST_STEPS = 2**16
+#: Below this tolerance LSODA complains on the terminal.
+FINEST = 5e-13
+
+
+def curves(
+    scene: Scene, module: ModuleType, truth: Reference, package: Callable[[str], ModuleType | None]
+) -> list[Curve]:  # fmt: skip
+    """A curve for each method of the packages that are installed."""
+    found = []
+    for name, peer in PEERS.items():
+        installed = package(name)
+        if installed is None:
+            continue
+        try:
+            for method, form, run in peer(installed, module, scene):
+                points = list(_points(scene, module, truth, form, method, run))
+                found.append(Curve(scene.name, method, form, name, points))
+        except NoCompilerError:
+            continue
+    return found
+
+
+def _points(
+    scene: Scene, module: ModuleType, truth: Reference, form: str, method: str,
+    run: Callable[[float], Run],
+) -> Iterator[Point]:  # fmt: skip
+    judge = judged(scene, module, truth)
+    fixed = method == "rk4"
+    tolerances = TOLERANCES[TOLERANCES > FINEST] if method == "lsoda" else TOLERANCES
+    for setting in scene.duration / STEPS if fixed else tolerances:
+        ready = run(float(setting))
+        state, work = ready()
+        if not np.isfinite(state).all():
+            continue
+        seconds = median_seconds(ready)
+        end = _ordinary(module, form, state, truth)
+        point = judge(
+            Measured(seconds, work or 0, 0, end), {"h" if fixed else "rtol": float(setting)}
+        )
+        if point:
+            yield Point(point.setting, seconds, work, point.global_error, point.energy_error)
+        if seconds > LONGEST["compiled"] / 2:
+            return
+
+
+def _ordinary(module: ModuleType, form: str, state: Array, truth: Reference) -> Array:
+    """Coordinates and velocities; angles that are known up to whole turns are next to the truth."""
+    return Form(module, form, module.DEFAULTS).outside(state, truth.end, 0.0)
+
+
+def _heyoka(hy: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+    form, start = _fastest(module, scene)
+    equations = generated(hy, module)
+
+    def run(tolerance: float) -> Run:
+        motion = single(
+            hy, equations, start.tolist(), scene.params(module), scene.duration, tolerance
+        )
+        return lambda: (np.array(motion()), None)
+
+    yield "taylor", form, run
+
+
+def _diffrax(diffrax: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+    jax: Any = import_module("jax")
+    jax.config.update("jax_enable_x64", True)
+    form, start = _fastest(module, scene)
+    params = scene.params(module)
+    rhs = getattr(module, f"rhs_{form}" if form != "lagrangian" else "rhs")
+
+    def field(t: Any, y: Any, args: Any) -> Any:
+        return jax.numpy.stack([jax.numpy.asarray(x) for x in rhs(t, tuple(y), params)])
+
+    for method in ("Tsit5", "Dopri8"):
+        solver = getattr(diffrax, method)()
+
+        @jax.jit  # type: ignore[untyped-decorator]
+        def solve(y0: Any, tolerance: Any, solver: Any = solver) -> Any:
+            return diffrax.diffeqsolve(
+                diffrax.ODETerm(field), solver, 0.0, scene.duration, None, y0,
+                stepsize_controller=diffrax.PIDController(rtol=tolerance, atol=tolerance),
+                max_steps=MOST_STEPS, throw=False,
+            ).ys[-1]  # fmt: skip
+
+        def run(tolerance: float, solve: Any = solve) -> Run:
+            return lambda: (np.asarray(solve(start, tolerance).block_until_ready()), None)
+
+        yield method, form, run
+
+
+def _numba(numba: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+    to_fixed_tuple: Any = import_module("numba.np.unsafe.ndarray").to_fixed_tuple
+    rhs, size, params = numba.njit(module.rhs), len(scene.y0), scene.params(module)
+
+    @numba.njit  # type: ignore[untyped-decorator]
+    def steps(y0: Any, h: float, count: int) -> Any:
+        y, place, k = y0.copy(), np.empty(size), np.empty((4, size))
+        for _ in range(count):
+            for i, part in enumerate((0.0, 0.5, 0.5, 1.0)):
+                for n in range(size):
+                    place[n] = y[n] + part * h * k[i - 1, n] if i else y[n]
+                rates = rhs(0.0, to_fixed_tuple(place, size), params)
+                for n in range(size):
+                    k[i, n] = rates[n]
+            for n in range(size):
+                y[n] += h / 6 * (k[0, n] + 2 * k[1, n] + 2 * k[2, n] + k[3, n])
+        return y
+
+    start = np.array(scene.y0)
+
+    def run(h: float) -> Run:
+        count = round(scene.duration / h)
+        return lambda: (steps(start, h, count), 4 * count)
+
+    yield "rk4", "lagrangian", run
+
+
+def _numbalsoda(package: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+    rhs, params = native_rhs(module), np.array(scene.params(module))
+    start, times = np.array(scene.y0), np.array([0.0, scene.duration])
+    for method in ("lsoda", "dop853"):
+        solver = getattr(package, method)
+
+        def run(tolerance: float, solver: Any = solver) -> Run:
+            def state() -> tuple[Array, None]:
+                found, succeeded = solver(
+                    rhs.address, start, times, params, rtol=tolerance, atol=tolerance
+                )
+                return (found[-1] if succeeded else np.full(len(start), np.nan)), None
+
+            return state
+
+        yield method, "lagrangian", run
+
+
+def _fastest(module: ModuleType, scene: Scene) -> tuple[str, Array]:
+    form = fastest_form(module)
+    return form, Form(module, form, scene.params(module)).inside(np.array(scene.y0))
+
+
+#: Packages by name, and what of theirs is run.
+PEERS: dict[str, Peer] = {
+    "heyoka": _heyoka,
+    "diffrax": _diffrax,
+    "numba": _numba,
+    "numbalsoda": _numbalsoda,
+}

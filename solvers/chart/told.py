@@ -1,0 +1,67 @@
+"""Frontiers and findings as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import isfinite
+
+from solvers.chart.curve import Curve
+from solvers.chart.findings import Turning, misled, turnings
+from solvers.chart.frontier import Best, frontier
+from solvers.chart.reference import Reference
+from solvers.scenes import Scene
+
+#: What the frontier is compared with, where it is not chosen itself.
+COMPARED = (
+    ("method", "rk4"), ("method", "dop853"), ("form", "lagrangian"), ("form", "hamiltonian"),
+    ("backend", "compiled"), ("backend", "python"), ("backend", "scipy"),
+    ("backend", "heyoka"), ("backend", "numbalsoda"), ("backend", "numba"), ("backend", "diffrax"),
+)  # fmt: skip
+
+
+def told(scene: Scene, truth: Reference, curves: Sequence[Curve]) -> Iterator[str]:
+    """A scene's reference, frontier and findings."""
+    yield f"{scene.title}, {scene.duration:g} s"
+    others = "; ".join(f"{name} {apart:.1e}" for name, apart in truth.apart.items())
+    yield f"reference: {truth.METHOD}, own error {truth.global_error:.1e}; apart from it: {others}"
+    rows = frontier(curves)
+    shown = [c for c in COMPARED if any(c[1] in row.worth[c[0]] for row in rows)]
+    yield "the cheapest for each error, and how many times as long the best with ... takes:"
+    heads = "".join(f"{value[:10]:>11}" for _, value in shown)
+    yield f"{'error':>7} {'seconds':>9}{'calls':>7}  {'cheapest':<30}{heads}"
+    for row in rows:
+        yield _row(row, shown)
+    calls = [row for row in frontier(curves, "work_rhs") if row.backend != "numba"]
+    yield "in calls of the right-hand side: " + ", ".join(
+        f"{row.global_error:.0e}: {row.work_rhs:.0f} ({row.method})" for row in calls[::3]
+    )
+    for turning in turnings(curves):
+        yield _turning(turning)
+    found = misled(curves)
+    if found:
+        setting = ", ".join(f"{name} = {value:.2g}" for name, value in found.point.setting.items())
+        yield (
+            f"energy is no proof: {found.method}, {found.form}, {setting}: energy right to "
+            f"{found.point.energy_error:.0e}, state wrong by {found.point.global_error:.2g}"
+        )
+
+
+def _turning(turning: Turning) -> str:
+    if not isfinite(turning.order):
+        return f"{turning.method}: no order to be seen, least error {turning.global_error:.1e}"
+    falls = f"{turning.method}: error falls as h^{turning.order:.2f} to {turning.global_error:.1e}"
+    if turning.finest_error < 2 * turning.global_error:
+        return f"{falls} at the shortest step, {turning.finest:.1e} s"
+    return (
+        f"{falls} at h = {turning.h:.1e} s; rounding makes it {turning.finest_error:.1e} at "
+        f"{turning.finest:.1e} s"
+    )
+
+
+def _row(row: Best, shown: Sequence[tuple[str, str]]) -> str:
+    factors = (row.worth[choice].get(value) for choice, value in shown)
+    cells = "".join(f"{'-' if f is None else f'{f:.3g}':>11}" for f in factors)
+    seconds = f"{row.work_seconds * 1e6:.1f} us"
+    calls = f"{row.work_rhs:.0f}" if row.work_rhs == row.work_rhs else "-"
+    name = f"{row.method}, {row.form}, {row.backend}"
+    return f"{row.global_error:>7.0e} {seconds:>9}{calls:>7}  {name:<30}{cells}"

@@ -1,0 +1,244 @@
+"""Speed against accuracy: curves, their frontier, and what they say of claims."""
+
+import json
+from dataclasses import replace
+from math import isnan, nan
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import generated.double_pendulum as dp
+import generated.single_pendulum as sp
+from solvers.catalogue import load
+from solvers.chart import command, drawn, peers
+from solvers.chart.curve import Curve, Point, work_at
+from solvers.chart.findings import misled, turnings
+from solvers.chart.frontier import frontier
+from solvers.chart.measurement import combinations, curves, judged
+from solvers.chart.reference import Reference, reference
+from solvers.chart.told import told
+from solvers.cli import main
+from solvers.measured import measured
+from solvers.pictures import save
+from solvers.request import SCIPY
+from solvers.scenes import SCENES, Scene, UnknownSceneError, scene
+
+QUICK = {"compiled": 0.004, "python": 0.01, "scipy": 0.01}
+
+
+@pytest.fixture(scope="module")
+def truth() -> Reference:
+    return reference(scene("report"), dp)
+
+
+def point(seconds: float, error: float, energy: float = 1.0) -> Point:
+    return Point({"rtol": error}, seconds, int(seconds * 100), error, energy)
+
+
+def curve(method: str, form: str, backend: str, *points: Point) -> Curve:
+    return Curve("scene", method, form, backend, list(points))
+
+
+def test_two_independent_references_agree_to_the_digits_that_charts_rely_on() -> None:
+    # curves end at 1e-13 (1e-7 after 20 s of chaos); references know a hundred times more
+    for name, least in (("report", 1e-15), ("long", 1e-9), ("single", 1e-13)):
+        one = scene(name)
+        found = reference(one, dp if one.system == "double_pendulum" else sp)
+        assert found.global_error < 1e-14
+        assert max(found.apart.values()) < (least if np.finfo(np.longdouble).nmant > 60 else 1e-6)
+
+
+def test_curves_measure_the_error_beside_the_reference(truth: Reference) -> None:
+    wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
+              ("dp54", "hamiltonian", "python"), ("DOP853", "lagrangian", "scipy")]  # fmt: skip
+    found = curves(scene("report"), dp, truth, wanted, QUICK)
+    assert [(c.method, c.form, c.backend) for c in found] == wanted
+    for c in found:
+        errors = [p.global_error for p in c.points]
+        assert min(errors) < 1e-3 < max(errors)
+        assert all(a.work_rhs < b.work_rhs for a, b in zip(c.points, c.points[1:], strict=False))
+        for p in c.points:
+            assert p.work_seconds > 0
+            # a right trajectory has the right energy; the reverse does not follow
+            assert p.energy_error < 10 * p.global_error
+    # the fixed step's order is seen in the curve, and the error is the run's own
+    rk4 = found[0].points
+    late = [p for p in rk4 if 1e-9 < p.global_error < 1e-4]
+    order = np.log(late[0].global_error / late[-1].global_error) / np.log(
+        late[0].setting["h"] / late[-1].setting["h"]
+    )
+    assert order == pytest.approx(4, abs=0.5)
+    run = measured(dp, dp.DEFAULTS, SCENES["report"].y0, 5.0, method="rk4", form="lagrangian",
+                   backend="compiled", h=rk4[-1].setting["h"])  # fmt: skip
+    assert run
+    assert np.abs(run.end - truth.end).max() == rk4[-1].global_error
+
+
+def test_every_method_form_and_backend_is_charted() -> None:
+    found = set(combinations(dp))
+    assert {("verner98", "rational", b) for b in ("compiled", "python")} <= found
+    assert {method for method, _, backend in found if backend == "scipy"} == {*SCIPY}
+    assert ("gauss2", "hamiltonian", "compiled") in found
+    assert ("gauss2", "rational", "compiled") not in found  # no Jacobian
+    assert len(found) == len(list(combinations(dp))) == 13 * 3 * 2 + 5 * 2 * 2 + 6 * 3
+
+
+def test_a_run_that_means_nothing_is_no_point(truth: Reference) -> None:
+    judge = judged(scene("report"), dp, truth)
+    run = measured(dp, dp.DEFAULTS, SCENES["report"].y0, 5.0, method="rk4", form="lagrangian",
+                   backend="compiled", h=0.1)  # fmt: skip
+    assert run
+    assert judge(run, {"h": 0.1})
+    assert judge(replace(run, end=np.full(4, nan)), {}) is None
+    assert judge(replace(run, end=run.end + 11), {}) is None
+    # what the reference does not know either is no error of a run
+    exact = judge(replace(run, end=truth.end), {})
+    assert exact
+    assert exact.global_error == truth.global_error
+
+
+def test_work_is_interpolated_and_luck_does_not_count() -> None:
+    errors, works = [1e-2, 1e-4, 1e-6], [1.0, 10.0, 100.0]
+    assert work_at(1e-3, errors, works) == pytest.approx(10**0.5)
+    assert isnan(work_at(1e-7, errors, works))
+    assert isnan(work_at(1.0, errors, works))
+    # the second run was lucky: its error comes back
+    assert work_at(1e-4, [1e-2, 1e-9, 1e-3, 1e-10], [*works, 1000.0]) > 100
+    # behind the least error, dearer runs are wasted
+    assert work_at(1e-6, [*errors, 1e-5], [*works, 1e3]) == pytest.approx(100)
+    assert isnan(work_at(1e-6, [], []))
+
+
+def test_the_frontier_names_the_cheapest_and_what_each_choice_is_worth() -> None:
+    found = frontier([
+        curve("a", "x", "c", point(1, 1e-1), point(10, 1e-3)),
+        curve("a", "x", "p", point(100, 1e-1), point(1000, 1e-3)),
+        curve("b", "x", "c", point(3, 1e-1), point(6, 1e-3)),
+        curve("b", "y", "c", point(2, 1e-1), point(30, 1e-3)),
+    ])  # fmt: skip
+    rough, middle, fine = found
+    assert [b.global_error for b in found] == [1e-1, 1e-2, 1e-3]
+    assert (rough.method, rough.form, rough.backend) == ("a", "x", "c")
+    assert rough.worth == {
+        "method": {"b": pytest.approx(2)}, "form": {"y": pytest.approx(2)},
+        "backend": {"p": pytest.approx(100)},
+    }  # fmt: skip
+    assert (fine.method, fine.work_seconds, fine.work_rhs) == ("b", 6, 600)
+    assert fine.worth["method"] == {"a": pytest.approx(10 / 6)}
+    assert middle.method == "a"  # 10^(1/2) against 18^(1/2)
+
+
+def test_shorter_steps_are_better_until_rounding_turns_the_curve() -> None:
+    def rk4(h: float) -> Point:
+        return Point({"h": h}, 1 / h, int(1 / h), h**4 + 1e-16 / h, 1.0)
+
+    steps = 2.0 ** -np.arange(2, 18)
+    (found,) = turnings([curve("rk4", "lagrangian", "compiled", *map(rk4, steps))])
+    assert found.order == pytest.approx(4, abs=0.1)
+    assert found.h == pytest.approx((1e-16 / 4) ** (1 / 5), rel=0.5)
+    assert found.finest_error > 10 * found.global_error
+    # Euler's method, for which nothing has begun to fall
+    flat = [Point({"h": h}, 1 / h, int(1 / h), 1.0, 1.0) for h in steps]
+    (none,) = turnings([curve("rk1", "lagrangian", "compiled", *flat)])
+    assert isnan(none.order)
+
+
+def test_in_the_report_s_scene_rounding_turns_rk4(truth: Reference) -> None:
+    found = curves(scene("report"), dp, truth, [("rk4", "lagrangian", "compiled")])
+    (turning,) = turnings(found)
+    assert turning.order == pytest.approx(load("rk4").order, abs=0.3)
+    assert 1e-6 < turning.h < 1e-3
+    assert turning.global_error < 1e-11
+    assert turning.finest_error > 2 * turning.global_error
+
+
+def test_a_small_energy_error_proves_nothing() -> None:
+    one = scene("long")
+    found = curves(one, dp, reference(one, dp), [("gauss2", "hamiltonian", "compiled"),
+                                                 ("verner98", "rational", "compiled")])  # fmt: skip
+    case = misled(found)
+    assert case
+    assert case.point.energy_error < 1e-8
+    assert case.point.global_error > 0.1
+    assert misled([curve("a", "x", "c", point(1, 1e-3))]) is None
+
+
+def test_other_programs_join_when_they_are_there(truth: Reference) -> None:
+    class Package(ModuleType):
+        @staticmethod
+        def lsoda(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
+            assert rtol == atol
+            return np.array([truth.end, truth.end + rtol]), True
+
+        @staticmethod
+        def dop853(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
+            return np.array([truth.end, truth.end]), False
+
+    def package(name: str) -> ModuleType | None:
+        return Package(name) if name == "numbalsoda" else None
+
+    lsoda, dop853 = peers.curves(scene("report"), dp, truth, package)
+    assert (lsoda.method, lsoda.form, lsoda.backend) == ("lsoda", "lagrangian", "numbalsoda")
+    assert [p.global_error for p in lsoda.points] == pytest.approx(
+        [p.setting["rtol"] for p in lsoda.points], rel=1e-2
+    )
+    assert dop853.points == []
+    assert peers.curves(scene("report"), dp, truth, lambda _: None) == []
+
+
+def test_pictures_and_text_show_what_was_measured(truth: Reference, tmp_path: Path) -> None:
+    wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
+              ("verner87", "rational", "python"), ("DOP853", "rational", "scipy")]  # fmt: skip
+    found = curves(scene("report"), dp, truth, wanted, QUICK)
+    for name in ("work_precision", "steps", "energy"):
+        figure = getattr(drawn, name)("title", found)
+        lines = sum(len(axes.lines) for axes in figure.axes)
+        assert lines >= 1
+        save(figure, tmp_path / f"{name}.png")
+        assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+    text = "\n".join(told(scene("report"), truth, found))
+    assert "reference: Taylor series, 32 digits, own error" in text
+    assert "verner87, rational, compiled" in text
+    assert "rk4: error falls as h^4" in text
+
+
+def test_the_command_prints_curves_reference_and_frontier(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled")]
+
+    def few(one: Scene, module: ModuleType, truth: Reference) -> list[Curve]:
+        return curves(one, module, truth, wanted, QUICK)
+
+    monkeypatch.setattr(command, "curves", few)
+    monkeypatch.setattr(peers, "PEERS", {})
+    assert main(["chart", "report", "single", "--json", "--output", str(tmp_path)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {(c["scene"], c["method"], c["form"], c["backend"]) for c in found["curves"]} == {
+        (name, *combination) for name in ("report", "single") for combination in wanted
+    }
+    for c in found["curves"]:
+        keys = {"work_seconds", "work_rhs", "global_error", "energy_error"}
+        assert all(keys <= set(p) for p in c["points"])
+    assert found["reference"]["method"] == "Taylor series, 32 digits"
+    assert 0 < found["reference"]["global_error"] < 1e-14
+    assert {row["method"] for row in found["frontier"]} <= {"rk4", "verner87"}
+    assert {Path(path).name for path in found["pictures"]} == {p.name for p in tmp_path.iterdir()}
+    assert main(["chart", "single", "--output", str(tmp_path)]) == 0
+    assert "single pendulum from 2 rad, 10 s" in capsys.readouterr().out
+    with pytest.raises(SystemExit, match="2"):
+        main(["chart", "singel"])
+    assert "did you mean 'single'" in capsys.readouterr().err
+
+
+def test_scenes_have_names_and_parameters() -> None:
+    for one in SCENES.values():
+        module = dp if one.system == "double_pendulum" else sp
+        assert len(one.y0) == len(module.STATE)
+        assert len(one.params(module)) == len(module.PARAMETERS)
+    assert scene("light_above").params(dp) == (1.0, 3.0, 2.0, 2.0, 9.81)
+    with pytest.raises(UnknownSceneError, match=r"'reprot' is not one of .*did you mean 'report'"):
+        scene("reprot")
+    assert isinstance(scene("small"), Scene)
