@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from importlib import import_module
@@ -89,8 +90,10 @@ def judgement() -> dict[str, Any]:
     from derive.report.contexts import NUMBERS
     from derive.report.judgement import verdicts
     from derive.report.programs import PROSE, programs
-    from solvers.claims import Evidence, Setting, claims
     from solvers.order_conditions import order
+    from solvers.verdict.claims import claims
+    from solvers.verdict.evidence import Evidence, Setting
+    from solvers.verdict.objectives import objectives, recommendations
 
     def setting(scene: Any) -> Setting:
         values = [*scene.masses, *scene.lengths, scene.gravity]
@@ -101,13 +104,16 @@ def judgement() -> dict[str, Any]:
     evidence = Evidence(
         double_pendulum, setting(PROSE), *(setting(program.scene) for program in found)
     )
+    equations = verdicts(order)
+    counts = Counter(verdict.verdict for verdict in equations)
+    found_claims = [*objectives(evidence, counts), *claims(evidence), *recommendations(evidence)]
     return {
         "state": NUMBERS,
-        "equations": [asdict(verdict) for verdict in verdicts(order)],
+        "equations": [asdict(verdict) for verdict in equations],
         "programs": [
             {k: v for k, v in asdict(program).items() if k != "scene"} for program in found
         ],
-        "claims": [asdict(claim) for claim in claims(evidence)],
+        "claims": [asdict(claim) for claim in found_claims],
     }
 
 

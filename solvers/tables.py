@@ -35,6 +35,8 @@ def report(judged: Mapping[str, Any]) -> str:
     for claim in judged["claims"]:
         lines.append(_row(claim["id"], claim["verdict"], claim["claim"], width))
         lines.append(_wrapped(claim["number"], width))
+        if claim["figure"]:
+            lines.append(_wrapped(f"see {claim['figure']}", width))
     lines += ["", "Lines that end in ... are whole in: holonomic verify --json"]
     lines += [f"equations: {counted(judged['equations'])}"]
     lines += [f"claims:    {counted(judged['claims'])}"]

@@ -1,4 +1,4 @@
-"""The claims of chapters 3 to 5: verdicts that follow from numbers, not from opinion."""
+"""Objectives, claims and recommendations: verdicts that follow from numbers, not from opinion."""
 
 from math import pi
 
@@ -6,8 +6,14 @@ import numpy as np
 import pytest
 
 import generated.double_pendulum as dp
-from solvers.claims import Evidence, Setting, claims
+from solvers.chart.command import USUAL
+from solvers.failures.chaos import Mean
+from solvers.failures.drawn import DRAW
+from solvers.verdict.claims import claims
+from solvers.verdict.evidence import Evidence, Setting
+from solvers.verdict.objectives import objectives, recommendations
 
+EQUATIONS = {"verified": 119, "misprint": 23}
 PROSE = Setting(dp.DEFAULTS, (pi / 2, pi, 0.0, 0.0), 5.0)
 FIRST = Setting((1.0, 1.0, 1.0, 1.0, 9.81), PROSE.y0, 5.0)
 SECOND = Setting(dp.DEFAULTS, (pi / 2, pi, pi, 2 * pi), 5.0)
@@ -20,20 +26,57 @@ def evidence() -> Evidence:
 
 
 def test_each_claim_has_its_verdict_and_a_number_or_a_reason(evidence: Evidence) -> None:
-    found = claims(evidence)
+    found = [*objectives(evidence, EQUATIONS), *claims(evidence), *recommendations(evidence)]
     assert {claim.id: claim.verdict for claim in found} == {
+        "1.6-1": "supported", "1.6-2": "contradicted", "1.6-3": "contradicted",
         "3.1a": "contradicted", "3.1b": "untestable", "3.1c": "untestable",
         "3.2a": "contradicted", "3.2b": "untestable", "3.3a": "contradicted",
         "3.3b": "contradicted", "3.3c": "untestable", "3.3d": "untestable",
         "4.1": "untestable", "4.2": "supported", "4.3": "contradicted",
         "5a": "supported", "5b": "supported", "5c": "untestable", "5d": "supported",
-        "5e": "supported", "B3": "supported",
+        "5e": "supported", "B3": "supported", "5f": "supported", "5g": "supported",
+        "5h": "supported",
     }  # fmt: skip
     assert all(
         any(letter.isdigit() for letter in claim.number)
         for claim in found
         if claim.verdict != "untestable"
     )
+
+
+def test_figures_that_verdicts_name_are_drawn_by_the_commands_they_name(
+    evidence: Evidence,
+) -> None:
+    drawn = {
+        "chart": {f"{kind}_{name}.png" for kind in ("work_precision", "steps", "energy")
+                  for name in USUAL},
+        "stability": {f"{name}.png" for name in DRAW},
+    }  # fmt: skip
+    shown = {claim.figure for claim in claims(evidence) if claim.figure}
+    assert len(shown) >= 5
+    for figure in shown:
+        command, name = figure.removeprefix("holonomic ").split(": ")
+        assert name in drawn[command]
+
+
+def test_a_wrong_equation_or_a_better_rk4_would_change_the_objectives_verdicts(
+    evidence: Evidence, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = {o.id: o.verdict for o in objectives(evidence, EQUATIONS | {"wrong": 1})}
+    assert found["1.6-1"] == "contradicted"
+    monkeypatch.setattr(Evidence, "calls", lambda _, method, error: 10 + (method != "rk4"))
+    found = {o.id: o.verdict for o in objectives(evidence, EQUATIONS)}
+    assert found["1.6-3"] == "supported"
+    monkeypatch.setattr(Evidence, "exponent", lambda _, **masses: Mean(1.0, 0.1))
+    advice = {o.id: o.verdict for o in recommendations(evidence)}
+    assert advice["5g"] == advice["5h"] == "contradicted"
+
+
+def test_right_hand_sides_are_counted_to_an_error(evidence: Evidence) -> None:
+    assert evidence.calls("rk4", 1e-9) > 4 * evidence.calls("rk4", 1e-6) > 0
+    assert evidence.calls("verner98", 1e-9) < evidence.calls("rk4", 1e-9) / 10
+    with pytest.raises(RuntimeError, match="does not come within"):
+        evidence.calls("dp54", 0.0)
 
 
 def test_verdicts_change_with_the_facts() -> None:
@@ -45,5 +88,6 @@ def test_verdicts_change_with_the_facts() -> None:
 
 def test_the_reference_is_the_known_state(evidence: Evidence) -> None:
     expected = (2.2280642400930692, -0.2670447339117043, -1.9694093323354762, -2.9859792219408772)
-    assert np.abs(evidence.end - expected).max() < 1e-10
+    assert np.abs(evidence.end - expected).max() < 1e-15
+    assert evidence.references_apart < 1e-12
     assert evidence.disagreement < 1e-10

@@ -88,7 +88,7 @@ def test_readme_states_the_verdicts_as_they_are(
     assert f"{equations['definition']} are definitions and {equations['context']} concern" in text
     assert f"three programs {stopped} would not run" in text
     assert (
-        f"of {claims.total()} claims about their results {claims['supported']} hold, "
+        f"{claims.total()} objectives, claims and recommendations {claims['supported']} hold, "
         f"{claims['contradicted']} do not, and {claims['untestable']} cannot"
     ) in text
 

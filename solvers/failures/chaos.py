@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import log
 from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from solvers.compiler import NoCompilerError
 from solvers.horizon import HorizonWarning
 from solvers.integration import integrate
 from solvers.prepared import prepare
@@ -28,6 +29,13 @@ BLOCKS = 40
 DIGITS, LOOKS = 30, 10
 #: Error in rad or rad/s from which on a trajectory is another one.
 APART = 1.0
+
+
+def beyond_its_horizon(*args: Any, **options: Any) -> Solution:
+    """A run that is meant to be longer than its errors allow."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", HorizonWarning)
+        return integrate(*args, **options)
 
 
 @dataclass(frozen=True)
@@ -54,16 +62,30 @@ def lyapunov(
     back to length 1 every second; the exponent is the mean of the logarithms by which it
     has grown (G. Benettin, L. Galgani, J.-M. Strelcyn, Physical Review A 14, 2338, 1976).
     """
-    run = prepare(module, params, form="variational", rtol=rtol, atol=rtol)
+    run = _stretch(module, params, rtol)
     n = len(module.STATE)
     state = np.array([*y0, *np.ones(n) / np.sqrt(n)])
     growth = []
     for _ in range(TRANSIENT + int(duration / STRETCH)):
-        state = np.array(run((0.0, STRETCH), state.tolist()))
+        state = np.array(run(state.tolist()))
         length = float(np.linalg.norm(state[n:]))
         state[n:] /= length
         growth.append(log(length) / STRETCH)
     return Mean.of(np.array(growth[TRANSIENT:]))
+
+
+def _stretch(
+    module: ModuleType, params: Sequence[float], rtol: float
+) -> Callable[[list[float]], ArrayLike]:  # fmt: skip
+    """A function that carries a motion and a small change over one stretch of time."""
+    try:
+        run = prepare(module, params, form="variational", rtol=rtol, atol=rtol)
+    except NoCompilerError:
+        return lambda y: integrate(
+            module, (0.0, STRETCH), y, params, form="variational", rtol=rtol, atol=rtol,
+            t_eval=[STRETCH], backend="python",
+        ).y[:, -1]  # fmt: skip
+    return lambda y: run((0.0, STRETCH), y)
 
 
 @dataclass(frozen=True)
@@ -137,13 +159,6 @@ class Horizon:
     energy_error: float
 
 
-def _beyond_its_horizon(*args: Any, **options: Any) -> Solution:
-    """A run that is meant to be longer than its errors allow."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", HorizonWarning)
-        return integrate(*args, **options)
-
-
 def horizons(
     module: ModuleType, params: Sequence[float], t: Array, truth: Array, exponent: float,
     methods: Sequence[str] = ("bs32", "dp54", "tsit54", "dop853", "verner87",
@@ -155,7 +170,7 @@ def horizons(
     found = []
     for method in methods:
         for tolerance in tolerances:
-            run = _beyond_its_horizon(
+            run = beyond_its_horizon(
                 module, (0, t[-1]), truth[0], params, method=method, rtol=tolerance,
                 atol=tolerance, t_eval=t, energy=True,
             )  # fmt: skip
@@ -200,7 +215,7 @@ def statistics(
     rest = energy_at_rest(module, params)
     found = []
     for options in runs:
-        run = _beyond_its_horizon(
+        run = beyond_its_horizon(
             module, (0, duration), y0, params, t_eval=t, energy=True, max_steps=10**8, **options
         )
         assert run.energy is not None

@@ -1,0 +1,1 @@
+"""The verdict on the report: its objectives, its claims and its recommendations."""
