@@ -50,7 +50,7 @@ _SCENES = (
           {"m2": 3.0}),
     Scene("heavy_above", "the report's scene, m1 > m2", "double_pendulum", _REPORT, 5.0,
           {"m1": 3.0}),
-    Scene("long", "the report's scene for 20 s", "double_pendulum", _REPORT, 20.0),
+    Scene("long", "the report's scene, longer", "double_pendulum", _REPORT, 20.0),
     Scene("small", "double pendulum, small motion", "double_pendulum", (0.02, -0.01, 0.0, 0.0),
           20.0),
     Scene("single", "single pendulum from 2 rad", "single_pendulum", (2.0, 0.0), 10.0),

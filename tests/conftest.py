@@ -7,6 +7,9 @@ import pytest
 import sympy as sp
 
 from derive import Derivation, load, names
+from solvers.scenes import SCENES
+from solvers.stability.command import scene_steps
+from solvers.stability.critical import CriticalStep
 
 
 @pytest.fixture(scope="session", params=names())
@@ -17,6 +20,13 @@ def derivation(request: pytest.FixtureRequest) -> Derivation:
 @pytest.fixture(scope="session")
 def module(derivation: Derivation) -> ModuleType:
     return import_module(f"generated.{derivation.system.name}")
+
+
+@pytest.fixture(scope="session")
+def report_steps() -> dict[str, CriticalStep]:
+    """Every method's critical step for the report's scene."""
+    double_pendulum = import_module("generated.double_pendulum")
+    return {step.method: step for step in scene_steps(SCENES["report"], double_pendulum)}
 
 
 @pytest.fixture(scope="session")

@@ -11,12 +11,19 @@ from solvers.chart.frontier import Best, frontier
 from solvers.chart.reference import Reference
 from solvers.scenes import Scene
 
-#: What the frontier is compared with, where it is not chosen itself.
-COMPARED = (
-    ("method", "rk4"), ("method", "dop853"), ("form", "lagrangian"), ("form", "hamiltonian"),
-    ("backend", "compiled"), ("backend", "python"), ("backend", "scipy"),
-    ("backend", "heyoka"), ("backend", "numbalsoda"), ("backend", "numba"), ("backend", "diffrax"),
-)  # fmt: skip
+#: What the frontier is compared with, where it is not chosen itself, and short words for it.
+COMPARED = {
+    ("method", "rk4"): "rk4",
+    ("form", "lagrangian"): "lagr.",
+    ("form", "hamiltonian"): "hamilt.",
+    ("backend", "compiled"): "compiled",
+    ("backend", "python"): "python",
+    ("backend", "scipy"): "scipy",
+    ("backend", "heyoka"): "heyoka",
+    ("backend", "numbalsoda"): "nsoda",
+    ("backend", "numba"): "numba",
+    ("backend", "diffrax"): "diffrax",
+}
 
 
 def told(scene: Scene, truth: Reference, curves: Sequence[Curve]) -> Iterator[str]:
@@ -26,9 +33,9 @@ def told(scene: Scene, truth: Reference, curves: Sequence[Curve]) -> Iterator[st
     yield f"reference: {truth.METHOD}, own error {truth.global_error:.1e}; apart from it: {others}"
     rows = frontier(curves)
     shown = [c for c in COMPARED if any(c[1] in row.worth[c[0]] for row in rows)]
-    yield "the cheapest for each error, and how many times as long the best with ... takes:"
-    heads = "".join(f"{value[:10]:>11}" for _, value in shown)
-    yield f"{'error':>7} {'seconds':>9}{'calls':>7}  {'cheapest':<30}{heads}"
+    yield "the cheapest for each error, compiled; how many times as long the best with ... takes:"
+    heads = "".join(f"{COMPARED[choice]:>9}" for choice in shown)
+    yield f"{'error':>6} {'seconds':>9}{'calls':>7}  {'cheapest':<20}{heads}"
     for row in rows:
         yield _row(row, shown)
     calls = [row for row in frontier(curves, "work_rhs") if row.backend != "numba"]
@@ -60,8 +67,8 @@ def _turning(turning: Turning) -> str:
 
 def _row(row: Best, shown: Sequence[tuple[str, str]]) -> str:
     factors = (row.worth[choice].get(value) for choice, value in shown)
-    cells = "".join(f"{'-' if f is None else f'{f:.3g}':>11}" for f in factors)
+    cells = "".join(f"{'-' if f is None else f'{f:.3g}':>9}" for f in factors)
     seconds = f"{row.work_seconds * 1e6:.1f} us"
     calls = f"{row.work_rhs:.0f}" if row.work_rhs == row.work_rhs else "-"
-    name = f"{row.method}, {row.form}, {row.backend}"
-    return f"{row.global_error:>7.0e} {seconds:>9}{calls:>7}  {name:<30}{cells}"
+    name = f"{row.method}, {row.form if row.backend == 'compiled' else row.backend}"
+    return f"{row.global_error:>6.0e} {seconds:>9}{calls:>7}  {name:<20}{cells}"
