@@ -50,6 +50,13 @@ def test_two_independent_references_agree_to_the_digits_that_charts_rely_on() ->
         assert max(found.apart.values()) < (least if np.finfo(np.longdouble).nmant > 60 else 1e-6)
 
 
+def test_the_reference_s_own_error_is_found_by_fewer_digits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("solvers.chart.reference.FEWER", 8)
+    assert 1e-10 < reference(scene("report"), dp).global_error < 1e-4
+
+
 def test_curves_measure_the_error_beside_the_reference(truth: Reference) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
               ("dp54", "hamiltonian", "python"), ("DOP853", "lagrangian", "scipy")]  # fmt: skip
@@ -74,6 +81,7 @@ def test_curves_measure_the_error_beside_the_reference(truth: Reference) -> None
                    backend="compiled", h=rk4[-1].setting["h"])  # fmt: skip
     assert run
     assert np.abs(run.end - truth.end).max() == rk4[-1].global_error
+    assert 4 * run.steps <= rk4[-1].work_rhs == run.work_rhs <= 4 * run.steps + 1
 
 
 def test_every_method_form_and_backend_is_charted() -> None:
@@ -105,7 +113,9 @@ def test_work_is_interpolated_and_luck_does_not_count() -> None:
     assert isnan(work_at(1e-7, errors, works))
     assert isnan(work_at(1.0, errors, works))
     # the second run was lucky: its error comes back
-    assert work_at(1e-4, [1e-2, 1e-9, 1e-3, 1e-10], [*works, 1000.0]) > 100
+    lucky = [1e-2, 1e-9, 1e-3, 1e-10], [*works, 1000.0]
+    assert work_at(1e-4, *lucky) == pytest.approx(100 ** (6 / 7) * 1000 ** (1 / 7))
+    assert work_at(2e-3, *lucky) == pytest.approx(10 ** (1 - np.log10(2)))
     # behind the least error, dearer runs are wasted
     assert work_at(1e-6, [*errors, 1e-5], [*works, 1e3]) == pytest.approx(100)
     assert isnan(work_at(1e-6, [], []))

@@ -62,6 +62,10 @@ def test_the_crossover_is_where_costs_are_equal() -> None:
                      replace(base, method="radau3", ratio=ratio, work_seconds=30.0))
     ]  # fmt: skip
     assert stiffness.crossover(costs, "family", "work_seconds") == pytest.approx(30.0)
+    assert stiffness.crossover([
+        replace(cost, ratio=60.0, work_seconds=60.0 if cost.method == "rk4" else 30.0)
+        if cost.ratio == 100 else cost for cost in costs[:6]
+    ], "family", "work_seconds") == pytest.approx(30.0)  # fmt: skip
     assert np.isnan(stiffness.crossover(costs[:4], "family", "work_seconds"))
 
 

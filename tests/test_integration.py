@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
 import generated.double_pendulum as dp
+import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.catalogue import UnknownMethodError, load, names
 from solvers.horizon import HorizonWarning
@@ -538,3 +539,8 @@ def test_a_chaotic_run_beyond_its_horizon_warns() -> None:
 def test_a_regular_run_does_not_warn_however_long() -> None:
     integrate(dp, (0, 500), (0.1, 0.1, 0.0, 0.0), dp.DEFAULTS, rtol=1e-8)
     integrate(sp, (0, 2000), (1.0, 0.0), sp.DEFAULTS, rtol=1e-8)
+    # changes grow in proportion to time, a thousandfold here
+    integrate(sp, (0, 2000), (1.0, 0.0), sp.DEFAULTS, rtol=1e-2, atol=1e-2)
+    # and at once where a mode is fast, here a thousandfold
+    stiff = (1.0, 1e6, 1.0, 9.81)
+    integrate(ep, (0, 6), (*ep.equilibrium(stiff), 0.0, 0.5), stiff, rtol=1e-3, atol=1e-3)

@@ -192,8 +192,10 @@ def test_modes_are_those_of_the_textbook() -> None:
         Modes.at_rest(sp, (1.0, 2.0, -9.81))
 
 
-def test_motion_damped_to_nothing_is_still_a_motion() -> None:
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+def test_motion_damped_to_nothing_is_still_a_motion(backend: str) -> None:
     # Radau's method damps fast oscillations: after 250 steps a number has lost its digits
-    run = integrate(sp, (0, 4000), (1e-7, 0.0), sp.DEFAULTS, method="radau2", h=8.0)
+    run = integrate(sp, (0, 4000), (1e-7, 0.0), sp.DEFAULTS, method="radau2", h=8.0,
+                    backend=backend)  # fmt: skip
     assert run.status is Status.FINISHED
     assert 0 < np.abs(run.y[:, -1]).max() < 1e-290
