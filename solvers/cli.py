@@ -235,13 +235,13 @@ def _package(name: str) -> ModuleType | None:
 
 
 def _chart(argv: Sequence[str]) -> int:
-    from solvers.chart.command import main as chart
+    from solvers.commands.chart import main as chart
 
     return chart(argv, _module, _package)
 
 
 def _stability(argv: Sequence[str]) -> int:
-    from solvers.stability.command import main as stability
+    from solvers.commands.stability import main as stability
 
     return stability(argv, _module)
 

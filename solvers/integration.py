@@ -19,8 +19,8 @@ from solvers.forms import Form
 from solvers.horizon import HorizonWarning, horizon
 from solvers.problem import Event, Outcome, Problem
 from solvers.solution import Interrupted, Solution, Status
-from solvers.stability.judgement import unstable
 from solvers.tableau import Tableau
+from solvers.unstable import unstable
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""One run, measured: where it ends, and what it costs."""
+"""One run, measured: where it ends, and what it costs; and costs between runs."""
 
 from __future__ import annotations
 
@@ -103,3 +103,20 @@ def median_seconds(run: Callable[[], object]) -> float:
         run()
         times.append(time.perf_counter() - before)
     return float(np.median(times))
+
+
+def work_at(error: float, errors: Sequence[float], works: Sequence[float]) -> float:
+    """Work for an error, between runs from cheap to dear, on logarithmic scales; NaN beyond them.
+
+    An error that a dearer run exceeds again was luck: each run counts with the largest
+    error from there on. Where rounding makes errors grow again, the curve ends.
+    """
+    if not errors:
+        return float("nan")
+    # beyond the least error, dearer runs are wasted, not proof of luck
+    last = int(np.argmin(errors)) + 1
+    honest = np.maximum.accumulate(list(errors[:last])[::-1])
+    if not honest[0] <= error <= honest[-1]:
+        return float("nan")
+    found = np.interp(np.log(error), np.log(honest), np.log(list(works[:last])[::-1]))
+    return float(np.exp(found))

@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 
 from derive import Derivation, load, names
+from solvers.commands.stability import scene_steps
 from solvers.scenes import SCENES
-from solvers.stability.command import scene_steps
 from solvers.stability.critical import CriticalStep
 
 

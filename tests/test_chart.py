@@ -12,15 +12,16 @@ import pytest
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.catalogue import load
-from solvers.chart import command, drawn, peers
-from solvers.chart.curve import Curve, Point, work_at
+from solvers.chart import drawn, peers
+from solvers.chart.curve import Curve, Point
 from solvers.chart.findings import misled, turnings
 from solvers.chart.frontier import frontier
 from solvers.chart.measurement import combinations, curves, judged
 from solvers.chart.reference import Reference, reference
 from solvers.chart.told import told
 from solvers.cli import main
-from solvers.measured import measured
+from solvers.commands import chart as command
+from solvers.measured import measured, work_at
 from solvers.pictures import save
 from solvers.request import SCIPY
 from solvers.scenes import SCENES, Scene, UnknownSceneError, scene

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import generated.double_pendulum as dp
-from solvers.chart.command import USUAL
+from solvers.commands.chart import USUAL
 from solvers.failures.chaos import Mean
 from solvers.failures.drawn import DRAW
 from solvers.verdict.claims import claims

@@ -14,10 +14,11 @@ import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.catalogue import load, names
 from solvers.cli import main
+from solvers.commands import stability as command
 from solvers.failures.studies import SMALL
 from solvers.integration import integrate
 from solvers.solution import Status
-from solvers.stability import command, critical
+from solvers.stability import critical
 from solvers.stability.critical import CriticalStep, critical_step, limit
 from solvers.stability.function import StabilityFunction
 from solvers.stability.modes import Modes, along

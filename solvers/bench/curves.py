@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from solvers.bench import peers
-from solvers.chart.curve import work_at
 from solvers.ensemble import ensemble
+from solvers.measured import work_at
 from solvers.prepared import NotFinishedError, prepare
 
 Array = NDArray[np.float64]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
+from solvers.measured import work_at
 
 
 @dataclass(frozen=True)
@@ -57,20 +56,3 @@ class Curve:
         return work_at(
             error, [p.global_error for p in points], [getattr(p, work) for p in points]
         )  # fmt: skip
-
-
-def work_at(error: float, errors: Sequence[float], works: Sequence[float]) -> float:
-    """Work for an error, between runs from cheap to dear, on logarithmic scales; NaN beyond them.
-
-    An error that a dearer run exceeds again was luck: each run counts with the largest
-    error from there on. Where rounding makes errors grow again, the curve ends.
-    """
-    if not errors:
-        return float("nan")
-    # beyond the least error, dearer runs are wasted, not proof of luck
-    last = int(np.argmin(errors)) + 1
-    honest = np.maximum.accumulate(list(errors[:last])[::-1])
-    if not honest[0] <= error <= honest[-1]:
-        return float("nan")
-    found = np.interp(np.log(error), np.log(honest), np.log(list(works[:last])[::-1]))
-    return float(np.exp(found))

@@ -1,0 +1,1 @@
+"""Commands that measure, tell and draw: what stands on top of everything else."""
