@@ -40,6 +40,8 @@ def stiffness(found: Sequence[Cost]) -> Figure:
     figure, axes = panels("Cost of a slow angle within 1e-3 rad after 6 s, beside a fast mode",
                           columns=len(families), size=(13, 4))  # fmt: skip
     methods = list(dict.fromkeys(cost.method for cost in found))
+    for panel in axes[1:]:
+        panel.sharey(axes[0])
     for panel, family in zip(axes, families, strict=True):
         for method, colour in zip(methods, COLOURS, strict=False):
             rows = [c for c in found if (c.family, c.method) == (family, method)]
@@ -48,7 +50,6 @@ def stiffness(found: Sequence[Cost]) -> Figure:
                 "--" if method in EXPLICIT else "-", marker=".", color=colour, label=method,
             )  # fmt: skip
         panel.set(title=family, xlabel="fast over slow frequency", xlim=(0.7, 1e4))
-        panel.sharey(axes[0])
     axes[0].set_ylabel("time, compiled / ms")
     axes[-1].legend(frameon=False, title="explicit dashed", loc="upper left",
                     bbox_to_anchor=(1, 1))  # fmt: skip
