@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 import time
+import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
@@ -43,6 +44,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"holonomic {version('holonomic')}")
         return 0
     name, *rest = arguments
+    # a command integrates many times: one notice is enough
+    warnings.filterwarnings("once", message="integrating in Python")
     if name not in COMMANDS:
         print(f"holonomic: unknown command {name[:50]!r}\n\n{USAGE}", end="", file=sys.stderr)
         return 2
@@ -166,7 +169,7 @@ def _verified() -> list[str]:
     judged = judgement()
     return [
         f"equations of the report: {counted(judged['equations'])}",
-        f"claims of its chapters 3 to 5: {counted(judged['claims'])}",
+        f"objectives, claims and recommendations: {counted(judged['claims'])}",
         f"programs: {len(judged['programs'])}, of them "
         f"{sum(bool(program['stops']) for program in judged['programs'])} would not run as printed",
         "which and why, and the corrections: holonomic verify",

@@ -11,29 +11,35 @@ from solvers.catalogue import load
 from solvers.compiled import obstacle
 from solvers.compiler import NoCompilerError
 from solvers.forms import Form
-from solvers.kernel import Batch, kernel
+from solvers.kernel import STATUSES, Batch, kernel
 from solvers.problem import Problem
 
-#: What a small change of the start is integrated with, and how far.
-METHOD, TOLERANCE, MOST_STEPS = "verner87", 1e-9, 20_000
-#: Parts of the run: its beginning, in which every change grows somehow, and where to look.
-BEGINNING = 0.01
-LOOKS = np.concatenate([np.linspace(0, BEGINNING, 17)[1:], np.linspace(BEGINNING, 1, 100)[1:]])
+#: What a small change of the start is integrated with, and for how many steps, so many at a time.
+METHOD, TOLERANCE, MOST_STEPS, CHUNK = "verner87", 1e-9, 20_000, 500
+#: In so many steps every change grows somehow, at once where a mode is fast.
+BEGINNING = 10
+#: Errors are this many times the tolerance, usually.
+USUAL = 10.0
+#: Even for large tolerances a change must grow from this to 1 before growth means anything.
+LARGE = 0.05
+#: In regular motion changes grow in proportion to time; chaos is what outgrows this power of it.
+POWER = 1.5
 
 
 class HorizonWarning(UserWarning):
     """A trajectory is longer than its errors allow."""
 
 
-def horizon(problem: Problem) -> float:
-    """The time from which on the errors that are allowed have grown as large as the motion.
+def horizon(problem: Problem, end: float) -> float:
+    """The time before `end` from which on usual errors have grown as large as the motion.
 
     That is when a small change of the start, by the variational equations, has grown by
-    1/tolerance since the beginning of the run, and beyond a growth in proportion to time,
-    which happens in regular motion, too. Infinity if that is beyond the run, or not
-    known: for fixed steps, and without a compiled loop.
+    1/(10 tolerances) since the first few steps, and by more than regular motion lets it.
+    A change that is not followed to the end of the run goes on as before. Infinity if
+    there is no such time, or it is not known: for fixed steps, and without a compiled
+    loop.
     """
-    begin, end = problem.span
+    begin = problem.span[0]
     module = problem.form.module
     if problem.h is not None or begin == end or not hasattr(module, "rhs_variational"):
         return inf
@@ -42,9 +48,10 @@ def horizon(problem: Problem) -> float:
         problem,
         form=Form(module, "variational", problem.form.params),
         method=load(METHOD),
+        span=(begin, end),
         rtol=TOLERANCE,
         atol=np.array(TOLERANCE),
-        samples=begin + (end - begin) * LOOKS,
+        samples=None,
         events=[],
         max_steps=MOST_STEPS,
     )
@@ -58,20 +65,29 @@ def horizon(problem: Problem) -> float:
         return inf
     batch = Batch(
         program, variational, variational.form, np.array([[*start, *np.ones_like(start)]]),
-        capacity=len(LOOKS), occurrences=0, pauses=False,
+        capacity=CHUNK, occurrences=0, pauses=True,
     )  # fmt: skip
-    batch.restart()
-    batch.go()
-    seen = int(batch.motions["rows"][0])
-    change = batch.rows["z"][0, :seen, -len(start) :]
-    early = LOOKS[:seen] <= BEGINNING
-    if early.all():
+    allowed = np.log(1 / min(USUAL * max(problem.tolerance, np.finfo(float).eps), LARGE))
+    base, elapsed, growth = 0.0, np.empty(0), np.empty(0)
+    status = None
+    while status is None:
+        batch.restart()
+        batch.go()
+        status = STATUSES[batch.motions["status"][0]]
+        rows = batch.rows[0, : batch.motions["rows"][0]]
+        batch.motions["rows"] = 0
+        size = np.log(np.abs(rows["z"][:, -len(start) :]).max(axis=1))
+        if not elapsed.size:
+            if len(rows) <= BEGINNING:
+                return inf
+            base, first = size[: BEGINNING + 1].max(), abs(rows["t"][BEGINNING] - begin)
+            rows, size = rows[BEGINNING + 1 :], size[BEGINNING + 1 :]
+        if len(rows):
+            elapsed, growth = np.abs(rows["t"] - begin), size - base
+        lost = np.flatnonzero((growth >= allowed) & (growth > POWER * np.log(elapsed / first)))
+        if lost.size:
+            return begin + float(np.sign(end - begin) * elapsed[lost[0]])
+    if not elapsed.size or growth[-1] <= POWER * np.log(elapsed[-1] / first):
         return inf
-    size = np.log(np.abs(change).max(axis=1))
-    growth = size - size[early].max() - np.log(LOOKS[:seen] / BEGINNING)
-    growth[early] = 0.0
-    allowed = np.log(1 / max(problem.tolerance, np.finfo(float).eps))
-    grown = np.flatnonzero(growth >= allowed)
-    # a change that is not followed to the end of the run goes on as before
-    part = LOOKS[grown[0]] if grown.size else LOOKS[seen - 1] * allowed / max(growth[-1], 1e-9)
-    return inf if part >= 1 else begin + float(part) * (end - begin)
+    after = float(allowed / growth[-1] * elapsed[-1])
+    return inf if after >= abs(end - begin) else begin + float(np.sign(end - begin)) * after

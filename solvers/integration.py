@@ -135,7 +135,11 @@ def _judged(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
     complaint = unstable(problem, failed=outcome.status is Status.NOT_FINITE)
     if complaint:
         outcome.status = Status.UNSTABLE
-    until = horizon(problem) if outcome.status in (Status.FINISHED, Status.EVENT) else inf
+    until = (
+        horizon(problem, outcome.end[0])
+        if outcome.status in (Status.FINISHED, Status.EVENT)
+        else inf
+    )
     if abs(until - problem.span[0]) < abs(outcome.end[0] - problem.span[0]):
         warn(
             f"beyond t = {until:.4g} this trajectory means nothing: there errors of "

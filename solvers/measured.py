@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from types import ModuleType
 
 import numpy as np
@@ -31,7 +32,7 @@ class Measured:
     Attributes
     ----------
     work_seconds : float
-        Its time: the median of several runs, with preparation left out.
+        Its time, with preparation left out: the median of several runs if it is short.
     work_rhs, steps : int
         Right-hand sides evaluated, and steps taken.
     end : ndarray of shape (state,)
@@ -109,14 +110,20 @@ def work_at(error: float, errors: Sequence[float], works: Sequence[float]) -> fl
     """Work for an error, between runs from cheap to dear, on logarithmic scales; NaN beyond them.
 
     An error that a dearer run exceeds again was luck: each run counts with the largest
-    error from there on. Where rounding makes errors grow again, the curve ends.
+    error from there on. Where rounding makes errors grow again, the curve ends: with the
+    two neighbours of which the worse is best.
     """
     if not errors:
         return float("nan")
-    # beyond the least error, dearer runs are wasted, not proof of luck
-    last = int(np.argmin(errors)) + 1
+    last = least_pair(errors) + 1
     honest = np.maximum.accumulate(list(errors[:last])[::-1])
     if not honest[0] <= error <= honest[-1]:
         return float("nan")
     found = np.interp(np.log(error), np.log(honest), np.log(list(works[:last])[::-1]))
     return float(np.exp(found))
+
+
+def least_pair(errors: Sequence[float]) -> int:
+    """The last run of the two neighbours of which the worse is best."""
+    worse = [max(pair) for pair in pairwise(errors)]
+    return len(worse) - int(np.argmin(worse[::-1])) if worse else 0

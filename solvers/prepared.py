@@ -120,11 +120,11 @@ class Prepared:
             self._refuse(t_span, y0)
             return tuple(self._start)
         h = self._problem.h
-        if h is not None and h < SHORTEST * ulp(max(abs(begin), abs(end))):
-            request.step(h, t_span)
         try:
+            if h is not None and h < SHORTEST * ulp(max(abs(begin), abs(end))):
+                request.step(h, t_span)
             code = self._once(self._task, begin, end, self._from, self._to)
-        except ctypes.ArgumentError:
+        except (ctypes.ArgumentError, TypeError):
             code = NOT_NUMBERS
         if code == NOT_NUMBERS:
             self._refuse(t_span, y0)

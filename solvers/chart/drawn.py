@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from solvers.chart.curve import Curve
-from solvers.chart.findings import WRONG
 from solvers.chart.measurement import FORMS, REPORT
 from solvers.chart.peers import PEERS
 from solvers.pictures import COLOURS, panels
@@ -34,7 +33,6 @@ def work_precision(title: str, curves: Sequence[Curve]) -> Figure:
         _draw(calls, curve, "work_rhs", method, **style)
     seconds.set(title="methods, compiled, fastest form", xlabel="time / s")
     calls.set(title="the same", xlabel="calls of the right-hand side")
-    calls.legend(frameon=False, fontsize="small")
     for n, (backend, method) in enumerate((
         ("compiled", EXAMPLE), ("python", EXAMPLE), ("scipy", "DOP853"),
     )):  # fmt: skip
@@ -44,7 +42,6 @@ def work_precision(title: str, curves: Sequence[Curve]) -> Figure:
                     label = f"{method}, {backend}, {form}"
                     _draw(choices, curve, "work_seconds", label, color=colour, linestyle=STYLES[n])
     choices.set(title="forms and backends", xlabel="time / s")
-    choices.legend(frameon=False, fontsize="small")
     for curve in curves:
         if (curve.method, curve.form, curve.backend) == (EXAMPLE, "rational", "compiled"):
             _draw(peers, curve, "work_seconds", f"holonomic {EXAMPLE}", color="black")
@@ -54,7 +51,9 @@ def work_precision(title: str, curves: Sequence[Curve]) -> Figure:
               color=COLOURS[n % 6], linestyle=STYLES[n // 6])  # fmt: skip
     peers.set(title="other programs" if others else "other programs: none is installed",
               xlabel="time / s")  # fmt: skip
-    peers.legend(frameon=False, fontsize="small")
+    for panel in (calls, choices, peers):
+        if panel.lines:
+            panel.legend(frameon=False, fontsize="small")
     for panel in (seconds, calls, choices, peers):
         panel.set_ylabel("global error / rad, rad/s")
     return figure
@@ -76,18 +75,19 @@ def steps(title: str, curves: Sequence[Curve]) -> Figure:
                             [p.global_error for p in curve.points], marker=".", color=colour,
                             label=f"{name} ({method})")  # fmt: skip
     axes.set(xlabel="step / s", ylabel="global error / rad, rad/s")
-    axes.legend(frameon=False)
+    if axes.lines:
+        axes.legend(frameon=False)
     return figure
 
 
-def energy(title: str, curves: Sequence[Curve]) -> Figure:
+def energy(title: str, curves: Sequence[Curve], wrong: float) -> Figure:
     """Global over energy error of every run: right below, wrong above."""
     figure, (axes,) = panels(title, size=(7.5, 5))
     for backend, colour in zip(("compiled", "python", "scipy"), COLOURS, strict=False):
         points = [p for c in curves if c.backend == backend for p in c.points]
         axes.loglog([p.energy_error for p in points], [p.global_error for p in points], ".",
                     color=colour, markersize=4, label=backend)  # fmt: skip
-    axes.axhline(WRONG, color="#888888", label="above: not right in any digit")
+    axes.axhline(wrong, color="#888888", label="above: not right in any digit")
     axes.set(xlabel="energy error, relative", ylabel="global error / rad, rad/s")
     axes.legend(frameon=False)
     return figure

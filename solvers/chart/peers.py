@@ -1,8 +1,8 @@
 """Other programs on the same scenes, with the equations that holonomic generates for them.
 
-heyoka's Taylor series and diffrax's methods take the rational right-hand side, called with their
-own numbers; numba compiles the Lagrangian one, as Python, into a loop of RK4 steps; numbalsoda's
-LSODA and DOP853 take its machine code. All are compiled before they are timed.
+All get the fastest form, and are compiled before they are timed. heyoka's Taylor series and
+diffrax's methods take the right-hand side called with their own numbers; numba compiles it, as
+Python, into a loop of RK4 steps; numbalsoda's LSODA and DOP853 take its machine code.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _diffrax(diffrax: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[s
     jax.config.update("jax_enable_x64", True)
     form, start = _fastest(module, scene)
     params = scene.params(module)
-    rhs = getattr(module, f"rhs_{form}" if form != "lagrangian" else "rhs")
+    rhs = _rhs(module, form)
 
     def field(t: Any, y: Any, args: Any) -> Any:
         return jax.numpy.stack([jax.numpy.asarray(x) for x in rhs(t, tuple(y), params)])
@@ -124,7 +124,8 @@ def _diffrax(diffrax: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[s
 
 def _numba(numba: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
     to_fixed_tuple: Any = import_module("numba.np.unsafe.ndarray").to_fixed_tuple
-    rhs, size, params = numba.njit(module.rhs), len(scene.y0), scene.params(module)
+    form, start = _fastest(module, scene)
+    rhs, size, params = numba.njit(_rhs(module, form)), len(start), scene.params(module)
 
     @numba.njit  # type: ignore[untyped-decorator]
     def steps(y0: Any, h: float, count: int) -> Any:
@@ -140,18 +141,17 @@ def _numba(numba: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, 
                 y[n] += h / 6 * (k[0, n] + 2 * k[1, n] + 2 * k[2, n] + k[3, n])
         return y
 
-    start = np.array(scene.y0)
-
     def run(h: float) -> Run:
         count = round(scene.duration / h)
         return lambda: (steps(start, h, count), 4 * count)
 
-    yield "rk4", "lagrangian", run
+    yield "rk4", form, run
 
 
 def _numbalsoda(package: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
-    rhs, params = native_rhs(module), np.array(scene.params(module))
-    start, times = np.array(scene.y0), np.array([0.0, scene.duration])
+    form, start = _fastest(module, scene)
+    rhs, params = native_rhs(module, form), np.array(scene.params(module))
+    times = np.array([0.0, scene.duration])
     for method in ("lsoda", "dop853"):
         solver = getattr(package, method)
 
@@ -164,7 +164,11 @@ def _numbalsoda(package: Any, module: ModuleType, scene: Scene) -> Iterator[tupl
 
             return state
 
-        yield method, "lagrangian", run
+        yield method, form, run
+
+
+def _rhs(module: ModuleType, form: str) -> Any:
+    return getattr(module, "rhs" if form == "lagrangian" else f"rhs_{form}")
 
 
 def _fastest(module: ModuleType, scene: Scene) -> tuple[str, Array]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
+from types import ModuleType
 
 from solvers.chart.curve import Curve
 from solvers.chart.findings import Turning, misled, turnings
@@ -26,14 +27,16 @@ COMPARED = {
 }
 
 
-def told(scene: Scene, truth: Reference, curves: Sequence[Curve]) -> Iterator[str]:
+def told(
+    scene: Scene, module: ModuleType, truth: Reference, curves: Sequence[Curve]
+) -> Iterator[str]:
     """A scene's reference, frontier and findings."""
     yield f"{scene.title}, {scene.duration:g} s"
     others = "; ".join(f"{name} {apart:.1e}" for name, apart in truth.apart.items())
     yield f"reference: {truth.METHOD}, own error {truth.global_error:.1e}; apart from it: {others}"
     rows = frontier(curves)
     shown = [c for c in COMPARED if any(c[1] in row.worth[c[0]] for row in rows)]
-    yield "the cheapest for each error, compiled; how many times as long the best with ... takes:"
+    yield "the cheapest for each error, and how many times as long the best with ... takes:"
     heads = "".join(f"{COMPARED[choice]:>9}" for choice in shown)
     yield f"{'error':>6} {'seconds':>9}{'calls':>7}  {'cheapest':<20}{heads}"
     for row in rows:
@@ -44,12 +47,12 @@ def told(scene: Scene, truth: Reference, curves: Sequence[Curve]) -> Iterator[st
     )
     for turning in turnings(curves):
         yield _turning(turning)
-    found = misled(curves)
+    found = misled(curves, scene, module, truth)
     if found:
-        setting = ", ".join(f"{name} = {value:.2g}" for name, value in found.point.setting.items())
+        setting = ", ".join(f"{name} = {value:.2g}" for name, value in found.setting.items())
         yield (
-            f"energy is no proof: {found.method}, {found.form}, {setting}: energy right to "
-            f"{found.point.energy_error:.0e}, state wrong by {found.point.global_error:.2g}"
+            f"energy is no proof: {found.method}, {found.form}, {setting}: energy kept to "
+            f"{found.energy_error:.0e}, end wrong by {found.global_error:.2g} rad or rad/s"
         )
 
 

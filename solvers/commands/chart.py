@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from solvers.chart import drawn, peers
-from solvers.chart.findings import misled, turnings
+from solvers.chart.findings import misled, turnings, wrong_from
 from solvers.chart.frontier import frontier
 from solvers.chart.measurement import curves
 from solvers.chart.reference import Reference, reference
@@ -54,7 +53,7 @@ def main(
     parser.add_argument("--json", action="store_true", help="print figures for programs")
     arguments = parser.parse_args(argv)
     try:
-        chosen = [scene(name) for name in arguments.scenes or USUAL]
+        chosen = [scene(name) for name in dict.fromkeys(arguments.scenes or USUAL)]
     except UnknownSceneError as error:
         parser.error(str(error))
     arguments.output.mkdir(parents=True, exist_ok=True)
@@ -71,7 +70,9 @@ def main(
         pictures = {
             "work_precision": drawn.work_precision(f"Cost of accuracy: {one.title}", measured),
             "steps": drawn.steps(f"Shorter steps: {one.title}", measured),
-            "energy": drawn.energy(f"Energy and trajectory: {one.title}", measured),
+            "energy": drawn.energy(
+                f"Energy and trajectory: {one.title}", measured, wrong_from(one, truth)
+            ),
         }
         paths = [arguments.output / f"{name}_{one.name}.png" for name in pictures]
         for path, figure in zip(paths, pictures.values(), strict=True):
@@ -79,10 +80,13 @@ def main(
         found["curves"] += measured
         found["frontier"] += [*frontier(measured), *frontier(measured, "work_rhs")]
         found["turnings"][one.name] = turnings(measured)
-        found["misled"][one.name] = misled(measured)
+        found["misled"][one.name] = misled(measured, one, equations, truth)
         found["pictures"] += map(str, paths)
         if not arguments.json:
-            lines = [*told(one, truth, measured), f"pictures: {', '.join(map(str, paths))}"]
+            lines = [
+                *told(one, equations, truth, measured),
+                f"pictures: {', '.join(map(str, paths))}",
+            ]
             print(*lines, "", sep="\n", flush=True)
     found["reference"] = {
         "method": Reference.METHOD,
@@ -90,6 +94,5 @@ def main(
         "scenes": truths,
     }
     if arguments.json:
-        json.dump(jsonable(found), sys.stdout, indent=2)
-        print()
+        print(json.dumps(jsonable(found), indent=2))
     return 0

@@ -54,7 +54,7 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
     parser.add_argument("--json", action="store_true", help="print figures for programs")
     arguments = parser.parse_args(argv)
     try:
-        chosen = [scene(name) for name in arguments.scenes or ["report"]]
+        chosen = [scene(name) for name in dict.fromkeys(arguments.scenes or ["report"])]
     except UnknownSceneError as error:
         parser.error(str(error))
     arguments.output.mkdir(parents=True, exist_ok=True)
@@ -81,8 +81,7 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
             if not arguments.json:
                 print(*TELL[name](result), f"picture: {path}", "", sep="\n", flush=True)
     if arguments.json:
-        json.dump(jsonable(found), sys.stdout, indent=2)
-        print()
+        print(json.dumps(jsonable(found), indent=2))
     return 0
 
 

@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 
 #: Seconds after which a small change is brought back to length 1, and those left out at first.
 STRETCH, TRANSIENT = 1.0, 100
-#: Parts of a long run that count as independent when uncertainty is estimated.
-BLOCKS = 40
+#: Parts of a run count as independent from this duration in s on; how many there are.
+INDEPENDENT, FEWEST, MOST = 150.0, 8, 40
 #: Digits of references; an ordinary number's are lost within 40 s. And how often to look, in 1/s.
 DIGITS, LOOKS = 30, 10
 #: Error in rad or rad/s from which on a trajectory is another one.
@@ -46,10 +46,11 @@ class Mean:
     error: float
 
     @classmethod
-    def of(cls, values: Array) -> Mean:
+    def of(cls, values: Array, duration: float) -> Mean:
         """The mean of `values`, of which neighbours are not independent: by means of blocks."""
-        blocks = np.array([part.mean() for part in np.array_split(values, BLOCKS)])
-        return cls(float(blocks.mean()), float(blocks.std(ddof=1) / np.sqrt(BLOCKS)))
+        count = int(np.clip(duration / INDEPENDENT, FEWEST, MOST))
+        blocks = np.array([part.mean() for part in np.array_split(values, count)])
+        return cls(float(blocks.mean()), float(blocks.std(ddof=1) / np.sqrt(count)))
 
 
 def lyapunov(
@@ -71,7 +72,7 @@ def lyapunov(
         length = float(np.linalg.norm(state[n:]))
         state[n:] /= length
         growth.append(log(length) / STRETCH)
-    return Mean.of(np.array(growth[TRANSIENT:]))
+    return Mean.of(np.array(growth[TRANSIENT:]), duration)
 
 
 def _stretch(
@@ -125,7 +126,7 @@ def separation(
     n = truth.shape[1]
     near = truth[0] + offset * np.eye(n)[0]
     distance = np.linalg.norm(taylor(module, params, near.tolist(), t, DIGITS) - truth, axis=1)
-    carried = integrate(
+    carried = beyond_its_horizon(
         module, (0, t[-1]), [*truth[0], *(near - truth[0])], params, form="variational",
         rtol=1e-12, atol=1e-30, t_eval=t,
     ).y[n:]  # fmt: skip
@@ -225,8 +226,8 @@ def statistics(
         found.append(Statistics(
             run.run.rpartition(", ")[0],
             float((run.energy[-1] - run.energy[0]) / (run.energy[0] - rest)),
-            Mean.of(kinetic),
-            Mean.of((np.cos(run.y[1]) < 0).astype(float)),
+            Mean.of(kinetic, duration),
+            Mean.of((np.cos(run.y[1]) < 0).astype(float), duration),
         ))  # fmt: skip
     return found
 

@@ -95,4 +95,8 @@ def study(pendulum: ModuleType, periods: float, cases: Sequence[tuple[str, str, 
         )  # fmt: skip
 
     with ThreadPoolExecutor() as pool:
-        return list(pool.map(drift, cases))
+        try:
+            return list(pool.map(drift, cases))
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise

@@ -109,11 +109,11 @@ def falls(
     found = []
     for method in methods:
         for tolerance in tolerances:
-            run = integrate(
-                module, (0, 100), (0.0, 2 * omega), module.DEFAULTS, method=method,
+            run = ensemble(
+                module, (0, 100), [(0.0, 2 * omega)], module.DEFAULTS, method=method,
                 rtol=tolerance, atol=tolerance, form="lagrangian", events=events,
             )  # fmt: skip
-            t, (theta, rate) = run.end
+            t, (theta, rate) = run.t[0], run.y[0]
             defect = float((rate / (2 * omega)) ** 2 - np.cos(theta / 2) ** 2)
             predicted = log(4 / sqrt(abs(defect))) / omega
             found.append(Fall(method, tolerance, defect, predicted, float(t)))

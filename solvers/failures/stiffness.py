@@ -56,12 +56,12 @@ class Cost:
 
 
 def short_second_rod(ratio: float) -> Stiff:
-    """Double pendulum, l2 = l1/ratio²; at first the short rod hangs as if from a fixed place."""
+    """Double pendulum, l2 = 2 l1/ratio²; at first the short rod hangs as if from a fixed place."""
     return (1.0, 1.0, 1.0, 2.0 / ratio**2, 9.81), (1.0, 1.0, 0.0, 0.0)
 
 
 def light_first_mass(ratio: float) -> Stiff:
-    """Double pendulum, m1 = m2/ratio²: both rods are a string, and m1 a bead on it."""
+    """Double pendulum, m1 = 2 m2/ratio²: both rods are a string, and m1 a bead on it."""
     return (2.0 / ratio**2, 1.0, 1.0, 1.0, 9.81), (1.0, 1.0, 0.0, 0.0)
 
 

@@ -31,8 +31,8 @@ NOTHING = 1e-15
 SHORTEST, LONGEST, RATIO, RESOLUTION = 0.25, 40.0, 1.25, 1e-4
 #: Steps that are made: growth is measured over the second half of them.
 STEPS = 400
-#: Sizes of motion that count as none, and, times that of the beginning, as no longer small.
-VANISHED, LARGE = 1e-100, 1e4
+#: Sizes of motion, in parts of that at the beginning, that count as none and as no longer small.
+LOST, LARGE = 1e-6, 1e4
 #: So many rounding errors of a place at most add up.
 ROUNDINGS = 100
 #: Growth is stated for a step so much longer than the limit, or for 1/frequency.
@@ -82,12 +82,14 @@ def critical_step(method: str, module: ModuleType, params: Sequence[float]) -> C
     tableau = load(method)
     function = StabilityFunction.of(tableau)
     linear, running = _linear(method, modes), _small_motion(method, module, params, modes)
-    measured = limit(running, fastest)
+    # rounding of M and K, too, lets motion grow: the more, the farther modes are apart
+    nothing = NOTHING * fastest / float(modes.frequencies[0])
+    measured = limit(running, fastest, nothing)
     probe = BEYOND * measured if 0 < measured < inf else 1 / fastest
     return CriticalStep(
         method, tableau.title, tableau.order, tableau.stages, function,
         predicted=function.imaginary_stability_interval / fastest,
-        linear=limit(linear, fastest),
+        linear=limit(linear, fastest, nothing),
         measured=measured,
         probe=probe,
         growth_predicted=float(np.log(np.abs(function(1j * probe * fastest)))),
@@ -95,10 +97,12 @@ def critical_step(method: str, module: ModuleType, params: Sequence[float]) -> C
     )  # fmt: skip
 
 
-def limit(growth: Callable[[float], float], frequency: float) -> float:
+def limit(
+    growth: Callable[[float], float], frequency: float, nothing: float = NOTHING
+) -> float:  # fmt: skip
     """The longest step that does not grow: 0 if all that are tried do, inf if none does."""
     stable, h = 0.0, SHORTEST / frequency
-    while growth(h) <= NOTHING:
+    while growth(h) <= nothing:
         stable, h = h, h * RATIO
         if h * frequency > LONGEST:
             return inf
@@ -106,7 +110,7 @@ def limit(growth: Callable[[float], float], frequency: float) -> float:
         return 0.0
     while h - stable > RESOLUTION * stable:
         middle = (stable + h) / 2
-        stable, h = (middle, h) if growth(middle) <= NOTHING else (stable, middle)
+        stable, h = (middle, h) if growth(middle) <= nothing else (stable, middle)
     return stable
 
 
@@ -162,6 +166,6 @@ def _rate(sizes: Sequence[float], rounding: float = 0.0) -> float:
     halfway, end = sizes
     if not np.isfinite(halfway + end):
         return inf
-    if end < VANISHED + rounding:
+    if min(halfway, end) < LOST * AMPLITUDE + 10 * rounding:
         return -inf
     return float(np.log(end / halfway) / (STEPS - STEPS // 2))

@@ -7,13 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 #: Pictures, each after the command that draws it.
-CHART, STEPS, ENERGY = (
-    f"holonomic chart: {name}.png"
-    for name in ("work_precision_report", "steps_report", "energy_long")
+CHART, STEPS = (
+    f"holonomic chart: {name}.png" for name in ("work_precision_report", "steps_report")
 )
-OSCILLATION, CHAOS, TOLERANCES = (
-    f"holonomic stability: {name}.png" for name in ("oscillation", "chaos", "tolerances")
-)
+CHAOS, TOLERANCES = (f"holonomic stability: {name}.png" for name in ("chaos", "tolerances"))
 
 
 @dataclass(frozen=True)

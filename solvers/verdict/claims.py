@@ -14,8 +14,6 @@ import numpy as np
 from solvers.verdict.claim import (
     CHAOS,
     CHART,
-    ENERGY,
-    OSCILLATION,
     STEPS,
     TOLERANCES,
     Claim,
@@ -46,7 +44,7 @@ def _chapter_3(e: Evidence) -> list[Claim]:
               f"{ratios[0]:.2f} of the first half's in program 1, {ratios[1]:.2f} in the prose"),
         Claim("3.1c", "the Mathematica solution is the exact curve", "untestable",
               "Mathematica is not at hand, and no closed form is known; Taylor series and an "
-              f"extrapolated midpoint rule differ by {e.references_apart:.1g} rad at 5 s", CHART),
+              f"extrapolated midpoint rule differ by {e.references_apart:.1g} rad at 5 s"),
         Claim("3.2a", "the Euler-Lagrange run has the same data as the Lagrangian one",
               judged(e.first == e.second),
               f"lengths and velocities differ; at 5 s the angles are {faster:.2g} rad apart"),
@@ -80,7 +78,7 @@ def _chapter_4(e: Evidence) -> list[Claim]:
               f"'extremely' has no measure; the lower rod sweeps {turns:.2f} turns"),
         Claim("4.2", "Euler's method is unsuitable for as long as 5 s", judged(euler > 0.1),
               f"h = 0.01 s: energy off by {change:.0f} %, angles by {euler:.2g} rad; yet what 4.2 "
-              "shows are the Euler-Lagrange equations, which are no such method", OSCILLATION),
+              "shows are the Euler-Lagrange equations, which are no such method", STEPS),
         Claim("4.3", "Runge-Kutta is the best, for its curves are smooth", judged(rough < 1e-3),
               f"RK4 with h = 0.1 s draws a smooth curve, too, and is {rough:.2g} rad off at 5 s",
               CHART),
@@ -113,5 +111,5 @@ def _chapter_5(e: Evidence) -> list[Claim]:
               STEPS),
         Claim("B3", "5000 steps of 0.01 s are enough for program 3", judged(third_error < 1e-3),
               f"its angles at 50 s are off by {third_error:.1g} rad, its energy by "
-              f"{e.energy_change(third, e.third):.1g} of what is in play", ENERGY),
+              f"{e.energy_change(third, e.third):.1g} of what is in play"),
     ]  # fmt: skip

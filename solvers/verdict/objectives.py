@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from solvers.verdict.claim import CHAOS, CHART, STEPS, Claim, judged
+from solvers.verdict.claim import CHART, STEPS, Claim, judged
 from solvers.verdict.evidence import Evidence
 
 #: What shall be best: a method of ours, beside the report's.
@@ -60,9 +60,10 @@ def recommendations(evidence: Evidence) -> list[Claim]:
                   judged(abs(found.value - equal.value) > 3 * (found.error + equal.error)),
                   f"largest Lyapunov exponent {found.value:.2f} ± {found.error:.2f} per s with "
                   f"{masses} instead of {equal.value:.2f} ± {equal.error:.2f}: another motion, "
-                  "chaotic, too", CHAOS)
-            for name, relation, masses, found in (
-                ("5g", "m1 < m2", "m2 = 3 kg", below), ("5h", "m1 > m2", "m1 = 3 kg", above),
+                  "chaotic, too", f"holonomic chart {scene}: work_precision_{scene}.png")
+            for name, relation, masses, scene, found in (
+                ("5g", "m1 < m2", "m2 = 3 kg", "light_above", below),
+                ("5h", "m1 > m2", "m1 = 3 kg", "heavy_above", above),
             )
         ),
     ]  # fmt: skip
