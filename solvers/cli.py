@@ -263,10 +263,10 @@ def _bench(argv: Sequence[str]) -> int:
         return sympy.lambdify([[*system.q, *system.qdot], system.params], rates, "numpy")
 
     def heyoka() -> ModuleType:
-        try:
-            return import_module("heyoka")
-        except ImportError as error:
-            raise OSError(f"{error}: install it with pip install -e '.[bench]'") from error
+        found = _package("heyoka")
+        if found is None:
+            raise OSError("heyoka is not installed: pip install -e '.[bench]'")
+        return found
 
     return bench(argv, module, lambdified, heyoka)
 

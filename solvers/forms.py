@@ -30,6 +30,13 @@ class Form:
     params : sequence of float or ndarray
         In the order of ``module.PARAMETERS``; arrays if motions differ in them.
 
+    Attributes
+    ----------
+    function : callable
+        The generated right-hand side, of a time, a state as numbers, and parameters.
+    state, ordinary : tuple of str
+        What the state is made of, inside and outside.
+
     Raises
     ------
     ValueError
@@ -38,11 +45,11 @@ class Form:
 
     def __init__(self, module: ModuleType, name: str, params: Sequence[Any]) -> None:
         suffix = "" if name == "lagrangian" else f"_{name}"
-        if not hasattr(module, f"rhs{suffix}"):
-            known = [f for f in FORMS if _has(module, f)]
+        if not has_form(module, name):
+            known = [f for f in FORMS if has_form(module, f)]
             raise ValueError(f"form {name!r}: {module.__name__} has {', '.join(known)}")
         self.name, self.module, self.params = name, module, tuple(params)
-        self._rhs = getattr(module, f"rhs{suffix}")
+        self.function = getattr(module, f"rhs{suffix}")
         self._jacobian = getattr(module, f"jacobian{suffix}", None)
         self.state: tuple[str, ...] = getattr(module, f"STATE{suffix.upper()}")
         self.ordinary = ordinary_state(module, name)
@@ -80,7 +87,7 @@ class Form:
 
     def rhs(self, t: float, z: Array) -> Array:
         """The right-hand side."""
-        return np.array(self._rhs(t, z, self.params))
+        return np.array(self.function(t, z, self.params))
 
     def jacobian(self, t: float, z: Array) -> Array:
         """Its Jacobian."""
@@ -161,8 +168,9 @@ def ordinary_state(module: ModuleType, form: str) -> tuple[str, ...]:
 
 def fastest_form(module: ModuleType) -> str:
     """The form that a compiled loop runs fastest."""
-    return "rational" if hasattr(module, "rhs_rational") else "lagrangian"
+    return "rational" if has_form(module, "rational") else "lagrangian"
 
 
-def _has(module: ModuleType, form: str) -> bool:
+def has_form(module: ModuleType, form: str) -> bool:
+    """Whether a module has equations of this form."""
     return hasattr(module, "rhs" if form == "lagrangian" else f"rhs_{form}")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from math import inf
 
@@ -28,6 +31,14 @@ POWER = 1.5
 
 class HorizonWarning(UserWarning):
     """A trajectory is longer than its errors allow."""
+
+
+@contextmanager
+def beyond_horizon() -> Iterator[None]:
+    """Where runs are meant to be longer than their errors allow: no warning."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", HorizonWarning)
+        yield
 
 
 def horizon(problem: Problem, end: float) -> float:

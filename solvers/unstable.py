@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.problem import Problem
+from solvers.stability_function import StabilityFunction
 from solvers.tableau import Tableau
 
 Array = NDArray[np.float64]
@@ -36,33 +37,30 @@ def unstable(problem: Problem, failed: bool) -> str:
         return ""
     modes = np.linalg.eigvals(np.sign(end - begin) * jacobian)
     rates = modes[modes.real <= 1e-6 * np.abs(modes)]
-    growth = _growth(method, rates, h) * duration
+    function = StabilityFunction.of(method)
+    growth = _growth(function, rates, h) * duration
     if growth <= np.log(TOLERABLE if failed else UNSTABLE):
         return ""
     until = begin + (end - begin) * np.log(TOLERABLE) / growth
-    longest = _longest(method, rates, h, duration)
+    longest = _longest(function, rates, h, duration)
     return (
         f"h = {h} multiplies small deviations by ten in {np.log(10) * duration / growth:.3g} s: "
         f"good up to t = {until:.6g}; over this time span h may be at most {longest:.3g}"
     )
 
 
-def _growth(method: Tableau, rates: NDArray[np.complex128], h: float) -> float:
+def _growth(function: StabilityFunction, rates: NDArray[np.complex128], h: float) -> float:
     """The largest exponent, a second, with which a step of h lets a mode grow."""
-    numerator, denominator = (
-        np.array([float(x) for x in part[::-1]]) for part in method.stability_function
-    )
-    factors = np.abs(np.polyval(numerator, h * rates) / np.polyval(denominator, h * rates))
-    return float(np.log(np.max(factors, initial=1.0)) / h)
+    return float(np.log(np.max(np.abs(function(h * rates)), initial=1.0)) / h)
 
 
 def _longest(
-    method: Tableau, rates: NDArray[np.complex128], h: float, duration: float
+    function: StabilityFunction, rates: NDArray[np.complex128], h: float, duration: float
 ) -> float:  # fmt: skip
     """The longest step below h that keeps deviations tolerable."""
     short, long = 0.0, h
     for _ in range(60):
         middle = (short + long) / 2
-        tolerable = _growth(method, rates, middle) * duration <= np.log(TOLERABLE)
+        tolerable = _growth(function, rates, middle) * duration <= np.log(TOLERABLE)
         short, long = (middle, long) if tolerable else (short, middle)
     return short

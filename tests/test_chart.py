@@ -14,7 +14,7 @@ import generated.single_pendulum as sp
 from solvers.catalogue import load
 from solvers.chart import drawn, measurement, peers
 from solvers.chart.curve import Curve, Point
-from solvers.chart.findings import misled, turnings, wrong_from
+from solvers.chart.findings import Charted, misled, turnings, wrong_from
 from solvers.chart.frontier import frontier
 from solvers.chart.measurement import combinations, curves, judged
 from solvers.chart.reference import Reference, reference
@@ -27,14 +27,14 @@ from solvers.pictures import save
 from solvers.request import SCIPY
 from solvers.scenes import SCENES, Scene, UnknownSceneError, scene
 
-#: What is run must not depend on how fast the machine is.
-ALL = {"compiled": inf, "python": inf, "scipy": inf}
-
 
 @pytest.fixture(autouse=True)
 def few_settings(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measurement, "TOLERANCES", 10.0 ** -np.arange(1, 9))
     monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(12))
+    # what is run must not depend on how fast the machine is
+    monkeypatch.setattr(measurement, "LONGEST", dict.fromkeys(measurement.LONGEST, inf))
+    monkeypatch.setattr(measurement, "LONGEST_RULE", inf)
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ def test_the_reference_s_own_error_is_found_by_fewer_digits(
 def test_curves_measure_the_error_beside_the_reference(truth: Reference) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
               ("dp54", "hamiltonian", "python"), ("DOP853", "lagrangian", "scipy")]  # fmt: skip
-    found = curves(scene("report"), dp, truth, wanted, ALL)
+    found = curves(scene("report"), dp, truth, wanted)
     assert [(c.method, c.form, c.backend) for c in found] == wanted
     for c in found:
         errors = [p.global_error for p in c.points]
@@ -107,11 +107,11 @@ def test_a_run_that_means_nothing_is_no_point(truth: Reference) -> None:
     run = measured(dp, dp.DEFAULTS, SCENES["report"].y0, 5.0, method="rk4", form="lagrangian",
                    backend="compiled", h=0.1)  # fmt: skip
     assert run
-    assert judge(run, {"h": 0.1})
-    assert judge(replace(run, end=np.full(4, nan)), {}) is None
-    assert judge(replace(run, end=run.end + 11), {}) is None
+    assert judge({"h": 0.1}, run.work_seconds, run.work_rhs, run.end)
+    assert judge({}, 1.0, None, np.full(4, nan)) is None
+    assert judge({}, 1.0, None, run.end + 11) is None
     # what the reference does not know either is no error of a run
-    exact = judge(replace(run, end=truth.end), {})
+    exact = judge({}, 1.0, None, truth.end)
     assert exact
     assert exact.global_error == truth.global_error
 
@@ -171,7 +171,7 @@ def test_in_the_report_s_scene_rounding_turns_rk4(
     truth: Reference, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(19))
-    found = curves(scene("report"), dp, truth, [("rk4", "lagrangian", "compiled")], ALL)
+    found = curves(scene("report"), dp, truth, [("rk4", "lagrangian", "compiled")])
     (turning,) = turnings(found)
     assert turning.order == pytest.approx(load("rk4").order, abs=0.3)
     assert 1e-6 < turning.h < 1e-3
@@ -184,7 +184,7 @@ def test_a_small_energy_error_proves_nothing(monkeypatch: pytest.MonkeyPatch) ->
     one = scene("long")
     truth = reference(one, dp)
     wanted = [("gauss2", "hamiltonian", "compiled"), ("verner98", "rational", "compiled")]
-    found = curves(one, dp, truth, wanted, ALL)
+    found = curves(one, dp, truth, wanted)
     case = misled(found, one, dp, truth)
     assert case
     assert case.energy_error < 1e-7
@@ -198,7 +198,7 @@ def test_a_small_energy_error_proves_nothing(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_energy_that_is_not_kept_is_no_case(truth: Reference) -> None:
-    found = curves(scene("report"), dp, truth, [("rk1", "lagrangian", "compiled")], ALL)
+    found = curves(scene("report"), dp, truth, [("rk1", "lagrangian", "compiled")])
     assert min(p.energy_error for p in found[0].points) < 1
     assert misled(found, scene("report"), dp, truth) is None
 
@@ -231,7 +231,7 @@ def test_other_programs_join_when_they_are_there(truth: Reference) -> None:
 def test_pictures_and_text_show_what_was_measured(truth: Reference, tmp_path: Path) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
               ("verner87", "rational", "python"), ("DOP853", "rational", "scipy")]  # fmt: skip
-    found = curves(scene("report"), dp, truth, wanted, ALL)
+    found = curves(scene("report"), dp, truth, wanted)
     for name in ("work_precision", "steps", "energy"):
         figure = (
             drawn.energy("title", found, 0.1)
@@ -242,7 +242,7 @@ def test_pictures_and_text_show_what_was_measured(truth: Reference, tmp_path: Pa
         assert lines >= 1
         save(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000
-    text = "\n".join(told(scene("report"), dp, truth, found))
+    text = "\n".join(told(Charted.of(scene("report"), dp, truth, found)))
     assert "reference: Taylor series, 32 digits, own error" in text
     assert "verner87, rational " in text
     assert "rk4: error falls as h^4" in text
@@ -252,11 +252,7 @@ def test_the_command_prints_curves_reference_and_frontier(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled")]
-
-    def few(one: Scene, module: ModuleType, truth: Reference) -> list[Curve]:
-        return curves(one, module, truth, wanted, ALL)
-
-    monkeypatch.setattr(command, "curves", few)
+    monkeypatch.setattr(command, "combinations", lambda _: wanted)
     monkeypatch.setattr(peers, "PEERS", {})
     assert main(["chart", "report", "single", "--json", "--output", str(tmp_path)]) == 0
     found = json.loads(capsys.readouterr().out)

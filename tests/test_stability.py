@@ -20,10 +20,10 @@ from solvers.integration import integrate
 from solvers.solution import Status
 from solvers.stability import critical
 from solvers.stability.critical import CriticalStep, critical_step, limit
-from solvers.stability.function import StabilityFunction
 from solvers.stability.modes import Modes, along
-from solvers.stability.sign import first_fall
+from solvers.stability_function import StabilityFunction
 from solvers.stepper import Stepper
+from solvers.sturm import first_fall
 
 F = Fraction
 

@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 
 from solvers.catalogue import load
 from solvers.chart.curve import Curve
+from solvers.chart.frontier import Best, frontier
 from solvers.chart.measurement import REPORT
 from solvers.chart.reference import Reference
-from solvers.failures.chaos import beyond_its_horizon, energy_at_rest
+from solvers.energy import energy_error
+from solvers.horizon import beyond_horizon
+from solvers.integration import integrate
 from solvers.measured import least_pair
 from solvers.scenes import Scene
 
@@ -95,6 +99,43 @@ class Misled:
     global_error: float
 
 
+@dataclass(frozen=True)
+class Charted:
+    """All that a chart of a scene says.
+
+    Attributes
+    ----------
+    scene : Scene
+        Which.
+    reference : Reference
+        Its end.
+    curves : list of Curve
+        What was measured.
+    frontier, frontier_rhs : list of Best
+        The cheapest in seconds and in calls of the right-hand side.
+    turnings : list of Turning
+        Where shorter steps stop to be better.
+    misled : Misled or None
+        The run whose energy promises most.
+    """
+
+    scene: Scene
+    reference: Reference
+    curves: list[Curve]
+    frontier: list[Best]
+    frontier_rhs: list[Best]
+    turnings: list[Turning]
+    misled: Misled | None
+
+    @classmethod
+    def of(cls, scene: Scene, module: ModuleType, truth: Reference, curves: list[Curve]) -> Charted:
+        """What curves say."""
+        return cls(
+            scene, truth, curves, frontier(curves), frontier(curves, "work_rhs"),
+            turnings(curves), misled(curves, scene, module, truth),
+        )  # fmt: skip
+
+
 def misled(
     curves: Sequence[Curve], scene: Scene, module: ModuleType, truth: Reference
 ) -> Misled | None:  # fmt: skip
@@ -124,13 +165,13 @@ def wrong_from(scene: Scene, truth: Reference) -> float:
 def _along(scene: Scene, module: ModuleType, curve: Curve, setting: dict[str, float]) -> float:
     """The largest energy error over the whole run."""
     params = scene.params(module)
-    options = {"h": setting["h"]} if "h" in setting else {
+    options: dict[str, Any] = {"h": setting["h"]} if "h" in setting else {
         "rtol": setting["rtol"], "atol": setting["rtol"]
     }  # fmt: skip
-    run = beyond_its_horizon(
-        module, (0, scene.duration), scene.y0, params, method=curve.method, form=curve.form,
-        t_eval=np.linspace(0, scene.duration, LOOKS), energy=True, max_steps=10**8, **options,
-    )  # fmt: skip
+    with beyond_horizon():
+        run = integrate(
+            module, (0, scene.duration), scene.y0, params, method=curve.method, form=curve.form,
+            t_eval=np.linspace(0, scene.duration, LOOKS), energy=True, max_steps=10**8, **options,
+        )  # fmt: skip
     assert run.energy is not None
-    lively = run.energy[0] - energy_at_rest(module, params)
-    return float(np.abs(run.energy - run.energy[0]).max() / lively)
+    return float(np.abs(energy_error(module, params, run.energy)).max())

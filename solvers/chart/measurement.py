@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from types import ModuleType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solvers.catalogue import load, names
 from solvers.chart.curve import Curve, Point
 from solvers.chart.reference import Reference
 from solvers.compiler import NoCompilerError
-from solvers.forms import Form
-from solvers.measured import Measured, measured
+from solvers.energy import energy_error
+from solvers.forms import Form, has_form
+from solvers.measured import measured
 from solvers.request import SCIPY
 from solvers.scenes import Scene
+
+Array = NDArray[np.float64]
 
 #: The rules that the report calls RK1 to RK4.
 REPORT = {"RK1": "rk1", "RK2": "midpoint", "RK3": "rk3", "RK4": "rk4"}
@@ -26,12 +30,17 @@ TOLERANCES, STEPS = 10.0 ** -np.arange(1, 15), 10 * 2 ** np.arange(24)
 #: Errors above this are no result.
 MEANINGLESS = 10.0
 
+#: The least relative tolerance that SciPy accepts, 100 roundings.
+FINEST_OF_SCIPY = 3e-14
+
 Combination = tuple[str, str, str]  # method, form, backend
+#: Takes setting, seconds, calls if they are known, and the state at the end.
+Judge = Callable[[dict[str, float], float, int | None, Array], Point | None]
 
 
 def combinations(module: ModuleType) -> Iterator[Combination]:
     """All that a module's forms allow."""
-    forms = [form for form in FORMS if hasattr(module, f"rhs_{form}") or form == "lagrangian"]
+    forms = [form for form in FORMS if has_form(module, form)]
     solvable = [f for f in forms if Form(module, f, module.DEFAULTS).has_jacobian]
     for method in names():
         for form in forms if load(method).is_explicit else solvable:
@@ -43,66 +52,63 @@ def combinations(module: ModuleType) -> Iterator[Combination]:
 
 
 def curves(
-    scene: Scene, module: ModuleType, truth: Reference,
-    wanted: Sequence[Combination] | None = None, longest: dict[str, float] = LONGEST,
-) -> list[Curve]:  # fmt: skip
+    scene: Scene, module: ModuleType, truth: Reference, wanted: Iterable[Combination]
+) -> list[Curve]:
     """A curve for each combination; those that no compiler builds are left out."""
     found = []
-    for method, form, backend in wanted or combinations(module):
+    for combination in wanted:
         try:
-            is_rule = method in REPORT.values() and (form, backend) == ("lagrangian", "compiled")
-            limit = LONGEST_RULE if is_rule and longest is LONGEST else longest[backend]
-            points = list(_points(scene, module, truth, (method, form, backend), limit))
+            points = list(_points(scene, module, truth, combination))
         except NoCompilerError:
             continue
         if points:
-            found.append(Curve(scene.name, method, form, backend, points))
+            found.append(Curve(scene.name, *combination, points))
     return found
 
 
-def settings(method: str) -> list[dict[str, float]]:
-    """From cheap to dear: tolerances for methods that control their steps, else steps a run."""
-    if method in SCIPY or load(method).b_hat:
-        return [{"rtol": float(tol)} for tol in TOLERANCES]
-    return [{"steps": int(n)} for n in STEPS]
-
-
 def _points(
-    scene: Scene, module: ModuleType, truth: Reference, combination: Combination, longest: float
+    scene: Scene, module: ModuleType, truth: Reference, combination: Combination
 ) -> Iterator[Point]:  # fmt: skip
     method, form, backend = combination
     judge = judged(scene, module, truth)
-    for setting in settings(method):
-        if setting.get("rtol", 1.0) < 3e-14 and backend == "scipy":
-            return  # SciPy accepts no less
-        if "steps" in setting:
-            setting = {"h": scene.duration / setting["steps"]}
+    for setting in _settings(method, backend, scene.duration):
         run = measured(
             module, scene.params(module), scene.y0, scene.duration,
             method=method, form=form, backend=backend, **setting,
         )  # fmt: skip
-        if run and (point := judge(run, setting)):
+        if run and (point := judge(setting, run.work_seconds, run.work_rhs, run.end)):
             yield point
-        if run and run.work_seconds > longest / 2:
+        if run and run.work_seconds > _longest(combination) / 2:
             return
 
 
-def judged(
-    scene: Scene, module: ModuleType, truth: Reference
-) -> Callable[[Measured, dict[str, float]], Point | None]:  # fmt: skip
+def _settings(method: str, backend: str, duration: float) -> list[dict[str, float]]:
+    """From cheap to dear: tolerances for methods that control their steps, else steps in s."""
+    if method in SCIPY or load(method).b_hat:
+        finest = FINEST_OF_SCIPY if backend == "scipy" else 0.0
+        return [{"rtol": float(tol)} for tol in TOLERANCES if tol >= finest]
+    return [{"h": float(duration / n)} for n in STEPS]
+
+
+def _longest(combination: Combination) -> float:
+    method, form, backend = combination
+    is_rule = method in REPORT.values() and (form, backend) == ("lagrangian", "compiled")
+    return LONGEST_RULE if is_rule else LONGEST[backend]
+
+
+def judged(scene: Scene, module: ModuleType, truth: Reference) -> Judge:
     """A function that makes a point of a run; None if its result means nothing."""
     params = scene.params(module)
     start = module.energy(scene.y0, params)
-    place = module.equilibrium(params)
-    lively = start - module.energy((*place, *[0.0] * len(place)), params)
 
-    def point(run: Measured, setting: dict[str, float]) -> Point | None:
-        error = float(np.abs(run.end - truth.end).max())
+    def point(
+        setting: dict[str, float], seconds: float, calls: int | None, end: Array
+    ) -> Point | None:
+        error = float(np.abs(end - truth.end).max())
         if not error < MEANINGLESS:
             return None
-        energy = abs(module.energy(run.end.tolist(), params) - start) / lively
+        _, energy = energy_error(module, params, [start, module.energy(end.tolist(), params)])
         # what no run can resolve is no error of its method
-        return Point(setting, run.work_seconds, run.work_rhs,
-                     max(error, truth.global_error), energy)  # fmt: skip
+        return Point(setting, seconds, calls, max(error, truth.global_error), float(abs(energy)))
 
     return point

@@ -21,7 +21,7 @@ from solvers.chart.measurement import LONGEST, STEPS, TOLERANCES, judged
 from solvers.chart.reference import Reference
 from solvers.compiler import NoCompilerError
 from solvers.forms import Form, fastest_form
-from solvers.measured import Measured, median_seconds
+from solvers.measured import median_seconds
 from solvers.native import native_rhs
 from solvers.scenes import Scene
 
@@ -68,11 +68,9 @@ def _points(
             continue
         seconds = median_seconds(ready)
         end = _ordinary(module, form, state, truth)
-        point = judge(
-            Measured(seconds, work or 0, 0, end), {"h" if fixed else "rtol": float(setting)}
-        )
+        point = judge({"h" if fixed else "rtol": float(setting)}, seconds, work, end)
         if point:
-            yield Point(point.setting, seconds, work, point.global_error, point.energy_error)
+            yield point
         if seconds > LONGEST["compiled"] / 2:
             return
 
@@ -92,18 +90,17 @@ def _heyoka(hy: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, st
         )
         return lambda: (np.array(motion()), None)
 
-    yield "taylor", form, run
+    yield "taylor", form.name, run
 
 
 def _diffrax(diffrax: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
     jax: Any = import_module("jax")
     jax.config.update("jax_enable_x64", True)
     form, start = _fastest(module, scene)
-    params = scene.params(module)
-    rhs = _rhs(module, form)
 
     def field(t: Any, y: Any, args: Any) -> Any:
-        return jax.numpy.stack([jax.numpy.asarray(x) for x in rhs(t, tuple(y), params)])
+        rates = form.function(t, tuple(y), form.params)
+        return jax.numpy.stack([jax.numpy.asarray(rate) for rate in rates])
 
     for method in ("Tsit5", "Dopri8"):
         solver = getattr(diffrax, method)()
@@ -119,13 +116,13 @@ def _diffrax(diffrax: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[s
         def run(tolerance: float, solve: Any = solve) -> Run:
             return lambda: (np.asarray(solve(start, tolerance).block_until_ready()), None)
 
-        yield method, form, run
+        yield method, form.name, run
 
 
 def _numba(numba: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
     to_fixed_tuple: Any = import_module("numba.np.unsafe.ndarray").to_fixed_tuple
     form, start = _fastest(module, scene)
-    rhs, size, params = numba.njit(_rhs(module, form)), len(start), scene.params(module)
+    rhs, size, params = numba.njit(form.function), len(start), form.params
 
     @numba.njit  # type: ignore[untyped-decorator]
     def steps(y0: Any, h: float, count: int) -> Any:
@@ -145,12 +142,12 @@ def _numba(numba: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, 
         count = round(scene.duration / h)
         return lambda: (steps(start, h, count), 4 * count)
 
-    yield "rk4", form, run
+    yield "rk4", form.name, run
 
 
 def _numbalsoda(package: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
     form, start = _fastest(module, scene)
-    rhs, params = native_rhs(module, form), np.array(scene.params(module))
+    rhs, params = native_rhs(module, form.name), np.array(form.params)
     times = np.array([0.0, scene.duration])
     for method in ("lsoda", "dop853"):
         solver = getattr(package, method)
@@ -164,16 +161,12 @@ def _numbalsoda(package: Any, module: ModuleType, scene: Scene) -> Iterator[tupl
 
             return state
 
-        yield method, form, run
+        yield method, form.name, run
 
 
-def _rhs(module: ModuleType, form: str) -> Any:
-    return getattr(module, "rhs" if form == "lagrangian" else f"rhs_{form}")
-
-
-def _fastest(module: ModuleType, scene: Scene) -> tuple[str, Array]:
-    form = fastest_form(module)
-    return form, Form(module, form, scene.params(module)).inside(np.array(scene.y0))
+def _fastest(module: ModuleType, scene: Scene) -> tuple[Form, Array]:
+    form = Form(module, fastest_form(module), scene.params(module))
+    return form, form.inside(np.array(scene.y0))
 
 
 #: Packages by name, and what of theirs is run.

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
-from types import ModuleType
 
-from solvers.chart.curve import Curve
-from solvers.chart.findings import Turning, misled, turnings
-from solvers.chart.frontier import Best, frontier
-from solvers.chart.reference import Reference
-from solvers.scenes import Scene
+from solvers.chart.findings import Charted, Turning
+from solvers.chart.frontier import Best
 
 #: What the frontier is compared with, where it is not chosen itself, and short words for it.
 COMPARED = {
@@ -27,27 +23,25 @@ COMPARED = {
 }
 
 
-def told(
-    scene: Scene, module: ModuleType, truth: Reference, curves: Sequence[Curve]
-) -> Iterator[str]:
+def told(charted: Charted) -> Iterator[str]:
     """A scene's reference, frontier and findings."""
-    yield f"{scene.title}, {scene.duration:g} s"
+    truth, rows = charted.reference, charted.frontier
+    yield f"{charted.scene.title}, {charted.scene.duration:g} s"
     others = "; ".join(f"{name} {apart:.1e}" for name, apart in truth.apart.items())
     yield f"reference: {truth.METHOD}, own error {truth.global_error:.1e}; apart from it: {others}"
-    rows = frontier(curves)
     shown = [c for c in COMPARED if any(c[1] in row.worth[c[0]] for row in rows)]
     yield "the cheapest for each error, and how many times as long the best with ... takes:"
     heads = "".join(f"{COMPARED[choice]:>9}" for choice in shown)
     yield f"{'error':>6} {'seconds':>9}{'calls':>7}  {'cheapest':<20}{heads}"
     for row in rows:
         yield _row(row, shown)
-    calls = [row for row in frontier(curves, "work_rhs") if row.backend != "numba"]
+    calls = [row for row in charted.frontier_rhs if row.backend != "numba"]
     yield "in calls of the right-hand side: " + ", ".join(
         f"{row.global_error:.0e}: {row.work_rhs:.0f} ({row.method})" for row in calls[::3]
     )
-    for turning in turnings(curves):
+    for turning in charted.turnings:
         yield _turning(turning)
-    found = misled(curves, scene, module, truth)
+    found = charted.misled
     if found:
         setting = ", ".join(f"{name} = {value:.2g}" for name, value in found.setting.items())
         yield (

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from solvers.catalogue import names
+from solvers.commands.options import options
 from solvers.compiler import NoCompilerError
 from solvers.failures.drawn import draw
 from solvers.failures.studies import FULL, studies
@@ -21,11 +20,13 @@ from solvers.integration import integrate
 from solvers.jsonable import jsonable
 from solvers.pictures import save
 from solvers.prepared import prepare
-from solvers.scenes import SCENES, Scene, UnknownSceneError, scene
+from solvers.scenes import Scene
 from solvers.stability.critical import CriticalStep, critical_step
 from solvers.stability.drawn import regions
 from solvers.stability.modes import Modes, along
 
+#: Whose small motions are judged if none is named; then failures are studied, too.
+USUAL = ("report",)
 #: How often along a scene's motion its modes are looked at.
 LOOKS = 100
 
@@ -40,26 +41,15 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
     module : callable
         Gives a generated module by its name.
     """
-    parser = argparse.ArgumentParser(
-        prog="holonomic stability",
+    scenes, arguments = options(
+        argv, name="stability", scenes="whose small motions to judge", usual=USUAL,
+        example="single --json",
         description="For every method the exact stability function and its intervals, and the "
         "longest stable step of a scene's small motions, predicted and measured. Without a scene: "
         "the report's, and then where methods fail, which takes about two minutes.",
-        epilog=f"scenes: {', '.join(SCENES)}\n\nexample:\n  holonomic stability single --json",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="whose small motions to judge")
-    parser.add_argument("--output", type=Path, default=Path("out"), metavar="DIR",
-                        help="folder for the pictures (default: out)")  # fmt: skip
-    parser.add_argument("--json", action="store_true", help="print figures for programs")
-    arguments = parser.parse_args(argv)
-    try:
-        chosen = [scene(name) for name in dict.fromkeys(arguments.scenes or ["report"])]
-    except UnknownSceneError as error:
-        parser.error(str(error))
-    arguments.output.mkdir(parents=True, exist_ok=True)
+    )  # fmt: skip
     found: dict[str, Any] = {"methods": [], "failures": {}, "pictures": []}
-    for one in chosen:
+    for one in scenes:
         steps = scene_steps(one, module(one.system))
         path = arguments.output / f"stability_{one.name}.png"
         save(picture(one, module(one.system), steps), path)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import log
@@ -13,29 +12,26 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.compiler import NoCompilerError
-from solvers.horizon import HorizonWarning
+from solvers.energy import energy_error
+from solvers.horizon import beyond_horizon
 from solvers.integration import integrate
 from solvers.prepared import prepare
 from solvers.references.taylor import taylor
-from solvers.solution import Solution
 
 Array = NDArray[np.float64]
 
 #: Seconds after which a small change is brought back to length 1, and those left out at first.
 STRETCH, TRANSIENT = 1.0, 100
+#: Tolerance of the motion whose exponent is sought, and those whose horizons are.
+ACCURATE, TOLERANCES = 1e-9, (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+#: Of what size a change is whose growth is followed.
+OFFSET = 1e-12
 #: Parts of a run count as independent from this duration in s on; how many there are.
 INDEPENDENT, FEWEST, MOST = 150.0, 8, 40
 #: Digits of references; an ordinary number's are lost within 40 s. And how often to look, in 1/s.
 DIGITS, LOOKS = 30, 10
 #: Error in rad or rad/s from which on a trajectory is another one.
 APART = 1.0
-
-
-def beyond_its_horizon(*args: Any, **options: Any) -> Solution:
-    """A run that is meant to be longer than its errors allow."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", HorizonWarning)
-        return integrate(*args, **options)
 
 
 @dataclass(frozen=True)
@@ -54,8 +50,7 @@ class Mean:
 
 
 def lyapunov(
-    module: ModuleType, params: Sequence[float], y0: Sequence[float], duration: float,
-    rtol: float = 1e-9,
+    module: ModuleType, params: Sequence[float], y0: Sequence[float], duration: float
 ) -> Mean:  # fmt: skip
     """The largest Lyapunov exponent in 1/s, along the motion from `y0`.
 
@@ -63,7 +58,7 @@ def lyapunov(
     back to length 1 every second; the exponent is the mean of the logarithms by which it
     has grown (G. Benettin, L. Galgani, J.-M. Strelcyn, Physical Review A 14, 2338, 1976).
     """
-    run = _stretch(module, params, rtol)
+    run = _stretch(module, params)
     n = len(module.STATE)
     state = np.array([*y0, *np.ones(n) / np.sqrt(n)])
     growth = []
@@ -76,15 +71,15 @@ def lyapunov(
 
 
 def _stretch(
-    module: ModuleType, params: Sequence[float], rtol: float
+    module: ModuleType, params: Sequence[float]
 ) -> Callable[[list[float]], ArrayLike]:  # fmt: skip
     """A function that carries a motion and a small change over one stretch of time."""
     try:
-        run = prepare(module, params, form="variational", rtol=rtol, atol=rtol)
+        run = prepare(module, params, form="variational", rtol=ACCURATE, atol=ACCURATE)
     except NoCompilerError:
         return lambda y: integrate(
-            module, (0.0, STRETCH), y, params, form="variational", rtol=rtol, atol=rtol,
-            t_eval=[STRETCH], backend="python",
+            module, (0.0, STRETCH), y, params, form="variational", rtol=ACCURATE,
+            atol=ACCURATE, t_eval=[STRETCH], backend="python",
         ).y[:, -1]  # fmt: skip
     return lambda y: run((0.0, STRETCH), y)
 
@@ -120,16 +115,17 @@ def reference(
 
 
 def separation(
-    module: ModuleType, params: Sequence[float], t: Array, truth: Array, offset: float = 1e-12
+    module: ModuleType, params: Sequence[float], t: Array, truth: Array
 ) -> Separation:  # fmt: skip
-    """What becomes of `offset` in the first coordinate, beside a reference."""
+    """What becomes of `OFFSET` in the first coordinate, beside a reference."""
     n = truth.shape[1]
-    near = truth[0] + offset * np.eye(n)[0]
+    near = truth[0] + OFFSET * np.eye(n)[0]
     distance = np.linalg.norm(taylor(module, params, near.tolist(), t, DIGITS) - truth, axis=1)
-    carried = beyond_its_horizon(
-        module, (0, t[-1]), [*truth[0], *(near - truth[0])], params, form="variational",
-        rtol=1e-12, atol=1e-30, t_eval=t,
-    ).y[n:]  # fmt: skip
+    with beyond_horizon():
+        carried = integrate(
+            module, (0, t[-1]), [*truth[0], *(near - truth[0])], params, form="variational",
+            rtol=1e-12, atol=1e-30, t_eval=t,
+        ).y[n:]  # fmt: skip
     small = (distance < 1e-2) & (t > 0)
     rate = np.polyfit(t[small], np.log(distance[small]), 1)[0]
     return Separation(t, distance, np.linalg.norm(carried, axis=0), float(rate))
@@ -162,22 +158,20 @@ class Horizon:
 
 def horizons(
     module: ModuleType, params: Sequence[float], t: Array, truth: Array, exponent: float,
-    methods: Sequence[str] = ("bs32", "dp54", "tsit54", "dop853", "verner87",
-                                               "verner98"),
-    tolerances: Sequence[float] = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
+    methods: Sequence[str],
 ) -> list[Horizon]:  # fmt: skip
     """Predicted and seen horizons of adaptive methods, beside a reference."""
-    rest = energy_at_rest(module, params)
     found = []
     for method in methods:
-        for tolerance in tolerances:
-            run = beyond_its_horizon(
-                module, (0, t[-1]), truth[0], params, method=method, rtol=tolerance,
-                atol=tolerance, t_eval=t, energy=True,
-            )  # fmt: skip
+        for tolerance in TOLERANCES:
+            with beyond_horizon():
+                run = integrate(
+                    module, (0, t[-1]), truth[0], params, method=method, rtol=tolerance,
+                    atol=tolerance, t_eval=t, energy=True,
+                )  # fmt: skip
             assert run.energy is not None
             apart = np.abs(run.y.T - truth).max(axis=1) > APART
-            energy = np.abs(run.energy - run.energy[0]).max() / (run.energy[0] - rest)
+            energy = np.abs(energy_error(module, params, run.energy)).max()
             seen = float(t[np.argmax(apart)]) if apart.any() else float("inf")
             found.append(
                 Horizon(method, tolerance, log(1 / tolerance) / exponent, seen, float(energy))
@@ -213,26 +207,20 @@ def statistics(
 ) -> list[Statistics]:  # fmt: skip
     """Means over a time that is many horizons long, by runs that agree in no trajectory."""
     t = np.linspace(0, duration, int(2 * duration) + 1)
-    rest = energy_at_rest(module, params)
     found = []
     for options in runs:
-        run = beyond_its_horizon(
-            module, (0, duration), y0, params, t_eval=t, energy=True, max_steps=10**8, **options
-        )
+        with beyond_horizon():
+            run = integrate(
+                module, (0, duration), y0, params, t_eval=t, energy=True, max_steps=10**8, **options
+            )
         assert run.energy is not None
         still = run.y.copy()
         still[len(y0) // 2 :] = 0.0
         kinetic = run.energy - module.energy_many(still, params)
         found.append(Statistics(
             run.run.rpartition(", ")[0],
-            float((run.energy[-1] - run.energy[0]) / (run.energy[0] - rest)),
+            float(energy_error(module, params, run.energy)[-1]),
             Mean.of(kinetic, duration),
             Mean.of((np.cos(run.y[1]) < 0).astype(float), duration),
         ))  # fmt: skip
     return found
-
-
-def energy_at_rest(module: ModuleType, params: Sequence[float]) -> float:
-    """Energy of the system at its equilibrium, in J."""
-    place = module.equilibrium(params)
-    return float(module.energy((*place, *[0.0] * len(place)), params))

@@ -11,6 +11,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.energy import energy_error
 from solvers.integration import integrate
 from solvers.stability.modes import Modes
 
@@ -71,7 +72,6 @@ def study(pendulum: ModuleType, periods: float, cases: Sequence[tuple[str, str, 
     """Energy errors of the double pendulum over so many periods of its slow mode."""
     params = pendulum.DEFAULTS
     period = 2 * pi / Modes.at_rest(pendulum, params).frequencies[0]
-    rest = pendulum.energy((0.0,) * 4, params)
 
     def drift(case: tuple[str, str, int]) -> Drift:
         method, form, steps = case
@@ -84,7 +84,7 @@ def study(pendulum: ModuleType, periods: float, cases: Sequence[tuple[str, str, 
             t_eval=h * np.array([0, *ends]), energy=True, max_steps=10**9,
         )  # fmt: skip
         assert run.energy is not None
-        error = (run.energy - run.energy[0]) / (run.energy[0] - rest)
+        error = energy_error(pendulum, params, run.energy)
         t = run.t / period
         largest = np.maximum.accumulate(np.abs(error))
         late = t >= periods / 100

@@ -10,7 +10,7 @@ import numpy as np
 
 from solvers.catalogue import load
 from solvers.integration import integrate
-from solvers.stability.function import StabilityFunction
+from solvers.stability_function import StabilityFunction
 
 #: Amplitude in rad: small enough to be linear, as far as is looked at.
 AMPLITUDE = 1e-6
@@ -61,7 +61,6 @@ def growth(pendulum: ModuleType, method: str, steps_per_period: float) -> Growth
 
 def study(pendulum: ModuleType) -> list[Growth]:
     """Euler and RK2 with ever shorter steps; RK3 and RK4 on both sides of their limit."""
-    always = (20.0, 100.0, 500.0, 2500.0)
     always = (20.0, 100.0, 500.0, 2500.0)
     cases = [(method, steps) for method in ("rk1", "midpoint") for steps in always]
     for method in ("rk3", "rk4"):

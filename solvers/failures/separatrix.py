@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import log, pi, sqrt
 from types import ModuleType
@@ -18,6 +17,8 @@ from solvers.references.pendulum import pendulum as exact
 DISTANCES, DURATION = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7), 10.0
 #: Method and tolerance with which sensitivity is shown.
 METHOD, TOLERANCE = "verner87", 1e-10
+#: Those that try to arrive.
+METHODS, TOLERANCES = ("dp54", "verner87", "verner98"), (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Sensitivity:
     error: float
 
 
-def sensitivity(module: ModuleType, distances: Sequence[float] = DISTANCES) -> list[Sensitivity]:
+def sensitivity(module: ModuleType) -> list[Sensitivity]:
     """Errors beside the exact solution, and how much the motion itself amplifies.
 
     The fall from a distance δ takes ln(const/δ)/ω, so that a change of δ shifts it by
@@ -52,7 +53,7 @@ def sensitivity(module: ModuleType, distances: Sequence[float] = DISTANCES) -> l
     omega = sqrt(gravity / length)
     t = np.linspace(0, DURATION, 201)
     found = []
-    for distance in distances:
+    for distance in DISTANCES:
         start = (pi - distance, 0.0)
         run, carried = (
             integrate(module, (0, DURATION), (*start, *change), module.DEFAULTS, method=METHOD,
@@ -90,10 +91,7 @@ class Fall:
     seen: float
 
 
-def falls(
-    module: ModuleType, methods: Sequence[str] = ("dp54", "verner87", "verner98"),
-    tolerances: Sequence[float] = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
-) -> list[Fall]:  # fmt: skip
+def falls(module: ModuleType) -> list[Fall]:
     """From the bottom with just the speed that leads to the top, never to arrive.
 
     With energy k² (1 on the separatrix) the quarter period is K(k²)/ω or K(1/k²)/(kω),
@@ -107,8 +105,8 @@ def falls(
         Crossing(module, "theta_dot", 0.0, terminal=True),
     ]
     found = []
-    for method in methods:
-        for tolerance in tolerances:
+    for method in METHODS:
+        for tolerance in TOLERANCES:
             run = ensemble(
                 module, (0, 100), [(0.0, 2 * omega)], module.DEFAULTS, method=method,
                 rtol=tolerance, atol=tolerance, form="lagrangian", events=events,

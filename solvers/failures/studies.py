@@ -80,7 +80,7 @@ def studies(
             "falls": separatrix.falls(single),
             "upright": separatrix.upright(single),
         },
-        "tolerances": lambda: tolerances.study(double, size.methods, scenes=size.scenes),
+        "tolerances": lambda: tolerances.study(double, size.methods, size.scenes),
     }
 
 

@@ -46,8 +46,7 @@ class Honesty:
 
 
 def study(
-    pendulum: ModuleType, methods: Sequence[str] = METHODS,
-    tolerances: Sequence[float] = TOLERANCES, scenes: int = SCENES,
+    pendulum: ModuleType, methods: Sequence[str], scenes: int
 ) -> list[Honesty]:  # fmt: skip
     """Global errors of double pendulums at the end, against Taylor series."""
     generator = np.random.default_rng(3)
@@ -69,7 +68,7 @@ def study(
     ], axis=0)  # fmt: skip
     found = []
     for method in methods:
-        for tolerance in tolerances:
+        for tolerance in TOLERANCES:
             ends = ensemble(pendulum, span, starts, params, method=method, rtol=tolerance,
                             atol=tolerance).y  # fmt: skip
             ratio = np.abs(ends - truth).max(axis=1) / tolerance

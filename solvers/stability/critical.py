@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from solvers.catalogue import load
 from solvers.integration import integrate
-from solvers.stability.function import StabilityFunction
 from solvers.stability.modes import Modes
+from solvers.stability_function import StabilityFunction
 from solvers.stepper import NoConvergenceError, NotFiniteError, Stepper
 
 Array = NDArray[np.float64]
@@ -130,7 +130,7 @@ def _linear(method: str, modes: Modes) -> Callable[[float], float]:
                     sizes.append(modes.size(y))
             except (NotFiniteError, NoConvergenceError):
                 return inf
-        return _rate(sizes)
+        return _rate(sizes, LOST * modes.size(start))
 
     return growth
 
@@ -156,16 +156,16 @@ def _small_motion(
             sizes = [modes.size(y - rest) for y in run.y.T]
         if len(sizes) < 2 or not max(sizes) < LARGE * size:
             return inf  # what has left small motion grew, whatever it does out there
-        return _rate(sizes, rounding) - rounding / size / STEPS
+        return _rate(sizes, LOST * size + 10 * rounding) - rounding / size / STEPS
 
     return growth
 
 
-def _rate(sizes: Sequence[float], rounding: float = 0.0) -> float:
-    """Logarithm of the growth a step over the second half; -inf for what is lost in rounding."""
+def _rate(sizes: Sequence[float], lost: float) -> float:
+    """Logarithm of the growth a step over the second half; -inf for a size that counts as none."""
     halfway, end = sizes
     if not np.isfinite(halfway + end):
         return inf
-    if min(halfway, end) < LOST * AMPLITUDE + 10 * rounding:
+    if min(halfway, end) < lost:
         return -inf
     return float(np.log(end / halfway) / (STEPS - STEPS // 2))

@@ -32,8 +32,8 @@ def objectives(evidence: Evidence, equations: Mapping[str, int]) -> list[Claim]:
               "them"),
         Claim("1.6-2", "three methods are compared: Lagrange's equation, Euler's method, "
               "Runge-Kutta", "contradicted",
-              "two of them are equations, which RK4 integrates to "
-              f"{evidence.disagreement:.1g} rad of each other; methods differ: with h = 0.01 s "
+              "two of them are equations, whose motions are the same to "
+              f"{evidence.disagreement:.1g} rad; methods differ: with h = 0.01 s "
               f"RK1 ends {euler:.2g} rad off, RK4 {rk4:.1g}", CHART),
         Claim("1.6-3", "the best solution is found by comparing", judged(
               all(ours >= theirs for theirs, ours in calls)),

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.stability.sign import first_fall
+from solvers.sturm import first_fall
 from solvers.surd import Surd
 from solvers.tableau import Tableau
 

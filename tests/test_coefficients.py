@@ -1,0 +1,120 @@
+"""Coefficients of every method, read back from its running compiled loop."""
+
+import ctypes
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from solvers.catalogue import load, names
+from solvers.ensemble import ensemble
+from solvers.integration import integrate
+from solvers.kernel import Kernel
+
+EXPLICIT = [name for name in names() if load(name).is_explicit]
+
+#: A right-hand side that notes where it is asked, and answers with one chosen number.
+PROBE = """
+double probe_places[64][64], probe_times[64];
+int probe_calls;
+
+static inline void probe_rhs(
+    {real} t, const {real} *state, {real} *result, const {real} *params)
+{{
+    for (int n = 0; n < {stages}; n++) {{
+        result[n] = ({real}){{0}} + (double)(n == probe_calls);
+        if (probe_calls >= 0) {{
+            probe_places[probe_calls][n] = *(const double *)&state[n];
+        }}
+    }}
+    if (probe_calls >= 0) {{
+        probe_times[probe_calls] = *(const double *)&t;
+    }}
+    probe_calls++;
+    (void)params;
+}}
+"""
+
+
+def probe(folder: Path, stages: int) -> ModuleType:
+    """A module with one number of state a stage, and the header for it."""
+    (folder / "probe.h").write_text(PROBE.format(real="HOLONOMIC_REAL", stages=stages))
+    module = ModuleType("probe")
+    vars(module).update(
+        __file__=str(folder / "probe.py"), COORDINATES=(), rhs=None,
+        STATE=tuple(f"s{k}" for k in range(stages)), PARAMETERS=("p",), DEFAULTS=(1.0,),
+    )  # fmt: skip
+    return module
+
+
+@pytest.mark.parametrize("lanes", [False, True])
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_coefficients_are_read_back_from_the_running_loop(
+    name: str, lanes: bool, tmp_path: Path
+) -> None:
+    # slope k is the unit vector k: then the place of stage i is row i of A, the step's end is b
+    method = load(name)
+    module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
+    kernel = Kernel(module, "lagrangian", name, lanes=lanes, compensated=False, reproducible=False)
+    library = ctypes.CDLL(str(kernel.library.path))
+    # the loop asks once before the first step, which matters if that is the first stage, too
+    ctypes.c_int.in_dll(library, "probe_calls").value = 0 if method.is_fsal else -1
+    options = {"method": name, "h": 1.0, "backend": "compiled"}
+    if lanes:
+        end = ensemble(module, (0, 1), [rest], (1.0,), workers=1, **options).y[0]
+    else:
+        end = integrate(module, (0, 1), rest, (1.0,), **options).y[:, -1]
+    places = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_places"))
+    times = np.array((ctypes.c_double * 64).in_dll(library, "probe_times"))
+    stages = slice(0, method.stages)
+    assert np.array_equal(places[stages, stages], np.array(method.A, float))
+    assert np.array_equal(times[stages], np.array(method.c, float))
+    assert np.array_equal(end, np.array(method.b, float))
+
+
+IMPLICIT_PROBE = """
+double probe_places[64][64];
+
+static inline void probe_rhs(double t, const double *state, double *result, const double *params)
+{{
+    static const double nodes[] = {{{nodes}}};
+    for (int i = 0; i < {stages}; i++) {{
+        result[i] = t == nodes[i];
+        for (int n = 0; n < {stages} && t == nodes[i]; n++) {{
+            probe_places[i][n] = state[n];
+        }}
+    }}
+    (void)params;
+}}
+
+static inline void probe_jacobian(
+    double t, const double *state, double *result, const double *params)
+{{
+    for (int n = 0; n < {stages}*{stages}; n++) {{
+        result[n] = 0;
+    }}
+    (void)t; (void)state; (void)params;
+}}
+"""
+
+
+@pytest.mark.parametrize("name", sorted({*names()} - {*EXPLICIT}))
+def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
+    name: str, tmp_path: Path
+) -> None:
+    # as above; which stage it is, the time says, and the last round of the iteration is read
+    method = load(name)
+    module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
+    vars(module)["jacobian"] = lambda t, y, params: np.zeros((method.stages, method.stages))
+    nodes = ", ".join(repr(float(c)) for c in method.c)
+    text = IMPLICIT_PROBE.format(nodes=nodes, stages=method.stages)
+    (tmp_path / "probe.h").write_text(text)
+    kernel = Kernel(module, "lagrangian", name, lanes=False, compensated=False, reproducible=False)
+    library = ctypes.CDLL(str(kernel.library.path))
+    found = integrate(module, (0, 1), rest, (1.0,), method=name, h=1.0, backend="compiled")
+    places = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_places"))
+    stages = slice(0, method.stages)
+    assert np.array_equal(places[stages, stages], np.array(method.A, float))
+    assert np.array_equal(found.y[:, -1], np.array(method.b, float))
+    assert (found.njev, found.nfev) == (1, 2 + 2 * method.stages)
