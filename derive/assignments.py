@@ -73,9 +73,11 @@ def assignments(lowering: Lowering, taken: Collection[str]) -> Assignments:
 
 def number(value: Fraction) -> str:
     """A constant as Python and C write it, exact where the machine's numbers are."""
-    if value == float(value):
+    above, below = float(value.numerator), float(value.denominator)
+    # a quotient of exact numbers is rounded once, in whatever type
+    if value == float(value) or (above, below) != (value.numerator, value.denominator):
         return repr(float(value))
-    return f"({float(value.numerator)!r}/{float(value.denominator)!r})"
+    return f"({above!r}/{below!r})"
 
 
 class _Writer:

@@ -85,15 +85,20 @@ def _write(tree: Tree) -> int:
 
 def planned(systems: list[str], output: Path | None) -> Tree:
     """What the folder should hold after the command."""
-    texts: dict[str, str] = {}
+    files: dict[str, str] = {}
     for name in systems or names():
-        generated = contents(Derivation(load(name)))
-        texts |= {f"{name}.py": module(generated), f"{name}.h": header(generated)}
+        files |= texts(Derivation(load(name)))
     if output is not None:
-        return Tree(output, texts, complete=False)
+        return Tree(output, files, complete=False)
     modules = "\n".join(f'    "{name}",' for name in names())
-    texts["__init__.py"] = PACKAGE.format(names=modules)
-    return Tree(_package_folder(), texts, complete=not systems)
+    files["__init__.py"] = PACKAGE.format(names=modules)
+    return Tree(_package_folder(), files, complete=not systems)
+
+
+def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str, str]:
+    """The generated files of a system by name, with all functions or `only` some."""
+    generated, name = contents(derivation, only), derivation.system.name
+    return {f"{name}.py": module(generated), f"{name}.h": header(generated)}
 
 
 def _package_folder() -> Path:

@@ -1,7 +1,8 @@
 """Symmetric elimination, written out operation by operation.
 
-M = S U D Uᵀ S with U unit upper triangular, D diagonal, and S the diagonal of
-those factors that rows and columns have in common (lengths, mostly). It runs
+M = c S U D Uᵀ S with U unit upper triangular, D diagonal, S the diagonal of
+those factors that rows and columns have in common (lengths, mostly), and c the
+number that all entries have. It runs
 from the last coordinate to the first, since in a chain the last mass moves
 with the fewest others: its entries are the shortest and cancel.
 """
@@ -9,6 +10,9 @@ with the fewest others: its entries are the shortest and cancel.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
+from functools import reduce
+from math import gcd, lcm
 
 from derive.graph import Graph, Node
 
@@ -28,8 +32,10 @@ class Factorisation:
     def __init__(self, graph: Graph, matrix: Sequence[Sequence[Node]]) -> None:
         n = len(matrix)
         self._scale = _common_scale(graph, matrix)
+        self._content = content = _content(matrix)
         self._rows = rows = [
-            [matrix[i][j] / (self._scale[i] * self._scale[j]) for j in range(n)] for i in range(n)
+            [matrix[i][j] / (self._scale[i] * self._scale[j] * content) for j in range(n)]
+            for i in range(n)
         ]
         self._graph = graph
         self.pivots = [graph.node(0)] * n
@@ -49,7 +55,10 @@ class Factorisation:
     def solve(self, right: Sequence[Node]) -> list[Node]:
         """The solution x of M x = `right`."""
         n = len(right)
-        y = [node / scale for node, scale in zip(right, self._scale, strict=True)]
+        y = [
+            self._graph.spread(node / scale, 1 / self._content)
+            for node, scale in zip(right, self._scale, strict=True)
+        ]
         for k in reversed(range(n)):
             y[k] = y[k] / self.pivots[k]
             for i in range(k):
@@ -64,6 +73,15 @@ class Factorisation:
             ]
             x.append(self._graph.let(self._graph.sum([(y[k], 1), *known])))
         return [node / scale for node, scale in zip(x, self._scale, strict=True)]
+
+
+def _content(matrix: Sequence[Sequence[Node]]) -> Fraction:
+    """The largest number of which all entries are whole multiples."""
+    numbers = [abs(entry.scaled()[0]) for row in matrix for entry in row]
+    return Fraction(
+        reduce(gcd, (number.numerator for number in numbers)),
+        reduce(lcm, (number.denominator for number in numbers)),
+    )
 
 
 def _common_scale(graph: Graph, matrix: Sequence[Sequence[Node]]) -> list[Node]:

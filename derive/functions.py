@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Literal
 
@@ -150,8 +151,8 @@ class Contents:
         return self.derivation.system
 
 
-def contents(derivation: Derivation) -> Contents:
-    """Everything that is generated for `derivation`."""
+def contents(derivation: Derivation, only: Collection[str] | None = None) -> Contents:
+    """Everything that is generated for `derivation`, or `only` the functions of these names."""
     system = derivation.system
     states = _states(derivation)
     at_rest = _equilibrium(derivation)
@@ -179,7 +180,8 @@ def contents(derivation: Derivation) -> Contents:
                 Lowering(getattr(Mechanics(derivation), name), parameters),
             )
             for name, form, shape, summary, returns in TABLE
-            if ("rational" not in (form, shape) or "rational" in states)
+            if (only is None or name in only)
+            and ("rational" not in (form, shape) or "rational" in states)
             and (form != "parameters" or at_rest)
         ),
     )

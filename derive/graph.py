@@ -175,6 +175,13 @@ class Graph:
             return self._scale(node, coefficient)
         return self._primitive(kept)
 
+    def spread(self, node: Node, number: Fraction) -> Node:
+        """`number` times `node`, multiplied into every term of a sum."""
+        coefficient, rest = node.scaled()
+        if rest is None or rest.kind != "sum":
+            return self._scale(node if rest is None else rest, coefficient * number)
+        return self.sum([(term, c * coefficient * number) for term, c in rest.content])
+
     def _primitive(self, terms: Mapping[Node, Fraction]) -> Node:
         ordered = sorted(terms.items(), key=lambda item: item[0].rank)
         one = self.node(1)

@@ -63,7 +63,7 @@ class Lowering:
                 constant = self._constant(operands)
                 return self._add(Operation("call", operands, label=function, constant=constant))
             case "sum":
-                terms = _merged([(self._lower(term), c) for term, c in node.content])
+                terms = _merged([self._term(term, c) for term, c in node.content])
                 return self._sum(terms) if terms else self._number(0)
             case _:
                 powers = _merged([(self._lower(factor), p) for factor, p in node.content])
@@ -71,6 +71,13 @@ class Lowering:
 
     def _number(self, value: Fraction | int) -> int:
         return self._add(Operation("number", value=Fraction(value), constant=True))
+
+    def _term(self, node: Node, coefficient: Fraction) -> tuple[int, Fraction]:
+        """A term of a sum; a number is one, and no multiple of 1."""
+        if node.kind == "number":
+            value = node.content * coefficient
+            return self._number(abs(value)), ONE if value > 0 else -ONE
+        return self._lower(node), coefficient
 
     def _sum(self, terms: list[tuple[int, Fraction]]) -> int:
         for part in self._parts(terms):

@@ -115,6 +115,7 @@ def _constants(contents: Contents) -> str:
         },
         "PARAMETERS": [symbol.name for symbol in system.params],
         "DEFAULTS": [float(parameter.default) for parameter in system.parameters],
+        "POSITIVE": [symbol.name for symbol in system.params if symbol.is_positive],
     }
     lines = [f"{name} = {_literal(values)}" for name, values in tables.items()]
     used = {name for names in contents.states.values() for name in names} | {*tables["PARAMETERS"]}

@@ -109,6 +109,7 @@ STATE_VARIATIONAL = (
 )
 PARAMETERS = ("m1", "m2", "l1", "l2", "g")
 DEFAULTS = (1.0, 1.0, 2.0, 2.0, 9.81)
+POSITIVE = ("m1", "m2", "l1", "l2")
 UNITS = {
     "m1": "kg",
     "m2": "kg",

@@ -93,6 +93,7 @@ STATE_VARIATIONAL = (
 )
 PARAMETERS = ("m", "k", "l", "g")
 DEFAULTS = (1.0, 100.0, 1.0, 9.81)
+POSITIVE = ("m", "k", "l")
 UNITS = {
     "m": "kg",
     "k": "N/m",

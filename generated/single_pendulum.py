@@ -75,6 +75,7 @@ STATE_VARIATIONAL = (
 )
 PARAMETERS = ("m", "l", "g")
 DEFAULTS = (1.0, 2.0, 9.81)
+POSITIVE = ("m", "l")
 UNITS = {
     "m": "kg",
     "l": "m",

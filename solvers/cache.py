@@ -1,9 +1,9 @@
-"""A cache of shared libraries that can be trusted.
+"""A cache of built files that can be trusted.
 
-A library is built in a private folder inside the cache, and the whole folder is
-then renamed into place, with a digest beside the library: whoever comes second
-finds it there, and nothing that is damaged, half-written or somebody else's is
-ever loaded. There are no locks.
+Files are made in a private folder inside the cache, and the whole folder is then
+renamed into place, with digests beside them: whoever comes second finds them there,
+and nothing that is damaged, half-written or somebody else's is ever loaded. There are
+no locks.
 """
 
 from __future__ import annotations
@@ -15,11 +15,13 @@ import shutil
 import stat
 import tempfile
 import time
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-LIBRARY, DIGEST = "library.so", "library.sha256"
-#: Names of the folders in which libraries are built begin so.
+#: What the files of a finished folder hold, a line each.
+DIGESTS = "digests.sha256"
+#: Names of the folders in which files are made begin so.
 PASSAGE = "build-"
 
 
@@ -55,18 +57,28 @@ def _private_folder() -> Path:
 
 
 def is_intact(place: Path) -> bool:
-    """Whether a finished library stands there, as it was built, and only we could change it."""
+    """Whether finished files stand there, as they were made, and only we could change them."""
     try:
-        expected = (place / DIGEST).read_text(encoding="ascii")
-        is_file = stat.S_ISREG((place / LIBRARY).lstat().st_mode)
-        return is_file and _is_private(place) and digest(place / LIBRARY) == expected
-    except (OSError, UnicodeDecodeError):
+        lines = (place / DIGESTS).read_text(encoding="ascii").splitlines()
+        expected = [tuple(line.split("  ", 1)) for line in lines]
+        names = [name for _, name in expected]
+        are_files = all(stat.S_ISREG((place / name).lstat().st_mode) for name in names)
+        return (
+            bool(names) and are_files and _is_private(place) and expected == _digests(place, names)
+        )
+    except (OSError, ValueError):
         return False
 
 
-def digest(path: Path) -> str:
-    """What a file holds, in short."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+def seal(ready: Path) -> None:
+    """Write down what the files of a folder hold."""
+    names = sorted(path.name for path in ready.iterdir())
+    text = "".join(f"{digest}  {name}\n" for digest, name in _digests(ready, names))
+    (ready / DIGESTS).write_text(text, encoding="ascii")
+
+
+def _digests(folder: Path, names: Sequence[str]) -> list[tuple[str, ...]]:
+    return [(hashlib.sha256((folder / name).read_bytes()).hexdigest(), name) for name in names]
 
 
 def placed(ready: Path, place: Path, passage: Path) -> str:
@@ -87,7 +99,7 @@ def placed(ready: Path, place: Path, passage: Path) -> str:
 
 
 def remove_abandoned(folder: Path, age: float) -> None:
-    """Remove what killed builds left behind more than `age` seconds ago."""
+    """Remove what killed makers left behind more than `age` seconds ago."""
     for passage in folder.glob(f"{PASSAGE}*"):
         try:
             if time.time() - passage.stat().st_mtime > age:

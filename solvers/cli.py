@@ -8,13 +8,16 @@ import sys
 import time
 import warnings
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
+from pkgutil import iter_modules
 from types import ModuleType
 from typing import Any
+
+import generated
 
 USAGE = """\
 usage: holonomic COMMAND [OPTION ...]
@@ -26,6 +29,7 @@ commands:
   derive     write the generated modules from the systems' positions, or check them
   verify     judge every equation, program and claim of the double-pendulum report
   demo       the whole way on one screen, in about ten seconds
+  run        scenes, with the smallest model that is good enough
   chart      what each method, form and backend costs for an error
   stability  how long steps may be, exact and measured, and where methods fail
   bench      time compiled loops beside other programs, at equal error
@@ -226,7 +230,11 @@ def _integrated(picture: Path) -> list[str]:
     ]
 
 
-def _module(name: str) -> ModuleType:
+def generated_module(name: str) -> ModuleType:
+    """The generated module of this name; raises `LookupError` for an unknown one."""
+    known = sorted(module.name for module in iter_modules(generated.__path__))
+    if name not in known:
+        raise LookupError(f"no such system; known are {', '.join(known)}")
     return import_module(f"generated.{name}")
 
 
@@ -240,13 +248,38 @@ def _package(name: str) -> ModuleType | None:
 def _chart(argv: Sequence[str]) -> int:
     from solvers.commands.chart import main as chart
 
-    return chart(argv, _module, _package)
+    return chart(argv, generated_module, _package)
 
 
 def _stability(argv: Sequence[str]) -> int:
     from solvers.commands.stability import main as stability
 
-    return stability(argv, _module)
+    return stability(argv, generated_module)
+
+
+def _run(argv: Sequence[str]) -> int:
+    from solvers.commands.run import main as run
+
+    return run(argv, generated_module, specialiser)
+
+
+def specialiser(module: ModuleType, params: Sequence[float], way: Any) -> ModuleType:
+    """A module with these parameters folded in, and what a way of integrating needs of it."""
+    from solvers.forms import fastest_form
+    from solvers.specialised import needed, specialised
+
+    sources = sorted((Path(__file__).parent.parent / "derive").glob("*.py"))
+    version = "".join(source.read_text(encoding="utf-8") for source in sources)
+    functions = needed(way.method, way.form or fastest_form(module))
+    return specialised(module, params, functions, _generator, version)
+
+
+def _generator(name: str, values: Mapping[str, float], functions: Sequence[str]) -> dict[str, str]:
+    from derive import Derivation, load
+    from derive.command import texts
+    from derive.specialisation import specialised
+
+    return texts(Derivation(specialised(load(name), values)), functions)
 
 
 def _bench(argv: Sequence[str]) -> int:
@@ -275,6 +308,7 @@ COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {
     "derive": _derive,
     "verify": _verify,
     "demo": _demo,
+    "run": _run,
     "chart": _chart,
     "stability": _stability,
     "bench": _bench,

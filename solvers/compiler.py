@@ -17,14 +17,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from solvers.cache import (
-    DIGEST,
-    LIBRARY,
     PASSAGE,
     cache_folder,
-    digest,
     is_intact,
     placed,
     remove_abandoned,
+    seal,
 )
 
 #: ``-ffast-math`` would switch the whole process to flushing small numbers to zero.
@@ -34,8 +32,8 @@ FLAGS = (
     *("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC"),
     *("-fno-tree-vectorize", "-Wno-psabi"),
 )
-#: Seconds that a compiler may take.
-PATIENCE = 120
+#: Seconds that a compiler may take, and what it makes.
+PATIENCE, LIBRARY = 120, "library.so"
 
 
 class NoCompilerError(RuntimeError):
@@ -128,11 +126,10 @@ def _built(source: str, compiler: Sequence[str], flags: Sequence[str], place: Pa
             return complaint
         if not (passage / LIBRARY).is_file() or not (passage / LIBRARY).stat().st_size:
             return "wrote no library"
-        (passage / DIGEST).write_text(digest(passage / LIBRARY), encoding="ascii")
         ready = passage / "ready"
         ready.mkdir(mode=0o700)
-        for part in (LIBRARY, DIGEST):
-            os.replace(passage / part, ready / part)
+        os.replace(passage / LIBRARY, ready / LIBRARY)
+        seal(ready)
         return placed(ready, place, passage)
 
 

@@ -18,6 +18,9 @@ def energy_at_rest(module: ModuleType, params: Sequence[float]) -> float:
 def energy_error(
     module: ModuleType, params: Sequence[float], energy: ArrayLike
 ) -> NDArray[np.float64]:
-    """How far energies in J are from the first of them, in parts of that one above rest."""
+    """How far energies in J are from the first of them, in parts of that one above rest.
+
+    At rest there is nothing to be a part of: then in J.
+    """
     found = np.asarray(energy, dtype=float)
-    return (found - found[0]) / (found[0] - energy_at_rest(module, params))
+    return (found - found[0]) / (found[0] - energy_at_rest(module, params) or 1.0)

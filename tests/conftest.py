@@ -7,8 +7,9 @@ import pytest
 import sympy as sp
 
 from derive import Derivation, load, names
+from solvers.cli import generated_module
 from solvers.commands.stability import scene_steps
-from solvers.scenes import SCENES
+from solvers.scenes.shipped import find
 from solvers.stability.critical import CriticalStep
 
 
@@ -25,8 +26,7 @@ def module(derivation: Derivation) -> ModuleType:
 @pytest.fixture(scope="session")
 def report_steps() -> dict[str, CriticalStep]:
     """Every method's critical step for the report's scene."""
-    double_pendulum = import_module("generated.double_pendulum")
-    return {step.method: step for step in scene_steps(SCENES["report"], double_pendulum)}
+    return {step.method: step for step in scene_steps(find("report", generated_module))}
 
 
 @pytest.fixture(scope="session")

@@ -14,8 +14,8 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers import compiler
-from solvers.cache import DIGEST, LIBRARY, cache_folder
-from solvers.compiler import NoCompilerError, build
+from solvers.cache import DIGESTS, cache_folder
+from solvers.compiler import LIBRARY, NoCompilerError, build
 from solvers.native import native_rhs
 
 ROOT = Path(__file__).parent.parent
@@ -97,7 +97,7 @@ def test_a_damaged_library_is_found_out_before_it_is_loaded(damage: object) -> N
     assert answer(again.path) == 42
 
 
-@pytest.mark.parametrize("name", [LIBRARY, DIGEST])
+@pytest.mark.parametrize("name", [LIBRARY, DIGESTS])
 def test_a_half_finished_entry_is_rebuilt(name: str) -> None:
     library = build(SOURCE)
     (library.path.parent / name).unlink()
@@ -108,7 +108,7 @@ def test_nothing_is_left_beside_finished_libraries(own_cache: Path) -> None:
     build(SOURCE)
     build(SOURCE + "\n")
     for entry in own_cache.iterdir():
-        assert {path.name for path in entry.iterdir()} == {LIBRARY, DIGEST}
+        assert {path.name for path in entry.iterdir()} == {LIBRARY, DIGESTS}
 
 
 def test_what_killed_builds_left_is_removed_once_it_is_old(own_cache: Path) -> None:

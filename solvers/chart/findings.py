@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from solvers.energy import energy_error
 from solvers.horizon import beyond_horizon
 from solvers.integration import integrate
 from solvers.measured import least_pair
-from solvers.scenes import Scene
+from solvers.scenes.scene import Scene
 
 #: A state with a larger error, in parts of the motion or of 1 rad and 1 rad/s, is wrong.
 WRONG = 0.1
@@ -128,16 +127,16 @@ class Charted:
     misled: Misled | None
 
     @classmethod
-    def of(cls, scene: Scene, module: ModuleType, truth: Reference, curves: list[Curve]) -> Charted:
+    def of(cls, scene: Scene, truth: Reference, curves: list[Curve]) -> Charted:
         """What curves say."""
         return cls(
             scene, truth, curves, frontier(curves), frontier(curves, "work_rhs"),
-            turnings(curves), misled(curves, scene, module, truth),
+            turnings(curves), misled(curves, scene, truth),
         )  # fmt: skip
 
 
 def misled(
-    curves: Sequence[Curve], scene: Scene, module: ModuleType, truth: Reference
+    curves: Sequence[Curve], scene: Scene, truth: Reference
 ) -> Misled | None:  # fmt: skip
     """Of runs with a wrong trajectory, the one whose energy is kept best; None if none is kept."""
     wrong = wrong_from(scene, truth)
@@ -149,7 +148,7 @@ def misled(
     )[:CANDIDATES]  # fmt: skip
     found = [
         Misled(curve.method, curve.form, point.setting,
-               _along(scene, module, curve, point.setting), point.global_error)
+               _along(scene, curve, point.setting), point.global_error)
         for _, _, curve, point in candidates
     ]  # fmt: skip
     best = min(found, key=lambda case: case.energy_error, default=None)
@@ -162,9 +161,9 @@ def wrong_from(scene: Scene, truth: Reference) -> float:
     return WRONG * min(1.0, size)
 
 
-def _along(scene: Scene, module: ModuleType, curve: Curve, setting: dict[str, float]) -> float:
+def _along(scene: Scene, curve: Curve, setting: dict[str, float]) -> float:
     """The largest energy error over the whole run."""
-    params = scene.params(module)
+    module, params = scene.module, scene.params
     options: dict[str, Any] = {"h": setting["h"]} if "h" in setting else {
         "rtol": setting["rtol"], "atol": setting["rtol"]
     }  # fmt: skip

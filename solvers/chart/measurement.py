@@ -16,7 +16,7 @@ from solvers.energy import energy_error
 from solvers.forms import Form, has_form
 from solvers.measured import measured
 from solvers.request import SCIPY
-from solvers.scenes import Scene
+from solvers.scenes.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -51,14 +51,12 @@ def combinations(module: ModuleType) -> Iterator[Combination]:
             yield method, form, "scipy"
 
 
-def curves(
-    scene: Scene, module: ModuleType, truth: Reference, wanted: Iterable[Combination]
-) -> list[Curve]:
+def curves(scene: Scene, truth: Reference, wanted: Iterable[Combination]) -> list[Curve]:
     """A curve for each combination; those that no compiler builds are left out."""
     found = []
     for combination in wanted:
         try:
-            points = list(_points(scene, module, truth, combination))
+            points = list(_points(scene, truth, combination))
         except NoCompilerError:
             continue
         if points:
@@ -67,13 +65,13 @@ def curves(
 
 
 def _points(
-    scene: Scene, module: ModuleType, truth: Reference, combination: Combination
+    scene: Scene, truth: Reference, combination: Combination
 ) -> Iterator[Point]:  # fmt: skip
     method, form, backend = combination
-    judge = judged(scene, module, truth)
+    judge = judged(scene, truth)
     for setting in _settings(method, backend, scene.duration):
         run = measured(
-            module, scene.params(module), scene.y0, scene.duration,
+            scene.module, scene.params, scene.y0, scene.duration,
             method=method, form=form, backend=backend, **setting,
         )  # fmt: skip
         if run and (point := judge(setting, run.work_seconds, run.work_rhs, run.end)):
@@ -96,9 +94,9 @@ def _longest(combination: Combination) -> float:
     return LONGEST_RULE if is_rule else LONGEST[backend]
 
 
-def judged(scene: Scene, module: ModuleType, truth: Reference) -> Judge:
+def judged(scene: Scene, truth: Reference) -> Judge:
     """A function that makes a point of a run; None if its result means nothing."""
-    params = scene.params(module)
+    module, params = scene.module, scene.params
     start = module.energy(scene.y0, params)
 
     def point(

@@ -23,12 +23,12 @@ from solvers.compiler import NoCompilerError
 from solvers.forms import Form, fastest_form
 from solvers.measured import median_seconds
 from solvers.native import native_rhs
-from solvers.scenes import Scene
+from solvers.scenes.scene import Scene
 
 Array = NDArray[np.float64]
 #: A run with a tolerance or step: a function that returns the state, and right-hand sides if known.
 Run = Callable[[], tuple[Array, int | None]]
-Peer = Callable[[Any, ModuleType, Scene], Iterator[tuple[str, str, Callable[[float], Run]]]]
+Peer = Callable[[Any, Scene], Iterator[tuple[str, str, Callable[[float], Run]]]]
 
 #: Most steps that diffrax may take.
 MOST_STEPS = 2**16
@@ -37,7 +37,7 @@ FINEST = 5e-13
 
 
 def curves(
-    scene: Scene, module: ModuleType, truth: Reference, package: Callable[[str], ModuleType | None]
+    scene: Scene, truth: Reference, package: Callable[[str], ModuleType | None]
 ) -> list[Curve]:  # fmt: skip
     """A curve for each method of the packages that are installed."""
     found = []
@@ -46,8 +46,8 @@ def curves(
         if installed is None:
             continue
         try:
-            for method, form, run in peer(installed, module, scene):
-                points = list(_points(scene, module, truth, form, method, run))
+            for method, form, run in peer(installed, scene):
+                points = list(_points(scene, truth, form, method, run))
                 found.append(Curve(scene.name, method, form, name, points))
         except NoCompilerError:
             continue
@@ -55,10 +55,10 @@ def curves(
 
 
 def _points(
-    scene: Scene, module: ModuleType, truth: Reference, form: str, method: str,
+    scene: Scene, truth: Reference, form: str, method: str,
     run: Callable[[float], Run],
 ) -> Iterator[Point]:  # fmt: skip
-    judge = judged(scene, module, truth)
+    judge = judged(scene, truth)
     fixed = method == "rk4"
     tolerances = TOLERANCES[TOLERANCES > FINEST] if method == "lsoda" else TOLERANCES
     for setting in scene.duration / STEPS if fixed else tolerances:
@@ -67,7 +67,7 @@ def _points(
         if not np.isfinite(state).all():
             continue
         seconds = median_seconds(ready)
-        end = _ordinary(module, form, state, truth)
+        end = _ordinary(scene.module, form, state, truth)
         point = judge({"h" if fixed else "rtol": float(setting)}, seconds, work, end)
         if point:
             yield point
@@ -80,23 +80,21 @@ def _ordinary(module: ModuleType, form: str, state: Array, truth: Reference) -> 
     return Form(module, form, module.DEFAULTS).outside(state, truth.end, 0.0)
 
 
-def _heyoka(hy: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
-    form, start = _fastest(module, scene)
-    equations = generated(hy, module)
+def _heyoka(hy: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+    form, start = _fastest(scene)
+    equations = generated(hy, scene.module)
 
     def run(tolerance: float) -> Run:
-        motion = single(
-            hy, equations, start.tolist(), scene.params(module), scene.duration, tolerance
-        )
+        motion = single(hy, equations, start.tolist(), scene.params, scene.duration, tolerance)
         return lambda: (np.array(motion()), None)
 
     yield "taylor", form.name, run
 
 
-def _diffrax(diffrax: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+def _diffrax(diffrax: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
     jax: Any = import_module("jax")
     jax.config.update("jax_enable_x64", True)
-    form, start = _fastest(module, scene)
+    form, start = _fastest(scene)
 
     def field(t: Any, y: Any, args: Any) -> Any:
         rates = form.function(t, tuple(y), form.params)
@@ -119,9 +117,9 @@ def _diffrax(diffrax: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[s
         yield method, form.name, run
 
 
-def _numba(numba: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+def _numba(numba: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
     to_fixed_tuple: Any = import_module("numba.np.unsafe.ndarray").to_fixed_tuple
-    form, start = _fastest(module, scene)
+    form, start = _fastest(scene)
     rhs, size, params = numba.njit(form.function), len(start), form.params
 
     @numba.njit  # type: ignore[untyped-decorator]
@@ -145,9 +143,9 @@ def _numba(numba: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, 
     yield "rk4", form.name, run
 
 
-def _numbalsoda(package: Any, module: ModuleType, scene: Scene) -> Iterator[tuple[str, str, Any]]:
-    form, start = _fastest(module, scene)
-    rhs, params = native_rhs(module, form.name), np.array(form.params)
+def _numbalsoda(package: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+    form, start = _fastest(scene)
+    rhs, params = native_rhs(scene.module, form.name), np.array(form.params)
     times = np.array([0.0, scene.duration])
     for method in ("lsoda", "dop853"):
         solver = getattr(package, method)
@@ -164,8 +162,8 @@ def _numbalsoda(package: Any, module: ModuleType, scene: Scene) -> Iterator[tupl
         yield method, form.name, run
 
 
-def _fastest(module: ModuleType, scene: Scene) -> tuple[Form, Array]:
-    form = Form(module, fastest_form(module), scene.params(module))
+def _fastest(scene: Scene) -> tuple[Form, Array]:
+    form = Form(scene.module, fastest_form(scene.module), scene.params)
     return form, form.inside(np.array(scene.y0))
 
 

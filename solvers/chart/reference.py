@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from solvers.references.extrapolation import extrapolated
 from solvers.references.pendulum import pendulum
 from solvers.references.taylor import taylor
-from solvers.scenes import Scene
+from solvers.scenes.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -42,13 +41,13 @@ class Reference:
     METHOD = f"Taylor series, {DIGITS} digits"
 
 
-def reference(scene: Scene, module: ModuleType) -> Reference:
+def reference(scene: Scene) -> Reference:
     """The end of a scene's motion, and differences between three families of references."""
-    params, span = scene.params(module), (0.0, scene.duration)
+    module, params, span = scene.module, scene.params, (0.0, scene.duration)
     end, rough = (taylor(module, params, scene.y0, span, digits)[-1] for digits in (DIGITS, FEWER))
     error = max(float(np.abs(end - rough).max()), float(np.spacing(np.abs(end).max())))
     others = {"extrapolated midpoint rule": extrapolated(module, params, scene.y0, span, STEP)[-1]}
-    if scene.system == "single_pendulum":
+    if module.STATE == ("theta", "theta_dot"):
         _, length, gravity = params
         start = (scene.y0[0], scene.y0[1])
         others["elliptic functions"] = pendulum(length, gravity, start, scene.duration)

@@ -10,11 +10,13 @@ from typing import Any
 from solvers.chart import drawn, peers
 from solvers.chart.findings import Charted, wrong_from
 from solvers.chart.measurement import combinations, curves
+from solvers.chart.record import RECORD, recorded
 from solvers.chart.reference import Reference, reference
 from solvers.chart.told import told
 from solvers.commands.options import options
 from solvers.jsonable import jsonable
 from solvers.pictures import save
+from solvers.written import written
 
 #: Scenes that are charted if none is named.
 USUAL = ("report", "long", "single")
@@ -37,19 +39,19 @@ def main(
         Gives another program's package by its name, or None if it is not installed.
     """
     scenes, arguments = options(
-        argv, name="chart", scenes="what to chart", usual=USUAL, example="report --json",
+        argv, module, name="chart", scenes="what to chart", usual=USUAL, example="report --json",
         description="Chart speed against accuracy for every method, form and backend, beside "
         f"other programs that are installed. Without a scene: {', '.join(USUAL)}, in about two "
         "minutes; leave the machine alone meanwhile.",
+        record="keep what was cheapest: scenes are run that way from then on",
     )  # fmt: skip
     found: list[Charted] = []
     pictures: list[str] = []
     for scene in scenes:
-        equations = module(scene.system)
-        truth = reference(scene, equations)
-        charted = Charted.of(scene, equations, truth, [
-            *curves(scene, equations, truth, combinations(equations)),
-            *peers.curves(scene, equations, truth, package),
+        truth = reference(scene)
+        charted = Charted.of(scene, truth, [
+            *curves(scene, truth, combinations(scene.module)),
+            *peers.curves(scene, truth, package),
         ])  # fmt: skip
         figures = {
             f"work_precision_{scene.name}": drawn.work_precision(
@@ -68,6 +70,8 @@ def main(
         if not arguments.json:
             where = f"pictures: {', '.join(map(str, paths.values()))}"
             print(*told(charted), where, "", sep="\n", flush=True)
+    if arguments.record:
+        written(RECORD, recorded(found))
     if arguments.json:
         print(json.dumps(jsonable(_figures(found, pictures)), indent=2))
     return 0

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import ModuleType
 
-from solvers.scenes import SCENES, Scene, UnknownSceneError, scene
+from solvers.scenes.reading import SceneError
+from solvers.scenes.scene import Scene
+from solvers.scenes.shipped import UnknownSceneError, find, names
 
 
 def options(
-    argv: Sequence[str], *, name: str, description: str, scenes: str, usual: Sequence[str],
-    example: str,
+    argv: Sequence[str], module: Callable[[str], ModuleType], *, name: str, description: str,
+    scenes: str, usual: Sequence[str], example: str, record: str = "",
 ) -> tuple[list[Scene], argparse.Namespace]:  # fmt: skip
     """The scenes that are named, or else the usual ones; and the options, with their folder made.
 
@@ -19,27 +22,33 @@ def options(
     ----------
     argv : sequence of str
         What was typed.
+    module : callable
+        Gives a generated module by its name; raises `LookupError` for an unknown one.
     name, description, example : str
         Of the command.
     scenes : str
         What it does with scenes.
     usual : sequence of str
         Their names if none is given.
+    record : str
+        What ``--record`` does, if the command has it.
     """
     parser = argparse.ArgumentParser(
         prog=f"holonomic {name}",
         description=description,
-        epilog=f"scenes: {', '.join(SCENES)}\n\nexample:\n  holonomic {name} {example}",
+        epilog=f"scenes: {', '.join(names())}\n\nexample:\n  holonomic {name} {example}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=scenes)
     parser.add_argument("--output", type=Path, default=Path("out"), metavar="DIR",
                         help="folder for the pictures (default: out)")  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print figures for programs")
+    if record:
+        parser.add_argument("--record", action="store_true", help=record)
     arguments = parser.parse_args(argv)
     try:
-        chosen = [scene(one) for one in dict.fromkeys(arguments.scenes or usual)]
-    except UnknownSceneError as error:
+        chosen = [find(one, module) for one in dict.fromkeys(arguments.scenes or usual)]
+    except (UnknownSceneError, SceneError) as error:
         parser.error(str(error))
     arguments.output.mkdir(parents=True, exist_ok=True)
     return chosen, arguments

@@ -20,7 +20,7 @@ from solvers.integration import integrate
 from solvers.jsonable import jsonable
 from solvers.pictures import save
 from solvers.prepared import prepare
-from solvers.scenes import Scene
+from solvers.scenes.scene import Scene
 from solvers.stability.critical import CriticalStep, critical_step
 from solvers.stability.drawn import regions
 from solvers.stability.modes import Modes, along
@@ -42,7 +42,7 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
         Gives a generated module by its name.
     """
     scenes, arguments = options(
-        argv, name="stability", scenes="whose small motions to judge", usual=USUAL,
+        argv, module, name="stability", scenes="whose small motions to judge", usual=USUAL,
         example="single --json",
         description="For every method the exact stability function and its intervals, and the "
         "longest stable step of a scene's small motions, predicted and measured. Without a scene: "
@@ -50,9 +50,9 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
     )  # fmt: skip
     found: dict[str, Any] = {"methods": [], "failures": {}, "pictures": []}
     for one in scenes:
-        steps = scene_steps(one, module(one.system))
+        steps = scene_steps(one)
         path = arguments.output / f"stability_{one.name}.png"
-        save(picture(one, module(one.system), steps), path)
+        save(picture(one, steps), path)
         found["methods"] += [row(one, step) for step in steps]
         found["pictures"].append(str(path))
         if not arguments.json:
@@ -84,9 +84,9 @@ def no_compiler(module: ModuleType) -> str:
     return ""
 
 
-def scene_steps(one: Scene, module: ModuleType) -> list[CriticalStep]:
+def scene_steps(one: Scene) -> list[CriticalStep]:
     """Every method's critical step in small motion with a scene's parameters."""
-    return [critical_step(method, module, one.params(module)) for method in names()]
+    return [critical_step(method, one.module, one.params) for method in names()]
 
 
 def row(one: Scene, step: CriticalStep) -> dict[str, Any]:
@@ -133,9 +133,9 @@ def told(one: Scene, steps: Sequence[CriticalStep]) -> Iterator[str]:
     yield "0: oscillations grow with every step; inf: with none; growth measured (predicted)"
 
 
-def picture(one: Scene, module: ModuleType, steps: Sequence[CriticalStep]) -> Any:
+def picture(one: Scene, steps: Sequence[CriticalStep]) -> Any:
     """Regions of all methods with the scene's modes."""
-    params = one.params(module)
+    module, params = one.module, one.params
     t = np.linspace(0, one.duration, LOOKS)
     motion = integrate(module, (0, one.duration), one.y0, params, t_eval=t)
     return regions(

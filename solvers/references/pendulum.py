@@ -34,11 +34,16 @@ def pendulum(length: float, gravity: float, y0: tuple[float, float], times: Arra
     θ = 2 gd(u). Everything is computed from 1 - k² = cos²(θ/2) - (θ̇/2ω)², so that motions
     close to the separatrix are as accurate as others.
     """
-    t = np.asarray(times, dtype=float)
     omega = np.sqrt(gravity / length)
     whole = np.round(y0[0] / (2 * np.pi))
     half, speed = (y0[0] - 2 * np.pi * whole) / 2, y0[1] / (2 * omega)
-    sine, cosine = np.sin(half), np.cos(half)
+    found = swing(omega, np.sin(half), np.cos(half), speed, times)
+    return found + np.array([2 * np.pi * whole, 0.0])
+
+
+def swing(omega: float, sine: float, cosine: float, speed: float, times: ArrayLike) -> Array:
+    """The same by ω = √(g/l), and by sin θ/2, cos θ/2 and θ̇/2ω at time 0, with |θ| ≤ π."""
+    t = np.asarray(times, dtype=float)
     k, below = np.hypot(sine, speed), (cosine - speed) * (cosine + speed)  # below = 1 - k²
     if k == 0:
         angle, velocity = np.zeros_like(t), np.zeros_like(t)
@@ -53,9 +58,9 @@ def pendulum(length: float, gravity: float, y0: tuple[float, float], times: Arra
         angle, velocity = way * 2 * am, way * 2 * omega * k * dn
     else:
         way = np.sign(speed)
-        u = way * omega * t + 2 * np.arctanh(np.tan(half / 2))
+        u = way * omega * t + 2 * np.arctanh(sine / (1 + cosine))
         angle, velocity = 4 * np.arctan(np.tanh(u / 2)), way * 2 * omega / np.cosh(u)
-    return np.stack([angle + 2 * np.pi * whole, velocity], axis=-1)
+    return np.stack([angle, velocity], axis=-1)
 
 
 def elliptic_integral(sine: float, cosine: float, complement: float) -> float:

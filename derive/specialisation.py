@@ -1,0 +1,50 @@
+"""A system whose parameters have values: they are folded in, and what is zero vanishes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.system import PointMass, System, SystemDefinitionError, formula
+
+
+def specialised(system: System, values: Mapping[str, float]) -> System:
+    """The system with parameters replaced by numbers, exactly as their digits say.
+
+    Parameters
+    ----------
+    system : System
+        With parameters.
+    values : mapping of str to float
+        By name; parameters that are not named stay.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When no parameter is called so, or a value is no number.
+    """
+    symbols = {symbol.name: symbol for symbol in system.params}
+    for name in values:
+        if name not in symbols:
+            raise SystemDefinitionError(
+                f"system {system.name!r} has no parameter {name[:50]!r}; known are "
+                f"{', '.join(symbols)}"
+            )
+    numbers = {symbols[name]: formula(value) for name, value in values.items()}
+
+    def folded(expression: sp.Expr) -> sp.Expr:
+        return expression.subs(numbers)
+
+    assert system.potential is not None
+    return replace(
+        system,
+        parameters=[p for p in system.parameters if p.symbol not in numbers],
+        masses=[
+            PointMass(folded(mass.mass), tuple(map(folded, mass.position)))
+            for mass in system.masses
+        ],
+        potential=folded(system.potential),
+        equilibrium=None if system.equilibrium is None else tuple(map(folded, system.equilibrium)),
+    )

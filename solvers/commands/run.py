@@ -1,0 +1,103 @@
+"""``holonomic run``: scenes answered by the smallest model that is good enough."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from solvers.commands.options import options
+from solvers.energy import energy_error
+from solvers.jsonable import jsonable
+from solvers.models.full import NotAccurateError
+from solvers.models.model import OutsideDomainError
+from solvers.page.page import write_page
+from solvers.page.track import Track
+from solvers.pictures import save
+from solvers.progress import Progress
+from solvers.scenes.answer import Answer, Specialiser, answer
+from solvers.scenes.drawn import drawn, energies, places
+from solvers.scenes.scene import Scene
+from solvers.scenes.told import figures, table, told
+from solvers.written import written
+
+#: Lengths that differ by less are those of rods.
+RIGID = 1e-6
+
+
+def main(argv: Sequence[str], module: Callable[[str], ModuleType], specialiser: Specialiser) -> int:
+    """Answer scenes, draw them and print.
+
+    Parameters
+    ----------
+    argv : sequence of str
+        Options.
+    module : callable
+        Gives a generated module by its name; raises `LookupError` for an unknown one.
+    specialiser : callable
+        Makes code for one scene.
+    """
+    scenes, arguments = options(
+        argv, module, name="run", scenes="what to run: a name, or a file that ends in .toml",
+        usual=("report",), example="separatrix --json",
+        description="Run scenes with the smallest model whose error stays below what is asked; "
+        "write the motion as a table, a picture and a page that plays it.",
+    )  # fmt: skip
+    found = []
+    try:
+        for scene in scenes:
+            with Progress() as tell:
+                answers = [answer(one, specialiser, tell) for one in (scene, *scene.beside)]
+                tell("pictures")
+                paths = shown(scene, answers, arguments.output)
+            found.append({
+                **figures(answers[0]),
+                "beside": [figures(one) for one in answers[1:]],
+                "files": {kind: str(path) for kind, path in paths.items()},
+            })  # fmt: skip
+            if not arguments.json:
+                for one in answers:
+                    print(*told(one), "", sep="\n")
+                print(f"files: {', '.join(map(str, paths.values()))}\n", flush=True)
+    except (NotAccurateError, OutsideDomainError) as error:
+        print(f"holonomic run: {scene.name}: {error}", file=sys.stderr)
+        return 3
+    if arguments.json:
+        one_or_all: Any = found[0] if len(found) == 1 else found
+        print(json.dumps(jsonable(one_or_all), indent=2))
+    return 0
+
+
+def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Path]:
+    """Write table, picture and page of a scene; return where they are."""
+    paths = {
+        "table": folder / f"{scene.name}.csv",
+        "picture": folder / f"{scene.name}.png",
+        "page": folder / f"{scene.name}.html",
+    }
+    written(paths["table"], table(answers[0]))
+    save(drawn(answers), paths["picture"])
+    write_page(paths["page"], scene.title, " ".join(scene.note.split()), list(map(_track, answers)))
+    return paths
+
+
+def _track(answer: Answer) -> Track:
+    scene, positions = answer.scene, places(answer)
+    module = scene.module
+    error = energy_error(module, scene.params, energies(answer))
+    if len(module.positions(scene.y0, scene.params)[0]) != 2:
+        positions = positions[:, ::2]  # seen from the side
+    rods: list[tuple[int, int]] = []
+    springs: list[tuple[int, int]] = []
+    before = np.zeros((2, len(answer.t)))
+    for k, place in enumerate(positions):
+        length = np.hypot(*(place - before))
+        (rods if np.ptp(length) <= RIGID * length.max() else springs).append((k - 1, k))
+        before = place
+    error = np.nan_to_num(error)
+    return Track(scene.label, answer.t, positions, tuple(rods), tuple(springs), error)

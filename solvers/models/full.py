@@ -1,0 +1,189 @@
+"""The full equations, integrated by one way and checked by another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from solvers.compiler import NoCompilerError
+from solvers.horizon import beyond_horizon
+from solvers.integration import integrate
+from solvers.measured import median_seconds
+from solvers.models.model import Array, Asked
+from solvers.models.way import Way
+from solvers.prepared import prepare
+from solvers.references.taylor import taylor
+from solvers.solution import Status
+
+#: By what the run is checked: another method, at least so many times as accurate, or the finest.
+CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14
+#: Errors may be so many times as large as the difference between run and check.
+MARGIN = 2.0
+#: How often tolerances or steps are tried, and by how much errors then stay below what is asked.
+TRIES, RESERVE = 8, 0.3
+#: Digits of Taylor series that are tried where ordinary numbers have too few.
+DIGITS, MORE, MOST_DIGITS = 24, 12, 96
+MOST_STEPS = 10**8
+
+
+class NotAccurateError(ArithmeticError):
+    """No run came as close as was asked; the message says how close."""
+
+
+@dataclass(frozen=True)
+class Full:
+    """The full equations, by one way with one tolerance or step.
+
+    Attributes
+    ----------
+    asked : Asked
+        The motion; its module may be a specialised one.
+    way : Way
+        Method and form.
+    setting : float
+        Tolerance, or step in s, or digits.
+    error_estimate : float
+        Twice the largest difference from the check.
+    took : float
+        What a run took in s, where it is too long to be timed again.
+    """
+
+    asked: Asked
+    way: Way
+    setting: float
+    error_estimate: float
+    took: float = nan
+    name: str = "full equations"
+
+    @property
+    def why(self) -> str:
+        """Why this way."""
+        return self.way.why
+
+    def states(self, t: Array) -> Array:
+        """Integrated to these times, shape (n, state)."""
+        return run(self.asked, self.way, self.setting, t)
+
+    def seconds(self) -> float:
+        """What an integration to the end takes, without what is prepared once."""
+        if self.way.is_series:
+            return self.took
+        end = np.array([self.asked.duration])
+        try:
+            once = prepare(
+                self.asked.module, self.asked.params, method=self.way.method, form=self.way.form,
+                max_steps=MOST_STEPS, **options(self.way, self.setting),
+            )  # fmt: skip
+        except (ValueError, NoCompilerError):  # SciPy's methods, or no compiler
+            return median_seconds(lambda: self.states(end))
+        return median_seconds(lambda: once((0.0, self.asked.duration), self.asked.y0))
+
+
+def run(asked: Asked, way: Way, setting: float, t: Array) -> Array:
+    """States at times, shape (n, state).
+
+    Raises
+    ------
+    NotAccurateError
+        When the integration does not reach its end.
+    """
+    if way.is_series:
+        # its times begin with the start
+        times = t if t[0] == 0 else [0.0, *t]
+        return taylor(asked.module, asked.params, asked.y0, times, int(setting))[-len(t) :]
+    with beyond_horizon():
+        found = integrate(
+            asked.module, (0.0, asked.duration), asked.y0, asked.params, method=way.method,
+            form=way.form, t_eval=t, max_steps=MOST_STEPS, **options(way, setting),
+        )  # fmt: skip
+    if found.status is not Status.FINISHED:
+        raise NotAccurateError(f"{way.method}, {setting:g}: {found.message}")
+    return found.y.T
+
+
+def options(way: Way, setting: float) -> dict[str, Any]:
+    """A step, or tolerances, as the integrator takes them."""
+    return {"h": setting} if way.is_fixed else {"rtol": setting, "atol": setting}
+
+
+def full(asked: Asked, accuracy: float, way: Way, checked: Asked, setting: float | None) -> Full:
+    """The run that is as accurate as asked, at the largest tolerance or step that is.
+
+    Parameters
+    ----------
+    asked : Asked
+        The motion.
+    accuracy : float
+        How large errors may be.
+    way : Way
+        How to integrate.
+    checked : Asked
+        The same motion, by which the run is checked.
+    setting : float, optional
+        The one tolerance or step that is tried: then the error is what it is.
+
+    Raises
+    ------
+    NotAccurateError
+        When no run is as accurate, or none reaches its end.
+    """
+    if setting is not None:
+        return Full(asked, way, setting, _error(asked, way, setting, checked))
+    if way.is_series:
+        return _series(asked, accuracy, way)
+    setting, power = (asked.duration / 200, way.order) if way.is_fixed else (accuracy / 3, 1.0)
+    best = np.inf
+    for _ in range(TRIES):
+        error = _error(asked, way, setting, checked)
+        if error <= accuracy:
+            return Full(asked, way, setting, error)
+        best = min(best, error)
+        if not way.is_fixed and setting <= FINEST:
+            break
+        shorter = (RESERVE * accuracy / error) ** (1 / power) if np.isfinite(error) else 0.1
+        setting = max(setting * min(max(shorter, 1e-4), 0.5), FINEST)
+    raise NotAccurateError(
+        f"{way.method} comes to {best:.1g} at best where {accuracy:.1g} was asked: a motion that "
+        "loses more digits than numbers have"
+    )
+
+
+def _error(asked: Asked, way: Way, setting: float, checked: Asked) -> float:
+    """Estimated error of a run; infinity for one that does not reach its end."""
+    try:
+        found = run(asked, way, setting, asked.looks)
+    except NotAccurateError:
+        return np.inf
+    method = next(name for name in CHECKS if name != way.method)
+    truth, tolerance = Way(method, None, ""), FINEST
+    if not way.is_fixed:
+        tolerance = max(setting / TIGHTER, FINEST)
+    return _apart(asked, found, run(checked, truth, tolerance, asked.looks))
+
+
+def _apart(asked: Asked, one: Array, other: Array) -> float:
+    difference = np.abs(one - other)[:, list(asked.wanted)].max()
+    return float(MARGIN * difference)
+
+
+def _series(asked: Asked, accuracy: float, way: Way) -> Full:
+    """Taylor series with as many digits as it takes."""
+    digits, error = DIGITS, np.inf
+    rough = run(asked, way, digits, asked.looks)
+    while digits + MORE <= MOST_DIGITS:
+        digits += MORE
+        before = perf_counter()
+        fine = run(asked, way, digits, asked.looks)
+        took = perf_counter() - before
+        # what comes back is rounded to ordinary numbers
+        error = _apart(asked, rough, fine) + float(np.spacing(np.abs(fine).max()))
+        if error <= accuracy:
+            return Full(asked, way, digits, error, took)
+        rough = fine
+    raise NotAccurateError(
+        f"{MOST_DIGITS} digits come to {error:.1g} where {accuracy:.1g} is asked"
+    )

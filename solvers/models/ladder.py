@@ -1,0 +1,114 @@
+"""The ladder of models: the smallest that is good enough is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.models.full import NotAccurateError, full
+from solvers.models.light import light
+from solvers.models.model import Asked, Model, OutsideDomainError
+from solvers.models.pendulum import pendulum
+from solvers.models.quadrature import quadrature
+from solvers.models.rest import rest
+from solvers.models.small import small
+from solvers.models.way import SERIES, Way, cheapest
+from solvers.request import SCIPY
+from solvers.scenes.scene import Scene
+
+#: From the smallest model on, those that integrate nothing.
+RUNGS: dict[str, Callable[[Asked], Model]] = {
+    "rest": rest,
+    "normal modes": small,
+    "pendulum": pendulum,
+    "pendulum and light masses": light,
+    "quadrature": quadrature,
+}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The model that was taken, and why no smaller one.
+
+    Attributes
+    ----------
+    model : Model
+        What was taken.
+    declined : dict of str to str
+        Smaller models, and what was wrong with each.
+    """
+
+    model: Model
+    declined: dict[str, str]
+
+
+def choice(
+    scene: Scene, code: Callable[[Asked, Way], Asked], tell: Callable[[str], None]
+) -> Choice:
+    """The smallest model whose error stays below what is asked.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    code : callable
+        Takes a motion and a way to integrate it; returns the motion with the module to
+        integrate it with, which may be specialised.
+    tell : callable
+        Is told what is being tried.
+
+    Raises
+    ------
+    solvers.models.full.NotAccurateError
+        When not even the full equations come as close as asked.
+    solvers.models.model.OutsideDomainError
+        When there are no full equations, since a coordinate moves no mass.
+    """
+    asked = asked_of(scene)
+    declined: dict[str, str] = {}
+    if not scene.is_fixed:
+        for name, rung in RUNGS.items():
+            tell(name)
+            try:
+                with np.errstate(all="ignore"):
+                    model = rung(asked)
+            except OutsideDomainError as reason:
+                declined[name] = str(reason)
+                continue
+            if model.error_estimate <= scene.accuracy:
+                return Choice(model, declined)
+            declined[name] = f"its error may reach {model.error_estimate:.1g}"
+    asked.require_mass()
+    way = _way(scene)
+    tell(f"full equations by {way.method}")
+    try:
+        return Choice(full(code(asked, way), scene.accuracy, way, asked, scene.step), declined)
+    except NotAccurateError as reason:
+        if scene.method or scene.form:
+            raise
+        declined["ordinary numbers"] = str(reason)
+    tell("full equations by Taylor series")
+    series = Way(SERIES, None, "the motion loses more digits than ordinary numbers have")
+    return Choice(full(asked, scene.accuracy, series, asked, None), declined)
+
+
+def asked_of(scene: Scene) -> Asked:
+    """The motion of a scene, and what is wanted of it that exists."""
+    asked = Asked(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
+    n = asked.coordinates
+    wanted = tuple(k for k in scene.wanted if k % n in asked.alive)
+    if not wanted:
+        raise OutsideDomainError("nothing that is asked for moves mass")
+    return Asked(scene.module, scene.params, scene.y0, scene.duration, wanted)
+
+
+def _way(scene: Scene) -> Way:
+    """The way that the scene names, and the cheapest where it does not."""
+    found = cheapest(scene.module, scene.params, scene.accuracy)
+    if scene.method is None and scene.form is None:
+        return found
+    method = scene.method or found.method
+    form = scene.form or ("lagrangian" if method in SCIPY else None)
+    return Way(method, form, "named in the scene")

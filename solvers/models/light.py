@@ -1,0 +1,91 @@
+"""A pendulum whose other coordinates are too light to matter."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solvers.models.model import Array, Asked, OutsideDomainError
+from solvers.models.pendulum import ANGLES, SAME, Pendulum
+from solvers.references.pendulum import pendulum as exact
+
+#: Random states that are tried, rounds until a bound of velocities settles, and times of kicks.
+STATES, ROUNDS, KICKS = 512, 4, 8
+#: What the largest of so many samples may miss; and a velocity in rad/s that means no bound.
+MARGIN, ENDLESS = 2.0, 1e6
+
+
+def light(asked: Asked) -> Pendulum:
+    """The closed form for the one angle that is wanted, if the others hardly act on it.
+
+    Whatever the others do, they accelerate for no longer than the motion lasts, which
+    bounds their velocities; over all states within the bound the defect is the largest
+    difference between the angle's acceleration and a pendulum's. Kicks of that size, at
+    any time, make the error.
+
+    Raises
+    ------
+    OutsideDomainError
+        When not exactly one angle is wanted, or the others do act on it.
+    """
+    asked.require_mass()
+    module, n = asked.module, asked.coordinates
+    kept = {i % n for i in asked.wanted}
+    if len(kept) != 1 or n == 1:
+        raise OutsideDomainError(f"{len(kept)} of {n} coordinates are wanted")
+    if any(module.UNITS[q] != "rad" for q in module.COORDINATES):
+        raise OutsideDomainError("not all coordinates are angles")
+    (k,) = kept
+    square = _square(asked, k)
+    start = (asked.y0[k], asked.y0[k + n])
+    motion = exact(1.0, square, start, asked.looks)
+    defect = _defect(asked, k, square, motion)
+    error = asked.duration * defect * _kicked(square, motion, asked.looks)
+    wanted = [i // n for i in asked.wanted]
+    return Pendulum(k, n, start, square, 0.0, float(error[wanted].max()),
+                    f"other coordinates accelerate {module.COORDINATES[k]} by at most "
+                    f"{defect:.1g} rad/s²")  # fmt: skip
+
+
+def _square(asked: Asked, k: int) -> float:
+    """ω² of the pendulum that is left, in 1/s²."""
+    n = asked.coordinates
+    y = np.zeros((2 * n, ANGLES, ANGLES))
+    angle = 2 * np.pi * np.arange(ANGLES) / ANGLES
+    y[:n] = angle  # all others take all angles
+    y[k] = angle[:, None]
+    mass = asked.module.mass_matrix_many(y, asked.params)[k][k]
+    weight = asked.module.energy_many(y, asked.params).mean(axis=1)
+    swing = -2 * float(weight @ np.cos(angle)) / ANGLES
+    if np.ptp(mass) > SAME * mass.max() or swing <= 0:
+        raise OutsideDomainError("it does not move as a pendulum does")
+    return swing / float(mass.flat[0])
+
+
+def _defect(asked: Asked, k: int, square: float, motion: Array) -> float:
+    """The largest acceleration by other coordinates that is within reach."""
+    n, random = asked.coordinates, np.random.default_rng(2)
+    y = random.uniform(-np.pi, np.pi, (2 * n, STATES))
+    y[[k, k + n]] = motion[random.integers(0, len(motion), STATES)].T
+    others = [j for j in range(n) if j != k]
+    before = np.abs(np.array(asked.y0)[[j + n for j in others]])
+    bound, share = before, random.uniform(-1, 1, (n - 1, STATES))
+    found = np.inf
+    for _ in range(ROUNDS):
+        y[[j + n for j in others]] = bound[:, None] * share
+        rates = asked.module.rhs_many(0.0, y, asked.params)[n:]
+        found = float(np.abs(rates[k] + square * np.sin(y[k])).max())
+        bound = before + MARGIN * np.abs(rates[others]).max(axis=1) * asked.duration
+        if not bound.max() < ENDLESS:
+            raise OutsideDomainError("nothing bounds the velocities of the other coordinates")
+    return MARGIN * found
+
+
+def _kicked(square: float, motion: Array, times: Array) -> Array:
+    """What a kick of unit size makes at most of angle and velocity, at any time after it."""
+    worst = np.zeros(2)
+    for angle, velocity in motion[:: max(len(motion) // KICKS, 1)]:
+        kick = 1e-6 * max(1.0, np.sqrt(square))
+        apart = exact(1.0, square, (angle, velocity + kick), times)
+        apart -= exact(1.0, square, (angle, velocity), times)
+        worst = np.maximum(worst, np.abs(apart).max(axis=0) / kick)
+    return worst

@@ -1,0 +1,84 @@
+"""How to integrate, and the cheapest way by what was measured."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import log, nan
+from types import ModuleType
+from typing import Any
+
+from solvers.catalogue import load
+from solvers.chart.record import RECORD, mode_spread
+from solvers.forms import has_form
+from solvers.request import SCIPY
+
+SERIES = "taylor"
+
+
+@dataclass(frozen=True)
+class Way:
+    """A method and a form.
+
+    Attributes
+    ----------
+    method : str
+        One of the catalogue's or SciPy's, or ``taylor`` for series with many digits.
+    form : str or None
+        None for the form that runs fastest.
+    why : str
+        Why this one.
+    seconds : float
+        What it was measured to take for a second of motion.
+    """
+
+    method: str
+    form: str | None
+    why: str
+    seconds: float = nan
+
+    @property
+    def is_series(self) -> bool:
+        """Whether digits are what is set."""
+        return self.method == SERIES
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether steps do not follow a tolerance."""
+        return not self.is_series and self.method not in SCIPY and not load(self.method).b_hat
+
+    @property
+    def order(self) -> float:
+        """Order of the method."""
+        return float(load(self.method).order)
+
+
+def cheapest(module: ModuleType, params: Sequence[float], accuracy: float) -> Way:
+    """The way that was cheapest for this accuracy in the charted scene most like this one.
+
+    Scenes of the same system are alike, and of these those whose modes are: a method that
+    pays where the fastest mode is hundreds of times as fast as the slowest does not where
+    both are alike. Of scenes as alike the one that was charted first counts.
+    """
+    record = json.loads(RECORD.read_text(encoding="utf-8"))
+    spread = mode_spread(module, params)
+    system = module.__name__.rpartition(".")[2]
+    own = [scene for scene in record if scene["system"] == system] or record
+    nearest = min(own, key=lambda scene: abs(log(scene["spread"] / spread)))
+    rows: list[dict[str, Any]] = nearest["frontier"]
+    good = [row for row in rows if row["global_error"] <= accuracy] or rows[-1:]
+    best = good[0]
+    others = ", ".join(
+        f"{name} {factor:.2g} x"
+        for choice in ("method", "form", "backend")
+        for name, factor in list(best["worth"][choice].items())[:2]
+    )
+    return Way(
+        best["method"],
+        best["form"] if has_form(module, best["form"]) else None,
+        f"cheapest for {best['global_error']:.0e} as measured in scene {nearest['scene']!r}, whose "
+        f"modes are most alike: {best['work_seconds'] * 1e6:.3g} us for {nearest['duration']:g} s; "
+        f"others there: {others}",
+        best["work_seconds"] / nearest["duration"],
+    )

@@ -1,0 +1,1 @@
+"""A page that plays motions in real time: one HTML file that needs nothing else."""

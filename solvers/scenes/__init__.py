@@ -1,0 +1,1 @@
+"""Scenes: what is there, and what is asked; files, and how they are read."""

@@ -1,0 +1,136 @@
+"""A scene answered: which model, how it moves, and how sure that is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from time import perf_counter
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.measured import median_seconds
+from solvers.models.full import Full
+from solvers.models.ladder import Choice, choice
+from solvers.models.model import Asked
+from solvers.models.way import Way, cheapest
+from solvers.scenes.scene import ENERGY, Scene
+
+Array = NDArray[np.float64]
+
+#: Takes a module, parameters and a way; gives the module with these parameters folded in.
+Specialiser = Callable[[ModuleType, tuple[float, ...], Way], ModuleType]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a scene asked, answered.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was asked.
+    choice : Choice
+        Which model was taken, and why no smaller one.
+    t : ndarray of shape (samples,)
+        Times in s.
+    y : ndarray of shape (state, samples)
+        Coordinates and velocities; NaN for those that do not exist.
+    energy : ndarray of shape (samples,) or None
+        In J, if it was asked for.
+    choosing_seconds, work_seconds : float
+        What it took to choose, and what the state at the end takes with the model.
+    full_seconds : float
+        What the full equations take for a motion of this length, by the record of charts.
+    """
+
+    scene: Scene
+    choice: Choice
+    t: Array
+    y: Array
+    energy: Array | None
+    choosing_seconds: float
+    work_seconds: float
+    full_seconds: float
+
+    @property
+    def method(self) -> str | None:
+        """How it was integrated; None if nothing was."""
+        model = self.choice.model
+        return model.way.method if isinstance(model, Full) else None
+
+    @property
+    def form(self) -> str | None:
+        """In which form of the equations."""
+        model = self.choice.model
+        return model.way.form if isinstance(model, Full) else None
+
+    @property
+    def final_state(self) -> dict[str, float]:
+        """What was asked for of the state at the end, by name."""
+        state = dict(zip(self.scene.module.STATE, self.y[:, -1].tolist(), strict=True))
+        return {k: v for k, v in state.items() if k in self.scene.outputs and np.isfinite(v)}
+
+    @property
+    def is_met(self) -> bool:
+        """Whether the error stays below what was asked."""
+        return self.choice.model.error_estimate <= self.scene.accuracy
+
+
+def answer(
+    scene: Scene, specialiser: Specialiser | None = None,
+    tell: Callable[[str], None] = lambda _: None,
+) -> Answer:  # fmt: skip
+    """The smallest model of a scene that is good enough, and its motion.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked.
+    specialiser : callable, optional
+        Makes code for the scene alone, where the scene asks for it.
+    tell : callable, optional
+        Is told what is going on.
+
+    Raises
+    ------
+    solvers.models.full.NotAccurateError
+        When not even the full equations come as close as asked.
+    solvers.models.model.OutsideDomainError
+        When there is no model, since a coordinate moves no mass.
+    ValueError
+        When the scene asks for special code and nobody makes any.
+    """
+
+    def code(asked: Asked, way: Way) -> Asked:
+        if scene.code != "specialised":
+            return asked
+        if specialiser is None:
+            raise ValueError("code = 'specialised' needs a specialiser, which generates it")
+        tell("specialised code")
+        return replace(asked, module=specialiser(asked.module, asked.params, way), params=())
+
+    before = perf_counter()
+    chosen = choice(scene, code, tell)
+    choosing = perf_counter() - before
+    tell(chosen.model.name)
+    t = np.linspace(0, scene.duration, scene.samples)
+    y = chosen.model.states(t).T
+    y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
+    energy = None
+    if ENERGY in scene.outputs:
+        energy = np.asarray(scene.module.energy_many(np.nan_to_num(y), scene.params))
+    return Answer(scene, chosen, t, y, energy, choosing, _work(chosen, scene), _full(scene))
+
+
+def _work(chosen: Choice, scene: Scene) -> float:
+    if isinstance(chosen.model, Full):
+        return chosen.model.seconds()
+    end = np.array([scene.duration])
+    return median_seconds(lambda: chosen.model.states(end))
+
+
+def _full(scene: Scene) -> float:
+    way = cheapest(scene.module, scene.params, scene.accuracy)
+    return way.seconds * scene.duration

@@ -1,0 +1,142 @@
+"""Pictures of a scene: coordinates over time, phase curves, paths and the energy's error."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+from math import ceil
+from textwrap import fill
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from solvers.energy import energy_error
+from solvers.pictures import COLOURS, panels
+from solvers.scenes.answer import Answer
+from solvers.scenes.checks import PICTURE
+from solvers.scenes.scene import Scene
+
+GREEK = ("theta", "phi", "psi", "alpha", "beta")
+STYLES = ("-", "--", ":", "-.")
+#: So many pictures at most stand three in a row, more four.
+MOST = 6
+#: Width of a panel and height of a row in inches, and characters of a note to the inch.
+PANEL, ROW, WRITTEN = 4.6, 3.6, 15
+
+
+def drawn(answers: Sequence[Answer]) -> Figure:
+    """All that a scene has to show, with what is shown beside it; the note stands below."""
+    main = answers[0]
+    pictures = main.scene.pictures or usual(main.scene)
+    columns = min(len(pictures), 3 if len(pictures) <= MOST else 4)
+    rows = ceil(len(pictures) / columns)
+    width = max(PANEL * columns, 7.0)
+    words = [*main.scene.note.split(), *(sureness(a, named=len(answers) > 1) for a in answers)]
+    note = fill(" ".join(words), int(width * WRITTEN))
+    figure, axes = panels(
+        main.scene.title, rows=rows, columns=columns,
+        size=(width, ROW * rows + 0.6 + 0.16 * note.count("\n")),
+    )  # fmt: skip
+    for panel, picture in zip(axes, pictures, strict=False):
+        _draw(panel, picture, answers)
+    for panel in axes[len(pictures) :]:
+        panel.set_axis_off()
+    figure.supxlabel(note, x=0.01, ha="left", fontsize="small", color="#444444")
+    return figure
+
+
+def usual(scene: Scene) -> tuple[str, ...]:
+    """Everything that there is to see of a system."""
+    coordinates, state = scene.module.COORDINATES, scene.module.STATE
+    n = len(coordinates)
+    return (
+        f"{', '.join(coordinates)} over t",
+        *(f"{state[k + n]} over {state[k]}" for k in range(n)),
+        *(f"{b} over {a}" for a, b in pairwise(coordinates)),
+        *(f"{b} over {a}" for a, b in pairwise(state[n:])),
+        "path",
+        "energy",
+    )
+
+
+def sureness(answer: Answer, *, named: bool) -> str:
+    """How a run was made and how sure it is, in brackets, with its name if it is one of several."""
+    model = answer.choice.model
+    how = model.name if answer.method is None else f"{model.name} by {answer.method}"
+    if answer.scene.step is not None:
+        how += f" with h = {answer.scene.step:g} s"
+    title = f"{answer.scene.label}: " if named else ""
+    return f"[{title}{how}, error at most {model.error_estimate:.1g}.]"
+
+
+def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
+    for answer, style in zip(answers, STYLES * len(answers), strict=False):
+        first = COLOURS if answer is answers[0] else COLOURS[3:] + COLOURS[:3]
+        label = answer.scene.label if len(answers) > 1 else ""
+        if picture == "path":
+            _path(panel, answer, first, style)
+        elif picture == "energy":
+            error = np.abs(energy_error(answer.scene.module, answer.scene.params, energies(answer)))
+            panel.semilogy(answer.t, np.maximum(error, 1e-17), style, color=first[0], label=label)
+        else:
+            _curves(panel, picture, answer, first, style, label)
+    if picture == "path":
+        panel.set(xlabel="x / m", ylabel="y / m", aspect="equal", title="paths")
+        panel.set_aspect("equal", adjustable="datalim")
+        panel.plot(0, 0, "k+", markersize=8)
+    elif picture == "energy":
+        panel.set(xlabel="t / s", ylabel="energy error, relative", title="energy error")
+    if panel.get_legend_handles_labels()[1]:
+        panel.legend(frameon=False, fontsize="small")
+
+
+def _curves(
+    panel: Axes, picture: str, answer: Answer, colours: Sequence[str], style: str, label: str
+) -> None:
+    found = PICTURE.match(picture)
+    assert found
+    names, over = re.split(", *", found[1]), found[2]
+    columns = dict(zip(answer.scene.module.STATE, answer.y, strict=True)) | {"t": answer.t}
+    units = answer.scene.module.UNITS | {"t": "s"}
+    for name, colour in zip(names, colours, strict=False):
+        words = [symbol(name) if len(names) > 1 else "", label]
+        panel.plot(columns[over], columns[name], style, color=colour, linewidth=1.1,
+                   label=", ".join(filter(None, words)))  # fmt: skip
+    if over == "t":
+        panel.set_xlim(0, answer.t[-1])
+    panel.set(xlabel=f"{symbol(over)} / {_unit(units[over])}",
+              ylabel=f"{', '.join(map(symbol, names))} / {_unit(units[names[0]])}")  # fmt: skip
+
+
+def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str) -> None:
+    for (x, y), colour in zip(places(answer), colours, strict=False):
+        panel.plot(x, y, style, color=colour, linewidth=0.9)
+        panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
+
+
+def places(answer: Answer) -> np.ndarray:
+    """Positions in m of the masses that there are, shape (masses, 2, samples)."""
+    found = np.asarray(answer.scene.module.positions_many(answer.y, answer.scene.params))
+    return found[np.isfinite(found).all(axis=(1, 2))]
+
+
+def energies(answer: Answer) -> np.ndarray:
+    """Energy in J, shape (samples,); what does not exist has none."""
+    states = np.nan_to_num(answer.y)
+    return np.asarray(answer.scene.module.energy_many(states, answer.scene.params))
+
+
+def symbol(name: str) -> str:
+    """A name as mathematics writes it."""
+    base, dot, _ = name.partition("_dot")
+    letters = base.rstrip("0123456789")
+    index = base[len(letters) :]
+    word = rf"\{letters}" if letters in GREEK else letters
+    word = rf"\dot{{{word}}}" if dot else word
+    return f"${word}_{{{index}}}$" if index else f"${word}$"
+
+
+def _unit(unit: str) -> str:
+    return f"({unit})" if "/" in unit else unit

@@ -1,0 +1,135 @@
+"""Numbers with units, as somebody wrote them: ``90 deg``, ``pi/2``, ``-1.5 m/s``.
+
+Text is parsed by rule and never executed: an expression is numbers, ``pi``, ``+ - * / **`` and
+brackets, and a unit is a product of names from a table.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+from collections.abc import Callable
+from math import inf, isfinite, pi
+
+Kind = tuple[int, ...]  # powers of m, kg, s, rad
+
+#: Longest text; nothing that somebody writes as a number is longer.
+LONGEST = 100
+#: Units by name: how many of the first in kind, and powers of m, kg, s, rad.
+UNITS: dict[str, tuple[float, Kind]] = {
+    "1": (1.0, (0, 0, 0, 0)),
+    "m": (1.0, (1, 0, 0, 0)),
+    "cm": (0.01, (1, 0, 0, 0)),
+    "mm": (0.001, (1, 0, 0, 0)),
+    "km": (1000.0, (1, 0, 0, 0)),
+    "kg": (1.0, (0, 1, 0, 0)),
+    "g": (0.001, (0, 1, 0, 0)),
+    "s": (1.0, (0, 0, 1, 0)),
+    "ms": (0.001, (0, 0, 1, 0)),
+    "min": (60.0, (0, 0, 1, 0)),
+    "rad": (1.0, (0, 0, 0, 1)),
+    "deg": (pi / 180, (0, 0, 0, 1)),
+    "turn": (2 * pi, (0, 0, 0, 1)),
+    "N": (1.0, (1, 1, -2, 0)),
+    "J": (1.0, (2, 1, -2, 0)),
+}
+#: A unit at the end of a text: names with whole powers, joined by * and /.
+NAME = r"[A-Za-z]+(?:(?:\^|\*\*)-?\d)?"
+UNIT = re.compile(rf"(?<![\w.])((?:1/)?{NAME}(?:[*/]{NAME})*)\Z")
+PART = re.compile(r"([*/]?)([A-Za-z]+|1)(?:(?:\^|\*\*)(-?\d))?")
+OPERATORS: dict[type[ast.AST], Callable[[float, float], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+
+
+class QuantityError(ValueError):
+    """A text is no number, or its unit is of another kind."""
+
+
+def quantity(value: object, unit: str) -> float:
+    """A number in `unit`.
+
+    Parameters
+    ----------
+    value : int, float or str
+        A number is in `unit` already; a text may end in another unit of its kind.
+    unit : str
+        Such as ``rad`` or ``m/s^2``.
+
+    Raises
+    ------
+    QuantityError
+        When it is no finite number, or of another kind.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise QuantityError(f"{value!r} is no number: write a number in {unit}, or a text such as "
+                            f'"1/2 {unit}"')  # fmt: skip
+    if not isinstance(value, str):
+        number = float(value) if abs(value) < 1e308 else inf
+    else:
+        number = _written(value, unit)
+    if not isfinite(number):
+        raise QuantityError(f"{str(value)[:20]} is not finite")
+    return number
+
+
+def _written(text: str, unit: str) -> float:
+    if len(text) > LONGEST:
+        raise QuantityError(f"{text[:20]!r}... is longer than a number: {len(text)} characters")
+    text = text.strip()
+    found = UNIT.search(text)
+    factor = 1.0
+    if found and found[1] != "pi":
+        scale, kind = _unit(found[1])
+        own, own_kind = _unit(unit)
+        if kind != own_kind:
+            raise QuantityError(f"{text!r} is not in {unit} nor in a unit of that kind")
+        factor, text = scale / own, text[: found.start()].strip()
+    try:
+        return factor * _value(ast.parse(text, mode="eval").body)
+    except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
+        power = " (a power is written **)" if "^" in text else ""
+        known = ", ".join(name for name in UNITS if name != "1")
+        raise QuantityError(
+            f"{text!r} is no number{power}: use digits, pi, + - * / ** and brackets, and then one "
+            f"of the units {known}, or their products such as m/s^2"
+        ) from error
+    except ArithmeticError as error:
+        raise QuantityError(f"{text!r} has no value: {error}") from error
+
+
+def _value(node: ast.AST) -> float:
+    match node:
+        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+            return float(number)
+        case ast.Name(id="pi"):
+            return pi
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return -_value(operand)
+        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+            return _value(operand)
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+            result = OPERATORS[type(op)](_value(left), _value(right))
+            if isinstance(result, complex):
+                raise ValueError("a root of a negative number")
+            return result
+    raise ValueError(f"{type(node).__name__} is not allowed")
+
+
+def _unit(text: str) -> tuple[float, Kind]:
+    """How many of the first in kind, and the kind."""
+    scale = 1.0
+    kind: Kind = (0, 0, 0, 0)
+    for sign, name, power in PART.findall(text):
+        if name not in UNITS:
+            raise QuantityError(f"unit {name!r} is not known: use {', '.join(UNITS)}")
+        size, powers = UNITS[name]
+        count = int(power or 1) * (-1 if sign == "/" else 1)
+        scale *= size**count
+        kind = tuple(a + count * b for a, b in zip(kind, powers, strict=True))
+    return scale, kind

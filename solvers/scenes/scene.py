@@ -1,0 +1,81 @@
+"""A scene: what moves, from where, for how long, and what is asked of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+
+#: What else can be asked for, beside components of the state.
+ENERGY = "energy"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is there, and what is asked.
+
+    Attributes
+    ----------
+    name, title : str
+        What to call it.
+    label : str
+        What to call this run beside others.
+    module : module
+        The generated equations of its system.
+    params : tuple of float
+        In the order of ``module.PARAMETERS``; 0 for one that is absent.
+    y0 : tuple of float
+        Coordinates and velocities at time 0, in the order of ``module.STATE``.
+    duration : float
+        In s.
+    accuracy : float
+        How large the error of what is asked for may be at any time: in rad, rad/s, m, m/s.
+    outputs : tuple of str
+        What is asked for: components of the state, and ``energy``.
+    samples : int
+        At how many times, evenly over the duration, both ends included.
+    model : str or None
+        ``full`` for the full equations; by default the smallest model that is good enough.
+    method, form : str or None
+        Method of integration and form of the equations; by default the cheapest.
+    step : float or None
+        A fixed step in s instead of one that is controlled.
+    code : {"general", "specialised"} or None
+        Whether to integrate with code in which the parameters are folded in; by default
+        when that pays.
+    pictures : tuple of str
+        What to draw, each as ``theta1, theta2 over t``, or ``path`` or ``energy``; by
+        default all that there is.
+    note : str
+        What it shows, and how sure that is.
+    beside : tuple of Scene
+        What to show beside it.
+    """
+
+    name: str
+    title: str
+    label: str
+    module: ModuleType
+    params: tuple[float, ...]
+    y0: tuple[float, ...]
+    duration: float
+    accuracy: float = 1e-6
+    outputs: tuple[str, ...] = ()
+    samples: int = 501
+    model: str | None = None
+    method: str | None = None
+    form: str | None = None
+    step: float | None = None
+    code: str | None = None
+    pictures: tuple[str, ...] = ()
+    note: str = ""
+    beside: tuple[Scene, ...] = ()
+
+    @property
+    def wanted(self) -> tuple[int, ...]:
+        """Which components of the state are asked for."""
+        return tuple(k for k, name in enumerate(self.module.STATE) if name in self.outputs)
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether it says how to integrate, so that no smaller model will do."""
+        return bool(self.model or self.method or self.form or self.step)

@@ -1,0 +1,104 @@
+"""Answers as text, as JSON and as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import StringIO
+from typing import Any
+
+import numpy as np
+
+from solvers.models.full import Full
+from solvers.scenes.answer import Answer
+
+
+def told(answer: Answer) -> Iterator[str]:
+    """What was chosen, why, and where the motion ends."""
+    scene, model = answer.scene, answer.choice.model
+    yield f"{scene.label}, {scene.duration:g} s"
+    yield f"model: {model.name}{how(answer)}"
+    yield f"  {model.why}"
+    for name, reason in answer.choice.declined.items():
+        yield f"  not {name}: {reason}"
+    met = "" if answer.is_met else ": NOT MET, since the way is named in the scene"
+    yield f"error estimate {model.error_estimate:.1e}, asked {scene.accuracy:.0e}{met}"
+    digits = trusted(answer)
+    yield "final state: " + ", ".join(
+        f"{name} = {digits(value)} {scene.module.UNITS[name]}"
+        for name, value in answer.final_state.items()
+    )
+    if answer.energy is not None:
+        yield f"energy: {answer.energy[0]:.9g} J, changes by {np.ptp(answer.energy):.1e} J"
+    yield cost(answer)
+
+
+def trusted(answer: Answer) -> Any:
+    """A function that writes a number with the digits that its error leaves."""
+    error = max(answer.choice.model.error_estimate, 1e-16)
+    decimals = int(np.clip(np.floor(-np.log10(error)), 0, 15)) if np.isfinite(error) else 0
+    return lambda value: f"{value:.{decimals}f}"
+
+
+def how(answer: Answer) -> str:
+    """Method and form, if it was integrated."""
+    model = answer.choice.model
+    if not isinstance(model, Full):
+        return ""
+    form = f", {answer.form} form" if answer.form else ""
+    setting = "digits" if model.way.is_series else "h / s" if answer.scene.step else "tolerance"
+    code = ", specialised code" if not model.asked.params else ""
+    return f" by {answer.method}{form}, {setting} {model.setting:.3g}{code}"
+
+
+def cost(answer: Answer) -> str:
+    """What the model takes, beside the full equations."""
+    took = f"cost: {_time(answer.work_seconds)}, chosen in {_time(answer.choosing_seconds)}"
+    if isinstance(answer.choice.model, Full):
+        return took
+    return (
+        f"{took}; the full equations take about {_time(answer.full_seconds)}, "
+        f"{answer.full_seconds / answer.work_seconds:.2g} times as long"
+    )
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds * 1e6:.3g} us" if seconds < 1e-3 else f"{seconds * 1e3:.3g} ms"
+
+
+def figures(answer: Answer) -> dict[str, Any]:
+    """The same for programs."""
+    model = answer.choice.model
+    return {
+        "scene": answer.scene.name,
+        "title": answer.scene.title,
+        "label": answer.scene.label,
+        "model": model.name,
+        "method": answer.method,
+        "form": answer.form,
+        "setting": model.setting if isinstance(model, Full) else None,
+        "code": "specialised" if isinstance(model, Full) and not model.asked.params else "general",
+        "final_state": answer.final_state,
+        "duration": answer.scene.duration,
+        "accuracy_asked": answer.scene.accuracy,
+        "error_estimate": model.error_estimate,
+        "accuracy_met": answer.is_met,
+        "why": model.why,
+        "declined": answer.choice.declined,
+        "choosing_seconds": answer.choosing_seconds,
+        "work_seconds": answer.work_seconds,
+        "full_seconds": answer.full_seconds,
+    }
+
+
+def table(answer: Answer) -> str:
+    """Times and what was asked for, as comma-separated values with units in the first line."""
+    module = answer.scene.module
+    columns = {"t": answer.t, **dict(zip(module.STATE, answer.y, strict=True))}
+    units = {"t": "s", **module.UNITS, "energy": "J"}
+    if answer.energy is not None:
+        columns["energy"] = answer.energy
+    kept = ["t", *(name for name in columns if name in answer.scene.outputs)]
+    text = StringIO()
+    text.write(",".join(f"{name} [{units[name]}]" for name in kept) + "\n")
+    np.savetxt(text, np.array([columns[name] for name in kept]).T, fmt="%.17g", delimiter=",")
+    return text.getvalue()

@@ -1,0 +1,318 @@
+"""Models of a motion: each is exact about its own domain, its error below its estimate."""
+
+from collections import Counter
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+import generated.double_pendulum as dp
+import generated.elastic_pendulum as ep
+import generated.single_pendulum as sp
+from solvers.cli import generated_module
+from solvers.horizon import beyond_horizon
+from solvers.integration import integrate
+from solvers.models import full as full_equations
+from solvers.models import quadrature as by_quadrature
+from solvers.models import rest as at_rest
+from solvers.models import small as by_modes
+from solvers.models.full import NotAccurateError, full
+from solvers.models.ladder import RUNGS, Choice, choice
+from solvers.models.light import light
+from solvers.models.model import Asked, OutsideDomainError
+from solvers.models.pendulum import pendulum
+from solvers.models.quadrature import orbit, quadrature
+from solvers.models.rest import rest
+from solvers.models.small import small
+from solvers.models.way import Way, cheapest, mode_spread
+from solvers.references.taylor import taylor
+from solvers.scenes.scene import Scene
+from solvers.scenes.shipped import find
+
+Array = np.ndarray
+
+
+def asked(module, y0, duration, params=None, wanted=None) -> Asked:
+    params = tuple(params or module.DEFAULTS)
+    return Asked(module, params, tuple(y0), duration, wanted or tuple(range(len(y0))))
+
+
+def chosen(scene: Scene) -> Choice:
+    return choice(scene, lambda asked, _: asked, lambda _: None)
+
+
+def truth(motion: Asked, times: Array) -> Array:
+    return taylor(motion.module, motion.params, motion.y0, times, 24)
+
+
+def worst(motion: Asked, model) -> float:
+    """The largest error of what is wanted, beside Taylor series."""
+    apart = np.abs(model.states(motion.looks) - truth(motion, motion.looks))
+    return float(apart[:, list(motion.wanted)].max())
+
+
+def random_scene(random: np.random.Generator) -> Scene:
+    """A scene of any kind: at rest or nearly, small, without gravity, with a light bob, or wild."""
+    module = (dp, sp, ep)[random.integers(3)]
+    n = len(module.COORDINATES)
+    params = np.array(module.DEFAULTS) * np.exp(random.uniform(-1, 1, len(module.PARAMETERS)))
+    y0, outputs = np.zeros(2 * n), module.STATE
+    kind = random.choice(["still", "small", "weightless", "light", "wild"])
+    duration = 10 ** random.uniform(-1, 1.3)
+    if kind == "weightless":
+        params[-1] = 0.0
+    y0[:n] = module.equilibrium(params)
+    if kind in ("still", "small"):
+        size = 10 ** random.uniform(-9, -1)
+        y0[:n] += size * random.normal(size=n)
+        if kind == "small":
+            y0[n:] = size * random.normal(size=n)
+            duration = 10 ** random.uniform(-1, 2.5)
+        elif module is not ep:
+            y0[:n] += pi * random.integers(0, 2, n)  # upright, or nearly
+    else:
+        y0[:n] += random.uniform(-0.5, 0.5, n) * y0[0] if module is ep else random.uniform(-3, 3, n)
+        y0[n:] = 2 * random.normal(size=n) * random.integers(0, 2)
+    if kind == "light" and module is dp:
+        params[1] = 10 ** random.uniform(-12, -5)
+        outputs = ("theta1", "theta1_dot")
+    return Scene(
+        "random", "random", "random", module, tuple(params), tuple(y0), duration,
+        accuracy=10 ** random.uniform(-10, -2), outputs=outputs,
+    )  # fmt: skip
+
+
+def judged(scene: Scene) -> tuple[str, float, float]:
+    """Model, error in parts of what was asked, and in parts of the estimate."""
+    found = chosen(scene).model
+    motion = Asked(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
+    with beyond_horizon():
+        fine = integrate(
+            scene.module, (0, scene.duration), scene.y0, scene.params, method="verner98",
+            rtol=3e-14, atol=1e-16, t_eval=motion.looks, max_steps=10**7,
+        ).y.T  # fmt: skip
+    error = np.abs(found.states(motion.looks) - fine)[:, list(scene.wanted)].max()
+    if error > scene.accuracy:  # or it is the reference that is wrong
+        error = worst(motion, found)
+    return found.name, error / scene.accuracy, error / max(found.error_estimate, 1e-13)
+
+
+def test_over_random_scenes_the_error_stays_below_what_was_asked() -> None:
+    random = np.random.default_rng(5)
+    taken: Counter[str] = Counter()
+    for _ in range(150):
+        scene = random_scene(random)
+        model, error, _ = judged(scene)
+        assert error <= 1, (model, scene)
+        taken[model] += 1
+    assert set(taken) == {"rest", "normal modes", "pendulum", "quadrature", "full equations"}
+    assert min(taken.values()) >= 3
+
+
+def test_rest_is_an_equilibrium_and_what_grows_from_it() -> None:
+    hanging = rest(asked(dp, (0, 0, 0, 0), 1000))
+    assert hanging.error_estimate == 0
+    assert hanging.states(np.array([0.0, 7.0])).tolist() == [[0] * 4] * 2
+    # the number next to pi is not upright: that is rest for a while, and no longer
+    for duration, least, most in ((1, 1e-16, 1e-13), (5, 1e-13, 1e-10), (14, 1e-4, 1e-1)):
+        motion = asked(sp, (pi, 0.0), duration)
+        found = rest(motion)
+        assert least < found.error_estimate < most
+        assert worst(motion, found) <= found.error_estimate < 40 * worst(motion, found)
+    with pytest.raises(OutsideDomainError, match="moves away"):
+        rest(asked(sp, (pi, 0.0), 40))
+    with pytest.raises(OutsideDomainError, match="moves at the beginning"):
+        rest(asked(sp, (0.0, 1e-9), 1))
+
+
+def test_small_motion_is_its_modes_up_to_the_nonlinear_terms() -> None:
+    for module, shift in ((sp, [0.01]), (dp, [0.004, -0.001]), (ep, [0.001, 0.004])):
+        n = len(shift)
+        start = np.array([*module.equilibrium(module.DEFAULTS), *[0.0] * n])
+        start[:n] += shift
+        motion = asked(module, start.tolist(), 20.0)
+        found = small(motion)
+        error = worst(motion, found)
+        # a bound, and no loose one: within a factor of ten for pendulums
+        assert error < found.error_estimate < (10 if module is not ep else 1000) * error
+    with pytest.raises(OutsideDomainError, match="not small"):
+        small(asked(dp, (1.0, 1.0, 0, 0), 20.0))
+    with pytest.raises(OutsideDomainError, match="does not oscillate"):
+        small(asked(sp, (0.1, 0), 1.0, params=(1, 2, 0.0)))
+
+
+@pytest.mark.parametrize(("params", "y0", "duration"), [
+    ((1, 2, 9.81), (2.0, 0.0), 60),
+    ((1, 2, 9.81), (0.0, 10.0), 60),  # over and over
+    ((1, 1, 9.0), (0.0, 6.0), 5),  # on the separatrix
+    ((1, 1, 9.0), (0.0, 6.0 - 1e-12), 5),
+    ((1, 2, -9.81), (pi - 2.0, 0.5), 60),  # upside down
+])  # fmt: skip
+def test_a_single_pendulum_has_a_closed_form(params, y0, duration) -> None:
+    motion = asked(sp, y0, duration, params)
+    found = pendulum(motion)
+    assert found.error_estimate < 1e-6
+    assert worst(motion, found) <= found.error_estimate
+
+
+def test_near_the_separatrix_rounding_is_not_taken_lightly() -> None:
+    for duration in (5, 8, 10, 12):
+        motion = asked(sp, (0.0, 6.0 - 1e-12), duration, (1, 1, 9.0))
+        found = pendulum(motion)
+        assert worst(motion, found) <= found.error_estimate
+    assert found.error_estimate > 1e-3
+
+
+def test_what_is_absent_leaves_a_single_pendulum() -> None:
+    for absent, length in (((1, 0, 2, 2, 9.81), 2.0), ((1, 1, 2, 0, 9.81), 2.0)):
+        found = pendulum(asked(dp, (2.0, 1.0, 0.5, 0.0), 10, absent, (0, 2)))
+        single = asked(sp, (2.0, 0.5), 10, (1, length, 9.81))
+        states = found.states(single.looks)
+        assert np.abs(states[:, [0, 2]] - truth(single, single.looks)).max() < 1e-12
+        assert np.isnan(states[:, [1, 3]]).all()
+    with pytest.raises(OutsideDomainError, match="theta2 moves no mass"):
+        rest(asked(dp, (0, 0, 0, 0), 1, (1, 0, 2, 2, 9.81)))
+    with pytest.raises(OutsideDomainError, match="2 coordinates move"):
+        pendulum(asked(dp, (2.0, 1.0, 0, 0), 1))
+
+
+def test_a_light_bob_does_not_act_but_a_heavy_one_does() -> None:
+    params = (1.0, 1e-9, 2.0, 2.0, 9.81)
+    motion = asked(dp, (1.5, 0.3, 0, 1), 3, params, (0, 2))
+    found = light(motion)
+    assert 0 < worst(motion, found) < found.error_estimate < 1e-3
+    heavy = light(asked(dp, (1.5, 0.3, 0, 1), 3, (1.0, 1e-2, 2.0, 2.0, 9.81), (0, 2)))
+    assert heavy.error_estimate > 1
+    with pytest.raises(OutsideDomainError, match="2 of 2 coordinates are wanted"):
+        light(asked(dp, (1.5, 0.3, 0, 1), 3, params))
+
+
+@pytest.mark.parametrize(("module", "params", "y0"), [
+    (dp, (1, 1, 2, 2, 0), (0, 1.5, 2, -3)),  # the shape turns over
+    (dp, (1, 0.3, 2, 1, 0), (0, 0.5, 2, 2.5)),  # it swings
+    (dp, (1, 0.3, 2, 1, 0), (0.4, 0.5, 0, 2.5)),
+    (ep, (1, 40, 0.75, 0), (1.0, 0.3, 0.5, 2.0)),
+    (ep, (1, 40, 0.75, 0), (1.0, 0.3, 0.0, 2.0)),  # begins at a turning point
+    (sp, (1, 2, 9.81), (1.0, 2.0)),
+])  # fmt: skip
+def test_one_degree_of_freedom_is_a_quadrature(module, params, y0) -> None:
+    motion = asked(module, y0, 30.0, params)
+    found = quadrature(motion)
+    assert found.error_estimate < 1e-8
+    assert worst(motion, found) <= found.error_estimate
+    # at any time, and far away at no further cost
+    later = asked(module, y0, 1000.0, params)
+    end = quadrature(later).states(np.array([1000.0]))
+    with beyond_horizon():
+        run = integrate(module, (0, 1000), y0, params, method="verner98", rtol=1e-13, atol=1e-14)
+    assert np.abs(end - run.y[:, -1]).max() < 1e-6
+
+
+def test_quadrature_knows_where_it_ends() -> None:
+    with pytest.raises(OutsideDomainError, match="turning the whole system changes its energy"):
+        quadrature(asked(dp, (0, 1, 2, 3), 1))
+    with pytest.raises(OutsideDomainError, match="no Fourier series"):  # on the separatrix
+        quadrature(asked(dp, (0, pi / 2, 2, -1), 1, (1, 1, 2, 2, 0)))
+    with pytest.raises(OutsideDomainError, match="rests"):
+        quadrature(asked(dp, (0, 1, 0, 0), 1, (1, 1, 2, 2, 0)))
+    with pytest.raises(OutsideDomainError, match="runs into a singular place"):
+        quadrature(asked(ep, (1.0, 0, 3.0, 0), 1, (1, 1e-9, 1, 0)))
+
+
+def test_a_smaller_series_is_less_accurate_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    motion = asked(dp, (0, 1.5, 2, -1.3), 30.0, (1, 1, 2, 2, 0))
+    fine = quadrature(motion)
+    monkeypatch.setattr(by_quadrature, "END", 1e-3)
+    monkeypatch.setattr(by_quadrature, "FEWEST", 8)
+    rough = quadrature(motion)
+    assert len(rough.orbit.time.terms) < len(fine.orbit.time.terms)
+    assert 1e-7 < worst(motion, rough) <= rough.error_estimate
+
+
+def test_estimates_are_not_for_free(monkeypatch: pytest.MonkeyPatch) -> None:
+    # without the defect's propagation the small model would claim too much
+    motion = asked(dp, (0.005, -0.002, 0, 0), 20.0)
+    monkeypatch.setattr(by_modes, "MARGIN", 0.0)
+    assert small(motion).error_estimate < worst(motion, small(motion))
+    motion = asked(sp, (pi, 0.0), 14)
+    monkeypatch.setattr(at_rest, "expm", lambda matrix: np.eye(len(matrix)) + matrix)
+    assert rest(motion).error_estimate < worst(motion, rest(motion))
+
+
+def test_the_full_equations_are_checked_by_another_method() -> None:
+    scene = find("report", generated_module)
+    motion = Asked(dp, scene.params, scene.y0, scene.duration, scene.wanted)
+    found = chosen(scene).model
+    error = worst(motion, found)
+    assert error <= found.error_estimate <= scene.accuracy
+    assert found.error_estimate < 100 * error
+    # a check of the run by itself would find nothing
+    way = Way("verner98", None, "")
+    assert full(motion, 1e-3, way, motion, 1e-6).error_estimate > 1e-9
+    assert set(full_equations.CHECKS) == {"dop853", "verner98"}
+
+
+def test_where_numbers_have_too_few_digits_series_have_more() -> None:
+    scene = find("long", generated_module)
+    found = chosen(scene)
+    assert found.model.way.method == "taylor"
+    assert "at best where 1e-06 was asked" in found.declined["ordinary numbers"]
+    end = found.model.states(np.array([20.0]))[0]
+    fine = taylor(dp, scene.params, scene.y0, [0, 20], 60)[-1]
+    assert np.abs(end - fine).max() <= found.model.error_estimate < 1e-13
+    with pytest.raises(NotAccurateError, match="dop853 comes to"):
+        chosen(replace(scene, method="dop853"))
+
+
+def test_the_choice_can_be_named_instead() -> None:
+    still = find("rest", generated_module)
+    assert chosen(still).model.name == "rest"
+    assert chosen(replace(still, model="full")).model.name == "full equations"
+    named = chosen(replace(find("report", generated_module), method="rk4", step=0.01)).model
+    assert (named.way.method, named.setting) == ("rk4", 0.01)
+    assert worst(named.asked, named) < named.error_estimate < 3 * worst(named.asked, named)
+    fixed = chosen(replace(find("report", generated_module), method="gauss3", step=None,
+                           accuracy=1e-6)).model  # fmt: skip
+    assert fixed.error_estimate <= 1e-6
+    absent = replace(find("one_bob", generated_module), model="full")
+    with pytest.raises(OutsideDomainError, match="theta2 moves no mass"):
+        chosen(absent)
+
+
+def test_every_rung_is_taken_by_a_scene_that_ships() -> None:
+    expected = {
+        "rest": "rest", "upright": "pendulum", "tremor": "normal modes", "single": "pendulum",
+        "separatrix": "pendulum", "rotation": "pendulum", "one_bob": "pendulum",
+        "flea": "pendulum", "weightless": "quadrature", "report": "full equations",
+    }  # fmt: skip
+    for name, model in expected.items():
+        found = chosen(find(name, generated_module))
+        assert found.model.name == model
+        # each smaller model says why not
+        order = [*RUNGS, "full equations"]
+        assert [*found.declined] == order[: len(found.declined)]
+
+
+def test_the_cheapest_way_is_what_was_measured() -> None:
+    way = cheapest(dp, dp.DEFAULTS, 1e-9)
+    assert (way.method, way.form) == ("verner87", "rational")
+    assert "as measured in scene 'report'" in way.why
+    assert way.seconds > 0
+    assert mode_spread(dp, dp.DEFAULTS) == pytest.approx(1 + 2**0.5)
+    # where one mode is three hundred times as fast, implicit methods win for large errors
+    stiff = find("stiff_spring", generated_module)
+    assert mode_spread(ep, stiff.params) == pytest.approx(319, rel=0.01)
+    assert cheapest(ep, stiff.params, 1e-2).method.startswith(("gauss", "radau"))
+    assert cheapest(ep, ep.DEFAULTS, 1e-2).method not in ("gauss3", "radau3")
+
+
+def test_an_orbit_is_periodic_but_for_its_turn() -> None:
+    motion = asked(dp, (0.0, 0.5, 2, 2.5), 1.0, (1, 0.3, 2, 1, 0))
+    found = orbit(quadrature(motion).orbit.form)
+    period = 2 * pi * found.time.mean
+    first, second = found.states(np.array([0.3, 0.3 + 7 * period]))
+    turned = second - first
+    assert turned[2:] == pytest.approx([0, 0], abs=1e-10)
+    assert turned[0] == pytest.approx(turned[1], abs=1e-10)
+    assert abs(turned[0]) > 1

@@ -1,0 +1,557 @@
+"""The page plays what it was given, in a real browser, and does nothing else."""
+
+import json
+import os
+import re
+import shutil
+import threading
+from base64 import b64decode
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from io import BytesIO
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import generated.double_pendulum as dp
+from solvers.integration import integrate
+from solvers.page import page
+from solvers.page.page import write_page
+from solvers.page.track import MOST_SAMPLES, Track
+
+FLAGS = (
+    "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
+    "--disable-background-networking --disable-component-update"
+).split()
+BOBS, ROD = ((0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00)), (0x4A, 0x52, 0x59)
+# runs take the colours after those of their masses
+AFTER_ONE, AFTER_TWO = (BOBS[1], (0x00, 0x9E, 0x73)), ((0x00, 0x9E, 0x73), (0xCC, 0x79, 0xA7))
+PANELS, STRIP = "#panels canvas", "#strip canvas"
+HOSTILE = (
+    "</script><script>document.title=1</script><img src=x onerror=document.title=2> $note &lt;"
+)
+
+
+def run(method: str, h: float | None = None) -> Track:
+    motion = integrate(dp, (0, 5), (pi / 2, pi, 0, 0), dp.DEFAULTS, method=method, h=h,
+                       t_eval=np.linspace(0, 5, 301), energy=True)  # fmt: skip
+    assert motion.energy is not None
+    places = np.asarray(dp.positions_many(motion.y, dp.DEFAULTS))
+    return Track(method, motion.t, places, ((-1, 0), (0, 1)), (),
+                 motion.energy / motion.energy[0] - 1)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def tracks() -> tuple[Track, Track]:
+    return run("verner87"), run("rk1", 0.01)
+
+
+@pytest.fixture(scope="module")
+def slow_tracks(tracks: tuple[Track, Track]) -> list[Track]:
+    """Runs of 100 s, which do not end while a busy machine looks at them."""
+    return [replace(track, t=20 * track.t) for track in tracks]
+
+
+def at_rest(place: tuple[float, float] = (0.3, -1.0), error: Any = 1e-9, end: float = 5) -> Track:
+    n = 501
+    places = np.tile(np.reshape(place, (1, 2, 1)), n)
+    return Track("at rest", np.linspace(0, end, n), places, (), ((-1, 0),), np.full(n, error))
+
+
+class Player:
+    """A page in a browser, and what a reader sees and does there."""
+
+    def __init__(self, driver: Any, path: Path) -> None:
+        self.driver, self.path = driver, path
+
+    def open(self, tracks: Sequence[Track], *, text: str = "", size: tuple[int, int] = (1280, 800),
+             density: int = 1, playing: bool = False, scheme: str = "light") -> None:  # fmt: skip
+        write_page(self.path, text, text, tracks)
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": size[0], "height": size[1], "deviceScaleFactor": density, "mobile": False,
+        })  # fmt: skip
+        motion = "no-preference" if playing else "reduce"
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
+            {"name": "prefers-reduced-motion", "value": motion},
+            {"name": "prefers-color-scheme", "value": scheme},
+        ]})  # fmt: skip
+        self.driver.get(self.path.as_uri())
+        self.settle()
+
+    def settle(self) -> None:
+        self.driver.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))"
+        )
+
+    def js(self, expression: str) -> Any:
+        return self.driver.execute_script(f"return {expression}")
+
+    def find(self, selector: str) -> Any:
+        return self.driver.find_element("css selector", selector)
+
+    def texts(self, selector: str) -> list[str]:
+        return [found.text for found in self.driver.find_elements("css selector", selector)]
+
+    @property
+    def time(self) -> float:
+        return float(self.js("document.documentElement.dataset.time"))
+
+    @property
+    def playing(self) -> bool:
+        return {"true": True, "false": False}[self.js("document.documentElement.dataset.playing")]
+
+    def press(self, keys: str) -> None:
+        from selenium.webdriver import ActionChains
+
+        ActionChains(self.driver).send_keys(keys).perform()
+        self.settle()
+
+    def drag(self, selector: str, start: float, end: float, kind: str = "mouse") -> None:
+        """From one pixel column of an element to another one, on the way past its middle."""
+        from selenium.webdriver.common.actions.action_builder import ActionBuilder
+        from selenium.webdriver.common.actions.pointer_input import PointerInput
+
+        element = self.find(selector)
+        middle = int(element.rect["width"] // 2)  # the driver counts from there
+        actions = ActionBuilder(self.driver, mouse=PointerInput(kind, kind), duration=20)
+        pointer = actions.pointer_action
+        pointer.move_to(element, round(start) - middle, 0).pointer_down()
+        pointer.move_to(element, 0, 0).move_to(element, round(end) - middle, 0).pointer_up()
+        actions.perform()
+        self.settle()
+
+    def pixels(self, selector: str, number: int = 0) -> np.ndarray:
+        """Colours of a canvas, of shape (rows, columns, 3)."""
+        url = self.js(f"document.querySelectorAll('{selector}')[{number}].toDataURL()")
+        return np.asarray(Image.open(BytesIO(b64decode(url.partition(",")[2]))).convert("RGB"))
+
+
+@pytest.fixture(scope="module")
+def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    webdriver = pytest.importorskip("selenium.webdriver", reason="needs: pip install selenium")
+    programs = shutil.which("chromium"), shutil.which("chromedriver")
+    if None in programs:
+        pytest.skip("needs Chromium: apt-get install chromium chromium-driver")
+    options = webdriver.ChromeOptions()
+    options.binary_location = programs[0]
+    profile = tmp_path_factory.mktemp("profile")
+    for flag in (*FLAGS, f"--user-data-dir={profile}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    service = webdriver.ChromeService(programs[1])
+    driver = webdriver.Chrome(options=options, service=service)
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture
+def player(driver: Any, tmp_path: Path) -> Iterator[Player]:
+    driver.get("about:blank")
+    driver.get_log("browser")
+    yield Player(driver, tmp_path / "page.html")
+    assert driver.get_log("browser") == []  # after every test
+
+
+def fitted(player: Player, tracks: Sequence[Track]) -> tuple[np.ndarray, float]:
+    """Scale and origin in pixels, from bobs at four times, and the farthest off bob's distance.
+
+    Nothing is known of the page's own scale: one scale and one origin must fit all bobs on
+    all canvases, with x to the right and y up.
+    """
+    rows: list[tuple[float, float, float]] = []
+    seen: list[float] = []
+    width = player.find("#scrub").rect["width"]
+    for part in (0.05, 0.31, 0.62, 0.9):
+        player.drag("#scrub", 0.5 * width, part * width)
+        assert player.time == pytest.approx(part * 5, abs=0.3)
+        for number, track in enumerate(tracks):
+            for mass, colour in zip(track.positions, BOBS, strict=True):
+                x, y = (np.interp(player.time, track.t, axis) for axis in mass)
+                rows += [(x, 1, 0), (-y, 0, 1)]
+                where = np.nonzero((player.pixels(PANELS, number) == colour).all(-1))
+                assert len(where[0]) > 30, "the colour is not there"
+                seen += [float(np.median(found)) for found in where[::-1]]
+    fit = np.linalg.lstsq(np.array(rows), np.array(seen), rcond=None)[0]
+    return fit, float(np.abs(rows @ fit - seen).max())
+
+
+@pytest.mark.parametrize(("width", "density"), [(1280, 1), (390, 3)])
+def test_bobs_are_where_the_data_says_on_any_screen(
+    width: int, density: int, player: Player, tracks: tuple[Track, Track]
+) -> None:
+    player.open(tracks, size=(width, 800), density=density)
+    (scale, *pivot), off = fitted(player, tracks)
+    assert off < density
+    assert scale > 35 * density
+    column, row = np.round(pivot).astype(int)
+    for number in range(2):
+        assert (player.pixels(PANELS, number)[row, column] == ROD).all()
+
+
+def mutated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str, old: str, new: str) -> None:
+    """Let pages be written with a mistake in one of the player's sources."""
+    sources = Path(shutil.copytree(page.SOURCES, tmp_path / "sources"))
+    text = (sources / name).read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    (sources / name).write_text(text.replace(old, new), encoding="utf-8")
+    monkeypatch.setattr(page, "SOURCES", sources)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("panel.js", "this.middle[1] - this.scale", "this.middle[1] + this.scale"),
+        ("panel.js", "this.scale * (x -", "1.1 * this.scale * (x -"),
+        ("motion.js", "(time - t[k]) / (t[k + 1] - t[k])", "1"),
+    ],
+)
+def test_a_bob_elsewhere_is_noticed(
+    name: str, old: str, new: str, player: Player, tracks: tuple[Track, Track],
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
+) -> None:  # fmt: skip
+    mutated(monkeypatch, tmp_path, name, old, new)
+    player.open(tracks)
+    assert fitted(player, tracks)[1] > 2
+
+
+def pace(player: Player) -> float:
+    """Seconds of motion a second, from the beginning, between two of the browser's frames."""
+    first, last = player.driver.execute_async_script("""
+        const [done, frames] = [arguments[0], []];
+        const look = (now) => {
+          frames.push([now / 1000, Number(document.documentElement.dataset.time)]);
+          const start = frames[3]; // by then the clock runs
+          if (frames.length > 8 && now / 1000 > start[0] + 0.5) done([start, frames.at(-1)]);
+          else requestAnimationFrame(look);
+        };
+        document.getElementById("play").click();
+        requestAnimationFrame(look);
+    """)
+    return (last[1] - first[1]) / (last[0] - first[0])
+
+
+@pytest.mark.parametrize("speed", [0.25, 1, 4])
+def test_it_plays_in_real_time_or_as_much_faster_as_asked(
+    speed: float, player: Player, slow_tracks: list[Track]
+) -> None:
+    player.open(slow_tracks)
+    player.find(f"#speed [value='{speed}']").click()
+    assert pace(player) == pytest.approx(speed, rel=0.2)
+
+
+def test_a_clock_of_twice_the_speed_is_noticed(
+    player: Player, slow_tracks: list[Track], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    mutated(monkeypatch, tmp_path, "player.js", "/ 1000", "/ 500")
+    player.open(slow_tracks)
+    assert pace(player) == pytest.approx(2, rel=0.2)
+
+
+def test_it_plays_at_once_and_pause_holds_it(player: Player, slow_tracks: list[Track]) -> None:
+    player.open(slow_tracks, playing=True)
+    assert player.playing
+    assert 0 < player.time < 100
+    player.find("#play").click()
+    player.settle()
+    assert not player.playing
+    assert player.find("#play").text == "Play"
+    held, seen = player.time, player.pixels(PANELS)
+    assert player.find("#time").text == f"{held:.3f} s of 100 s"
+    player.driver.execute_async_script("setTimeout(arguments[0], 200)")
+    assert player.time == held
+    assert (player.pixels(PANELS) == seen).all()
+
+
+def test_who_wants_less_motion_gets_it_paused(player: Player, tracks: tuple[Track, Track]) -> None:
+    player.open(tracks)
+    assert (player.playing, player.time) == (False, 0)
+
+
+def test_it_stops_at_the_end_and_begins_again(player: Player) -> None:
+    player.open([at_rest(end=1)])
+    player.find("#speed [value='4']").click()
+    player.find("#play").click()
+    player.driver.execute_async_script("""
+        const look = () => document.documentElement.dataset.playing === "false"
+          ? arguments[0]() : requestAnimationFrame(look);
+        requestAnimationFrame(look);
+    """)
+    assert player.time == 1
+    player.find("#speed [value='0.1']").click()
+    player.find("#play").click()
+    player.settle()
+    assert player.playing
+    assert player.time < 1
+
+
+def test_the_keyboard_plays_pauses_and_steps(player: Player, slow_tracks: list[Track]) -> None:
+    right, left, tab = "\ue014", "\ue012", "\ue004"
+    player.open(slow_tracks)
+    player.press(right * 3 + left)
+    assert player.time == pytest.approx(0.04)
+    player.press(left * 3)
+    assert player.time == 0
+    player.press(" ")
+    assert player.playing
+    player.press(" ")
+    assert not player.playing
+    held = player.time
+    player.press(tab)
+    assert player.js("document.activeElement.id") == "play"
+    player.press(" ")
+    assert player.playing
+    player.press(right)
+    assert not player.playing
+    assert player.time > held
+    held = player.time
+    player.press(tab + right)
+    assert player.js("document.activeElement.id") == "scrub"
+    assert player.time == pytest.approx(held + 0.02)
+
+
+@pytest.mark.parametrize("kind", ["mouse", "touch"])
+def test_the_chart_of_errors_has_a_logarithmic_scale_and_leads_to_any_time(
+    kind: str, player: Player
+) -> None:
+    jump = np.where(np.linspace(0, 5, 501) < 3.7, 1e-8, 1e-2)
+    player.open([at_rest(error=jump), at_rest(error=-1e-5)])
+    first, second = ((player.pixels(STRIP) == colour).all(-1) for colour in AFTER_ONE)
+    low, high = (np.median(np.nonzero(part)[0]) for part in (first[:, 100:600], first[:, 1000:]))
+    assert np.median(np.nonzero(second)[0]) == pytest.approx((low + high) / 2, abs=1)
+    assert low - high > 30
+    column = np.argmax(first.sum(0))  # that of the jump
+    player.drag(STRIP, 200, column + 4, kind)
+    assert player.time == pytest.approx(3.7, abs=0.03)
+    left = player.js("document.getElementById('cursor').getBoundingClientRect().x")
+    assert left + 1 == pytest.approx(column + 4 + player.find(STRIP).rect["x"], abs=1)
+    assert player.texts("#legend li") == ["at rest: 1.0 × 10⁻²", "at rest: −1.0 × 10⁻⁵"]
+
+
+def test_each_run_has_its_canvas_and_its_entry_in_the_legend(
+    player: Player, tracks: tuple[Track, Track]
+) -> None:
+    for count in (1, 2):
+        player.open(tracks[:count])
+        assert player.texts("figcaption") == ["verner87", "rk1"][:count]
+        assert player.js(f"document.querySelectorAll('{PANELS}').length") == count
+        assert player.texts("#legend li") == ["verner87: 0", "rk1: 0"][:count]
+        for colour in AFTER_TWO[:count]:
+            assert (player.pixels(STRIP) == colour).all(-1).sum() > 100
+
+
+def test_traces_fade_over_two_seconds(player: Player) -> None:
+    t = np.linspace(0, 5, 301)
+    across = Track("across", t, np.array([[t, 0 * t - 0.55]]), (), (), t)
+    player.open([across])
+    player.find("#scrub").send_keys("\ue010")  # the key End
+    player.settle()
+    seen = player.pixels(PANELS)
+    row, column = (np.median(found) for found in np.nonzero((seen == BOBS[0]).all(-1)))
+    pivot = np.median(np.nonzero((seen == ROD).all(-1))[1])
+    metre = (column - pivot) / 5  # and a second
+    # red, of which a blue trace takes away; beside the grid's lines
+    reds = [seen[round(row), round(pivot + metre * x), 0] for x in (2.6, 3.2, 3.6, 4.2, 4.7)]
+    assert reds[0] == 255
+    assert sorted(set(reds), reverse=True) == reds
+
+
+def test_it_says_how_far_apart_the_last_masses_are(
+    player: Player, tracks: tuple[Track, Track]
+) -> None:
+    player.open([at_rest((0.3, -1.0)), at_rest((0.0, -0.6))])
+    assert player.find("#apart").text == "last masses 0.50000 m apart"
+    player.open([at_rest((0.3, -1.0)), at_rest((0.3, -1.0)), at_rest((0.0, -0.6))])
+    assert player.find("#apart").text == "last masses up to 0.50000 m apart"
+    player.open([at_rest(end=5), at_rest(end=4)])
+    player.find("#scrub").send_keys("\ue010")  # the key End
+    player.settle()
+    assert player.find("#apart").text == "a run has ended"
+    player.open(tracks)
+    player.drag("#scrub", 10, 300)
+    places = [[np.interp(player.time, track.t, axis) for axis in track.positions[-1]]
+              for track in tracks]  # fmt: skip
+    shown = re.fullmatch(r"last masses (\d\.\d{4}) m apart", player.find("#apart").text)
+    assert shown
+    assert float(shown[1]) == pytest.approx(np.hypot(*np.subtract(*places)), abs=2e-4)
+    player.open(tracks[:1])
+    assert not player.find("#apart").is_displayed()
+
+
+def test_a_phone_shows_runs_below_each_other_with_the_controls_in_reach(
+    player: Player, tracks: tuple[Track, Track]
+) -> None:
+    long = [replace(track, label="method_with_a_long_name " * 4 + "x" * 80) for track in tracks]
+    tops = {}
+    for width in (1280, 390):
+        player.open(long, size=(width, 844), text="A title " * 20 + "x" * 120)
+        tops[width] = player.js(
+            "[...document.querySelectorAll('figure')].map((f) => f.getBoundingClientRect().top)"
+        )
+        assert player.js("document.documentElement.scrollWidth") <= width
+        controls = player.js("document.getElementById('controls').getBoundingClientRect().bottom")
+        assert controls <= 844
+    assert tops[1280][0] == tops[1280][1]
+    assert tops[390][1] > tops[390][0] + 300
+
+
+def test_springs_and_dark_pages_are_drawn(player: Player) -> None:
+    drawn = {}
+    for scheme in ("light", "dark"):
+        player.open([at_rest((0, -1))], scheme=scheme)
+        drawn[scheme] = player.pixels(PANELS)
+    assert (drawn["light"][2, -2] == 255).all()
+    assert drawn["dark"][2, -2].max() < 50
+    player.open([replace(at_rest((0, -1)), springs=(), links=((-1, 0),))])
+    rod = player.pixels(PANELS)
+    # a zigzag reaches further to the sides than a rod
+    across = [np.ptp(np.nonzero((found == ROD).all(-1))[1]) for found in (drawn["light"], rod)]
+    assert across[0] > across[1] + 6
+
+
+def test_text_is_shown_and_never_run(player: Player) -> None:
+    player.open([replace(at_rest(), label=HOSTILE)], text=HOSTILE)
+    assert player.driver.title == HOSTILE
+    for selector in ("h1", "#note", "figcaption"):
+        assert player.find(selector).text == HOSTILE
+    assert not player.driver.find_elements("css selector", "img")
+    assert len(player.driver.find_elements("css selector", "script")) == 2
+
+
+def test_unescaped_text_is_noticed_and_still_not_run(
+    player: Player, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(page, "escape", lambda text: text)
+    player.open([at_rest()], text="<img src=x onerror=document.title=2>")
+    assert player.driver.find_elements("css selector", "img")
+    assert player.driver.title != "2"
+    assert "Content Security Policy" in str(player.driver.get_log("browser"))
+
+
+@pytest.fixture
+def served() -> Iterator[tuple[str, dict[str, bytes], list[str]]]:
+    """A server's address, the pages that it hands out, and what it was asked for."""
+    pages: dict[str, bytes] = {}
+    asked: list[str] = []
+
+    class Answer(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            asked.append(self.path)
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html")
+            self.end_headers()
+            self.wfile.write(pages.get(self.path, b""))
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), Answer) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield f"http://127.0.0.1:{server.server_port}", pages, asked
+        server.shutdown()
+        thread.join()
+
+
+@pytest.mark.parametrize("has_policy", [True, False])
+def test_it_asks_for_nothing_and_could_not(
+    has_policy: bool, player: Player, served: tuple[str, dict[str, bytes], list[str]]
+) -> None:
+    player.open([at_rest()])
+    assert player.js("performance.getEntriesByType('resource').length") == 0
+    text = player.path.read_text(encoding="utf-8")
+    address, pages, asked = served
+    pages["/page"] = (text if has_policy else re.sub("<meta http-equiv.*", "", text)).encode()
+    player.driver.get(f"{address}/page")
+    player.settle()
+    assert asked == ["/page"]
+    assert player.driver.get_log("browser") == []
+    player.driver.execute_async_script("fetch('/spy').catch(() => 0).then(arguments[0])")
+    assert ("/spy" in asked) is not has_policy
+    assert bool(player.driver.get_log("browser")) is has_policy
+
+
+def motions(path: Path) -> list[dict[str, Any]]:
+    found = re.search(r'id="motions">(.*?)</script>', path.read_text(encoding="utf-8"))
+    assert found
+    return json.loads(found[1])
+
+
+def test_a_page_is_small_and_as_exact_as_can_be_seen(
+    tracks: tuple[Track, Track], tmp_path: Path
+) -> None:
+    path = tmp_path / "new" / "page.html"
+    write_page(path, "", "", tracks[:1])
+    assert path.stat().st_size < 50_000
+    (played,) = motions(path)
+    for name, tolerance in (("t", 1e-6), ("positions", 1e-5), ("energy_error", 1e-9)):
+        assert np.array(played[name]) == pytest.approx(getattr(tracks[0], name), abs=tolerance)
+    assert not re.search(r"https?:|\bsrc=|@import|url\(", path.read_text(encoding="utf-8"))
+
+
+def test_very_many_samples_are_thinned_out_evenly(tmp_path: Path) -> None:
+    n = 3 * MOST_SAMPLES
+    t = np.linspace(1e4, 1e4 + 6, n)
+    track = Track("many", t, np.array([[t, t]]), (), (), t)
+    write_page(tmp_path / "page.html", "", "", [track])
+    (played,) = motions(tmp_path / "page.html")
+    assert len(played["t"]) == len(played["positions"][0][0]) == MOST_SAMPLES
+    assert (played["t"][0], played["t"][-1]) == (t[0], t[-1])
+    steps = np.diff(played["t"])
+    assert 1e-4 < steps.min() <= steps.max() < 5e-4
+
+
+REST = at_rest()
+HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"t": REST.t[:1]}, r"t has shape \(1,\), .* n at least 2"),
+        ({"t": REST.t[:400]}, r"positions has shape \(1, 2, 501\), .* \(masses, 2, 400\)"),
+        ({"positions": REST.positions[:0]}, r"positions has shape \(0, 2, 501\)"),
+        ({"positions": REST.positions[:, :1]}, r"positions has shape \(1, 1, 501\)"),
+        ({"energy_error": REST.t[:9]}, r"energy_error has shape \(9,\), .* \(501,\)"),
+        ({"energy_error": HOLE}, r"energy_error\[7\] is nan, .* finite: leave out"),
+        ({"positions": REST.positions * HOLE}, r"positions\[0, 0, 7\] is nan"),
+        ({"t": REST.t[::-1]}, r"t\[1\] = 4.99 follows t\[0\] = 5.0, .* increase: sort"),
+        ({"t": np.minimum(REST.t, 4.9)}, r"t\[491\] = 4.9 follows t\[490\] = 4.9"),
+        ({"links": ((0, 1),)}, r"links holds \(0, 1\), .* -1: number"),
+        ({"springs": ((-2, 0),)}, r"springs holds \(-2, 0\)"),
+    ],
+)
+def test_what_cannot_be_played_is_refused(
+    wrong: dict[str, Any], words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match="track 'at rest': " + words):
+        write_page(tmp_path / "page.html", "", "", [REST, replace(REST, **wrong)])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_without_runs_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"tracks is empty, but .* at least one"):
+        write_page(tmp_path / "page.html", "", "", [])
+
+
+@pytest.mark.parametrize("step", ["fsync", "replace"])
+def test_a_failed_write_leaves_the_old_page_and_nothing_else(
+    step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "page.html"
+    write_page(path, "old", "", [REST])
+    old = path.read_bytes()
+
+    def full(*_: object) -> None:
+        assert path.read_bytes() == old
+        assert len(list(tmp_path.iterdir())) == 2
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, step, full)
+    with pytest.raises(OSError, match="No space"):
+        write_page(path, "new", "", [REST])
+    assert [(found.name, found.read_bytes()) for found in tmp_path.iterdir()] == [(path.name, old)]

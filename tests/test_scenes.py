@@ -1,0 +1,221 @@
+"""Scenes are read strictly and safely, and everything that makes no sense is refused."""
+
+import time
+from math import pi
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+import generated.double_pendulum as dp
+from solvers.cli import generated_module
+from solvers.scenes.checks import MassMatrixWarning
+from solvers.scenes.quantity import QuantityError, quantity
+from solvers.scenes.reading import SceneError, read, scene
+from solvers.scenes.shipped import UnknownSceneError, find, names
+
+PLAIN = {"system": "double_pendulum", "duration": 5, "initial": {"theta1": 1, "theta2": 2}}
+
+
+def made(**changes: object) -> Any:
+    return scene("made", {**PLAIN, **changes}, generated_module)
+
+
+@pytest.mark.parametrize(("text", "unit", "value"), [
+    ("90 deg", "rad", pi / 2),
+    ("pi/2", "rad", pi / 2),
+    ("2*pi", "rad", 2 * pi),
+    ("1/2", "kg", 0.5),
+    ("1/2 turn", "rad", pi),
+    ("500 g", "kg", 0.5),
+    ("10 deg/s", "rad/s", pi / 18),
+    ("9.81 m/s^2", "m/s^2", 9.81),
+    ("981 cm/s**2", "m/s^2", 9.81),
+    ("1 kg*m/s^2", "N", 1.0),
+    ("2 N/mm", "N/m", 2000.0),
+    ("-(1 + 2)**2", "m", -9.0),
+    ("1e-3 m", "m", 1e-3),
+    (" 0.5 min ", "s", 30.0),
+    (7, "m", 7.0),
+])  # fmt: skip
+def test_numbers_have_units_and_exact_fractions(text: object, unit: str, value: float) -> None:
+    assert quantity(text, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    ("90 deg", "not in m nor in a unit of that kind"),
+    ("1 foo", "unit 'foo' is not known"),
+    ("m^2", "not in m"),
+    ("2^2", r"a power is written \*\*"),
+    ("1/0", "has no value"),
+    ("9**9**9", "has no value"),
+    ("(-1)**0.5", "is no number"),
+    ("nan", "not known"),
+    ("1e999", "is not finite"),
+    (10**400, "is not finite"),
+    (float("nan"), "is not finite"),
+    (True, "is no number"),
+    ([1], "is no number"),
+    ("__import__('os').system('touch /tmp/executed')", "is no number"),
+    ("().__class__", "is no number"),
+    ("(lambda: 1)()", "is no number"),
+    ("[x for x in (1,)][0]", "is no number"),
+    ("1 if 1 else 2", "is no number"),
+    ("'1'*9", "is no number"),
+    ("(" * 49 + ")" * 49, "is no number"),
+    ("(" * 100_000, "longer than a number"),
+    ("", "is no number"),
+])  # fmt: skip
+def test_what_is_no_number_is_refused_at_once(text: object, words: str) -> None:
+    before = time.perf_counter()
+    with pytest.raises(QuantityError, match=words):
+        quantity(text, "m")
+    assert time.perf_counter() - before < 1
+
+
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"systen": "x"}, r"no key 'systen' \(did you mean 'system'\?\)"),
+    ({"system": "doble_pendulum"}, "no such system; known are double_pendulum"),
+    ({"system": "os"}, "no such system"),
+    ({"system": 3}, "must be text"),
+    ({"duration": 0}, "duration = 0 must be positive"),
+    ({"duration": "-5 s"}, "must be positive"),
+    ({"duration": "5 m"}, "duration: '5 m' is not in s"),
+    ({"initial": {"theta1": 1}}, "initial.theta2 is missing: give theta1, theta2"),
+    ({"initial": {"theta1": 1, "thta2": 1}}, r"\[initial\] has no key 'thta2' .*'theta2'"),
+    ({"initial": 3}, r"must be a table: write \[initial\]"),
+    ({"parameters": {"m1": 0}}, 'm1 = 0 must be positive, in kg; .* m1 = "absent"'),
+    ({"parameters": {"m1": -1}}, "parameters.m1 = -1 must be positive"),
+    ({"parameters": {"m1": "1 m"}}, "not in kg"),
+    ({"parameters": {"m1": True}}, "True is no number"),
+    ({"parameters": {"m3": 1}}, r"\[parameters\] has no key 'm3'"),
+    ({"parameters": {"g": "absent"}}, "parameters.g: 'absent'|parameters.g: unit"),
+    ({"accuracy": 1e-15}, "below 1e-13"),
+    ({"accuracy": "1 m"}, "not in 1"),
+    ({"samples": 1}, "whole number from 2"),
+    ({"samples": 2.5}, "whole number"),
+    ({"model": "rest"}, "must be 'full', or be left out"),
+    ({"code": "quick"}, "'general' or 'specialised'"),
+    ({"method": "rk5"}, "rk5"),
+    ({"method": "rk4"}, "give a step"),
+    ({"method": 4}, "must be text"),
+    ({"step": 0.1}, "needs a method"),
+    ({"method": "rk4", "step": 6}, "longer than the duration"),
+    ({"method": "LSODA", "step": 0.1}, "controls its steps"),
+    ({"method": "gauss2", "step": 0.1, "form": "rational"}, "needs a Jacobian"),
+    ({"form": "variational"}, "must be one of lagrangian, hamiltonian, rational"),
+    ({"outputs": ["theta3"]}, r"'theta3' \(did you mean 'theta"),
+    ({"outputs": ["energy"]}, "names no part of the state"),
+    ({"outputs": "theta1"}, "must be a list"),
+    ({"pictures": ["theta1 over x"]}, "write 'path', 'energy' or such as 'theta1 over t'"),
+    ({"pictures": ["__import__('os') over t"]}, "pictures name"),
+    ({"beside": {}}, r"write \[\[beside\]\]"),
+    ({"beside": [{"method": "rk4"}]}, "needs a 'label'"),
+    ({"beside": [{"label": "x", "duration": 3}]}, r"\[\[beside\]\] has no key 'duration'"),
+    ({"beside": [{"label": "x", "initial": {"theta1": "x"}}]}, "initial.theta1"),
+])  # fmt: skip
+def test_what_makes_no_sense_is_refused_with_the_way_out(
+    changes: dict[str, object], words: str
+) -> None:
+    with pytest.raises((SceneError, ValueError), match=words):
+        made(**changes)
+
+
+@pytest.mark.parametrize("key", ["system", "duration", "initial"])
+def test_what_is_missing_is_named(key: str) -> None:
+    with pytest.raises(SceneError, match=f"'{key}' is missing"):
+        scene("made", {k: v for k, v in PLAIN.items() if k != key}, generated_module)
+
+
+def test_a_file_that_is_no_scene_is_refused_within_a_second(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    cases = {
+        b"x" * 50_000_000: "more than",
+        b"a = " + b"[" * 40_000: "no TOML file",
+        b"\xff\xfe": "no TOML file",
+        b'system = "double_pendulum"\n': "'duration' is missing",
+        b"system = ": "no TOML file",
+    }
+    for content, words in cases.items():
+        path.write_bytes(content)
+        before = time.perf_counter()
+        with pytest.raises(SceneError, match=words):
+            read(path, generated_module)
+        assert time.perf_counter() - before < 1
+    with pytest.raises(FileNotFoundError):
+        read(tmp_path / "none.toml", generated_module)
+
+
+def test_a_scene_is_what_its_file_says(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text("""
+        title = "mine"
+        system = "double_pendulum"
+        duration = "2 s"
+        accuracy = 1e-4
+        outputs = ["theta1", "energy"]
+        method = "rk4"
+        step = "1 ms"
+        pictures = ["theta1, theta2 over t", "path"]
+        [parameters]
+        m2 = "300 g"
+        g = "-1 m/s^2"
+        [initial]
+        theta1 = "45 deg"
+        theta2 = 0
+        theta2_dot = "1 turn/s"
+        [[beside]]
+        label = "other"
+        initial = { theta1 = "pi/4 + 1e-3" }
+        [[beside]]
+        label = "better"
+        method = "verner98"
+    """)
+    found = find(str(tmp_path / "mine.toml"), generated_module)
+    assert found.name == "mine"
+    assert found.module is dp
+    assert found.params == (1.0, 0.3, 2.0, 2.0, -1.0)
+    assert found.y0 == pytest.approx((pi / 4, 0, 0, 2 * pi))
+    assert (found.duration, found.accuracy, found.step) == (2.0, 1e-4, 1e-3)
+    assert found.wanted == (0,)
+    other, better = found.beside
+    assert other.y0 == pytest.approx((pi / 4 + 1e-3, 0, 0, 2 * pi))
+    assert (other.method, other.step, other.label) == ("rk4", 1e-3, "other")
+    # another way of integrating owes nothing to the first one
+    assert (better.method, better.step, better.y0) == ("verner98", None, found.y0)
+
+
+def test_a_nearly_singular_mass_matrix_is_told_with_its_coordinate() -> None:
+    with pytest.warns(MassMatrixWarning, match=r"condition 4e\+12: theta"):
+        made(parameters={"m1": 1e-12})
+    with pytest.raises(ValueError, match=r"condition .* theta. hardly moves mass of its own"):
+        made(parameters={"m1": 1e-16})
+    made(parameters={"m2": 1e-12})  # light, but on its own
+
+
+def test_shipped_scenes_are_found_and_all_make_sense() -> None:
+    modules: set[ModuleType] = set()
+    for name in names():
+        one = find(name, generated_module)
+        assert len(one.y0) == len(one.module.STATE)
+        assert len(one.params) == len(one.module.PARAMETERS)
+        assert one.note
+        modules.add(one.module)
+    assert len(modules) == 3
+    assert find("light_above", generated_module).params == (1.0, 3.0, 2.0, 2.0, 9.81)
+    assert {f"figure_{n}_{k}" for n in (3, 4) for k in range(1, 7)} <= set(names())
+    with pytest.raises(UnknownSceneError, match=r"'reprot' is neither .*did you mean 'report'"):
+        find("reprot", generated_module)
+
+
+def test_the_report_s_programs_are_set_as_they_are_printed() -> None:
+    from derive.report.programs import PROSE, programs
+
+    settings = {"report": PROSE, **{f"program_{k + 1}": p.scene for k, p in enumerate(programs())}}
+    for name, printed in settings.items():
+        one = find(name, generated_module)
+        expected = [*printed.masses, *printed.lengths, printed.gravity]
+        assert one.params == pytest.approx([float(x) for x in expected], rel=1e-15)
+        start = [*printed.angles, *printed.velocities]
+        assert one.y0 == pytest.approx([float(x) for x in start], rel=1e-15)
+        assert one.duration == float(printed.duration)
