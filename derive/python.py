@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from itertools import groupby
 from textwrap import indent, wrap
 
@@ -28,8 +28,7 @@ single result come first.
 
 from __future__ import annotations
 
-from math import {called}
-from typing import TYPE_CHECKING
+{imports}from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -95,7 +94,7 @@ def module(contents: Contents) -> str:
         name=system.name,
         summary=summary(contents),
         length=2 * len(system.q),
-        called=", ".join(sorted({name for assigned in bodies for name in assigned.called})),
+        imports=_imports({name for assigned in bodies for name in assigned.called}),
         constants=_constants(contents),
         functions="\n\n".join(
             text
@@ -103,6 +102,10 @@ def module(contents: Contents) -> str:
             for text in (_one(part, assigned, system), _many(part, assigned, system))
         ).rstrip("\n"),
     )
+
+
+def _imports(called: Collection[str]) -> str:
+    return f"from math import {', '.join(sorted(called))}\n" if called else ""
 
 
 def _constants(contents: Contents) -> str:

@@ -166,7 +166,8 @@ class Batch:
         self.motions["t"], self.motions["t_end"] = problem.span
         self.motions["shortest"] = SHORTEST * np.spacing(np.abs(problem.span).max())
         self.motions["z"], self.motions["turns"] = form.inside_many(starts)
-        self.motions["params"] = np.stack(np.broadcast_arrays(*form.params), axis=-1)
+        for k, parameter in enumerate(form.params):
+            self.motions["params"][:, k] = parameter
         self.rows = np.zeros((n, capacity), kernel.row)
         self.event_rows = np.zeros((n, len(events), occurrences), kernel.row)
         self.stop = np.zeros(1, np.int64)

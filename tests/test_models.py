@@ -93,7 +93,7 @@ def judged(scene: Scene) -> tuple[str, float, float]:
             rtol=3e-14, atol=1e-16, t_eval=motion.looks, max_steps=10**7,
         ).y.T  # fmt: skip
     error = np.abs(found.states(motion.looks) - fine)[:, list(scene.wanted)].max()
-    if error > scene.accuracy:  # or it is the reference that is wrong
+    if error > min(scene.accuracy, found.error_estimate):  # or it is the reference that is wrong
         error = worst(motion, found)
     return found.name, error / scene.accuracy, error / max(found.error_estimate, 1e-13)
 

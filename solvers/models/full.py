@@ -27,7 +27,8 @@ MARGIN = 2.0
 TRIES, RESERVE = 8, 0.3
 #: Digits of Taylor series that are tried where ordinary numbers have too few.
 DIGITS, MORE, MOST_DIGITS = 24, 12, 96
-MOST_STEPS = 10**8
+#: Sizes of a state in rad or m that are resolved relatively; and steps of a run.
+BEGINNING, MOST_STEPS = 1e-3, 10**8
 
 
 class NotAccurateError(ArithmeticError):
@@ -107,7 +108,10 @@ def run(asked: Asked, way: Way, setting: float, t: Array) -> Array:
 
 def options(way: Way, setting: float) -> dict[str, Any]:
     """A step, or tolerances, as the integrator takes them."""
-    return {"h": setting} if way.is_fixed else {"rtol": setting, "atol": setting}
+    if way.is_fixed:
+        return {"h": setting}
+    # what begins small may grow, as next to the upright place
+    return {"rtol": setting, "atol": BEGINNING * setting}
 
 
 def full(asked: Asked, accuracy: float, way: Way, checked: Asked, setting: float | None) -> Full:

@@ -13,6 +13,8 @@ from solvers.references.pendulum import swing
 
 #: Numbers that differ by less are the same, relatively; so many angles tell.
 SAME, ANGLES = 1e-13, 32
+#: Longest quarter period times ω: K(k) with 1 - k² of the size of a squared rounding.
+QUARTER = 40.0
 
 
 @dataclass(frozen=True)
@@ -69,9 +71,9 @@ def _rounding(square: float, start: tuple[float, float], is_shifted: bool, times
         half = np.remainder(half + np.pi / 2, np.pi) - np.pi / 2
     parts = np.array([omega, np.sin(half), np.cos(half), start[1] / (2 * omega)])
 
-    def states(parts: Array) -> Array:
+    def states(parts: Array, late: float = 0.0) -> Array:
         omega, sine, cosine, speed = parts.tolist()
-        return swing(omega, sine, cosine, speed, times)
+        return swing(omega, sine, cosine, speed, times + late)
 
     found = states(parts)
     total = ROUNDINGS * EPS * (np.abs(found) + abs(start[0]))
@@ -81,4 +83,5 @@ def _rounding(square: float, start: tuple[float, float], is_shifted: bool, times
         changes.append(np.array([omega, np.sin(moved), np.cos(moved), parts[3]]))
     for change in changes:
         total += np.abs(states(change) - found)
-    return total
+    # a quarter period is rounded, and a long one has many roundings
+    return total + np.abs(states(parts, ROUNDINGS * EPS * QUARTER / omega) - found)

@@ -1,0 +1,138 @@
+"""Code for one scene: parameters folded in, nothing that it does not need, the same motion."""
+
+from itertools import pairwise
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+import generated.double_pendulum as dp
+import generated.elastic_pendulum as ep
+import generated.single_pendulum as sp
+from derive import Derivation, load
+from derive.functions import body, contents
+from derive.specialisation import specialised as folded
+from derive.system import SystemDefinitionError
+from solvers.cache import cache_folder
+from solvers.cli import specialiser
+from solvers.integration import integrate
+from solvers.models.way import Way
+from solvers.specialised import needed, specialised
+
+REPORT = (np.pi / 2, np.pi, 0.0, 0.0)
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+
+
+def operations(name: str, function: str, **values: float) -> int:
+    """What a call costs, without terms of the parameters alone."""
+    found = contents(Derivation(folded(load(name), values)), [function])
+    laid_out = body(found.functions[0], found.system)
+    return laid_out.operations - laid_out.constant_operations
+
+
+@pytest.mark.parametrize(("module", "params"), [
+    (dp, dp.DEFAULTS), (dp, (1.3, 0.7, 1.1, 0.9, 9.81)), (dp, (1.0, 3.0, 2.0, 0.5, 0.0)),
+    (sp, sp.DEFAULTS), (ep, ep.DEFAULTS), (ep, (0.7, 33.3, 1.21, 0.0)),
+])  # fmt: skip
+@pytest.mark.parametrize("form", ["lagrangian", "hamiltonian", "rational"])
+def test_specialised_code_has_the_same_values(
+    module: ModuleType, params: tuple[float, ...], form: str
+) -> None:
+    special = specialiser(module, params, Way("verner87", form, ""))
+    suffix = "" if form == "lagrangian" else f"_{form}"
+    states = np.random.default_rng(4).uniform(0.2, 2.0, (20, len(module.STATE)))
+    if form == "rational":
+        states = np.array([module.rational_state(y, params) for y in states.tolist()])
+    for y in states.tolist():
+        general = getattr(module, f"rhs{suffix}")(0.0, y, params)
+        found = getattr(special, f"rhs{suffix}")(0.0, y, ())
+        assert found == pytest.approx(general, rel=1e-12, abs=1e-13)
+    assert special.PARAMETERS == ()
+
+
+def test_folded_numbers_are_exact_and_rounded_once() -> None:
+    y = (1.0, 2.0, 0.5, -0.3)
+    with mp.workdps(40):
+        exact = [mpf(x) for x in ("1.3", "0.7", "1.1", "0.9", "9.81")]
+        # the same equations with numbers of 40 digits: the rational form calls no function
+        rational = dp.rational_state(y, dp.DEFAULTS)
+        fine = dp.rhs_rational(0, [mpf(x) for x in rational], exact)
+        found = specialiser(dp, (1.3, 0.7, 1.1, 0.9, 9.81), Way("verner87", "rational", ""))
+        coarse = found.rhs_rational(0, rational, ())
+        assert max(abs(a - b) for a, b in zip(fine, coarse, strict=True)) < 4e-15
+
+
+def test_what_is_folded_in_costs_nothing_and_what_is_zero_vanishes() -> None:
+    plain = {"m1": 1.0, "m2": 1.0, "l1": 2.0, "l2": 2.0, "g": 9.81}
+    general = operations("double_pendulum", "rhs_rational")
+    any_values = operations("double_pendulum", "rhs_rational", m1=1.3, m2=0.7, l1=1.1, l2=0.9,
+                            g=9.81)  # fmt: skip
+    equal = operations("double_pendulum", "rhs_rational", **plain)
+    weightless = operations("double_pendulum", "rhs_rational", **{**plain, "g": 0.0})
+    costs = [general, any_values, equal, weightless]
+    assert all(a > b for a, b in pairwise(costs))
+    assert costs == [35, 34, 29, 24]
+    # a part may stay open
+    assert operations("double_pendulum", "rhs", g=0.0) < operations("double_pendulum", "rhs")
+    with pytest.raises(SystemDefinitionError, match="no parameter 'm3'; known are m1, m2"):
+        folded(load("double_pendulum"), {"m3": 1.0})
+
+
+def test_only_what_a_scene_needs_is_there() -> None:
+    assert needed("verner87", "rational") == ("rhs_rational",)
+    assert needed("gauss2", "lagrangian") == ("rhs", "jacobian")
+    assert needed("radau3", "hamiltonian")[-1] == "jacobian_hamiltonian"
+    assert needed("LSODA", "lagrangian") == ("rhs",)
+    special = specialiser(dp, dp.DEFAULTS, Way("verner87", "rational", ""))
+    functions = {name for name in vars(special) if callable(getattr(special, name))}
+    assert {f for f in functions if f.startswith("rhs")} == {"rhs_rational", "rhs_rational_many"}
+    assert not any("jacobian" in f or "energy" in f or "positions" in f for f in functions)
+
+
+@pytest.mark.parametrize(("method", "form", "h"), [
+    ("verner87", "rational", None), ("dop853", "hamiltonian", None), ("gauss2", "lagrangian", 1e-3),
+])  # fmt: skip
+def test_a_specialised_motion_is_the_general_one(method: str, form: str, h: float | None) -> None:
+    special = specialiser(dp, dp.DEFAULTS, Way(method, form, ""))
+    ends = [
+        integrate(module, (0, 5), REPORT, params, method=method, form=form, h=h, rtol=1e-12,
+                  t_eval=[5]).y[:, -1]
+        for module, params in ((special, ()), (dp, dp.DEFAULTS))
+    ]  # fmt: skip
+    assert ends[0] == pytest.approx(ends[1], abs=1e-9)
+
+
+def test_it_is_made_once_and_a_damaged_one_again() -> None:
+    made = []
+
+    def generator(name, values, functions):
+        made.append(name)
+        from derive.command import texts
+
+        return texts(Derivation(folded(load(name), values)), functions)
+
+    def get(version: str = "1") -> ModuleType:
+        return specialised(dp, dp.DEFAULTS, ("rhs",), generator, version)
+
+    first, second = get(), get()
+    assert first.rhs(0.0, REPORT, ()) == second.rhs(0.0, REPORT, ())
+    assert len(made) == 1
+    get("another version of the generator")
+    assert len(made) == 2
+    place = Path(first.__file__ or "")
+    text = place.read_text()
+    place.write_text(text.replace("def rhs(", "import os; os.abort()\ndef rhs("))
+    assert get().rhs(0.0, REPORT, ()) == first.rhs(0.0, REPORT, ())
+    assert len(made) == 3
+    assert place.read_text() == text
+    assert not list(place.parent.glob("__pycache__"))
+    (place.parent / f"{place.stem}.h").unlink()
+    get()
+    assert len(made) == 4
+    assert {path.name.split("-")[0] for path in (cache_folder()).iterdir()} == {"module"}
