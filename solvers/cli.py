@@ -60,6 +60,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         sys.stderr.close()  # the reader has gone: nothing to tell, and nobody to tell it to
         return 0
+    except ValueError as error:
+        print(f"holonomic {name}: {error}", file=sys.stderr)
+        return 2
+    except ArithmeticError as error:
+        print(f"holonomic {name}: {error}", file=sys.stderr)
+        return 3
     except OSError as error:
         print(f"holonomic {name}: {error}", file=sys.stderr)
         return 4
@@ -81,7 +87,11 @@ def _verify(argv: Sequence[str]) -> int:
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
     as_json = parser.parse_args(argv).json
-    judged = judgement()
+    from solvers.progress import Progress
+
+    with Progress() as tell:
+        tell("judging the report")
+        judged = judgement()
     if as_json:
         print(json.dumps(judged, indent=2, ensure_ascii=False))
     else:

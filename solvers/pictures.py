@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib as mpl
@@ -15,6 +15,8 @@ mpl.use("Agg")  # files only: no window, no display needed
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from solvers.written import written
 
 #: Wong's palette, told apart by colour-blind eyes (Nature Methods 8, 441, 2011).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -81,11 +83,7 @@ def save(figure: Figure, path: Path) -> None:
     """Write a figure as a PNG file, beside its name first, and close it."""
     for axes in figure.axes:
         axes.spines[["top", "right"]].set_visible(False)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    passage = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        figure.savefig(passage, format="png", dpi=120, metadata={"Software": None})
-        os.replace(passage, path)
-    finally:
-        passage.unlink(missing_ok=True)
-        plt.close(figure)
+    drawn = BytesIO()
+    figure.savefig(drawn, format="png", dpi=120, metadata={"Software": None})
+    plt.close(figure)
+    written(path, drawn.getvalue())

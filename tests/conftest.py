@@ -1,10 +1,15 @@
 """What several tests look at."""
 
+import shutil
+from collections.abc import Iterator
 from importlib import import_module
+from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 import sympy as sp
+from browser import Player
 
 from derive import Derivation, load, names
 from solvers.cli import generated_module
@@ -40,3 +45,35 @@ def motion(derivation: Derivation) -> dict[sp.Symbol, sp.Expr]:
     system = derivation.system
     solution = sp.solve(list(derivation.euler_lagrange), system.qddot, dict=True)
     return dict(solution[0])
+
+
+CHROMIUM = (
+    "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
+    "--disable-background-networking --disable-component-update"
+).split()
+
+
+@pytest.fixture(scope="session")
+def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    webdriver = pytest.importorskip("selenium.webdriver", reason="needs: pip install selenium")
+    programs = shutil.which("chromium"), shutil.which("chromedriver")
+    if None in programs:
+        pytest.skip("needs Chromium: apt-get install chromium chromium-driver")
+    options = webdriver.ChromeOptions()
+    options.binary_location = programs[0]
+    profile = tmp_path_factory.mktemp("profile")
+    for flag in (*CHROMIUM, f"--user-data-dir={profile}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    service = webdriver.ChromeService(programs[1])
+    driver = webdriver.Chrome(options=options, service=service)
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture
+def player(driver: Any, tmp_path: Path) -> Iterator[Player]:
+    driver.get("about:blank")
+    driver.get_log("browser")
+    yield Player(driver, tmp_path / "page.html")
+    assert driver.get_log("browser") == []  # after every test

@@ -25,10 +25,11 @@ from solvers.models.pendulum import pendulum
 from solvers.models.quadrature import orbit, quadrature
 from solvers.models.rest import rest
 from solvers.models.small import small
-from solvers.models.way import Way, cheapest, mode_spread
+from solvers.models.way import Way, cheapest
 from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
 from solvers.scenes.shipped import find
+from solvers.stability.modes import mode_spread
 
 Array = np.ndarray
 
@@ -42,13 +43,13 @@ def chosen(scene: Scene) -> Choice:
     return choice(scene, lambda asked, _: asked, lambda _: None)
 
 
-def truth(motion: Asked, times: Array) -> Array:
-    return taylor(motion.module, motion.params, motion.y0, times, 24)
+def truth(motion: Asked, times: Array, digits: int = 24) -> Array:
+    return taylor(motion.module, motion.params, motion.y0, times, digits)
 
 
-def worst(motion: Asked, model) -> float:
+def worst(motion: Asked, model, digits: int = 24) -> float:
     """The largest error of what is wanted, beside Taylor series."""
-    apart = np.abs(model.states(motion.looks) - truth(motion, motion.looks))
+    apart = np.abs(model.states(motion.looks) - truth(motion, motion.looks, digits))
     return float(apart[:, list(motion.wanted)].max())
 
 
@@ -94,7 +95,7 @@ def judged(scene: Scene) -> tuple[str, float, float]:
         ).y.T  # fmt: skip
     error = np.abs(found.states(motion.looks) - fine)[:, list(scene.wanted)].max()
     if error > min(scene.accuracy, found.error_estimate):  # or it is the reference that is wrong
-        error = worst(motion, found)
+        error = worst(motion, found, digits=40)
     return found.name, error / scene.accuracy, error / max(found.error_estimate, 1e-13)
 
 

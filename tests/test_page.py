@@ -1,33 +1,20 @@
 """The page plays what it was given, in a real browser, and does nothing else."""
 
-import json
-import os
 import re
 import shutil
 import threading
-from base64 import b64decode
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from io import BytesIO
-from math import pi
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
+from browser import Player, at_rest, played
 
-import generated.double_pendulum as dp
-from solvers.integration import integrate
 from solvers.page import page
-from solvers.page.page import write_page
-from solvers.page.track import MOST_SAMPLES, Track
+from solvers.page.track import Track
 
-FLAGS = (
-    "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
-    "--disable-background-networking --disable-component-update"
-).split()
 BOBS, ROD = ((0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00)), (0x4A, 0x52, 0x59)
 # runs take the colours after those of their masses
 AFTER_ONE, AFTER_TWO = (BOBS[1], (0x00, 0x9E, 0x73)), ((0x00, 0x9E, 0x73), (0xCC, 0x79, 0xA7))
@@ -37,124 +24,15 @@ HOSTILE = (
 )
 
 
-def run(method: str, h: float | None = None) -> Track:
-    motion = integrate(dp, (0, 5), (pi / 2, pi, 0, 0), dp.DEFAULTS, method=method, h=h,
-                       t_eval=np.linspace(0, 5, 301), energy=True)  # fmt: skip
-    assert motion.energy is not None
-    places = np.asarray(dp.positions_many(motion.y, dp.DEFAULTS))
-    return Track(method, motion.t, places, ((-1, 0), (0, 1)), (),
-                 motion.energy / motion.energy[0] - 1)  # fmt: skip
-
-
 @pytest.fixture(scope="module")
 def tracks() -> tuple[Track, Track]:
-    return run("verner87"), run("rk1", 0.01)
+    return played("verner87"), played("rk1", 0.01)
 
 
 @pytest.fixture(scope="module")
 def slow_tracks(tracks: tuple[Track, Track]) -> list[Track]:
     """Runs of 100 s, which do not end while a busy machine looks at them."""
     return [replace(track, t=20 * track.t) for track in tracks]
-
-
-def at_rest(place: tuple[float, float] = (0.3, -1.0), error: Any = 1e-9, end: float = 5) -> Track:
-    n = 501
-    places = np.tile(np.reshape(place, (1, 2, 1)), n)
-    return Track("at rest", np.linspace(0, end, n), places, (), ((-1, 0),), np.full(n, error))
-
-
-class Player:
-    """A page in a browser, and what a reader sees and does there."""
-
-    def __init__(self, driver: Any, path: Path) -> None:
-        self.driver, self.path = driver, path
-
-    def open(self, tracks: Sequence[Track], *, text: str = "", size: tuple[int, int] = (1280, 800),
-             density: int = 1, playing: bool = False, scheme: str = "light") -> None:  # fmt: skip
-        write_page(self.path, text, text, tracks)
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": size[0], "height": size[1], "deviceScaleFactor": density, "mobile": False,
-        })  # fmt: skip
-        motion = "no-preference" if playing else "reduce"
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
-            {"name": "prefers-reduced-motion", "value": motion},
-            {"name": "prefers-color-scheme", "value": scheme},
-        ]})  # fmt: skip
-        self.driver.get(self.path.as_uri())
-        self.settle()
-
-    def settle(self) -> None:
-        self.driver.execute_async_script(
-            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))"
-        )
-
-    def js(self, expression: str) -> Any:
-        return self.driver.execute_script(f"return {expression}")
-
-    def find(self, selector: str) -> Any:
-        return self.driver.find_element("css selector", selector)
-
-    def texts(self, selector: str) -> list[str]:
-        return [found.text for found in self.driver.find_elements("css selector", selector)]
-
-    @property
-    def time(self) -> float:
-        return float(self.js("document.documentElement.dataset.time"))
-
-    @property
-    def playing(self) -> bool:
-        return {"true": True, "false": False}[self.js("document.documentElement.dataset.playing")]
-
-    def press(self, keys: str) -> None:
-        from selenium.webdriver import ActionChains
-
-        ActionChains(self.driver).send_keys(keys).perform()
-        self.settle()
-
-    def drag(self, selector: str, start: float, end: float, kind: str = "mouse") -> None:
-        """From one pixel column of an element to another one, on the way past its middle."""
-        from selenium.webdriver.common.actions.action_builder import ActionBuilder
-        from selenium.webdriver.common.actions.pointer_input import PointerInput
-
-        element = self.find(selector)
-        middle = int(element.rect["width"] // 2)  # the driver counts from there
-        actions = ActionBuilder(self.driver, mouse=PointerInput(kind, kind), duration=20)
-        pointer = actions.pointer_action
-        pointer.move_to(element, round(start) - middle, 0).pointer_down()
-        pointer.move_to(element, 0, 0).move_to(element, round(end) - middle, 0).pointer_up()
-        actions.perform()
-        self.settle()
-
-    def pixels(self, selector: str, number: int = 0) -> np.ndarray:
-        """Colours of a canvas, of shape (rows, columns, 3)."""
-        url = self.js(f"document.querySelectorAll('{selector}')[{number}].toDataURL()")
-        return np.asarray(Image.open(BytesIO(b64decode(url.partition(",")[2]))).convert("RGB"))
-
-
-@pytest.fixture(scope="module")
-def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    webdriver = pytest.importorskip("selenium.webdriver", reason="needs: pip install selenium")
-    programs = shutil.which("chromium"), shutil.which("chromedriver")
-    if None in programs:
-        pytest.skip("needs Chromium: apt-get install chromium chromium-driver")
-    options = webdriver.ChromeOptions()
-    options.binary_location = programs[0]
-    profile = tmp_path_factory.mktemp("profile")
-    for flag in (*FLAGS, f"--user-data-dir={profile}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    service = webdriver.ChromeService(programs[1])
-    driver = webdriver.Chrome(options=options, service=service)
-    yield driver
-    driver.quit()
-
-
-@pytest.fixture
-def player(driver: Any, tmp_path: Path) -> Iterator[Player]:
-    driver.get("about:blank")
-    driver.get_log("browser")
-    yield Player(driver, tmp_path / "page.html")
-    assert driver.get_log("browser") == []  # after every test
 
 
 def fitted(player: Player, tracks: Sequence[Track]) -> tuple[np.ndarray, float]:
@@ -473,85 +351,3 @@ def test_it_asks_for_nothing_and_could_not(
     player.driver.execute_async_script("fetch('/spy').catch(() => 0).then(arguments[0])")
     assert ("/spy" in asked) is not has_policy
     assert bool(player.driver.get_log("browser")) is has_policy
-
-
-def motions(path: Path) -> list[dict[str, Any]]:
-    found = re.search(r'id="motions">(.*?)</script>', path.read_text(encoding="utf-8"))
-    assert found
-    return json.loads(found[1])
-
-
-def test_a_page_is_small_and_as_exact_as_can_be_seen(
-    tracks: tuple[Track, Track], tmp_path: Path
-) -> None:
-    path = tmp_path / "new" / "page.html"
-    write_page(path, "", "", tracks[:1])
-    assert path.stat().st_size < 50_000
-    (played,) = motions(path)
-    for name, tolerance in (("t", 1e-6), ("positions", 1e-5), ("energy_error", 1e-9)):
-        assert np.array(played[name]) == pytest.approx(getattr(tracks[0], name), abs=tolerance)
-    assert not re.search(r"https?:|\bsrc=|@import|url\(", path.read_text(encoding="utf-8"))
-
-
-def test_very_many_samples_are_thinned_out_evenly(tmp_path: Path) -> None:
-    n = 3 * MOST_SAMPLES
-    t = np.linspace(1e4, 1e4 + 6, n)
-    track = Track("many", t, np.array([[t, t]]), (), (), t)
-    write_page(tmp_path / "page.html", "", "", [track])
-    (played,) = motions(tmp_path / "page.html")
-    assert len(played["t"]) == len(played["positions"][0][0]) == MOST_SAMPLES
-    assert (played["t"][0], played["t"][-1]) == (t[0], t[-1])
-    steps = np.diff(played["t"])
-    assert 1e-4 < steps.min() <= steps.max() < 5e-4
-
-
-REST = at_rest()
-HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "words"),
-    [
-        ({"t": REST.t[:1]}, r"t has shape \(1,\), .* n at least 2"),
-        ({"t": REST.t[:400]}, r"positions has shape \(1, 2, 501\), .* \(masses, 2, 400\)"),
-        ({"positions": REST.positions[:0]}, r"positions has shape \(0, 2, 501\)"),
-        ({"positions": REST.positions[:, :1]}, r"positions has shape \(1, 1, 501\)"),
-        ({"energy_error": REST.t[:9]}, r"energy_error has shape \(9,\), .* \(501,\)"),
-        ({"energy_error": HOLE}, r"energy_error\[7\] is nan, .* finite: leave out"),
-        ({"positions": REST.positions * HOLE}, r"positions\[0, 0, 7\] is nan"),
-        ({"t": REST.t[::-1]}, r"t\[1\] = 4.99 follows t\[0\] = 5.0, .* increase: sort"),
-        ({"t": np.minimum(REST.t, 4.9)}, r"t\[491\] = 4.9 follows t\[490\] = 4.9"),
-        ({"links": ((0, 1),)}, r"links holds \(0, 1\), .* -1: number"),
-        ({"springs": ((-2, 0),)}, r"springs holds \(-2, 0\)"),
-    ],
-)
-def test_what_cannot_be_played_is_refused(
-    wrong: dict[str, Any], words: str, tmp_path: Path
-) -> None:
-    with pytest.raises(ValueError, match="track 'at rest': " + words):
-        write_page(tmp_path / "page.html", "", "", [REST, replace(REST, **wrong)])
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_page_without_runs_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"tracks is empty, but .* at least one"):
-        write_page(tmp_path / "page.html", "", "", [])
-
-
-@pytest.mark.parametrize("step", ["fsync", "replace"])
-def test_a_failed_write_leaves_the_old_page_and_nothing_else(
-    step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "page.html"
-    write_page(path, "old", "", [REST])
-    old = path.read_bytes()
-
-    def full(*_: object) -> None:
-        assert path.read_bytes() == old
-        assert len(list(tmp_path.iterdir())) == 2
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, step, full)
-    with pytest.raises(OSError, match="No space"):
-        write_page(path, "new", "", [REST])
-    assert [(found.name, found.read_bytes()) for found in tmp_path.iterdir()] == [(path.name, old)]

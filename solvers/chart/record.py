@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from types import ModuleType
 
 from solvers.chart.findings import Charted
 from solvers.chart.frontier import frontier
 from solvers.jsonable import jsonable
-from solvers.stability.modes import Modes
+from solvers.stability.modes import mode_spread
 
 #: Written by ``holonomic chart --record``; scenes are run in the ways that it says are cheapest.
 RECORD = Path(__file__).with_name("measured.json")
@@ -29,12 +28,3 @@ def recorded(charts: Sequence[Charted]) -> str:
         for chart in charts
     ]
     return json.dumps(jsonable(rows), indent=1) + "\n"
-
-
-def mode_spread(module: ModuleType, params: Sequence[float]) -> float:
-    """How many times as fast as the slowest mode about rest the fastest is; 1 if none is known."""
-    try:
-        frequencies = Modes.at_rest(module, params).frequencies
-    except ValueError:
-        return 1.0
-    return float(frequencies[-1] / frequencies[0])

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from types import ModuleType
 from typing import Any
 
 from solvers.chart import drawn, peers
 from solvers.chart.findings import Charted, wrong_from
-from solvers.chart.measurement import combinations, curves
+from solvers.chart.measurement import Combination, combinations, curves
 from solvers.chart.record import RECORD, recorded
 from solvers.chart.reference import Reference, reference
 from solvers.chart.told import told
 from solvers.commands.options import options
 from solvers.jsonable import jsonable
 from solvers.pictures import save
+from solvers.progress import Progress
+from solvers.scenes.scene import Scene
 from solvers.written import written
 
 #: Scenes that are charted if none is named.
@@ -48,11 +50,13 @@ def main(
     found: list[Charted] = []
     pictures: list[str] = []
     for scene in scenes:
-        truth = reference(scene)
-        charted = Charted.of(scene, truth, [
-            *curves(scene, truth, combinations(scene.module)),
-            *peers.curves(scene, truth, package),
-        ])  # fmt: skip
+        with Progress() as tell:
+            tell(f"{scene.name}: reference")
+            truth = reference(scene)
+            measured = curves(scene, truth, _telling(scene, tell))
+            tell(f"{scene.name}: other programs")
+            measured += peers.curves(scene, truth, package)
+            charted = Charted.of(scene, truth, measured)
         figures = {
             f"work_precision_{scene.name}": drawn.work_precision(
                 f"Cost of accuracy: {scene.title}", charted.curves
@@ -75,6 +79,14 @@ def main(
     if arguments.json:
         print(json.dumps(jsonable(_figures(found, pictures)), indent=2))
     return 0
+
+
+def _telling(scene: Scene, tell: Progress) -> Iterator[Combination]:
+    """All combinations, each told as it comes."""
+    wanted = list(combinations(scene.module))
+    for n, combination in enumerate(wanted, 1):
+        tell(f"{scene.name}: {', '.join(combination)} ({n} of {len(wanted)})")
+        yield combination
 
 
 def _figures(found: Sequence[Charted], pictures: Sequence[str]) -> dict[str, Any]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -14,14 +13,12 @@ import numpy as np
 from solvers.commands.options import options
 from solvers.energy import energy_error
 from solvers.jsonable import jsonable
-from solvers.models.full import NotAccurateError
-from solvers.models.model import OutsideDomainError
 from solvers.page.page import write_page
 from solvers.page.track import Track
 from solvers.pictures import save
 from solvers.progress import Progress
 from solvers.scenes.answer import Answer, Specialiser, answer
-from solvers.scenes.drawn import drawn, energies, places
+from solvers.scenes.drawn import capital, drawn, energies, places
 from solvers.scenes.scene import Scene
 from solvers.scenes.told import figures, table, told
 from solvers.written import written
@@ -49,24 +46,20 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType], specialiser: 
         "write the motion as a table, a picture and a page that plays it.",
     )  # fmt: skip
     found = []
-    try:
-        for scene in scenes:
-            with Progress() as tell:
-                answers = [answer(one, specialiser, tell) for one in (scene, *scene.beside)]
-                tell("pictures")
-                paths = shown(scene, answers, arguments.output)
-            found.append({
-                **figures(answers[0]),
-                "beside": [figures(one) for one in answers[1:]],
-                "files": {kind: str(path) for kind, path in paths.items()},
-            })  # fmt: skip
-            if not arguments.json:
-                for one in answers:
-                    print(*told(one), "", sep="\n")
-                print(f"files: {', '.join(map(str, paths.values()))}\n", flush=True)
-    except (NotAccurateError, OutsideDomainError) as error:
-        print(f"holonomic run: {scene.name}: {error}", file=sys.stderr)
-        return 3
+    for scene in scenes:
+        with Progress() as tell:
+            answers = [answer(one, specialiser, tell) for one in (scene, *scene.beside)]
+            tell("pictures")
+            paths = shown(scene, answers, arguments.output)
+        found.append({
+            **figures(answers[0]),
+            "beside": [figures(one) for one in answers[1:]],
+            "files": {kind: str(path) for kind, path in paths.items()},
+        })  # fmt: skip
+        if not arguments.json:
+            for one in answers:
+                print(*told(one), "", sep="\n")
+            print(f"files: {', '.join(map(str, paths.values()))}\n", flush=True)
     if arguments.json:
         one_or_all: Any = found[0] if len(found) == 1 else found
         print(json.dumps(jsonable(one_or_all), indent=2))
@@ -82,7 +75,12 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
     }
     written(paths["table"], table(answers[0]))
     save(drawn(answers), paths["picture"])
-    write_page(paths["page"], scene.title, " ".join(scene.note.split()), list(map(_track, answers)))
+    write_page(
+        paths["page"],
+        capital(scene.title),
+        " ".join(scene.note.split()),
+        list(map(_track, answers)),
+    )
     return paths
 
 

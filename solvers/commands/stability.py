@@ -20,6 +20,7 @@ from solvers.integration import integrate
 from solvers.jsonable import jsonable
 from solvers.pictures import save
 from solvers.prepared import prepare
+from solvers.progress import Progress
 from solvers.scenes.scene import Scene
 from solvers.stability.critical import CriticalStep, critical_step
 from solvers.stability.drawn import regions
@@ -50,7 +51,8 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
     )  # fmt: skip
     found: dict[str, Any] = {"methods": [], "failures": {}, "pictures": []}
     for one in scenes:
-        steps = scene_steps(one)
+        with Progress() as tell:
+            steps = scene_steps(one, tell)
         path = arguments.output / f"stability_{one.name}.png"
         save(picture(one, steps), path)
         found["methods"] += [row(one, step) for step in steps]
@@ -64,8 +66,10 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
             module(f"{kind}_pendulum") for kind in ("double", "single", "elastic")
         )
         for name, study in studies(double, single, elastic, FULL).items():
-            result = study()
-            path = draw(name, result, arguments.output)
+            with Progress() as tell:
+                tell(f"where methods fail: {name}")
+                result = study()
+                path = draw(name, result, arguments.output)
             found["failures"][name] = result
             found["pictures"].append(str(path))
             if not arguments.json:
@@ -84,9 +88,13 @@ def no_compiler(module: ModuleType) -> str:
     return ""
 
 
-def scene_steps(one: Scene) -> list[CriticalStep]:
+def scene_steps(one: Scene, tell: Callable[[str], None] = lambda _: None) -> list[CriticalStep]:
     """Every method's critical step in small motion with a scene's parameters."""
-    return [critical_step(method, one.module, one.params) for method in names()]
+    found = []
+    for method in names():
+        tell(f"{one.name}: {method}")
+        found.append(critical_step(method, one.module, one.params))
+    return found
 
 
 def row(one: Scene, step: CriticalStep) -> dict[str, Any]:

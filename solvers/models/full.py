@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from solvers.compiler import NoCompilerError
+from solvers.forms import fastest_form
 from solvers.horizon import beyond_horizon
 from solvers.integration import integrate
 from solvers.measured import median_seconds
@@ -19,7 +20,7 @@ from solvers.prepared import prepare
 from solvers.references.taylor import taylor
 from solvers.solution import Status
 
-#: By what the run is checked: another method, at least so many times as accurate, or the finest.
+#: By what a run is checked: at least so many times as accurate, or the finest.
 CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14
 #: Errors may be so many times as large as the difference between run and check.
 MARGIN = 2.0
@@ -162,11 +163,16 @@ def _error(asked: Asked, way: Way, setting: float, checked: Asked) -> float:
         found = run(asked, way, setting, asked.looks)
     except NotAccurateError:
         return np.inf
+    # another method in another form: they share no rounding, not even of the start
     method = next(name for name in CHECKS if name != way.method)
-    truth, tolerance = Way(method, None, ""), FINEST
+    fastest = fastest_form(checked.module)
+    truth = Way(method, fastest if way.form == "lagrangian" else "lagrangian", "")
+    tolerance = FINEST
     if not way.is_fixed:
         tolerance = max(setting / TIGHTER, FINEST)
-    return _apart(asked, found, run(checked, truth, tolerance, asked.looks))
+    fine = run(checked, truth, tolerance, asked.looks)
+    # the check is as wrong as its tolerance, if the run is righter than it should be
+    return _apart(asked, found, fine) + tolerance * float(np.abs(fine).max())
 
 
 def _apart(asked: Asked, one: Array, other: Array) -> float:

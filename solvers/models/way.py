@@ -10,9 +10,10 @@ from types import ModuleType
 from typing import Any
 
 from solvers.catalogue import load
-from solvers.chart.record import RECORD, mode_spread
+from solvers.chart.record import RECORD
 from solvers.forms import has_form
 from solvers.request import SCIPY
+from solvers.stability.modes import mode_spread
 
 SERIES = "taylor"
 

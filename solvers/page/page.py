@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
@@ -12,6 +11,7 @@ from pathlib import Path
 from string import Template
 
 from solvers.page.track import Track
+from solvers.written import written
 
 SOURCES = Path(__file__).parent
 #: The player's parts, each of which uses those before it.
@@ -42,17 +42,7 @@ def write_page(path: Path, title: str, note: str, tracks: Sequence[Track]) -> No
         raise ValueError("tracks is empty, but a page plays at least one: give it a Track")
     for track in tracks:
         track.check()
-    text = _page(title, note, tracks).encode()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    passage = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with passage.open("wb") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(passage, path)
-    finally:
-        passage.unlink(missing_ok=True)
+    written(path, _page(title, note, tracks))
 
 
 def _page(title: str, note: str, tracks: Sequence[Track]) -> str:

@@ -115,7 +115,7 @@ def answer(
     chosen = choice(scene, code, tell)
     choosing = perf_counter() - before
     tell(chosen.model.name)
-    t = np.linspace(0, scene.duration, scene.samples)
+    t = scene.times
     y = chosen.model.states(t).T
     y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
     energy = None

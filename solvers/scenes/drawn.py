@@ -16,10 +16,11 @@ from solvers.energy import energy_error
 from solvers.pictures import COLOURS, panels
 from solvers.scenes.answer import Answer
 from solvers.scenes.checks import PICTURE
-from solvers.scenes.scene import Scene
 
 GREEK = ("theta", "phi", "psi", "alpha", "beta")
 STYLES = ("-", "--", ":", "-.")
+#: Energy errors below this are drawn there: a logarithm has no zero.
+LEAST = 1e-17
 #: So many pictures at most stand three in a row, more four.
 MOST = 6
 #: Width of a panel and height of a row in inches, and characters of a note to the inch.
@@ -29,33 +30,41 @@ PANEL, ROW, WRITTEN = 4.6, 3.6, 15
 def drawn(answers: Sequence[Answer]) -> Figure:
     """All that a scene has to show, with what is shown beside it; the note stands below."""
     main = answers[0]
-    pictures = main.scene.pictures or usual(main.scene)
+    pictures = main.scene.pictures or usual(main)
     columns = min(len(pictures), 3 if len(pictures) <= MOST else 4)
     rows = ceil(len(pictures) / columns)
     width = max(PANEL * columns, 7.0)
     words = [*main.scene.note.split(), *(sureness(a, named=len(answers) > 1) for a in answers)]
     note = fill(" ".join(words), int(width * WRITTEN))
     figure, axes = panels(
-        main.scene.title, rows=rows, columns=columns,
+        capital(main.scene.title), rows=rows, columns=columns,
         size=(width, ROW * rows + 0.6 + 0.16 * note.count("\n")),
     )  # fmt: skip
     for panel, picture in zip(axes, pictures, strict=False):
         _draw(panel, picture, answers)
+    if axes[0].get_legend_handles_labels()[1]:
+        axes[0].legend(frameon=False, fontsize="small")
     for panel in axes[len(pictures) :]:
         panel.set_axis_off()
     figure.supxlabel(note, x=0.01, ha="left", fontsize="small", color="#444444")
     return figure
 
 
-def usual(scene: Scene) -> tuple[str, ...]:
-    """Everything that there is to see of a system."""
-    coordinates, state = scene.module.COORDINATES, scene.module.STATE
-    n = len(coordinates)
+def capital(text: str) -> str:
+    """A title as it stands above something."""
+    return text[:1].upper() + text[1:]
+
+
+def usual(answer: Answer) -> tuple[str, ...]:
+    """Everything that there is to see of what moves."""
+    state, n = answer.scene.module.STATE, len(answer.scene.module.COORDINATES)
+    there = [k for k in range(n) if np.isfinite(answer.y[[k, k + n]]).all()]
+    places, speeds = [state[k] for k in there], [state[k + n] for k in there]
     return (
-        f"{', '.join(coordinates)} over t",
-        *(f"{state[k + n]} over {state[k]}" for k in range(n)),
-        *(f"{b} over {a}" for a, b in pairwise(coordinates)),
-        *(f"{b} over {a}" for a, b in pairwise(state[n:])),
+        f"{', '.join(places)} over t",
+        *(f"{speed} over {place}" for place, speed in zip(places, speeds, strict=True)),
+        *(f"{b} over {a}" for a, b in pairwise(places)),
+        *(f"{b} over {a}" for a, b in pairwise(speeds)),
         "path",
         "energy",
     )
@@ -76,20 +85,19 @@ def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
         first = COLOURS if answer is answers[0] else COLOURS[3:] + COLOURS[:3]
         label = answer.scene.label if len(answers) > 1 else ""
         if picture == "path":
-            _path(panel, answer, first, style)
+            _path(panel, answer, first, style, label)
         elif picture == "energy":
             error = np.abs(energy_error(answer.scene.module, answer.scene.params, energies(answer)))
-            panel.semilogy(answer.t, np.maximum(error, 1e-17), style, color=first[0], label=label)
+            panel.semilogy(answer.t, np.maximum(error, LEAST), style, color=first[0], label=label,
+                           linewidth=0.9)  # fmt: skip
         else:
             _curves(panel, picture, answer, first, style, label)
     if picture == "path":
-        panel.set(xlabel="x / m", ylabel="y / m", aspect="equal", title="paths")
+        panel.set(xlabel="x / m", ylabel="y / m")
         panel.set_aspect("equal", adjustable="datalim")
         panel.plot(0, 0, "k+", markersize=8)
     elif picture == "energy":
-        panel.set(xlabel="t / s", ylabel="energy error, relative", title="energy error")
-    if panel.get_legend_handles_labels()[1]:
-        panel.legend(frameon=False, fontsize="small")
+        panel.set(xlabel=f"{symbol('t')} / s", ylabel="energy error, relative")
 
 
 def _curves(
@@ -110,9 +118,10 @@ def _curves(
               ylabel=f"{', '.join(map(symbol, names))} / {_unit(units[names[0]])}")  # fmt: skip
 
 
-def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str) -> None:
+def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str, label: str) -> None:
     for (x, y), colour in zip(places(answer), colours, strict=False):
-        panel.plot(x, y, style, color=colour, linewidth=0.9)
+        panel.plot(x, y, style, color=colour, linewidth=0.9, label=label)
+        label = ""
         panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
 
 

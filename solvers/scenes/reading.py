@@ -83,7 +83,7 @@ def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleTyp
         (),
         _positive("duration", table["duration"], "s"),
         note=_text("note", table.get("note", "")),
-        samples=_count(table.get("samples", Scene.samples)),
+        samples=_count(table["samples"]) if "samples" in table else 0,
     )
     found = _changed(found, table)
     pictures = check_pictures(_texts("pictures", table.get("pictures", [])), found)

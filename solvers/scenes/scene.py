@@ -5,6 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from types import ModuleType
 
+import numpy as np
+from numpy.typing import NDArray
+
+#: Usual samples: so many a second, and at least and at most so many.
+RATE, FEWEST, MOST = 100, 501, 20_001
 #: What else can be asked for, beside components of the state.
 ENERGY = "energy"
 
@@ -32,7 +37,8 @@ class Scene:
     outputs : tuple of str
         What is asked for: components of the state, and ``energy``.
     samples : int
-        At how many times, evenly over the duration, both ends included.
+        At how many times, evenly over the duration, both ends included; 0 for a hundred a
+        second, within `FEWEST` and `MOST`.
     model : str or None
         ``full`` for the full equations; by default the smallest model that is good enough.
     method, form : str or None
@@ -60,7 +66,7 @@ class Scene:
     duration: float
     accuracy: float = 1e-6
     outputs: tuple[str, ...] = ()
-    samples: int = 501
+    samples: int = 0
     model: str | None = None
     method: str | None = None
     form: str | None = None
@@ -69,6 +75,12 @@ class Scene:
     pictures: tuple[str, ...] = ()
     note: str = ""
     beside: tuple[Scene, ...] = ()
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """When the motion is looked at, in s."""
+        usual = min(max(round(RATE * self.duration) + 1, FEWEST), MOST)
+        return np.linspace(0, self.duration, self.samples or usual)
 
     @property
     def wanted(self) -> tuple[int, ...]:

@@ -43,11 +43,11 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Scene:
     """
     if name in names():
         return read(FILES / f"{name}.toml", module)
-    if name.endswith(".toml"):
+    if name.endswith(".toml") and Path(name).is_file():
         return read(Path(name), module)
     near = get_close_matches(name, names(), n=1)
     hint = f"; did you mean {near[0]!r}?" if near else ""
     raise UnknownSceneError(
-        f"scene {name[:50]!r} is neither a file that ends in .toml nor one of "
+        f"scene {name[:80]!r} is neither a file that ends in .toml nor one of "
         f"{', '.join(names())}{hint}"
     )

@@ -67,3 +67,12 @@ class Modes:
 def along(module: ModuleType, params: Sequence[float], states: Array) -> NDArray[np.complex128]:
     """Eigenvalues of the Lagrangian form linearised at each of `states`, shape (n, state)."""
     return np.array([np.linalg.eigvals(np.array(module.jacobian(0.0, y, params))) for y in states])
+
+
+def mode_spread(module: ModuleType, params: Sequence[float]) -> float:
+    """How many times as fast as the slowest mode about rest the fastest is; 1 if none is known."""
+    try:
+        frequencies = Modes.at_rest(module, params).frequencies
+    except ValueError:
+        return 1.0
+    return float(frequencies[-1] / frequencies[0])

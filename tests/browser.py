@@ -1,0 +1,99 @@
+"""A page in a real browser, and motions to be played there."""
+
+from base64 import b64decode
+from collections.abc import Sequence
+from io import BytesIO
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+import generated.double_pendulum as dp
+from solvers.integration import integrate
+from solvers.page.page import write_page
+from solvers.page.track import Track
+
+
+def played(method: str, h: float | None = None) -> Track:
+    motion = integrate(dp, (0, 5), (pi / 2, pi, 0, 0), dp.DEFAULTS, method=method, h=h,
+                       t_eval=np.linspace(0, 5, 301), energy=True)  # fmt: skip
+    assert motion.energy is not None
+    places = np.asarray(dp.positions_many(motion.y, dp.DEFAULTS))
+    return Track(method, motion.t, places, ((-1, 0), (0, 1)), (),
+                 motion.energy / motion.energy[0] - 1)  # fmt: skip
+
+
+def at_rest(place: tuple[float, float] = (0.3, -1.0), error: Any = 1e-9, end: float = 5) -> Track:
+    n = 501
+    places = np.tile(np.reshape(place, (1, 2, 1)), n)
+    return Track("at rest", np.linspace(0, end, n), places, (), ((-1, 0),), np.full(n, error))
+
+
+class Player:
+    """A page in a browser, and what a reader sees and does there."""
+
+    def __init__(self, driver: Any, path: Path) -> None:
+        self.driver, self.path = driver, path
+
+    def open(self, tracks: Sequence[Track], *, text: str = "", size: tuple[int, int] = (1280, 800),
+             density: int = 1, playing: bool = False, scheme: str = "light") -> None:  # fmt: skip
+        write_page(self.path, text, text, tracks)
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": size[0], "height": size[1], "deviceScaleFactor": density, "mobile": False,
+        })  # fmt: skip
+        motion = "no-preference" if playing else "reduce"
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
+            {"name": "prefers-reduced-motion", "value": motion},
+            {"name": "prefers-color-scheme", "value": scheme},
+        ]})  # fmt: skip
+        self.driver.get(self.path.as_uri())
+        self.settle()
+
+    def settle(self) -> None:
+        self.driver.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))"
+        )
+
+    def js(self, expression: str) -> Any:
+        return self.driver.execute_script(f"return {expression}")
+
+    def find(self, selector: str) -> Any:
+        return self.driver.find_element("css selector", selector)
+
+    def texts(self, selector: str) -> list[str]:
+        return [found.text for found in self.driver.find_elements("css selector", selector)]
+
+    @property
+    def time(self) -> float:
+        return float(self.js("document.documentElement.dataset.time"))
+
+    @property
+    def playing(self) -> bool:
+        return {"true": True, "false": False}[self.js("document.documentElement.dataset.playing")]
+
+    def press(self, keys: str) -> None:
+        from selenium.webdriver import ActionChains
+
+        ActionChains(self.driver).send_keys(keys).perform()
+        self.settle()
+
+    def drag(self, selector: str, start: float, end: float, kind: str = "mouse") -> None:
+        """From one pixel column of an element to another one, on the way past its middle."""
+        from selenium.webdriver.common.actions.action_builder import ActionBuilder
+        from selenium.webdriver.common.actions.pointer_input import PointerInput
+
+        element = self.find(selector)
+        middle = int(element.rect["width"] // 2)  # the driver counts from there
+        actions = ActionBuilder(self.driver, mouse=PointerInput(kind, kind), duration=20)
+        pointer = actions.pointer_action
+        pointer.move_to(element, round(start) - middle, 0).pointer_down()
+        pointer.move_to(element, 0, 0).move_to(element, round(end) - middle, 0).pointer_up()
+        actions.perform()
+        self.settle()
+
+    def pixels(self, selector: str, number: int = 0) -> np.ndarray:
+        """Colours of a canvas, of shape (rows, columns, 3)."""
+        url = self.js(f"document.querySelectorAll('{selector}')[{number}].toDataURL()")
+        return np.asarray(Image.open(BytesIO(b64decode(url.partition(",")[2]))).convert("RGB"))

@@ -1,0 +1,192 @@
+"""``holonomic run``: what it prints, writes and draws, and with which code it ends."""
+
+import json
+import os
+import pty
+import re
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import generated.double_pendulum as dp
+from solvers.cli import generated_module, main, specialiser
+from solvers.references.taylor import taylor
+from solvers.scenes.answer import answer
+from solvers.scenes.drawn import drawn, symbol, usual
+from solvers.scenes.shipped import find
+from solvers.scenes.told import table, told
+
+KEYS = {"model", "method", "form", "final_state", "accuracy_asked", "error_estimate", "why"}
+
+
+def run(*arguments: str, folder: Path) -> int:
+    return main(["run", *arguments, "--output", str(folder)])
+
+
+def test_the_json_says_what_was_chosen_why_and_where_it_ends(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert run("report", "--json", folder=tmp_path) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert set(found) >= KEYS
+    assert (found["model"], found["method"], found["form"]) == (
+        "full equations", "verner87", "rational",
+    )  # fmt: skip
+    truth = taylor(dp, dp.DEFAULTS, find("report", generated_module).y0, [0, 5])[-1]
+    assert list(found["final_state"]) == [*dp.STATE]
+    assert (
+        np.abs(np.array(list(found["final_state"].values())) - truth).max()
+        <= (found["error_estimate"])
+    )
+    assert found["error_estimate"] <= found["accuracy_asked"] == 1e-9
+    assert found["accuracy_met"] is True
+    assert set(found["declined"]) >= {"rest", "normal modes", "quadrature"}
+    assert {Path(path).name for path in found["files"].values()} == {
+        "report.csv", "report.png", "report.html",
+    } == {path.name for path in tmp_path.iterdir()}  # fmt: skip
+
+
+def test_a_named_way_is_told_with_its_error_and_what_is_beside_it(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert run("program_3", "--json", folder=tmp_path) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["method"], found["setting"], found["accuracy_met"]) == ("rk4", 0.01, False)
+    (motion,) = found["beside"]
+    assert motion["accuracy_met"] is True
+    apart = [abs(found["final_state"][k] - motion["final_state"][k]) for k in dp.STATE]
+    assert 1e-8 < max(apart) < found["error_estimate"] < 1e-5
+    assert run("program_3", folder=tmp_path) == 0
+    assert "NOT MET, since the way is named in the scene" in capsys.readouterr().out
+
+
+def test_only_digits_that_can_be_trusted_are_printed(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert run("flea", "one_bob", folder=tmp_path) == 0
+    flea, one_bob = capsys.readouterr().out.split("files: ")[:2]
+    estimate = float(re.search(r"error estimate (\S+),", flea)[1])
+    (digits,) = re.findall(r"theta1 = -?\d+\.(\d+) rad,", flea)
+    assert 10.0 ** -len(digits) >= estimate / 10
+    assert "theta2" not in one_bob.split("final state:")[1]
+    assert "not normal modes: theta2 moves no mass" in one_bob
+
+
+def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
+    scene = replace(find("small", generated_module), outputs=("theta1", "energy"), samples=5)
+    found = answer(scene)
+    lines = table(found).splitlines()
+    assert lines[0] == "t [s],theta1 [rad],energy [J]"
+    rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
+    assert rows[:, 0].tolist() == [0, 5, 10, 15, 20]
+    assert rows[:, 1].tolist() == found.y[0].tolist()
+    assert np.ptp(rows[:, 2]) < 1e-6
+    # no energy unless it is asked for
+    assert answer(replace(scene, outputs=("theta1",))).energy is None
+
+
+def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:
+    scene = replace(find("report", generated_module), code="specialised")
+    found = answer(scene, specialiser)
+    assert found.choice.model.asked.module.PARAMETERS == ()
+    assert any("specialised code" in line for line in told(found))
+    plain = answer(replace(scene, code=None), specialiser)
+    assert plain.choice.model.asked.module is dp
+    assert np.abs(found.y - plain.y).max() < 2 * scene.accuracy
+    with pytest.raises(ValueError, match="needs a specialiser"):
+        answer(scene)
+
+
+@pytest.mark.parametrize(("text", "code", "words"), [
+    ("system = 1\n", 2, "is missing"),
+    ('system = "double_pendulum"\nduration = 20\nmethod = "dop853"\n'
+     'initial = { theta1 = "pi/2", theta2 = "pi" }\n', 3, "dop853 comes to"),
+    ('system = "double_pendulum"\nduration = 1\nmodel = "full"\nparameters = { m2 = "absent" }\n'
+     "initial = { theta1 = 1, theta2 = 0 }\n", 2, "theta2 moves no mass"),
+])  # fmt: skip
+def test_it_ends_with_the_code_of_what_went_wrong(
+    text: str, code: int, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    try:
+        found = run(str(path), folder=tmp_path)
+    except SystemExit as stop:
+        found = stop.code
+    assert found == code
+    said = capsys.readouterr().err
+    assert words in said
+    assert "Traceback" not in said
+    assert [p.name for p in tmp_path.iterdir()] == ["scene.toml"]
+
+
+def test_other_commands_refuse_scenes_that_are_not_theirs(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert main(["stability", "weightless", "--output", str(tmp_path)]) == 2
+    assert "does not oscillate about rest" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="2"):
+        run("none.toml", folder=tmp_path)
+    assert "neither a file" in capsys.readouterr().err
+
+
+def lines_of(figure: Figure) -> list[tuple[str, int]]:
+    return [(panel.get_ylabel(), len(panel.lines)) for panel in figure.axes if panel.axison]
+
+
+def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> None:
+    scene = find("report", generated_module)
+    assert usual(answer(scene)) == (
+        "theta1, theta2 over t", "theta1_dot over theta1", "theta2_dot over theta2",
+        "theta2 over theta1", "theta2_dot over theta1_dot", "path", "energy",
+    )  # fmt: skip
+    figure = drawn([answer(scene)])
+    panels = [panel for panel in figure.axes if panel.axison]
+    assert len(panels) == 7
+    for panel in panels:
+        for label in (panel.get_xlabel(), panel.get_ylabel()):
+            assert re.search(r"/ \(?(s|rad|m|rad/s)\)?$|, relative$", label), label
+    assert [panel.get_aspect() for panel in panels].count(1.0) == 1
+    assert symbol("theta1_dot") == r"$\dot{\theta}_{1}$"
+    assert (symbol("r"), symbol("t")) == ("$r$", "$t$")
+    without = answer(find("one_bob", generated_module))
+    assert usual(without) == ("theta1 over t", "theta1_dot over theta1", "path", "energy")
+    # what is drawn is the motion
+    angles = panels[0].lines
+    assert np.array_equal(angles[1].get_ydata(), answer(scene).y[1])
+
+
+def test_the_report_s_figures_are_drawn_with_what_is_known_of_them() -> None:
+    for name, curves in (("figure_3_1", 4), ("figure_3_3", 2), ("figure_3_6", 1),
+                         ("figure_4_2", 1), ("figure_4_5", 2)):  # fmt: skip
+        scene = find(name, generated_module)
+        figure = drawn([answer(one) for one in (scene, *scene.beside)])
+        (panel,) = figure.axes
+        assert len(panel.lines) == curves
+        note = figure.get_supxlabel()
+        assert "lost" in note
+        assert "error at most" in note
+
+
+def test_progress_is_told_on_a_terminal_only_and_wiped_out(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", (
+        "import time\nfrom solvers.progress import Progress\n"
+        "with Progress() as tell:\n    tell('working')\n    time.sleep(1.6)\nprint('done')"
+    )]  # fmt: skip
+    plain = subprocess.run(command, capture_output=True, check=True, text=True)
+    assert (plain.stdout, plain.stderr) == ("done\n", "")
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=theirs)
+    process.wait(timeout=60)
+    time.sleep(0.1)
+    shown = os.read(ours, 100_000).decode()
+    os.close(ours)
+    os.close(theirs)
+    assert "working, 1 s" in shown
+    assert shown.endswith("\r" + " " * 78 + "\r")

@@ -1,0 +1,100 @@
+"""What a page is given: small, exact, refused where it cannot be played, written whole or not."""
+
+import json
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser import at_rest, played
+
+from solvers.page.page import write_page
+from solvers.page.track import MOST_SAMPLES, Track
+
+
+@pytest.fixture(scope="module")
+def tracks() -> list[Track]:
+    return [played("verner87")]
+
+
+def motions(path: Path) -> list[dict[str, Any]]:
+    found = re.search(r'id="motions">(.*?)</script>', path.read_text(encoding="utf-8"))
+    assert found
+    return json.loads(found[1])
+
+
+def test_a_page_is_small_and_as_exact_as_can_be_seen(tracks: list[Track], tmp_path: Path) -> None:
+    path = tmp_path / "new" / "page.html"
+    write_page(path, "", "", tracks)
+    assert path.stat().st_size < 50_000
+    (played,) = motions(path)
+    for name, tolerance in (("t", 1e-6), ("positions", 1e-5), ("energy_error", 1e-9)):
+        assert np.array(played[name]) == pytest.approx(getattr(tracks[0], name), abs=tolerance)
+    assert not re.search(r"https?:|\bsrc=|@import|url\(", path.read_text(encoding="utf-8"))
+
+
+def test_very_many_samples_are_thinned_out_evenly(tmp_path: Path) -> None:
+    n = 3 * MOST_SAMPLES
+    t = np.linspace(1e4, 1e4 + 6, n)
+    track = Track("many", t, np.array([[t, t]]), (), (), t)
+    write_page(tmp_path / "page.html", "", "", [track])
+    (played,) = motions(tmp_path / "page.html")
+    assert len(played["t"]) == len(played["positions"][0][0]) == MOST_SAMPLES
+    assert (played["t"][0], played["t"][-1]) == (t[0], t[-1])
+    steps = np.diff(played["t"])
+    assert 1e-4 < steps.min() <= steps.max() < 5e-4
+
+
+REST = at_rest()
+HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"t": REST.t[:1]}, r"t has shape \(1,\), .* n at least 2"),
+        ({"t": REST.t[:400]}, r"positions has shape \(1, 2, 501\), .* \(masses, 2, 400\)"),
+        ({"positions": REST.positions[:0]}, r"positions has shape \(0, 2, 501\)"),
+        ({"positions": REST.positions[:, :1]}, r"positions has shape \(1, 1, 501\)"),
+        ({"energy_error": REST.t[:9]}, r"energy_error has shape \(9,\), .* \(501,\)"),
+        ({"energy_error": HOLE}, r"energy_error\[7\] is nan, .* finite: leave out"),
+        ({"positions": REST.positions * HOLE}, r"positions\[0, 0, 7\] is nan"),
+        ({"t": REST.t[::-1]}, r"t\[1\] = 4.99 follows t\[0\] = 5.0, .* increase: sort"),
+        ({"t": np.minimum(REST.t, 4.9)}, r"t\[491\] = 4.9 follows t\[490\] = 4.9"),
+        ({"links": ((0, 1),)}, r"links holds \(0, 1\), .* -1: number"),
+        ({"springs": ((-2, 0),)}, r"springs holds \(-2, 0\)"),
+    ],
+)
+def test_what_cannot_be_played_is_refused(
+    wrong: dict[str, Any], words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match="track 'at rest': " + words):
+        write_page(tmp_path / "page.html", "", "", [REST, replace(REST, **wrong)])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_without_runs_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"tracks is empty, but .* at least one"):
+        write_page(tmp_path / "page.html", "", "", [])
+
+
+@pytest.mark.parametrize("step", ["fsync", "replace"])
+def test_a_failed_write_leaves_the_old_page_and_nothing_else(
+    step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "page.html"
+    write_page(path, "old", "", [REST])
+    old = path.read_bytes()
+
+    def full(*_: object) -> None:
+        assert path.read_bytes() == old
+        assert len(list(tmp_path.iterdir())) == 2
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, step, full)
+    with pytest.raises(OSError, match="No space"):
+        write_page(path, "new", "", [REST])
+    assert [(found.name, found.read_bytes()) for found in tmp_path.iterdir()] == [(path.name, old)]
