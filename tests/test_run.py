@@ -15,12 +15,12 @@ import pytest
 from matplotlib.figure import Figure
 
 import generated.double_pendulum as dp
+from solvers.answers.answer import answer
+from solvers.answers.drawn import drawn, symbol, usual
+from solvers.answers.told import table, told
 from solvers.cli import generated_module, main, specialiser
 from solvers.references.taylor import taylor
-from solvers.scenes.answer import answer
-from solvers.scenes.drawn import drawn, symbol, usual
 from solvers.scenes.shipped import find
-from solvers.scenes.told import table, told
 
 KEYS = {"model", "method", "form", "final_state", "accuracy_asked", "error_estimate", "why"}
 

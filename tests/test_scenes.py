@@ -13,6 +13,7 @@ from solvers.cli import generated_module
 from solvers.scenes.checks import MassMatrixWarning
 from solvers.scenes.quantity import QuantityError, quantity
 from solvers.scenes.reading import SceneError, read, scene
+from solvers.scenes.scene import Scene
 from solvers.scenes.shipped import UnknownSceneError, find, names
 
 PLAIN = {"system": "double_pendulum", "duration": 5, "initial": {"theta1": 1, "theta2": 2}}
@@ -79,7 +80,7 @@ def test_what_is_no_number_is_refused_at_once(text: object, words: str) -> None:
     ({"system": "doble_pendulum"}, "no such system; known are double_pendulum"),
     ({"system": "os"}, "no such system"),
     ({"system": 3}, "must be text"),
-    ({"duration": 0}, "duration = 0 must be positive"),
+    ({"duration": 0}, "duration = 0.0 must be positive"),
     ({"duration": "-5 s"}, "must be positive"),
     ({"duration": "5 m"}, "duration: '5 m' is not in s"),
     ({"initial": {"theta1": 1}}, "initial.theta2 is missing: give theta1, theta2"),
@@ -183,6 +184,21 @@ def test_a_scene_is_what_its_file_says(tmp_path: Path) -> None:
     assert (other.method, other.step, other.label) == ("rk4", 1e-3, "other")
     # another way of integrating owes nothing to the first one
     assert (better.method, better.step, better.y0) == ("verner98", None, found.y0)
+
+
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"y0": (1, 2, 3)}, r"y0 has shape \(3,\): give 4 numbers, theta1"),
+    ({"y0": (1, 2, float("nan"), 0)}, "must be finite"),
+    ({"params": (1, -1, 2, 2, 9.81)}, "m2 = -1.0 must be positive, in kg"),
+    ({"duration": float("inf")}, "must be positive"),
+    ({"outputs": ("theta9",)}, "outputs name 'theta9'"),
+    ({"method": "rk4"}, "give a step"),
+])  # fmt: skip
+def test_a_scene_in_python_is_as_strict(changes: dict[str, Any], words: str) -> None:
+    plain = {"module": dp, "params": dp.DEFAULTS, "y0": (1, 2, 0, 0), "duration": 5.0}
+    assert Scene(**plain).outputs == dp.STATE
+    with pytest.raises(ValueError, match=words):
+        Scene(**{**plain, **changes})
 
 
 def test_a_nearly_singular_mass_matrix_is_told_with_its_coordinate() -> None:

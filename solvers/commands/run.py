@@ -10,6 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from solvers.answers.answer import Answer, Specialiser, answer
+from solvers.answers.drawn import capital, drawn, energies, places
+from solvers.answers.told import figures, table, told
 from solvers.commands.options import options
 from solvers.energy import energy_error
 from solvers.jsonable import jsonable
@@ -17,10 +20,7 @@ from solvers.page.page import write_page
 from solvers.page.track import Track
 from solvers.pictures import save
 from solvers.progress import Progress
-from solvers.scenes.answer import Answer, Specialiser, answer
-from solvers.scenes.drawn import capital, drawn, energies, places
 from solvers.scenes.scene import Scene
-from solvers.scenes.told import figures, table, told
 from solvers.written import written
 
 #: Lengths that differ by less are those of rods.

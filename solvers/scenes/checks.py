@@ -5,14 +5,20 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Sequence
+from difflib import get_close_matches
+from math import isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solvers.catalogue import UnknownMethodError, load
 from solvers.forms import FORMS, has_form
 from solvers.request import SCIPY
-from solvers.scenes.scene import Scene
 
+if TYPE_CHECKING:
+    from solvers.scenes.scene import Scene
+#: Samples that fit into memory, and the finest accuracy.
+MOST_SAMPLES, FINEST = 1_000_001, 1e-13
 #: Condition of the mass matrix from which on digits are lost, and none is left.
 DOUBTFUL, SINGULAR = 1e12, 1e15
 PICTURE = re.compile(r"(\w+(?:, *\w+)*) +over +(\w+)\Z")
@@ -88,7 +94,7 @@ def check_method(scene: Scene) -> None:
         raise ValueError(f"method = {method!r} needs a Jacobian: not form = 'rational'")
 
 
-def check_pictures(pictures: Sequence[str], scene: Scene) -> tuple[str, ...]:
+def check_pictures(pictures: Sequence[str], state: Sequence[str]) -> None:
     """Refuse pictures of what is not there.
 
     Raises
@@ -96,13 +102,79 @@ def check_pictures(pictures: Sequence[str], scene: Scene) -> tuple[str, ...]:
     ValueError
         With what can be drawn.
     """
-    known = ("t", *scene.module.STATE)
+    known = ("t", *state)
     for picture in pictures:
         found = PICTURE.match(picture)
         names = [*re.split(", *", found[1]), found[2]] if found else []
         if picture not in ("path", "energy") and not (names and set(names) <= set(known)):
             raise ValueError(
                 f"pictures name {picture[:50]!r}: write 'path', 'energy' or such as "
-                f"'{scene.module.STATE[0]} over t', of {', '.join(known)}"
+                f"'{state[0]} over t', of {', '.join(known)}"
             )
-    return tuple(pictures)
+
+
+def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[str]) -> None:
+    """Refuse to be asked for what is not there, or for no part of the state.
+
+    Raises
+    ------
+    ValueError
+        With what there is.
+    """
+    for name in outputs:
+        if name not in known:
+            raise ValueError(
+                f"outputs name {name[:50]!r}{near(name, known)}: known are {', '.join(known)}"
+            )
+    if not set(outputs) & set(state):
+        raise ValueError(
+            f"outputs = {list(outputs)} names no part of the state: add one of {', '.join(state)}"
+        )
+
+
+def near(name: str, known: Sequence[str]) -> str:
+    """The known name that was meant, perhaps, in brackets; empty if none is near."""
+    found = get_close_matches(name, known, n=1)
+    return f" (did you mean {found[0]!r}?)" if found else ""
+
+
+def check_samples(value: object) -> None:
+    """Refuse what is no number of samples.
+
+    Raises
+    ------
+    ValueError
+        With what is allowed.
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or not 2 <= value <= MOST_SAMPLES:
+        raise ValueError(
+            f"samples = {str(value)[:50]} must be a whole number from 2 to {MOST_SAMPLES}"
+        )
+
+
+def check_numbers(scene: Scene) -> None:
+    """Refuse durations, accuracies, parameters and choices that are not possible.
+
+    Raises
+    ------
+    ValueError
+        With what is allowed.
+    """
+    for field in ("duration", "accuracy", "step"):
+        number = getattr(scene, field)
+        if number is not None and not (isfinite(number) and number > 0):
+            raise ValueError(f"{field} = {number} must be positive")
+    if scene.accuracy < FINEST:
+        raise ValueError(f"accuracy = {scene.accuracy} is below {FINEST}, what numbers resolve")
+    for name, value in zip(scene.module.PARAMETERS, scene.params, strict=True):
+        if name in scene.module.POSITIVE and value < 0:
+            raise ValueError(f"{name} = {value} must be positive, in {scene.module.UNITS[name]}")
+    if scene.samples:
+        check_samples(scene.samples)
+    for field, allowed in (("model", ("full",)), ("code", ("general", "specialised"))):
+        value = getattr(scene, field)
+        if value is not None and value not in allowed:
+            raise ValueError(
+                f"{field} = {str(value)[:50]!r} must be {' or '.join(map(repr, allowed))}, or be "
+                "left out"
+            )

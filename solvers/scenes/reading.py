@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from difflib import get_close_matches
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from solvers.scenes.checks import check_masses, check_method, check_pictures
+from solvers.scenes.checks import check_samples, near
 from solvers.scenes.quantity import QuantityError, quantity
-from solvers.scenes.scene import ENERGY, Scene
+from solvers.scenes.scene import Scene
 
 #: Bytes of the largest file; the longest that ships has 2000.
 LARGEST = 100_000
-#: Seconds of the longest motion, samples that fit into memory, and the finest accuracy.
-MOST_SAMPLES, FINEST = 1_000_001, 1e-13
 ABSENT = "absent"
 
 NEEDED = ("system", "duration", "initial")
+NUMBERS = {"duration": "s", "accuracy": "1", "step": "s"}
+LISTS = ("outputs", "pictures")
+TEXTS = ("title", "label", "note", "model", "method", "form", "code")
+#: How it is integrated.
+WAY = {"model", "method", "form", "step"}
 #: What can differ in what is shown beside a scene.
 DIFFERS = ("label", "parameters", "initial", "model", "method", "form", "step", "code", "accuracy")
 KEYS = (*NEEDED, *DIFFERS, "title", "note", "outputs", "samples", "pictures", "beside")
@@ -74,62 +75,47 @@ def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleTyp
         equations = module(_text("system", table["system"]))
     except LookupError as error:
         raise SceneError(f"system = {table['system'][:50]!r}: {error.args[0]}") from error
-    found = Scene(
-        name,
-        _text("title", table.get("title", name)),
-        _text("label", table.get("label", table.get("title", name))),
-        equations,
-        tuple(equations.DEFAULTS),
-        (),
-        _positive("duration", table["duration"], "s"),
-        note=_text("note", table.get("note", "")),
-        samples=_count(table["samples"]) if "samples" in table else 0,
-    )
-    found = _changed(found, table)
-    pictures = check_pictures(_texts("pictures", table.get("pictures", [])), found)
-    found = replace(found, outputs=_outputs(table.get("outputs"), found), pictures=pictures)
+    if "samples" in table:
+        check_samples(table["samples"])
     others = table.get("beside", [])
     if not isinstance(others, list) or not all(isinstance(other, dict) for other in others):
         raise SceneError("'beside' must be tables: write [[beside]] and what differs below it")
-    return replace(found, beside=tuple(_beside(found, table, other) for other in others))
+    beside = tuple(_beside(equations, name, table, other) for other in others)
+    return _scene(equations, name, {"title": name, **table}, beside)
 
 
-def _beside(main: Scene, table: Mapping[str, Any], other: Mapping[str, Any]) -> Scene:
+def _beside(
+    module: ModuleType, name: str, table: Mapping[str, Any], other: Mapping[str, Any]
+) -> Scene:
     _keys("[[beside]]", other, DIFFERS)
     if "label" not in other:
         raise SceneError("[[beside]] needs a 'label' that says what differs")
-    initial = table["initial"] | other.get("initial", {})
-    parameters = table.get("parameters", {}) | other.get("parameters", {})
-    how = {key: table[key] for key in ("model", "method", "form", "step", "code") if key in table}
-    if {"model", "method", "form", "step"} & set(other):
-        how = {}  # another way of integrating owes nothing to this one
-    return _changed(replace(main, label=_text("label", other["label"])),
-                    {**how, **other, "initial": initial, "parameters": parameters,
-                     "accuracy": other.get("accuracy", main.accuracy)})  # fmt: skip
+    # another way of integrating owes nothing to this one
+    kept = {key: table[key] for key in table if key not in WAY or not WAY & set(other)}
+    for key in ("initial", "parameters"):
+        changes = other.get(key, {})
+        kept[key] = table.get(key, {}) | _table(key, changes, list(changes))
+    changed = {key: other[key] for key in other if key not in ("initial", "parameters")}
+    return _scene(module, name, {**kept, **changed}, ())
 
 
-def _changed(scene: Scene, table: Mapping[str, Any]) -> Scene:
-    """What can be another in every run."""
-    module = scene.module
-    params = _parameters(module, table.get("parameters", {}))
-    step = table.get("step")
-    accuracy = _positive("accuracy", table.get("accuracy", Scene.accuracy), "1")
-    if accuracy < FINEST:
-        raise SceneError(f"accuracy = {accuracy} is below {FINEST}, the resolution of numbers")
-    changed = replace(
-        scene,
-        params=params,
-        y0=_initial(module, table["initial"]),
-        accuracy=accuracy,
-        model=_choice("model", table.get("model"), ("full",)),
-        method=table.get("method"),
-        form=table.get("form"),
-        step=None if step is None else _positive("step", step, "s"),
-        code=_choice("code", table.get("code"), ("general", "specialised")),
+def _scene(
+    module: ModuleType, name: str, table: Mapping[str, Any], beside: tuple[Scene, ...]
+) -> Scene:
+    given: dict[str, Any] = {key: _text(key, table[key]) for key in TEXTS if key in table}
+    given |= {key: _texts(key, table[key]) for key in LISTS if key in table}
+    given |= {key: _number(key, table[key], unit) for key, unit in NUMBERS.items() if key in table}
+    if given.get("outputs") == ():
+        raise SceneError("outputs = [] asks for nothing: leave it out to be given the state")
+    return Scene(
+        module,
+        _parameters(module, table.get("parameters", {})),
+        _initial(module, table["initial"]),
+        samples=table.get("samples", 0),
+        name=name,
+        beside=beside,
+        **given,
     )
-    check_masses(changed)
-    check_method(changed)
-    return changed
 
 
 def _parameters(module: ModuleType, table: object) -> tuple[float, ...]:
@@ -155,31 +141,11 @@ def _initial(module: ModuleType, table: object) -> tuple[float, ...]:
                  for name in module.STATE)  # fmt: skip
 
 
-def _outputs(value: object, scene: Scene) -> tuple[str, ...]:
-    known = (*scene.module.STATE, ENERGY)
-    if value is None:
-        return scene.module.STATE
-    outputs = _texts("outputs", value)
-    for name in outputs:
-        if name not in known:
-            raise SceneError(f"outputs name {name[:50]!r}{_near(name, known)}: known are "
-                             f"{', '.join(known)}")  # fmt: skip
-    if not set(outputs) & set(scene.module.STATE):
-        raise SceneError(f"outputs = {list(outputs)} names no part of the state: add one of "
-                         f"{', '.join(scene.module.STATE)}")  # fmt: skip
-    return outputs
-
-
 def _keys(where: str, table: Mapping[str, Any], known: Sequence[str]) -> None:
     for key in table:
         if key not in known:
-            raise SceneError(f"{where} has no key {key[:50]!r}{_near(key, known)}: known are "
+            raise SceneError(f"{where} has no key {key[:50]!r}{near(key, known)}: known are "
                              f"{', '.join(known)}")  # fmt: skip
-
-
-def _near(name: str, known: Sequence[str]) -> str:
-    near = get_close_matches(name, known, n=1)
-    return f" (did you mean {near[0]!r}?)" if near else ""
 
 
 def _table(key: str, value: object, known: Sequence[str]) -> dict[str, Any]:
@@ -213,17 +179,3 @@ def _positive(key: str, value: object, unit: str, way: str = "") -> float:
     if number <= 0:
         raise SceneError(f"{key} = {value} must be positive, in {unit}{way}")
     return number
-
-
-def _count(value: object) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not 2 <= value <= MOST_SAMPLES:
-        raise SceneError(f"samples = {str(value)[:50]} must be a whole number from 2 to "
-                         f"{MOST_SAMPLES}")  # fmt: skip
-    return value
-
-
-def _choice(key: str, value: object, allowed: Sequence[str]) -> str | None:
-    if value is not None and value not in allowed:
-        raise SceneError(f"{key} = {str(value)[:50]!r} must be {' or '.join(map(repr, allowed))}, "
-                         "or be left out")  # fmt: skip
-    return None if value is None else str(value)

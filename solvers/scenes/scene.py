@@ -8,6 +8,9 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers import request
+from solvers.scenes import checks
+
 #: Usual samples: so many a second, and at least and at most so many.
 RATE, FEWEST, MOST = 100, 501, 20_001
 #: What else can be asked for, beside components of the state.
@@ -18,16 +21,12 @@ ENERGY = "energy"
 class Scene:
     """What is there, and what is asked.
 
-    Attributes
+    Parameters
     ----------
-    name, title : str
-        What to call it.
-    label : str
-        What to call this run beside others.
     module : module
         The generated equations of its system.
     params : tuple of float
-        In the order of ``module.PARAMETERS``; 0 for one that is absent.
+        In the order of ``module.PARAMETERS``; a mass or length of 0 is absent.
     y0 : tuple of float
         Coordinates and velocities at time 0, in the order of ``module.STATE``.
     duration : float
@@ -35,7 +34,7 @@ class Scene:
     accuracy : float
         How large the error of what is asked for may be at any time: in rad, rad/s, m, m/s.
     outputs : tuple of str
-        What is asked for: components of the state, and ``energy``.
+        What is asked for: components of the state, and ``energy``; by default the state.
     samples : int
         At how many times, evenly over the duration, both ends included; 0 for a hundred a
         second, within `FEWEST` and `MOST`.
@@ -47,19 +46,30 @@ class Scene:
         A fixed step in s instead of one that is controlled.
     code : {"general", "specialised"} or None
         Whether to integrate with code in which the parameters are folded in; by default
-        when that pays.
+        it is general.
     pictures : tuple of str
         What to draw, each as ``theta1, theta2 over t``, or ``path`` or ``energy``; by
         default all that there is.
+    title, name : str
+        What to call it, for people and for files.
+    label : str
+        What to call this run beside others.
     note : str
         What it shows, and how sure that is.
     beside : tuple of Scene
         What to show beside it.
+
+    Raises
+    ------
+    ValueError
+        When something makes no sense; the message says what is allowed.
+
+    Warns
+    -----
+    solvers.scenes.checks.MassMatrixWarning
+        When the mass matrix is nearly singular.
     """
 
-    name: str
-    title: str
-    label: str
     module: ModuleType
     params: tuple[float, ...]
     y0: tuple[float, ...]
@@ -73,8 +83,24 @@ class Scene:
     step: float | None = None
     code: str | None = None
     pictures: tuple[str, ...] = ()
+    title: str = "a scene"
+    name: str = "scene"
+    label: str = ""
     note: str = ""
     beside: tuple[Scene, ...] = ()
+
+    def __post_init__(self) -> None:
+        known = self.module.STATE
+        for field, names in (("params", self.module.PARAMETERS), ("y0", known)):
+            numbers = request.numbers(field, getattr(self, field), names).tolist()
+            object.__setattr__(self, field, tuple(numbers))
+        object.__setattr__(self, "outputs", tuple(self.outputs) or known)
+        object.__setattr__(self, "label", self.label or self.title)
+        checks.check_numbers(self)
+        checks.check_masses(self)
+        checks.check_method(self)
+        checks.check_outputs(self.outputs, known, (*known, ENERGY))
+        checks.check_pictures(self.pictures, known)
 
     @property
     def times(self) -> NDArray[np.float64]:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from solvers.answers.answer import Answer
 from solvers.models.full import Full
-from solvers.scenes.answer import Answer
 
 
 def told(answer: Answer) -> Iterator[str]:

@@ -12,9 +12,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from solvers.answers.answer import Answer
 from solvers.energy import energy_error
 from solvers.pictures import COLOURS, panels
-from solvers.scenes.answer import Answer
 from solvers.scenes.checks import PICTURE
 
 GREEK = ("theta", "phi", "psi", "alpha", "beta")

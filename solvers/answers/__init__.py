@@ -1,0 +1,1 @@
+"""Scenes answered: by which model, with which motion, as text and as pictures."""
