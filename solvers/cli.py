@@ -50,6 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     name, *rest = arguments
     # a command integrates many times: one notice is enough
     warnings.filterwarnings("once", message="integrating in Python")
+    warnings.formatwarning = lambda message, *_: f"holonomic {name}: {message}\n"
     if name not in COMMANDS:
         print(f"holonomic: unknown command {name[:50]!r}\n\n{USAGE}", end="", file=sys.stderr)
         return 2
@@ -275,12 +276,11 @@ def _run(argv: Sequence[str]) -> int:
 
 def specialiser(module: ModuleType, params: Sequence[float], way: Any) -> ModuleType:
     """A module with these parameters folded in, and what a way of integrating needs of it."""
-    from solvers.forms import fastest_form
     from solvers.specialised import needed, specialised
 
     sources = sorted((Path(__file__).parent.parent / "derive").glob("*.py"))
     version = "".join(source.read_text(encoding="utf-8") for source in sources)
-    functions = needed(way.method, way.form or fastest_form(module))
+    functions = needed(way.method, way.form)
     return specialised(module, params, functions, _generator, version)
 
 

@@ -249,7 +249,7 @@ def test_the_full_equations_are_checked_by_another_method() -> None:
     assert error <= found.error_estimate <= scene.accuracy
     assert found.error_estimate < 100 * error
     # a check of the run by itself would find nothing
-    way = Way("verner98", None, "")
+    way = Way("verner98", "rational", "")
     assert full(motion, 1e-3, way, motion, 1e-6).error_estimate > 1e-9
     assert set(full_equations.CHECKS) == {"dop853", "verner98"}
 

@@ -1,6 +1,7 @@
 """README's snippets run, and its numbers are those of the code."""
 
 import re
+import tomllib
 from math import log
 from pathlib import Path
 
@@ -13,11 +14,15 @@ import generated.single_pendulum as sp
 from derive import names
 from derive.assignments import assignments
 from derive.functions import contents
+from solvers.answers.answer import answer
+from solvers.cli import generated_module
 from solvers.failures import drift
 from solvers.failures.chaos import lyapunov
 from solvers.failures.separatrix import upright
 from solvers.failures.stiffness import crossover, study
 from solvers.failures.studies import CHAOTIC
+from solvers.scenes.reading import scene
+from solvers.scenes.shipped import find
 from solvers.stability.critical import CriticalStep
 from solvers.verdict.evidence import Evidence, Setting
 from solvers.verdict.objectives import objectives
@@ -93,3 +98,16 @@ def test_every_command_that_is_shown_exists() -> None:
 
     assert set(re.findall(r"holonomic (\w+)", README)) <= {*COMMANDS}
     assert "double_pendulum" in names()
+
+
+def test_the_scene_that_is_shown_is_answered_and_all_that_are_named_ship() -> None:
+    (text,) = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
+    found = answer(scene("my_scene", tomllib.loads(text), generated_module))
+    assert found.is_met
+    table = README.partition("| model | when | its error | scenes |")[2].partition("\n\n")[0]
+    for row in table.splitlines()[2:]:
+        model, *_, named = row.strip("| ").split(" | ")
+        for name in re.findall(r"`(\w+)`", named):
+            one = find(name, generated_module)
+            # the third program names its way
+            assert answer(one).choice.model.name == model, name

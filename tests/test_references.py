@@ -5,6 +5,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from mpmath import mp
 from scipy.special import ellipk
 
 import generated.double_pendulum as dp
@@ -105,3 +106,18 @@ def test_decimal_sine_and_cosine() -> None:
             sine, cosine = sine_and_cosine(Decimal(x))
             assert abs(mpmath.mpf(str(sine)) - mpmath.sin(x)) < 1e-48
             assert abs(mpmath.mpf(str(cosine)) - mpmath.cos(x)) < 1e-48
+
+
+@pytest.mark.parametrize("distance", [1e-2, 1e-5, 1e-9, 0.0])
+def test_the_fall_from_next_to_the_upright_place_is_exact_all_the_way(distance: float) -> None:
+    # halfway down the distance is small beside pi and large beside where it began
+    start, times = pi - distance, np.linspace(0, 25, 101)
+    found = pendulum(2.0, 9.81, (start, 0.0), times)
+    with mp.workdps(60):
+        k, complement = mp.sin(mp.mpf(start) / 2), mp.cos(mp.mpf(start) / 2) ** 2
+        omega, quarter = mp.sqrt(mp.mpf(9.81) / 2), mp.ellipk(1 - complement)
+        exact = [
+            2 * mp.asin(k * mp.ellipfun("sn", quarter - omega * t, m=1 - complement))
+            for t in map(mp.mpf, times.tolist())
+        ]
+    assert np.abs(found[:, 0] - np.array(exact, dtype=float)).max() < 1e-13

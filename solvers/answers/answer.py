@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import nan
 from time import perf_counter
 from types import ModuleType
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from solvers.measured import median_seconds
 from solvers.models.full import Full
-from solvers.models.ladder import Choice, choice
+from solvers.models.ladder import Choice, asked_of, choice
 from solvers.models.model import Asked
 from solvers.models.way import Way, cheapest
 from solvers.scenes.scene import ENERGY, Scene
@@ -43,6 +44,8 @@ class Answer:
         What it took to choose, and what the state at the end takes with the model.
     full_seconds : float
         What the full equations take for a motion of this length, by the record of charts.
+    general_seconds : float
+        What general code takes where specialised code was made; NaN elsewhere.
     """
 
     scene: Scene
@@ -53,6 +56,7 @@ class Answer:
     choosing_seconds: float
     work_seconds: float
     full_seconds: float
+    general_seconds: float
 
     @property
     def method(self) -> str | None:
@@ -121,7 +125,10 @@ def answer(
     energy = None
     if ENERGY in scene.outputs:
         energy = np.asarray(scene.module.energy_many(np.nan_to_num(y), scene.params))
-    return Answer(scene, chosen, t, y, energy, choosing, _work(chosen, scene), _full(scene))
+    return Answer(
+        scene, chosen, t, y, energy, choosing, _work(chosen, scene), _full(scene),
+        _general(chosen, scene),
+    )  # fmt: skip
 
 
 def _work(chosen: Choice, scene: Scene) -> float:
@@ -129,6 +136,12 @@ def _work(chosen: Choice, scene: Scene) -> float:
         return chosen.model.seconds()
     end = np.array([scene.duration])
     return median_seconds(lambda: chosen.model.states(end))
+
+
+def _general(chosen: Choice, scene: Scene) -> float:
+    if not isinstance(chosen.model, Full) or chosen.model.asked.module is scene.module:
+        return nan
+    return replace(chosen.model, asked=asked_of(scene)).seconds()
 
 
 def _full(scene: Scene) -> float:

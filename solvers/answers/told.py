@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from io import StringIO
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -44,10 +46,32 @@ def how(answer: Answer) -> str:
     model = answer.choice.model
     if not isinstance(model, Full):
         return ""
-    form = f", {answer.form} form" if answer.form else ""
     setting = "digits" if model.way.is_series else "h / s" if answer.scene.step else "tolerance"
-    code = ", specialised code" if not model.asked.params else ""
-    return f" by {answer.method}{form}, {setting} {model.setting:.3g}{code}"
+    code = f", {_code(answer, model)}" if is_specialised(answer) else ""
+    return f" by {answer.method}, {answer.form} form, {setting} {model.setting:.3g}{code}"
+
+
+def is_specialised(answer: Answer) -> bool:
+    """Whether code was made for this scene alone."""
+    return bool(np.isfinite(answer.general_seconds))
+
+
+def _code(answer: Answer, model: Full) -> str:
+    """What specialised code saves."""
+    special, general = (
+        operations(module, model.way.form) for module in (model.asked.module, answer.scene.module)
+    )
+    return (
+        f"specialised code ({special} operations instead of {general}, general code takes "
+        f"{answer.general_seconds / answer.work_seconds:.2f} x as long)"
+    )
+
+
+def operations(module: ModuleType, form: str) -> int:
+    """What a call of a right-hand side costs, without terms of the parameters alone."""
+    rhs = getattr(module, "rhs" if form == "lagrangian" else f"rhs_{form}")
+    every, constant = re.findall(r"(\d+) operations, (\d+) of them", rhs.__doc__)[0]
+    return int(every) - int(constant)
 
 
 def cost(answer: Answer) -> str:
@@ -76,7 +100,10 @@ def figures(answer: Answer) -> dict[str, Any]:
         "method": answer.method,
         "form": answer.form,
         "setting": model.setting if isinstance(model, Full) else None,
-        "code": "specialised" if isinstance(model, Full) and not model.asked.params else "general",
+        "code": _code(answer, model)
+        if isinstance(model, Full) and is_specialised(answer)
+        else "general",
+        "general_seconds": answer.general_seconds,
         "final_state": answer.final_state,
         "duration": answer.scene.duration,
         "accuracy_asked": answer.scene.accuracy,

@@ -17,7 +17,6 @@ from solvers.commands.options import options
 from solvers.jsonable import jsonable
 from solvers.pictures import save
 from solvers.progress import Progress
-from solvers.scenes.scene import Scene
 from solvers.written import written
 
 #: Scenes that are charted if none is named.
@@ -45,7 +44,7 @@ def main(
         description="Chart speed against accuracy for every method, form and backend, beside "
         f"other programs that are installed. Without a scene: {', '.join(USUAL)}, in about two "
         "minutes; leave the machine alone meanwhile.",
-        record="keep what was cheapest: scenes are run that way from then on",
+        record="chart compiled loops only and keep what was cheapest: scenes are run that way",
     )  # fmt: skip
     found: list[Charted] = []
     pictures: list[str] = []
@@ -53,9 +52,13 @@ def main(
         with Progress() as tell:
             tell(f"{scene.name}: reference")
             truth = reference(scene)
-            measured = curves(scene, truth, _telling(scene, tell))
-            tell(f"{scene.name}: other programs")
-            measured += peers.curves(scene, truth, package)
+            wanted = list(combinations(scene.module))
+            if arguments.record:
+                wanted = [one for one in wanted if one[2] == "compiled"]
+            measured = curves(scene, truth, _telling(scene.name, wanted, tell))
+            if not arguments.record:
+                tell(f"{scene.name}: other programs")
+                measured += peers.curves(scene, truth, package)
             charted = Charted.of(scene, truth, measured)
         figures = {
             f"work_precision_{scene.name}": drawn.work_precision(
@@ -81,11 +84,10 @@ def main(
     return 0
 
 
-def _telling(scene: Scene, tell: Progress) -> Iterator[Combination]:
-    """All combinations, each told as it comes."""
-    wanted = list(combinations(scene.module))
+def _telling(scene: str, wanted: Sequence[Combination], tell: Progress) -> Iterator[Combination]:
+    """Combinations, each told as it comes."""
     for n, combination in enumerate(wanted, 1):
-        tell(f"{scene.name}: {', '.join(combination)} ({n} of {len(wanted)})")
+        tell(f"{scene}: {', '.join(combination)} ({n} of {len(wanted)})")
         yield combination
 
 

@@ -14,8 +14,7 @@ from solvers.models.pendulum import pendulum
 from solvers.models.quadrature import quadrature
 from solvers.models.rest import rest
 from solvers.models.small import small
-from solvers.models.way import SERIES, Way, cheapest
-from solvers.request import SCIPY
+from solvers.models.way import SERIES, Way, cheapest, usual_form
 from solvers.scenes.scene import Scene
 
 #: From the smallest model on, those that integrate nothing.
@@ -90,7 +89,8 @@ def choice(
             raise
         declined["ordinary numbers"] = str(reason)
     tell("full equations by Taylor series")
-    series = Way(SERIES, None, "the motion loses more digits than ordinary numbers have")
+    form = usual_form(scene.module, SERIES)
+    series = Way(SERIES, form, "the motion loses more digits than ordinary numbers have")
     return Choice(full(asked, scene.accuracy, series, asked, None), declined)
 
 
@@ -110,5 +110,5 @@ def _way(scene: Scene) -> Way:
     if scene.method is None and scene.form is None:
         return found
     method = scene.method or found.method
-    form = scene.form or ("lagrangian" if method in SCIPY else None)
+    form = scene.form or usual_form(scene.module, method)
     return Way(method, form, "named in the scene")

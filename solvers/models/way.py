@@ -9,9 +9,9 @@ from math import log, nan
 from types import ModuleType
 from typing import Any
 
-from solvers.catalogue import load
+from solvers.catalogue import load, names
 from solvers.chart.record import RECORD
-from solvers.forms import has_form
+from solvers.forms import fastest_form, has_form
 from solvers.request import SCIPY
 from solvers.stability.modes import mode_spread
 
@@ -26,8 +26,8 @@ class Way:
     ----------
     method : str
         One of the catalogue's or SciPy's, or ``taylor`` for series with many digits.
-    form : str or None
-        None for the form that runs fastest.
+    form : str
+        Of the equations.
     why : str
         Why this one.
     seconds : float
@@ -35,7 +35,7 @@ class Way:
     """
 
     method: str
-    form: str | None
+    form: str
     why: str
     seconds: float = nan
 
@@ -53,6 +53,13 @@ class Way:
     def order(self) -> float:
         """Order of the method."""
         return float(load(self.method).order)
+
+
+def usual_form(module: ModuleType, method: str) -> str:
+    """The form that runs fastest; where a Jacobian is needed, or it is SciPy's, Lagrange's."""
+    is_ours = method in (SERIES, *names())
+    is_plain = is_ours and (method == SERIES or load(method).is_explicit)
+    return fastest_form(module) if is_plain else "lagrangian"
 
 
 def cheapest(module: ModuleType, params: Sequence[float], accuracy: float) -> Way:
@@ -77,7 +84,7 @@ def cheapest(module: ModuleType, params: Sequence[float], accuracy: float) -> Wa
     )
     return Way(
         best["method"],
-        best["form"] if has_form(module, best["form"]) else None,
+        best["form"] if has_form(module, best["form"]) else usual_form(module, best["method"]),
         f"cheapest for {best['global_error']:.0e} as measured in scene {nearest['scene']!r}, whose "
         f"modes are most alike: {best['work_seconds'] * 1e6:.3g} us for {nearest['duration']:g} s; "
         f"others there: {others}",

@@ -89,11 +89,16 @@ def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
     a, b, c = 1.0, np.sqrt(complement), np.sqrt(1 - complement)
     ratios = []
     while c > np.finfo(float).eps * a:
-        a, b, c = (a + b) / 2, np.sqrt(a * b), (a - b) / 2
-        ratios.append(c / a)
+        product = a * b
+        a, b, c = (a + b) / 2, np.sqrt(product), (a - b) / 2
+        ratios.append((c / a, product / a**2))
     phi = 2 ** len(ratios) * a * v
-    for ratio in reversed(ratios):
-        phi = (phi + np.arcsin(ratio * np.sin(phi))) / 2
+    for ratio, rest_of_square in reversed(ratios):
+        # the arcsine of ratio sin φ, which loses half its digits where both are close to 1
+        sine = ratio * np.sin(phi)
+        phi = (
+            phi + np.arctan2(sine, np.hypot(np.cos(phi), np.sqrt(rest_of_square) * np.sin(phi)))
+        ) / 2
     sn, cn = np.sin(phi), np.cos(phi)
     dn = np.sqrt(cn**2 + complement * sn**2)
     root = np.sqrt(complement)
