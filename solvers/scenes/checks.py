@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Sequence
 from difflib import get_close_matches
 from math import isfinite
-from typing import TYPE_CHECKING
+from types import ModuleType
 
 import numpy as np
 
@@ -15,8 +15,6 @@ from solvers.catalogue import UnknownMethodError, load
 from solvers.forms import FORMS, has_form
 from solvers.request import SCIPY
 
-if TYPE_CHECKING:
-    from solvers.scenes.scene import Scene
 #: Samples that fit into memory, and the finest accuracy.
 MOST_SAMPLES, FINEST = 1_000_001, 1e-13
 #: Condition of the mass matrix from which on digits are lost, and none is left.
@@ -28,7 +26,7 @@ class MassMatrixWarning(UserWarning):
     """The mass matrix is nearly singular: digits are lost."""
 
 
-def check_masses(scene: Scene) -> None:
+def check_masses(module: ModuleType, params: Sequence[float], y0: Sequence[float]) -> None:
     """Refuse coordinates that hardly move mass: those that are absent do not move any.
 
     Raises
@@ -41,10 +39,10 @@ def check_masses(scene: Scene) -> None:
     MassMatrixWarning
         When it nearly is.
     """
-    module, n = scene.module, len(scene.module.COORDINATES)
+    n = len(module.COORDINATES)
     worst, weakest = 0.0, ""
-    for place in (scene.y0, (*scene.y0[:1] * n, *[0.0] * n)):  # where it begins; and all aligned
-        M = np.array(module.mass_matrix(place, scene.params))
+    for place in (y0, [y0[0]] * n + [0.0] * n):  # where it begins; and all aligned
+        M = np.array(module.mass_matrix(place, params))
         alive = np.flatnonzero(np.diag(M))
         if not alive.size:
             raise ValueError("no coordinate moves any mass")
@@ -61,7 +59,9 @@ def check_masses(scene: Scene) -> None:
         warnings.warn(f"{said}; so many digits are lost", MassMatrixWarning, stacklevel=2)
 
 
-def check_method(scene: Scene) -> None:
+def check_method(
+    module: ModuleType, method: object, form: object, step: float | None, duration: float
+) -> None:
     """Refuse a method, form and step that do not go together.
 
     Raises
@@ -69,14 +69,13 @@ def check_method(scene: Scene) -> None:
     ValueError
         With what is allowed.
     """
-    method, form, step = scene.method, scene.form, scene.step
-    if form is not None and not (form in FORMS[:3] and has_form(scene.module, form)):
-        known = [name for name in FORMS[:3] if has_form(scene.module, name)]
+    if form is not None and not (form in FORMS[:3] and has_form(module, form)):
+        known = [name for name in FORMS[:3] if has_form(module, name)]
         raise ValueError(f"form = {str(form)[:50]!r} must be one of {', '.join(known)}")
     if step is not None and method is None:
         raise ValueError(f'step = {step} s needs a method: name one, such as method = "rk4"')
-    if step is not None and step > scene.duration:
-        raise ValueError(f"step = {step} s is longer than the duration, {scene.duration} s")
+    if step is not None and step > duration:
+        raise ValueError(f"step = {step} s is longer than the duration, {duration} s")
     if method is None or method in SCIPY:
         if method and step is not None:
             raise ValueError(f"method = {method!r} is SciPy's: it controls its steps")
@@ -152,29 +151,54 @@ def check_samples(value: object) -> None:
         )
 
 
-def check_numbers(scene: Scene) -> None:
-    """Refuse durations, accuracies, parameters and choices that are not possible.
+def check_positive(**numbers: float | None) -> None:
+    """Refuse numbers that are not positive, or not finite.
 
     Raises
     ------
     ValueError
-        With what is allowed.
+        With the name of the first.
     """
-    for field in ("duration", "accuracy", "step"):
-        number = getattr(scene, field)
+    for name, number in numbers.items():
         if number is not None and not (isfinite(number) and number > 0):
-            raise ValueError(f"{field} = {number} must be positive")
-    if scene.accuracy < FINEST:
-        raise ValueError(f"accuracy = {scene.accuracy} is below {FINEST}, what numbers resolve")
-    for name, value in zip(scene.module.PARAMETERS, scene.params, strict=True):
-        if name in scene.module.POSITIVE and value < 0:
-            raise ValueError(f"{name} = {value} must be positive, in {scene.module.UNITS[name]}")
-    if scene.samples:
-        check_samples(scene.samples)
-    for field, allowed in (("model", ("full",)), ("code", ("general", "specialised"))):
-        value = getattr(scene, field)
-        if value is not None and value not in allowed:
-            raise ValueError(
-                f"{field} = {str(value)[:50]!r} must be {' or '.join(map(repr, allowed))}, or be "
-                "left out"
-            )
+            raise ValueError(f"{name} = {number} must be positive")
+
+
+def check_accuracy(accuracy: float) -> None:
+    """Refuse what numbers cannot resolve.
+
+    Raises
+    ------
+    ValueError
+        With the finest accuracy.
+    """
+    if accuracy < FINEST:
+        raise ValueError(f"accuracy = {accuracy} is below {FINEST}, what numbers resolve")
+
+
+def check_params(module: ModuleType, params: Sequence[float]) -> None:
+    """Refuse negative masses, lengths and stiffnesses.
+
+    Raises
+    ------
+    ValueError
+        With the name of the first.
+    """
+    for name, value in zip(module.PARAMETERS, params, strict=True):
+        if name in module.POSITIVE and value < 0:
+            raise ValueError(f"{name} = {value} must be positive, in {module.UNITS[name]}")
+
+
+def check_choice(name: str, value: object, allowed: Sequence[str]) -> None:
+    """Refuse what is not one of a few words, or left out.
+
+    Raises
+    ------
+    ValueError
+        With these words.
+    """
+    if value is not None and value not in allowed:
+        raise ValueError(
+            f"{name} = {str(value)[:50]!r} must be {' or '.join(map(repr, allowed))}, or be left "
+            "out"
+        )

@@ -96,9 +96,15 @@ class Scene:
             object.__setattr__(self, field, tuple(numbers))
         object.__setattr__(self, "outputs", tuple(self.outputs) or known)
         object.__setattr__(self, "label", self.label or self.title)
-        checks.check_numbers(self)
-        checks.check_masses(self)
-        checks.check_method(self)
+        checks.check_positive(duration=self.duration, accuracy=self.accuracy, step=self.step)
+        checks.check_accuracy(self.accuracy)
+        checks.check_params(self.module, self.params)
+        checks.check_masses(self.module, self.params, self.y0)
+        checks.check_method(self.module, self.method, self.form, self.step, self.duration)
+        checks.check_choice("model", self.model, ("full",))
+        checks.check_choice("code", self.code, ("general", "specialised"))
+        if self.samples:
+            checks.check_samples(self.samples)
         checks.check_outputs(self.outputs, known, (*known, ENERGY))
         checks.check_pictures(self.pictures, known)
 
