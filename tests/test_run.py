@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 import generated.double_pendulum as dp
 from solvers.answers.answer import answer
 from solvers.answers.drawn import drawn, symbol, usual
-from solvers.answers.told import table, told
+from solvers.answers.told import special_code, table, told
 from solvers.cli import generated_module, main, specialiser
 from solvers.references.taylor import taylor
 from solvers.scenes.shipped import find
@@ -95,6 +95,7 @@ def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:
     scene = replace(find("report", generated_module), code="specialised")
     found = answer(scene, specialiser)
     assert found.choice.model.asked.module.PARAMETERS == ()
+    assert "def rhs_rational(" in special_code(found).read_text()
     assert any("specialised code (29 operations instead of 35" in line for line in told(found))
     plain = answer(replace(scene, code=None), specialiser)
     assert plain.choice.model.asked.module is dp

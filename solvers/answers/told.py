@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from io import StringIO
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -53,7 +54,15 @@ def how(answer: Answer) -> str:
 
 def is_specialised(answer: Answer) -> bool:
     """Whether code was made for this scene alone."""
-    return bool(np.isfinite(answer.general_seconds))
+    return special_code(answer) is not None
+
+
+def special_code(answer: Answer) -> Path | None:
+    """The file of code that was made for this scene alone; None if there is none."""
+    model = answer.choice.model
+    if not isinstance(model, Full) or model.asked.module is answer.scene.module:
+        return None
+    return Path(model.asked.module.__file__ or "")
 
 
 def _code(answer: Answer, model: Full) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 
 from solvers.answers.answer import Answer, Specialiser, answer
 from solvers.answers.drawn import capital, drawn, energies, places
-from solvers.answers.told import figures, table, told
+from solvers.answers.told import figures, special_code, table, told
 from solvers.commands.options import options
 from solvers.energy import energy_error
 from solvers.jsonable import jsonable
@@ -75,6 +75,8 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
     }
     written(paths["table"], table(answers[0]))
     save(drawn(answers), paths["picture"])
+    if code := special_code(answers[0]):
+        paths["code"] = code
     write_page(
         paths["page"],
         capital(scene.title),

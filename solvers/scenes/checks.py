@@ -86,9 +86,6 @@ def check_method(
         tableau = load(method)
     except UnknownMethodError as error:
         raise ValueError(str(error)) from error
-    if step is None and not tableau.b_hat:
-        raise ValueError(f"method = {method!r} does not control its steps: give a step, such as "
-                         'step = "0.01 s"')  # fmt: skip
     if not tableau.is_explicit and form == "rational":
         raise ValueError(f"method = {method!r} needs a Jacobian: not form = 'rational'")
 
