@@ -207,7 +207,7 @@ def test_the_chart_of_errors_has_a_logarithmic_scale_and_leads_to_any_time(
     assert player.time == pytest.approx(3.7, abs=0.03)
     left = player.js("document.getElementById('cursor').getBoundingClientRect().x")
     assert left + 1 == pytest.approx(column + 4 + player.find(STRIP).rect["x"], abs=1)
-    assert player.texts("#legend li") == ["at rest: 1.0 × 10⁻²", "at rest: −1.0 × 10⁻⁵"]
+    assert player.texts("#legend li") == ["at rest: 1.0 × 10⁻²", "at rest: 1.0 × 10⁻⁵"]
 
 
 def test_each_run_has_its_canvas_and_its_entry_in_the_legend(

@@ -21,7 +21,8 @@ from solvers.failures.chaos import lyapunov
 from solvers.failures.separatrix import upright
 from solvers.failures.stiffness import crossover, study
 from solvers.failures.studies import CHAOTIC
-from solvers.scenes.reading import scene
+from solvers.scenes.reading import KEYS, scene
+from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
 from solvers.stability.critical import CriticalStep
 from solvers.verdict.evidence import Evidence, Setting
@@ -38,7 +39,8 @@ def test_snippets_run(snippet: str) -> None:
 
 def test_the_table_of_operations_is_true(double) -> None:  # type: ignore[no-untyped-def]
     counted = {f.name: assignments(f.lowering, ()).operations for f in contents(double).functions}
-    for row in re.findall(r"^\| (`[^|]*) \| ([^|]*) \|$", README, re.MULTILINE):
+    table = README.partition("operations a call |")[2].partition("\n\n")[0]
+    for row in re.findall(r"^\| (`[^|]*) \| ([^|]*) \|$", table, re.MULTILINE):
         called = re.findall(r"`(\w+)", row[0])
         stated = [int(number) for number in re.findall(r"\d+", row[1])]
         if "to" in row[1]:
@@ -100,14 +102,40 @@ def test_every_command_that_is_shown_exists() -> None:
     assert "double_pendulum" in names()
 
 
-def test_the_scene_that_is_shown_is_answered_and_all_that_are_named_ship() -> None:
-    (text,) = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
-    found = answer(scene("my_scene", tomllib.loads(text), generated_module))
-    assert found.is_met
+def test_the_scene_that_is_shown_is_answered_with_what_is_beside_it() -> None:
+    main, beside = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
+    found = scene("my_scene", tomllib.loads(main + beside), generated_module)
+    assert answer(found).is_met
+    euler, moved = found.beside
+    assert not answer(euler).is_met
+    assert (euler.label, moved.label) == ("rk1, step = 10 ms", "1e-3 rad further")
+    assert moved.y0[0] - found.y0[0] == pytest.approx(1e-3)
+
+
+def test_scenes_that_are_named_take_the_model_that_is_said() -> None:
     table = README.partition("| model | when | its error | scenes |")[2].partition("\n\n")[0]
     for row in table.splitlines()[2:]:
         model, *_, named = row.strip("| ").split(" | ")
         for name in re.findall(r"`(\w+)`", named):
-            one = find(name, generated_module)
-            # the third program names its way
-            assert answer(one).choice.model.name == model, name
+            assert answer(find(name, generated_module)).choice.model.name == model, name
+
+
+def test_systems_have_the_coordinates_and_defaults_that_are_said() -> None:
+    rows = re.findall(r"^\| `(\w+_pendulum)` \| (.*) \| (.*) \|$", README, re.MULTILINE)
+    assert len(rows) == len(names())
+    for name, coordinates, parameters in rows:
+        module = generated_module(name)
+        assert set(re.findall(r"`(\w+)`", coordinates)) == {*module.COORDINATES}
+        stated = []
+        for group, value in re.findall(r"((?:`\w+`(?:, )?)+) ([\d.]+)", parameters):
+            stated += [float(value)] * group.count("`, `") + [float(value)]
+        assert stated == [*module.DEFAULTS]
+        assert re.findall(r"`(\w+)`", parameters) == [*module.PARAMETERS]
+
+
+def test_keys_and_models_that_are_listed_are_all_that_there_are() -> None:
+    keys = README.partition("| key | meaning, and what is assumed |")[2].partition("\n\n")[0]
+    named = {key for row in keys.splitlines()[2:] for key in re.findall(r"\w+", row.split("|")[1])}
+    shown = {"system", "duration", "accuracy", "parameters", "initial", "label"}
+    assert named | shown == {*KEYS}
+    assert all(f'"{model}"' in keys for model in MODELS)

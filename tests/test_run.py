@@ -57,7 +57,7 @@ def test_a_named_way_is_told_with_its_error_and_what_is_beside_it(
 ) -> None:
     assert run("program_3", "--json", folder=tmp_path) == 0
     found = json.loads(capsys.readouterr().out)
-    assert (found["method"], found["setting"], found["accuracy_met"]) == ("rk4", 0.01, False)
+    assert (found["method"], found["setting"], found["accuracy_met"]) == ("rk4", {"h": 0.01}, False)
     (motion,) = found["beside"]
     assert motion["accuracy_met"] is True
     apart = [abs(found["final_state"][k] - motion["final_state"][k]) for k in dp.STATE]
@@ -134,7 +134,7 @@ def test_other_commands_refuse_scenes_that_are_not_theirs(
     assert "does not oscillate about rest" in capsys.readouterr().err
     with pytest.raises(SystemExit, match="2"):
         run("none.toml", folder=tmp_path)
-    assert "neither a file" in capsys.readouterr().err
+    assert "there is no such file" in capsys.readouterr().err
 
 
 def lines_of(figure: Figure) -> list[tuple[str, int]]:
@@ -152,7 +152,7 @@ def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> Non
     assert len(panels) == 7
     for panel in panels:
         for label in (panel.get_xlabel(), panel.get_ylabel()):
-            assert re.search(r"/ \(?(s|rad|m|rad/s)\)?$|, relative$", label), label
+            assert re.search(r"/ (\(?(s|rad|m|rad/s)\)?|energy above rest)$", label), label
     assert [panel.get_aspect() for panel in panels].count(1.0) == 1
     assert symbol("theta1_dot") == r"$\dot{\theta}_{1}$"
     assert (symbol("r"), symbol("t")) == ("$r$", "$t$")
@@ -172,7 +172,7 @@ def test_the_report_s_figures_are_drawn_with_what_is_known_of_them() -> None:
         assert len(panel.lines) == curves
         note = figure.get_supxlabel()
         assert "lost" in note
-        assert "error at most" in note
+        assert "error estimate" in note
 
 
 def test_progress_is_told_on_a_terminal_only_and_wiped_out(tmp_path: Path) -> None:

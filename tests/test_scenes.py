@@ -35,6 +35,8 @@ def made(**changes: object) -> Any:
     ("981 cm/s**2", "m/s^2", 9.81),
     ("1 kg*m/s^2", "N", 1.0),
     ("2 N/mm", "N/m", 2000.0),
+    ("90°", "rad", pi / 2),
+    ("30 rpm", "rad/s", pi),
     ("-(1 + 2)**2", "m", -9.0),
     ("1e-3 m", "m", 1e-3),
     (" 0.5 min ", "s", 30.0),
@@ -45,9 +47,9 @@ def test_numbers_have_units_and_exact_fractions(text: object, unit: str, value: 
 
 
 @pytest.mark.parametrize(("text", "words"), [
-    ("90 deg", "not in m nor in a unit of that kind"),
+    ("90 deg", "give m or a unit of that kind"),
     ("1 foo", "unit 'foo' is not known"),
-    ("m^2", "not in m"),
+    ("m^2", "give m or"),
     ("2^2", r"a power is written \*\*"),
     ("1/0", "has no value"),
     ("9**9**9", "has no value"),
@@ -82,21 +84,24 @@ def test_what_is_no_number_is_refused_at_once(text: object, words: str) -> None:
     ({"system": 3}, "must be text"),
     ({"duration": 0}, "duration = 0.0 must be positive"),
     ({"duration": "-5 s"}, "must be positive"),
-    ({"duration": "5 m"}, "duration: '5 m' is not in s"),
+    ({"duration": "5 m"}, "duration: '5 m' has another unit: give s"),
     ({"initial": {"theta1": 1}}, "initial.theta2 is missing: give theta1, theta2"),
     ({"initial": {"theta1": 1, "thta2": 1}}, r"\[initial\] has no key 'thta2' .*'theta2'"),
     ({"initial": 3}, r"must be a table: write \[initial\]"),
     ({"parameters": {"m1": 0}}, 'm1 = 0 must be positive, in kg; .* m1 = "absent"'),
     ({"parameters": {"m1": -1}}, "parameters.m1 = -1 must be positive"),
-    ({"parameters": {"m1": "1 m"}}, "not in kg"),
+    ({"parameters": {"m1": "1 m"}}, "give kg or"),
     ({"parameters": {"m1": True}}, "True is no number"),
     ({"parameters": {"m3": 1}}, r"\[parameters\] has no key 'm3'"),
     ({"parameters": {"g": "absent"}}, "parameters.g: 'absent'|parameters.g: unit"),
     ({"accuracy": 1e-15}, "below 1e-13"),
-    ({"accuracy": "1 m"}, "not in 1"),
+    ({"accuracy": "1 m"}, "give a number without a unit"),
     ({"samples": 1}, "whole number from 2"),
     ({"samples": 2.5}, "whole number"),
-    ({"model": "rest"}, "must be 'full', or be left out"),
+    ({"model": "small"}, "must be 'full' or 'rest' or 'normal modes'"),
+    ({"parameters": {"M1": 1}}, "did you mean 'm1'"),
+    ({"parameters": {"l1": "0,5 m"}}, "a decimal point is a point"),
+    ({"initial": {"theta1": 1, "theta2": 1, "method": "rk4"}}, "'method' belongs above the first"),
     ({"code": "quick"}, "'general' or 'specialised'"),
     ({"method": "rk5"}, "rk5"),
     ({"method": 4}, "must be text"),
@@ -111,7 +116,6 @@ def test_what_is_no_number_is_refused_at_once(text: object, words: str) -> None:
     ({"pictures": ["theta1 over x"]}, "write 'path', 'energy' or such as 'theta1 over t'"),
     ({"pictures": ["__import__('os') over t"]}, "pictures name"),
     ({"beside": {}}, r"write \[\[beside\]\]"),
-    ({"beside": [{"method": "rk4"}]}, "needs a 'label'"),
     ({"beside": [{"label": "x", "duration": 3}]}, r"\[\[beside\]\] has no key 'duration'"),
     ({"beside": [{"label": "x", "initial": {"theta1": "x"}}]}, "initial.theta1"),
 ])  # fmt: skip
@@ -200,6 +204,18 @@ def test_a_scene_in_python_is_as_strict(changes: dict[str, Any], words: str) -> 
         Scene(**{**plain, **changes})
 
 
+def test_degrees_without_their_name_are_noticed() -> None:
+    with pytest.warns(UserWarning, match='theta1 = 90 is 14.3 turns: write "90 deg"'):
+        made(initial={"theta1": 90, "theta2": 0})
+    made(initial={"theta1": "90 rad", "theta2": 0})
+
+
+def test_what_is_beside_a_scene_is_called_by_what_differs() -> None:
+    (one,) = made(beside=[{"method": "rk4", "step": "1 ms", "initial": {"theta1": 2}}]).beside
+    assert one.label == "rk4, step = 1 ms, theta1 = 2"
+    assert made().title == "Double pendulum"
+
+
 def test_a_nearly_singular_mass_matrix_is_told_with_its_coordinate() -> None:
     with pytest.warns(MassMatrixWarning, match=r"condition 4e\+12: theta"):
         made(parameters={"m1": 1e-12})
@@ -219,7 +235,7 @@ def test_shipped_scenes_are_found_and_all_make_sense() -> None:
     assert len(modules) == 3
     assert find("light_above", generated_module).params == (1.0, 3.0, 2.0, 2.0, 9.81)
     assert {f"figure_{n}_{k}" for n in (3, 4) for k in range(1, 7)} <= set(names())
-    with pytest.raises(UnknownSceneError, match=r"'reprot' is neither .*did you mean 'report'"):
+    with pytest.raises(UnknownSceneError, match=r"'reprot' is not one of .*did you mean 'report'"):
         find("reprot", generated_module)
 
 

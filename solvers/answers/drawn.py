@@ -11,6 +11,7 @@ from textwrap import fill
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from solvers.answers.answer import Answer
 from solvers.energy import energy_error
@@ -37,11 +38,12 @@ def drawn(answers: Sequence[Answer]) -> Figure:
     words = [*main.scene.note.split(), *(sureness(a, named=len(answers) > 1) for a in answers)]
     note = fill(" ".join(words), int(width * WRITTEN))
     figure, axes = panels(
-        capital(main.scene.title), rows=rows, columns=columns,
+        main.scene.title, rows=rows, columns=columns,
         size=(width, ROW * rows + 0.6 + 0.16 * note.count("\n")),
     )  # fmt: skip
     for panel, picture in zip(axes, pictures, strict=False):
         _draw(panel, picture, answers)
+        panel.xaxis.set_major_locator(MaxNLocator(6))
     if axes[0].get_legend_handles_labels()[1]:
         axes[0].legend(frameon=False, fontsize="small")
     for panel in axes[len(pictures) :]:
@@ -50,18 +52,17 @@ def drawn(answers: Sequence[Answer]) -> Figure:
     return figure
 
 
-def capital(text: str) -> str:
-    """A title as it stands above something."""
-    return text[:1].upper() + text[1:]
-
-
 def usual(answer: Answer) -> tuple[str, ...]:
     """Everything that there is to see of what moves."""
     state, n = answer.scene.module.STATE, len(answer.scene.module.COORDINATES)
     there = [k for k in range(n) if np.isfinite(answer.y[[k, k + n]]).all()]
     places, speeds = [state[k] for k in there], [state[k + n] for k in there]
+    units = answer.scene.module.UNITS
     return (
-        f"{', '.join(places)} over t",
+        *(
+            f"{', '.join(place for place in places if units[place] == unit)} over t"
+            for unit in dict.fromkeys(units[place] for place in places)
+        ),
         *(f"{speed} over {place}" for place, speed in zip(places, speeds, strict=True)),
         *(f"{b} over {a}" for a, b in pairwise(places)),
         *(f"{b} over {a}" for a, b in pairwise(speeds)),
@@ -77,12 +78,13 @@ def sureness(answer: Answer, *, named: bool) -> str:
     if answer.scene.step is not None:
         how += f" with h = {answer.scene.step:g} s"
     title = f"{answer.scene.label}: " if named else ""
-    return f"[{title}{how}, error at most {model.error_estimate:.1g}.]"
+    return f"[{title}{how}, error estimate {model.error_estimate:.1g}.]"
 
 
 def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
-    for answer, style in zip(answers, STYLES * len(answers), strict=False):
-        first = COLOURS if answer is answers[0] else COLOURS[3:] + COLOURS[:3]
+    for n, (answer, style) in enumerate(zip(answers, STYLES * len(answers), strict=False)):
+        shift = 2 * n % len(COLOURS)  # two curves a run have colours of their own
+        first = COLOURS[shift:] + COLOURS[:shift]
         label = answer.scene.label if len(answers) > 1 else ""
         if picture == "path":
             _path(panel, answer, first, style, label)
@@ -97,7 +99,7 @@ def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
         panel.set_aspect("equal", adjustable="datalim")
         panel.plot(0, 0, "k+", markersize=8)
     elif picture == "energy":
-        panel.set(xlabel=f"{symbol('t')} / s", ylabel="energy error, relative")
+        panel.set(xlabel=f"{symbol('t')} / s", ylabel="energy error / energy above rest")
 
 
 def _curves(
@@ -121,8 +123,10 @@ def _curves(
 def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str, label: str) -> None:
     for (x, y), colour in zip(places(answer), colours, strict=False):
         panel.plot(x, y, style, color=colour, linewidth=0.9, label=label)
-        label = ""
         panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
+        label = ""
+    ends = places(answer)[:, :, -1]
+    panel.plot(*np.vstack([[0, 0], ends]).T, color="#bbbbbb", linewidth=1.5, zorder=0)
 
 
 def places(answer: Answer) -> np.ndarray:

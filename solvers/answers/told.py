@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from io import StringIO
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -18,7 +17,8 @@ from solvers.models.full import Full
 def told(answer: Answer) -> Iterator[str]:
     """What was chosen, why, and where the motion ends."""
     scene, model = answer.scene, answer.choice.model
-    yield f"{scene.label}, {scene.duration:g} s"
+    named = "" if scene.label == scene.title else f": {scene.label}"
+    yield f"{scene.title}{named}, {scene.duration:g} s"
     yield f"model: {model.name}{how(answer)}"
     yield f"  {model.why}"
     for name, reason in answer.choice.declined.items():
@@ -26,9 +26,13 @@ def told(answer: Answer) -> Iterator[str]:
     met = "" if answer.is_met else ": NOT MET, since the way is named in the scene"
     yield f"error estimate {model.error_estimate:.1e}, asked {scene.accuracy:.0e}{met}"
     digits = trusted(answer)
-    yield "final state: " + ", ".join(
-        f"{name} = {digits(value)} {scene.module.UNITS[name]}"
-        for name, value in answer.final_state.items()
+    yield (
+        "final state: "
+        + ", ".join(
+            f"{name} = {digits(value)} {scene.module.UNITS[name]}"
+            for name, value in answer.final_state.items()
+        )
+        + (" (no digit of it can be trusted)" if model.error_estimate > 1 else "")
     )
     if answer.energy is not None:
         yield f"energy: {answer.energy[0]:.9g} J, changes by {np.ptp(answer.energy):.1e} J"
@@ -47,9 +51,19 @@ def how(answer: Answer) -> str:
     model = answer.choice.model
     if not isinstance(model, Full):
         return ""
-    setting = "digits" if model.way.is_series else "h / s" if answer.scene.step else "tolerance"
+    setting = _setting(answer, model)
     code = f", {_code(answer, model)}" if is_specialised(answer) else ""
-    return f" by {answer.method}, {answer.form} form, {setting} {model.setting:.3g}{code}"
+    return f" by {answer.method}, {answer.form} form, {setting} = {model.setting:.3g}{code}"
+
+
+def _setting(answer: Answer, model: Full) -> str:
+    return (
+        "digits"
+        if model.way.is_series
+        else "h"
+        if model.way.is_fixed or answer.scene.step
+        else "rtol"
+    )
 
 
 def is_specialised(answer: Answer) -> bool:
@@ -86,7 +100,7 @@ def operations(module: ModuleType, form: str) -> int:
 def cost(answer: Answer) -> str:
     """What the model takes, beside the full equations."""
     took = f"cost: {_time(answer.work_seconds)}, chosen in {_time(answer.choosing_seconds)}"
-    if isinstance(answer.choice.model, Full):
+    if isinstance(answer.choice.model, Full) or answer.full_seconds < answer.work_seconds:
         return took
     return (
         f"{took}; the full equations take about {_time(answer.full_seconds)}, "
@@ -95,7 +109,9 @@ def cost(answer: Answer) -> str:
 
 
 def _time(seconds: float) -> str:
-    return f"{seconds * 1e6:.3g} us" if seconds < 1e-3 else f"{seconds * 1e3:.3g} ms"
+    if seconds < 1e-3:
+        return f"{seconds * 1e6:.3g} us"
+    return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
 
 
 def figures(answer: Answer) -> dict[str, Any]:
@@ -108,12 +124,13 @@ def figures(answer: Answer) -> dict[str, Any]:
         "model": model.name,
         "method": answer.method,
         "form": answer.form,
-        "setting": model.setting if isinstance(model, Full) else None,
+        "setting": {_setting(answer, model): model.setting} if isinstance(model, Full) else None,
         "code": _code(answer, model)
         if isinstance(model, Full) and is_specialised(answer)
         else "general",
         "general_seconds": answer.general_seconds,
         "final_state": answer.final_state,
+        "units": {name: answer.scene.module.UNITS[name] for name in answer.final_state},
         "duration": answer.scene.duration,
         "accuracy_asked": answer.scene.accuracy,
         "error_estimate": model.error_estimate,
@@ -134,7 +151,7 @@ def table(answer: Answer) -> str:
     if answer.energy is not None:
         columns["energy"] = answer.energy
     kept = ["t", *(name for name in columns if name in answer.scene.outputs)]
-    text = StringIO()
-    text.write(",".join(f"{name} [{units[name]}]" for name in kept) + "\n")
-    np.savetxt(text, np.array([columns[name] for name in kept]).T, fmt="%.17g", delimiter=",")
-    return text.getvalue()
+    lines = [",".join(f"{name} [{units[name]}]" for name in kept)]
+    rows = zip(*(columns[name].tolist() for name in kept), strict=True)
+    lines += [",".join(map(repr, row)) for row in rows]
+    return "\n".join(lines) + "\n"

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from solvers.answers.answer import Answer, Specialiser, answer
-from solvers.answers.drawn import capital, drawn, energies, places
+from solvers.answers.drawn import drawn, energies, places, sureness
 from solvers.answers.told import figures, special_code, table, told
 from solvers.commands.options import options
 from solvers.energy import energy_error
@@ -74,15 +74,13 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
         "page": folder / f"{scene.name}.html",
     }
     written(paths["table"], table(answers[0]))
+    for n, one in enumerate(answers[1:], 2):
+        paths[f"table {n}"] = written(folder / f"{scene.name}_{n}.csv", table(one))
     save(drawn(answers), paths["picture"])
     if code := special_code(answers[0]):
         paths["code"] = code
-    write_page(
-        paths["page"],
-        capital(scene.title),
-        " ".join(scene.note.split()),
-        list(map(_track, answers)),
-    )
+    words = [*scene.note.split(), *(sureness(one, named=len(answers) > 1) for one in answers)]
+    write_page(paths["page"], scene.title, " ".join(words), list(map(_track, answers)))
     return paths
 
 

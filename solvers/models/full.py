@@ -52,6 +52,8 @@ class Full:
         Twice the largest difference from the check.
     took : float
         What a run took in s, where it is too long to be timed again.
+    kept : pair of ndarray, optional
+        Times and states of that run.
     """
 
     asked: Asked
@@ -59,6 +61,7 @@ class Full:
     setting: float
     error_estimate: float
     took: float = nan
+    kept: tuple[Array, Array] | None = None
     name: str = "full equations"
 
     @property
@@ -68,6 +71,8 @@ class Full:
 
     def states(self, t: Array) -> Array:
         """Integrated to these times, shape (n, state)."""
+        if self.kept and np.array_equal(self.kept[0], t):
+            return self.kept[1]
         return run(self.asked, self.way, self.setting, t)
 
     def seconds(self) -> float:
@@ -138,8 +143,6 @@ def full(asked: Asked, accuracy: float, way: Way, checked: Asked, setting: float
     """
     if setting is not None:
         return Full(asked, way, setting, _error(asked, way, setting, checked))
-    if way.is_series:
-        return _series(asked, accuracy, way)
     setting, power = (asked.duration / 200, way.order) if way.is_fixed else (accuracy / 3, 1.0)
     best = np.inf
     for _ in range(TRIES):
@@ -180,19 +183,25 @@ def _apart(asked: Asked, one: Array, other: Array) -> float:
     return float(MARGIN * difference)
 
 
-def _series(asked: Asked, accuracy: float, way: Way) -> Full:
-    """Taylor series with as many digits as it takes."""
+def series(asked: Asked, accuracy: float, way: Way, times: Array) -> Full:
+    """Taylor series to these times, with as many digits as it takes.
+
+    Raises
+    ------
+    NotAccurateError
+        When not even the most are enough.
+    """
     digits, error = DIGITS, np.inf
-    rough = run(asked, way, digits, asked.looks)
+    rough = run(asked, way, digits, times)
     while digits + MORE <= MOST_DIGITS:
         digits += MORE
         before = perf_counter()
-        fine = run(asked, way, digits, asked.looks)
+        fine = run(asked, way, digits, times)
         took = perf_counter() - before
         # what comes back is rounded to ordinary numbers
         error = _apart(asked, rough, fine) + float(np.spacing(np.abs(fine).max()))
         if error <= accuracy:
-            return Full(asked, way, digits, error, took)
+            return Full(asked, way, digits, error, took, (times, fine))
         rough = fine
     raise NotAccurateError(
         f"{MOST_DIGITS} digits come to {error:.1g} where {accuracy:.1g} is asked"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.full import NotAccurateError, full
+from solvers.models.full import NotAccurateError, full, series
 from solvers.models.light import light
 from solvers.models.model import Asked, Model, OutsideDomainError
 from solvers.models.pendulum import pendulum
@@ -17,6 +17,8 @@ from solvers.models.small import small
 from solvers.models.way import SERIES, Way, cheapest, usual_form
 from solvers.scenes.scene import Scene
 
+#: Errors above this say nothing any more.
+USELESS = 1e3
 #: From the smallest model on, those that integrate nothing.
 RUNGS: dict[str, Callable[[Asked], Model]] = {
     "rest": rest,
@@ -67,6 +69,9 @@ def choice(
     """
     asked = asked_of(scene)
     declined: dict[str, str] = {}
+    if scene.model in RUNGS:
+        with np.errstate(all="ignore"):
+            return Choice(RUNGS[scene.model](asked), {})
     if not scene.is_fixed:
         for name, rung in RUNGS.items():
             tell(name)
@@ -78,7 +83,11 @@ def choice(
                 continue
             if model.error_estimate <= scene.accuracy:
                 return Choice(model, declined)
-            declined[name] = f"its error may reach {model.error_estimate:.1g}"
+            declined[name] = (
+                f"its error may reach {model.error_estimate:.1g}"
+                if model.error_estimate < USELESS
+                else "the motion leaves its domain"
+            )
     asked.require_mass()
     way = _way(scene)
     tell(f"full equations by {way.method}")
@@ -90,8 +99,8 @@ def choice(
         declined["ordinary numbers"] = str(reason)
     tell("full equations by Taylor series")
     form = usual_form(scene.module, SERIES)
-    series = Way(SERIES, form, "the motion loses more digits than ordinary numbers have")
-    return Choice(full(asked, scene.accuracy, series, asked, None), declined)
+    way = Way(SERIES, form, "the motion loses more digits than ordinary numbers have")
+    return Choice(series(asked, scene.accuracy, way, scene.times), declined)
 
 
 def asked_of(scene: Scene) -> Asked:

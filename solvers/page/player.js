@@ -56,7 +56,7 @@ function show() {
   // spoken at rest only: it would never end otherwise
   if (!clock.playing) scrub.setAttribute("aria-valuetext", text);
   tracks.forEach((track, number) => {
-    errors[number].textContent = scientific(valueAt(track.t, track.energy_error, time));
+    errors[number].textContent = scientific(Math.abs(valueAt(track.t, track.energy_error, time)));
   });
   part("apart").textContent = apartText(time);
   Object.assign(document.documentElement.dataset, { time, playing: clock.playing });

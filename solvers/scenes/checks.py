@@ -130,7 +130,8 @@ def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[
 
 def near(name: str, known: Sequence[str]) -> str:
     """The known name that was meant, perhaps, in brackets; empty if none is near."""
-    found = get_close_matches(name, known, n=1)
+    small = {one.lower(): one for one in known}
+    found = [small[one] for one in get_close_matches(name.lower(), small, n=1)]
     return f" (did you mean {found[0]!r}?)" if found else ""
 
 

@@ -31,9 +31,11 @@ UNITS: dict[str, tuple[float, Kind]] = {
     "rad": (1.0, (0, 0, 0, 1)),
     "deg": (pi / 180, (0, 0, 0, 1)),
     "turn": (2 * pi, (0, 0, 0, 1)),
+    "rpm": (2 * pi / 60, (0, 0, -1, 1)),
     "N": (1.0, (1, 1, -2, 0)),
     "J": (1.0, (2, 1, -2, 0)),
 }
+KNOWN = ", ".join(name for name in UNITS if name != "1")
 #: A unit at the end of a text: names with whole powers, joined by * and /.
 NAME = r"[A-Za-z]+(?:(?:\^|\*\*)-?\d)?"
 UNIT = re.compile(rf"(?<![\w.])((?:1/)?{NAME}(?:[*/]{NAME})*)\Z")
@@ -81,23 +83,24 @@ def quantity(value: object, unit: str) -> float:
 def _written(text: str, unit: str) -> float:
     if len(text) > LONGEST:
         raise QuantityError(f"{text[:20]!r}... is longer than a number: {len(text)} characters")
-    text = text.strip()
+    text = text.strip().replace("°", " deg")
     found = UNIT.search(text)
     factor = 1.0
     if found and found[1] != "pi":
-        scale, kind = _unit(found[1])
-        own, own_kind = _unit(unit)
-        if kind != own_kind:
-            raise QuantityError(f"{text!r} is not in {unit} nor in a unit of that kind")
+        scale, given = _unit(found[1])
+        own, wanted = _unit(unit)
+        if given != wanted:
+            kind = "a number without a unit" if unit == "1" else f"{unit} or a unit of that kind"
+            raise QuantityError(f"{text!r} has another unit: give {kind}")
         factor, text = scale / own, text[: found.start()].strip()
     try:
         return factor * _value(ast.parse(text, mode="eval").body)
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
-        power = " (a power is written **)" if "^" in text else ""
-        known = ", ".join(name for name in UNITS if name != "1")
+        hint = " (a power is written **)" if "^" in text else ""
+        hint += " (a decimal point is a point)" if "," in text else ""
         raise QuantityError(
-            f"{text!r} is no number{power}: use digits, pi, + - * / ** and brackets, and then one "
-            f"of the units {known}, or their products such as m/s^2"
+            f"{text!r} is no number{hint}: use digits, pi, + - * / ** and brackets, and then one "
+            f"of the units {KNOWN}, or their products such as m/s^2"
         ) from error
     except ArithmeticError as error:
         raise QuantityError(f"{text!r} has no value: {error}") from error
@@ -127,7 +130,7 @@ def _unit(text: str) -> tuple[float, Kind]:
     kind: Kind = (0, 0, 0, 0)
     for sign, name, power in PART.findall(text):
         if name not in UNITS:
-            raise QuantityError(f"unit {name!r} is not known: use {', '.join(UNITS)}")
+            raise QuantityError(f"unit {name!r} is not known: use {KNOWN}")
         size, powers = UNITS[name]
         count = int(power or 1) * (-1 if sign == "/" else 1)
         scale *= size**count

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import tomllib
+import warnings
 from collections.abc import Callable, Mapping, Sequence
+from math import pi
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -14,7 +16,7 @@ from solvers.scenes.scene import Scene
 
 #: Bytes of the largest file; the longest that ships has 2000.
 LARGEST = 100_000
-ABSENT = "absent"
+ABSENT, TURN = "absent", 2 * pi
 
 NEEDED = ("system", "duration", "initial")
 NUMBERS = {"duration": "s", "accuracy": "1", "step": "s"}
@@ -24,7 +26,10 @@ TEXTS = ("title", "label", "note", "model", "method", "form", "code")
 WAY = {"model", "method", "form", "step"}
 #: What can differ in what is shown beside a scene.
 DIFFERS = ("label", "parameters", "initial", "model", "method", "form", "step", "code", "accuracy")
-KEYS = (*NEEDED, *DIFFERS, "title", "note", "outputs", "samples", "pictures", "beside")
+KEYS = (
+    "system", "duration", "accuracy", "title", "note", "label", "outputs", "samples", "pictures",
+    "model", "method", "form", "step", "code", "initial", "parameters", "beside",
+)  # fmt: skip
 
 
 class SceneError(ValueError):
@@ -54,7 +59,10 @@ def read(path: Path, module: Callable[[str], ModuleType]) -> Scene:
         table = tomllib.loads(path.read_bytes().decode())
         return scene(path.stem, table, module)
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise SceneError(f"{path} is no TOML file: {error}") from error
+        raise SceneError(
+            f"{path} is no TOML file: {error}; a number with a unit stands in quotes, and a "
+            "decimal point is a point"
+        ) from error
     except ValueError as error:
         raise SceneError(f"{path}: {error}") from error
 
@@ -81,22 +89,29 @@ def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleTyp
     if not isinstance(others, list) or not all(isinstance(other, dict) for other in others):
         raise SceneError("'beside' must be tables: write [[beside]] and what differs below it")
     beside = tuple(_beside(equations, name, table, other) for other in others)
-    return _scene(equations, name, {"title": name, **table}, beside)
+    title = str(equations.__doc__).partition(":")[0].partition(".")[0]
+    return _scene(equations, name, {"title": title, **table}, beside)
 
 
 def _beside(
     module: ModuleType, name: str, table: Mapping[str, Any], other: Mapping[str, Any]
 ) -> Scene:
     _keys("[[beside]]", other, DIFFERS)
-    if "label" not in other:
-        raise SceneError("[[beside]] needs a 'label' that says what differs")
+    label = ", ".join(_difference(key, value) for key, value in other.items())
     # another way of integrating owes nothing to this one
     kept = {key: table[key] for key in table if key not in WAY or not WAY & set(other)}
     for key in ("initial", "parameters"):
         changes = other.get(key, {})
         kept[key] = table.get(key, {}) | _table(key, changes, list(changes))
     changed = {key: other[key] for key in other if key not in ("initial", "parameters")}
-    return _scene(module, name, {**kept, **changed}, ())
+    return _scene(module, name, {**kept, "label": label, **changed}, ())
+
+
+def _difference(key: str, value: object) -> str:
+    """What differs, in words."""
+    if isinstance(value, dict):
+        return ", ".join(_difference(name, one) for name, one in value.items())
+    return str(value)[:50] if key == "method" else f"{key} = {str(value)[:50]}"
 
 
 def _scene(
@@ -137,6 +152,13 @@ def _initial(module: ModuleType, table: object) -> tuple[float, ...]:
     if missing:
         raise SceneError(f"initial.{missing[0]} is missing: give {', '.join(module.COORDINATES)}; "
                          "velocities that are left out are 0")  # fmt: skip
+    for name, value in given.items():
+        if module.UNITS[name] == "rad" and isinstance(value, int | float) and abs(value) > TURN:
+            warnings.warn(
+                f'initial.{name} = {value} is {value / TURN:.3g} turns: write "{value} deg" if '
+                "degrees are meant",
+                stacklevel=2,
+            )
     return tuple(_number(f"initial.{name}", given.get(name, 0.0), module.UNITS[name])
                  for name in module.STATE)  # fmt: skip
 
@@ -144,8 +166,9 @@ def _initial(module: ModuleType, table: object) -> tuple[float, ...]:
 def _keys(where: str, table: Mapping[str, Any], known: Sequence[str]) -> None:
     for key in table:
         if key not in known:
-            raise SceneError(f"{where} has no key {key[:50]!r}{near(key, known)}: known are "
-                             f"{', '.join(known)}")  # fmt: skip
+            misplaced = key in KEYS and where.startswith("[")
+            hint = f": {key!r} belongs above the first [table]" if misplaced else near(key, known)
+            raise SceneError(f"{where} has no key {key[:50]!r}{hint}; known are {', '.join(known)}")
 
 
 def _table(key: str, value: object, known: Sequence[str]) -> dict[str, Any]:

@@ -13,6 +13,8 @@ from solvers.scenes import checks
 
 #: Usual samples: so many a second, and at least and at most so many.
 RATE, FEWEST, MOST = 100, 501, 20_001
+#: What can be named instead of the smallest model that is good enough.
+MODELS = ("full", "rest", "normal modes", "pendulum", "quadrature")
 #: What else can be asked for, beside components of the state.
 ENERGY = "energy"
 
@@ -39,7 +41,7 @@ class Scene:
         At how many times, evenly over the duration, both ends included; 0 for a hundred a
         second, within `FEWEST` and `MOST`.
     model : str or None
-        ``full`` for the full equations; by default the smallest model that is good enough.
+        One of `MODELS`; by default the smallest that is good enough.
     method, form : str or None
         Method of integration and form of the equations; by default the cheapest.
     step : float or None
@@ -101,7 +103,7 @@ class Scene:
         checks.check_params(self.module, self.params)
         checks.check_masses(self.module, self.params, self.y0)
         checks.check_method(self.module, self.method, self.form, self.step, self.duration)
-        checks.check_choice("model", self.model, ("full",))
+        checks.check_choice("model", self.model, MODELS)
         checks.check_choice("code", self.code, ("general", "specialised"))
         if self.samples:
             checks.check_samples(self.samples)

@@ -45,9 +45,11 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Scene:
         return read(FILES / f"{name}.toml", module)
     if name.endswith(".toml") and Path(name).is_file():
         return read(Path(name), module)
-    near = get_close_matches(name, names(), n=1)
+    if name.endswith(".toml"):
+        raise UnknownSceneError(f"scene {name[:80]!r}: there is no such file")
+    near = [f"{name}.toml"] if Path(f"{name}.toml").is_file() else []
+    near += get_close_matches(name, names(), n=1)
     hint = f"; did you mean {near[0]!r}?" if near else ""
     raise UnknownSceneError(
-        f"scene {name[:80]!r} is neither a file that ends in .toml nor one of "
-        f"{', '.join(names())}{hint}"
+        f"scene {name[:80]!r} is not one of {', '.join(names())}{hint} (your own end in .toml)"
     )
