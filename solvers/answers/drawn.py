@@ -24,6 +24,8 @@ STYLES = ("-", "--", ":", "-.")
 LEAST = 1e-17
 #: So many pictures at most stand three in a row, more four.
 MOST = 6
+#: Height of the title in inches.
+TITLE = 0.22
 #: Width of a panel and height of a row in inches, and characters of a note to the inch.
 PANEL, ROW, WRITTEN = 4.6, 3.6, 15
 
@@ -44,7 +46,13 @@ def drawn(answers: Sequence[Answer]) -> Figure:
     for panel, picture in zip(axes, pictures, strict=False):
         _draw(panel, picture, answers)
         panel.xaxis.set_major_locator(MaxNLocator(6))
-    if axes[0].get_legend_handles_labels()[1]:
+    handles, labels = axes[0].get_legend_handles_labels()
+    if len(answers) > 1:  # long words, between the title and the curves
+        figure.suptitle(main.scene.title + "\n" * ceil(len(labels) / 2))
+        below = 1 - TITLE / figure.get_figheight()
+        figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, below), ncols=2,
+                      frameon=False, fontsize="small")  # fmt: skip
+    elif labels:
         axes[0].legend(frameon=False, fontsize="small")
     for panel in axes[len(pictures) :]:
         panel.set_axis_off()
