@@ -287,6 +287,22 @@ def test_the_choice_can_be_named_instead() -> None:
         chosen(absent)
 
 
+def test_a_model_is_taken_when_its_error_is_below_what_is_asked_and_not_before() -> None:
+    scene = find("small", generated_module)
+    estimate = chosen(scene).model.error_estimate
+    for share, name in ((1.01, "normal modes"), (0.99, "full equations")):
+        assert chosen(replace(scene, accuracy=share * estimate)).model.name == name
+
+
+def test_what_moves_no_mass_has_no_motion() -> None:
+    turning = Scene(dp, (1, 0, 2, 2, 0), (0.5, 0, 2.0, 0), 10.0)
+    found = chosen(turning).model
+    assert found.name == "quadrature"
+    end = found.states(np.array([10.0]))[0]
+    assert end[[0, 2]] == pytest.approx([20.5, 2.0], abs=1e-12)
+    assert np.isnan(end[[1, 3]]).all()
+
+
 def test_every_rung_is_taken_by_a_scene_that_ships() -> None:
     expected = {
         "rest": "rest", "upright": "pendulum", "tremor": "normal modes", "single": "pendulum",

@@ -115,6 +115,8 @@ def test_what_is_no_number_is_refused_at_once(text: object, words: str) -> None:
     ({"outputs": "theta1"}, "must be a list"),
     ({"pictures": ["theta1 over x"]}, "write 'path', 'energy' or such as 'theta1 over t'"),
     ({"pictures": ["__import__('os') over t"]}, "pictures name"),
+    ({"initial": 3, "beside": [{"method": "rk4"}]}, r"must be a table: write \[initial\]"),
+    ({"parameters": 3, "beside": [{"method": "rk4"}]}, "must be a table"),
     ({"beside": {}}, r"write \[\[beside\]\]"),
     ({"beside": [{"label": "x", "duration": 3}]}, r"\[\[beside\]\] has no key 'duration'"),
     ({"beside": [{"label": "x", "initial": {"theta1": "x"}}]}, "initial.theta1"),

@@ -60,10 +60,11 @@ class EnergyForm:
                     self.momentum / inertia, C / inertia)  # fmt: skip
 
     def states(self, u: Array, u_dot: Array, s: Array, s_dot: Array) -> Array:
-        """Coordinates and velocities, shape (n, state)."""
+        """Coordinates and velocities, shape (n, state); NaN for what moves no mass."""
         place = np.outer(u, self.shape) + np.outer(s, self.turn)
         speed = np.outer(u_dot, self.shape) + np.outer(s_dot, self.turn)
-        return np.hstack([place, speed])
+        there = np.where((self.shape == 0) & (self.turn == 0), np.nan, 1.0)
+        return np.hstack([place * there, speed * there])
 
 
 def energy_form(asked: Asked) -> EnergyForm:

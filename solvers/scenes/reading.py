@@ -88,6 +88,9 @@ def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleTyp
     others = table.get("beside", [])
     if not isinstance(others, list) or not all(isinstance(other, dict) for other in others):
         raise SceneError("'beside' must be tables: write [[beside]] and what differs below it")
+    for key in ("initial", "parameters"):
+        if not isinstance(table.get(key, {}), dict):
+            raise SceneError(f"{key} = {str(table[key])[:50]!r} must be a table: write [{key}]")
     beside = tuple(_beside(equations, name, table, other) for other in others)
     title = str(equations.__doc__).partition(":")[0].partition(".")[0]
     return _scene(equations, name, {"title": title, **table}, beside)
