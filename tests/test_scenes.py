@@ -36,6 +36,7 @@ def made(**changes: object) -> Any:
     ("1 kg*m/s^2", "N", 1.0),
     ("2 N/mm", "N/m", 2000.0),
     ("90°", "rad", pi / 2),
+    ("180 deg", "turn", 0.5),
     ("30 rpm", "rad/s", pi),
     ("-(1 + 2)**2", "m", -9.0),
     ("1e-3 m", "m", 1e-3),

@@ -1,5 +1,6 @@
 """Code for one scene: parameters folded in, nothing that it does not need, the same motion."""
 
+from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
@@ -12,6 +13,7 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from derive import Derivation, load
+from derive.assignments import number
 from derive.functions import body, contents
 from derive.specialisation import specialised as folded
 from derive.system import SystemDefinitionError
@@ -66,6 +68,13 @@ def test_folded_numbers_are_exact_and_rounded_once() -> None:
         found = specialiser(dp, (1.3, 0.7, 1.1, 0.9, 9.81), Way("verner87", "rational", ""))
         coarse = found.rhs_rational(0, rational, ())
         assert max(abs(a - b) for a, b in zip(fine, coarse, strict=True)) < 4e-15
+
+
+def test_a_folded_number_is_written_so_that_it_is_rounded_once() -> None:
+    assert number(Fraction(981, 100)) == "(981.0/100.0)"  # as exact as the type that reads it
+    long = Fraction(1234567890123457581, 1000000000000010473)
+    assert float(number(long)) == float(long)
+    assert float(long.numerator) / float(long.denominator) != float(long)
 
 
 def test_what_is_folded_in_costs_nothing_and_what_is_zero_vanishes() -> None:
