@@ -19,6 +19,7 @@ from solvers.answers.answer import answer
 from solvers.answers.drawn import drawn, symbol, usual
 from solvers.answers.told import special_code, table, told
 from solvers.cli import generated_module, main, specialiser
+from solvers.commands.run import track
 from solvers.references.taylor import taylor
 from solvers.scenes.shipped import find
 
@@ -89,6 +90,18 @@ def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
     assert np.ptp(rows[:, 2]) < 1e-6
     # no energy unless it is asked for
     assert answer(replace(scene, outputs=("theta1",))).energy is None
+
+
+@pytest.mark.parametrize("name", ["report", "tremor", "single", "weightless", "rest"])
+def test_a_motion_begins_exactly_where_the_scene_says(name: str) -> None:
+    scene = find(name, generated_module)
+    assert answer(scene).y[:, 0].tolist() == [*scene.y0]
+
+
+def test_rods_and_springs_are_told_apart_by_their_lengths() -> None:
+    rods, spring = (track(answer(find(name, generated_module))) for name in ("report", "spring"))
+    assert (rods.links, rods.springs) == (((-1, 0), (0, 1)), ())
+    assert (spring.links, spring.springs) == ((), ((-1, 0),))
 
 
 def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:

@@ -80,11 +80,12 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
     if code := special_code(answers[0]):
         paths["code"] = code
     words = [*scene.note.split(), *(sureness(one, named=len(answers) > 1) for one in answers)]
-    write_page(paths["page"], scene.title, " ".join(words), list(map(_track, answers)))
+    write_page(paths["page"], scene.title, " ".join(words), list(map(track, answers)))
     return paths
 
 
-def _track(answer: Answer) -> Track:
+def track(answer: Answer) -> Track:
+    """What the page plays: masses in a chain, joined by rods or, where lengths change, springs."""
     scene, positions = answer.scene, places(answer)
     module = scene.module
     error = energy_error(module, scene.params, energies(answer))
