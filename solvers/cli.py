@@ -64,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except ValueError as error:
         print(f"holonomic {name}: {error}", file=sys.stderr)
         return 2
-    except ArithmeticError as error:
+    except (ArithmeticError, MemoryError) as error:
         print(f"holonomic {name}: {error}", file=sys.stderr)
         return 3
     except OSError as error:

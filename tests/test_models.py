@@ -102,13 +102,13 @@ def judged(scene: Scene) -> tuple[str, float, float]:
 def test_over_random_scenes_the_error_stays_below_what_was_asked() -> None:
     random = np.random.default_rng(5)
     taken: Counter[str] = Counter()
-    for _ in range(100):
+    for _ in range(60):
         scene = random_scene(random)
         model, error, _ = judged(scene)
         assert error <= 1, (model, scene)
         taken[model] += 1
     assert set(taken) == {"rest", "normal modes", "pendulum", "quadrature", "full equations"}
-    assert min(taken.values()) >= 3
+    assert min(taken.values()) >= 2
 
 
 def test_rest_is_an_equilibrium_and_what_grows_from_it() -> None:
@@ -236,7 +236,7 @@ def test_estimates_are_not_for_free(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(by_modes, "MARGIN", 0.0)
     assert small(motion).error_estimate < worst(motion, small(motion))
     motion = asked(sp, (pi, 0.0), 14)
-    monkeypatch.setattr(at_rest, "expm", lambda matrix: np.eye(len(matrix)) + matrix)
+    monkeypatch.setattr(at_rest, "expm", lambda matrix: np.eye(matrix.shape[-1]) + matrix)
     assert rest(motion).error_estimate < worst(motion, rest(motion))
 
 
@@ -257,7 +257,7 @@ def test_where_numbers_have_too_few_digits_series_have_more() -> None:
     scene = find("long", generated_module)
     found = chosen(scene)
     assert found.model.way.method == "taylor"
-    assert "at best where 1e-06 was asked" in found.declined["ordinary numbers"]
+    assert "at best where 1e-09 was asked" in found.declined["ordinary numbers"]
     end = found.model.states(np.array([20.0]))[0]
     fine = taylor(dp, scene.params, scene.y0, [0, 20], 60)[-1]
     assert np.abs(end - fine).max() <= found.model.error_estimate < 1e-13
@@ -285,6 +285,39 @@ def test_the_choice_can_be_named_instead() -> None:
     absent = replace(find("one_bob", generated_module), model="full")
     with pytest.raises(OutsideDomainError, match="theta2 moves no mass"):
         chosen(absent)
+
+
+@pytest.mark.parametrize(("module", "y0", "duration", "params"), [
+    # a spring that bounces for whole periods, and one whose bouncing makes it swing
+    (ep, (2.0, 0, 0, 0), 64 * 2 * pi / 10, None),
+    (ep, (1.63333333333, 1e-10, 0, 0), 40 * 2 * pi / 29.43**0.5, (1, 29.43, 1, 9.81)),
+])  # fmt: skip
+def test_rest_is_not_fooled_by_whole_periods(module, y0, duration, params) -> None:
+    try:
+        found = rest(asked(module, y0, duration, params))
+    except OutsideDomainError:
+        return
+    assert found.error_estimate > 0.1
+
+
+def test_estimates_see_what_is_quick_and_rare() -> None:
+    # through the pivot within a millionth of the time
+    narrow = Scene(ep, (1, 10, 1, 0), (2.5, 0.3, 0, 1e-4), 3.0, model="full")
+    found = chosen(narrow).model
+    times = np.linspace(2.18, 2.185, 401)
+    truths = taylor(ep, narrow.params, narrow.y0, [0, *times], 30)[1:]
+    run = full_equations.run(found.asked, found.way, found.setting, np.array([0, *times, 3.0]))
+    assert np.abs(run[1:-1] - truths).max() < 2 * found.error_estimate
+
+
+def test_a_light_bob_next_to_the_separatrix_is_not_taken_lightly() -> None:
+    near = asked(dp, (pi - 1e-9, 1.0, 0, 0), 60.0, (1, 1e-20, 2, 2, 9.81), (0, 2))
+    assert light(near).error_estimate > 0.1
+
+
+def test_what_takes_too_long_is_refused_at_once() -> None:
+    with pytest.raises(NotAccurateError, match="shorten the duration"):
+        chosen(Scene(sp, sp.DEFAULTS, (1.0, 1.0), 1e9, model="full"))
 
 
 def test_a_model_is_taken_when_its_error_is_below_what_is_asked_and_not_before() -> None:

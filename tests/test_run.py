@@ -150,6 +150,17 @@ def test_other_commands_refuse_scenes_that_are_not_theirs(
     assert "there is no such file" in capsys.readouterr().err
 
 
+def test_text_is_drawn_as_it_is_written(tmp_path: Path) -> None:
+    text = 'title = "costs $5 and $x^"\nsystem = "single_pendulum"\nduration = 1\n'
+    (tmp_path / "s.toml").write_text(text + "initial = { theta = 1 }\n")
+    assert run(str(tmp_path / "s.toml"), folder=tmp_path / "out") == 0
+    assert len(list((tmp_path / "out").iterdir())) == 3
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "s.toml").write_text(text + "initial = { theta = 2 }\n")
+    both = [str(tmp_path / "s.toml"), str(tmp_path / "other" / "s.toml")]
+    assert run(*both, folder=tmp_path / "out") == 2
+
+
 def lines_of(figure: Figure) -> list[tuple[str, int]]:
     return [(panel.get_ylabel(), len(panel.lines)) for panel in figure.axes if panel.axison]
 

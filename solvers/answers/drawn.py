@@ -38,9 +38,9 @@ def drawn(answers: Sequence[Answer]) -> Figure:
     rows = ceil(len(pictures) / columns)
     width = max(PANEL * columns, 7.0)
     words = [*main.scene.note.split(), *(sureness(a, named=len(answers) > 1) for a in answers)]
-    note = fill(" ".join(words), int(width * WRITTEN))
+    note = _plain(fill(" ".join(words), int(width * WRITTEN)))
     figure, axes = panels(
-        main.scene.title, rows=rows, columns=columns,
+        _plain(main.scene.title), rows=rows, columns=columns,
         size=(width, ROW * rows + 0.6 + 0.16 * note.count("\n")),
     )  # fmt: skip
     for panel, picture in zip(axes, pictures, strict=False):
@@ -48,7 +48,7 @@ def drawn(answers: Sequence[Answer]) -> Figure:
         panel.xaxis.set_major_locator(MaxNLocator(6))
     handles, labels = axes[0].get_legend_handles_labels()
     if len(answers) > 1:  # long words, between the title and the curves
-        figure.suptitle(main.scene.title + "\n" * ceil(len(labels) / 2))
+        figure.suptitle(_plain(main.scene.title) + "\n" * ceil(len(labels) / 2))
         below = 1 - TITLE / figure.get_figheight()
         figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, below), ncols=2,
                       frameon=False, fontsize="small")  # fmt: skip
@@ -58,6 +58,11 @@ def drawn(answers: Sequence[Answer]) -> Figure:
         panel.set_axis_off()
     figure.supxlabel(note, x=0.01, ha="left", fontsize="small", color="#444444")
     return figure
+
+
+def _plain(text: str) -> str:
+    """Text in which a dollar sign is one, and begins no formula."""
+    return text.replace("$", r"\$")
 
 
 def usual(answer: Answer) -> tuple[str, ...]:
@@ -93,7 +98,7 @@ def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
     for n, (answer, style) in enumerate(zip(answers, STYLES * len(answers), strict=False)):
         shift = 2 * n % len(COLOURS)  # two curves a run have colours of their own
         first = COLOURS[shift:] + COLOURS[:shift]
-        label = answer.scene.label if len(answers) > 1 else ""
+        label = _plain(answer.scene.label) if len(answers) > 1 else ""
         if picture == "path":
             _path(panel, answer, first, style, label)
         elif picture == "energy":

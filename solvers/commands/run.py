@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -46,6 +47,9 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType], specialiser: 
         "write the motion as a table, a picture and a page that plays it.",
     )  # fmt: skip
     found = []
+    twice = [name for name, n in Counter(scene.name for scene in scenes).items() if n > 1]
+    if twice:
+        raise ValueError(f"two scenes are called {twice[0]!r} and would write the same files")
     for scene in scenes:
         with Progress() as tell:
             answers = [answer(one, specialiser, tell) for one in (scene, *scene.beside)]
@@ -73,10 +77,10 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
         "picture": folder / f"{scene.name}.png",
         "page": folder / f"{scene.name}.html",
     }
+    save(drawn(answers), paths["picture"])
     written(paths["table"], table(answers[0]))
     for n, one in enumerate(answers[1:], 2):
         paths[f"table {n}"] = written(folder / f"{scene.name}_{n}.csv", table(one))
-    save(drawn(answers), paths["picture"])
     if code := special_code(answers[0]):
         paths["code"] = code
     words = [*scene.note.split(), *(sureness(one, named=len(answers) > 1) for one in answers)]

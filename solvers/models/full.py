@@ -14,7 +14,7 @@ from solvers.forms import fastest_form
 from solvers.horizon import beyond_horizon
 from solvers.integration import integrate
 from solvers.measured import median_seconds
-from solvers.models.model import Array, Asked
+from solvers.models.model import GOLDEN, Array, Asked
 from solvers.models.way import Way
 from solvers.prepared import prepare
 from solvers.references.taylor import taylor
@@ -25,15 +25,21 @@ CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14
 #: Errors may be so many times as large as the difference between run and check.
 MARGIN = 2.0
 #: How often tolerances or steps are tried, and by how much errors then stay below what is asked.
-TRIES, RESERVE = 8, 0.3
+TRIES, RESERVE = 6, 0.3
 #: Digits of Taylor series that are tried where ordinary numbers have too few.
 DIGITS, MORE, MOST_DIGITS = 24, 12, 96
 #: Sizes of a state in rad or m that are resolved relatively; and steps of a run.
-BEGINNING, MOST_STEPS = 1e-3, 10**8
+BEGINNING, MOST_STEPS = 1e-3, 3 * 10**6
+#: Of so many steps errors are looked at; angles in rad and turns that series can do.
+MOST_LOOKS, LARGEST_ANGLE, MOST_TURNS = 100_000, 1e6, 3000.0
 
 
 class NotAccurateError(ArithmeticError):
     """No run came as close as was asked; the message says how close."""
+
+
+class TooLongError(NotAccurateError):
+    """A motion that takes more steps than anybody waits for."""
 
 
 @dataclass(frozen=True)
@@ -102,14 +108,24 @@ def run(asked: Asked, way: Way, setting: float, t: Array) -> Array:
         # its times begin with the start
         times = t if t[0] == 0 else [0.0, *t]
         return taylor(asked.module, asked.params, asked.y0, times, int(setting))[-len(t) :]
+    return _integrated(asked, way, setting, t)[1]
+
+
+def _integrated(asked: Asked, way: Way, setting: float, t: Array | None) -> tuple[Array, Array]:
+    """Times and states: at `t`, or at the end of every step."""
     with beyond_horizon():
         found = integrate(
             asked.module, (0.0, asked.duration), asked.y0, asked.params, method=way.method,
             form=way.form, t_eval=t, max_steps=MOST_STEPS, **options(way, setting),
         )  # fmt: skip
+    if found.status is Status.STEP_LIMIT:
+        raise TooLongError(
+            f"more than {MOST_STEPS:.0e} steps of {way.method} are needed: shorten the duration, "
+            "or ask for less accuracy"
+        )
     if found.status is not Status.FINISHED:
         raise NotAccurateError(f"{way.method}, {setting:g}: {found.message}")
-    return found.y.T
+    return found.t, found.y.T
 
 
 def options(way: Way, setting: float) -> dict[str, Any]:
@@ -141,6 +157,7 @@ def full(asked: Asked, accuracy: float, way: Way, checked: Asked, setting: float
     NotAccurateError
         When no run is as accurate, or none reaches its end.
     """
+    _refuse_endless(checked, MOST_STEPS)
     if setting is not None:
         return Full(asked, way, setting, _error(asked, way, setting, checked))
     setting, power = (asked.duration / 200, way.order) if way.is_fixed else (accuracy / 3, 1.0)
@@ -163,9 +180,14 @@ def full(asked: Asked, accuracy: float, way: Way, checked: Asked, setting: float
 def _error(asked: Asked, way: Way, setting: float, checked: Asked) -> float:
     """Estimated error of a run; infinity for one that does not reach its end."""
     try:
-        found = run(asked, way, setting, asked.looks)
+        times, found = _integrated(asked, way, setting, None)
+    except TooLongError:
+        raise
     except NotAccurateError:
         return np.inf
+    if len(times) > MOST_LOOKS:
+        some = np.unique((len(times) * np.modf(GOLDEN * np.arange(MOST_LOOKS))[0]).astype(int))
+        times, found = times[some], found[some]
     # another method in another form: they share no rounding, not even of the start
     method = next(name for name in CHECKS if name != way.method)
     fastest = fastest_form(checked.module)
@@ -173,7 +195,7 @@ def _error(asked: Asked, way: Way, setting: float, checked: Asked) -> float:
     tolerance = FINEST
     if not way.is_fixed:
         tolerance = max(setting / TIGHTER, FINEST)
-    fine = run(checked, truth, tolerance, asked.looks)
+    fine = run(checked, truth, tolerance, times)
     # the check is as wrong as its tolerance, if the run is righter than it should be
     return _apart(asked, found, fine) + tolerance * float(np.abs(fine).max())
 
@@ -191,6 +213,9 @@ def series(asked: Asked, accuracy: float, way: Way, times: Array) -> Full:
     NotAccurateError
         When not even the most are enough.
     """
+    _refuse_endless(asked, MOST_TURNS)
+    if max(map(abs, asked.y0)) > LARGEST_ANGLE:
+        raise TooLongError(f"series of angles above {LARGEST_ANGLE:g} rad take for ever: wind back")
     digits, error = DIGITS, np.inf
     rough = run(asked, way, digits, times)
     while digits + MORE <= MOST_DIGITS:
@@ -206,3 +231,16 @@ def series(asked: Asked, accuracy: float, way: Way, times: Array) -> Full:
     raise NotAccurateError(
         f"{MOST_DIGITS} digits come to {error:.1g} where {accuracy:.1g} is asked"
     )
+
+
+def _refuse_endless(asked: Asked, most: float) -> None:
+    """Refuse motions that turn more often than anybody waits for, by the rates they begin with."""
+    jacobian = np.array(asked.module.jacobian(0.0, asked.y0, asked.params))
+    if not np.isfinite(jacobian).all():
+        raise NotAccurateError(f"the equations are not finite at {asked.y0}")
+    rate = max(np.abs(np.linalg.eigvals(jacobian)).max(), *np.abs(asked.y0[asked.coordinates :]))
+    if rate * asked.duration > most:
+        raise TooLongError(
+            f"rates of {rate:.3g} per s over {asked.duration:g} s are more than {most:g} turns: "
+            "shorten the duration, or ask for less accuracy"
+        )

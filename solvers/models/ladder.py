@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.full import NotAccurateError, full, series
+from solvers.models.full import NotAccurateError, TooLongError, full, series
 from solvers.models.light import light
 from solvers.models.model import Asked, Model, OutsideDomainError
 from solvers.models.pendulum import pendulum
@@ -81,6 +81,9 @@ def choice(
             except OutsideDomainError as reason:
                 declined[name] = str(reason)
                 continue
+            except (ArithmeticError, np.linalg.LinAlgError) as reason:
+                declined[name] = f"its numbers are not finite: {reason}"
+                continue
             if model.error_estimate <= scene.accuracy:
                 return Choice(model, declined)
             declined[name] = (
@@ -93,6 +96,8 @@ def choice(
     tell(f"full equations by {way.method}")
     try:
         return Choice(full(code(asked, way), scene.accuracy, way, asked, scene.step), declined)
+    except TooLongError:
+        raise
     except NotAccurateError as reason:
         if scene.method or scene.form:
             raise

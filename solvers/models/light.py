@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from solvers.models.model import Array, Asked, OutsideDomainError
-from solvers.models.pendulum import ANGLES, SAME, Pendulum
+from solvers.models.pendulum import ANGLES, SAME, Pendulum, rounding
 from solvers.references.pendulum import pendulum as exact
 
 #: Random states that are tried, rounds until a bound of velocities settles, and times of kicks.
-STATES, ROUNDS, KICKS = 512, 4, 8
+STATES, ROUNDS, KICKS = 512, 4, 16
 #: What the largest of so many samples may miss; and a velocity in rad/s that means no bound.
 MARGIN, ENDLESS = 2.0, 1e6
 
@@ -39,7 +39,8 @@ def light(asked: Asked) -> Pendulum:
     start = (asked.y0[k], asked.y0[k + n])
     motion = exact(1.0, square, start, asked.looks)
     defect = _defect(asked, k, square, motion)
-    error = asked.duration * defect * _kicked(square, motion, asked.looks)
+    error = _kicked(square, motion, asked.looks, asked.duration * defect)
+    error += rounding(square, start, False, asked.looks).max(axis=0)
     wanted = [i // n for i in asked.wanted]
     return Pendulum(k, n, start, square, 0.0, float(error[wanted].max()),
                     f"other coordinates accelerate {module.COORDINATES[k]} by at most "
@@ -80,12 +81,15 @@ def _defect(asked: Asked, k: int, square: float, motion: Array) -> float:
     return MARGIN * found
 
 
-def _kicked(square: float, motion: Array, times: Array) -> Array:
-    """What a kick of unit size makes at most of angle and velocity, at any time after it."""
+def _kicked(square: float, motion: Array, times: Array, kick: float) -> Array:
+    """What a kick makes at most of angle and velocity, given at any time and in any direction.
+
+    It is given as it is: next to the separatrix nothing is in proportion.
+    """
     worst = np.zeros(2)
     for angle, velocity in motion[:: max(len(motion) // KICKS, 1)]:
-        kick = 1e-6 * max(1.0, np.sqrt(square))
-        apart = exact(1.0, square, (angle, velocity + kick), times)
-        apart -= exact(1.0, square, (angle, velocity), times)
-        worst = np.maximum(worst, np.abs(apart).max(axis=0) / kick)
+        plain = exact(1.0, square, (angle, velocity), times)
+        for way in (-kick, kick):
+            apart = np.abs(exact(1.0, square, (angle, velocity + way), times) - plain)
+            worst = np.maximum(worst, apart.max(axis=0))
     return worst

@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 #: In so many places of a closed form a number is rounded.
 ROUNDINGS = 32
-#: So many times between beginning and end an error is looked at.
-LOOKS = 64
+#: So often an error is looked at, at times that follow the golden ratio.
+LOOKS, GOLDEN = 128, (5**0.5 - 1) / 2
 
 
 class OutsideDomainError(ValueError):
@@ -74,8 +74,9 @@ class Asked:
 
     @property
     def looks(self) -> Array:
-        """Times at which errors are looked at."""
-        return np.linspace(0, self.duration, LOOKS + 1)
+        """Times at which errors are looked at: in step with no period, and at both ends."""
+        scattered = np.sort(np.modf(GOLDEN * np.arange(1, LOOKS))[0])
+        return self.duration * np.concatenate([[0.0], scattered, [1.0]])
 
 
 class Model(Protocol):

@@ -59,12 +59,12 @@ def pendulum(asked: Asked) -> Pendulum:
         raise OutsideDomainError("its weight does not pull as a pendulum's")
     square, bottom = abs(pull) / float(mu[0]), 0.0 if pull > 0 else np.pi
     start = (form.start[0], form.start[1])
-    worst = _rounding(square, (start[0] - bottom, start[1]), bool(bottom), asked.looks).max()
+    worst = rounding(square, (start[0] - bottom, start[1]), bool(bottom), asked.looks).max()
     why = f"{asked.module.COORDINATES[k]} alone moves mass, as a pendulum does"
     return Pendulum(k, asked.coordinates, start, square, bottom, float(worst), why)
 
 
-def _rounding(square: float, start: tuple[float, float], is_shifted: bool, times: Array) -> Array:
+def rounding(square: float, start: tuple[float, float], is_shifted: bool, times: Array) -> Array:
     """What rounding does: so much as changes of the numbers that the closed form is made of."""
     omega, half = np.sqrt(square), start[0] / 2
     if abs(start[0]) > np.pi:

@@ -22,6 +22,8 @@ from solvers.models.model import EPS, ROUNDINGS, Array, Asked, OutsideDomainErro
 FEWEST, MOST, SCAN = 32, 2048, 720
 #: A series ends where its terms are so small, in parts of the first.
 END = 1e-14
+#: In parts of a period over 2π: short enough for rates, long enough not to be rounding.
+INSTANT = 1e-5
 #: Newton's steps from an interpolated phase.
 ITERATIONS = 5
 
@@ -118,7 +120,8 @@ def quadrature(asked: Asked) -> Quadrature:
     error = rounding_error(states, asked.y0, sizes)
     # a wrong period is a wrong time
     here = found.states(times)
-    speed = np.abs(np.gradient(here, times, axis=0)).max(axis=0) + np.abs(here).max(axis=0)
+    later = INSTANT * found.time.mean
+    speed = np.abs(found.states(times + later) - here).max(axis=0) / later
     error = error.max(axis=0) + speed * asked.duration * found.period_error
     quick = max(1.0, 1 / found.time.mean)
     error += ROUNDINGS * (found.place_error * quick + found.rate_error)

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.model import EPS, ROUNDINGS, Array, Asked, OutsideDomainError
+from solvers.models.model import EPS, GOLDEN, ROUNDINGS, Array, Asked, OutsideDomainError
 from solvers.stability.modes import Modes
 
 #: The defect is looked at at so many times, scattered evenly over the duration.
 SAMPLES = 256
-GOLDEN = (np.sqrt(5) - 1) / 2
 #: What the mean of so many samples may miss.
 MARGIN = 1.25
 #: Exponents beyond this are infinite for all purposes.

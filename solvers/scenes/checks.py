@@ -43,6 +43,8 @@ def check_masses(module: ModuleType, params: Sequence[float], y0: Sequence[float
     worst, weakest = 0.0, ""
     for place in (y0, [y0[0]] * n + [0.0] * n):  # where it begins; and all aligned
         M = np.array(module.mass_matrix(place, params))
+        if not np.isfinite(M).all():
+            raise ValueError("the mass matrix is not finite: numbers are too large")
         alive = np.flatnonzero(np.diag(M))
         if not alive.size:
             raise ValueError("no coordinate moves any mass")
@@ -144,9 +146,7 @@ def check_samples(value: object) -> None:
         With what is allowed.
     """
     if isinstance(value, bool) or not isinstance(value, int) or not 2 <= value <= MOST_SAMPLES:
-        raise ValueError(
-            f"samples = {str(value)[:50]} must be a whole number from 2 to {MOST_SAMPLES}"
-        )
+        raise ValueError(f"samples must be a whole number from 2 to {MOST_SAMPLES}")
 
 
 def check_positive(**numbers: float | None) -> None:

@@ -76,7 +76,9 @@ def quantity(value: object, unit: str) -> float:
     else:
         number = _written(value, unit)
     if not isfinite(number):
-        raise QuantityError(f"{str(value)[:20]} is not finite")
+        raise QuantityError(
+            f"{value if isinstance(value, str | float) else 'the number'} is not finite"
+        )
     return number
 
 

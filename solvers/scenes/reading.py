@@ -16,6 +16,8 @@ from solvers.scenes.scene import Scene
 
 #: Bytes of the largest file; the longest that ships has 2000.
 LARGEST = 100_000
+#: Characters of a text, and how many pictures, outputs and runs there may be.
+LONGEST, MOST = 2000, 24
 ABSENT, TURN = "absent", 2 * pi
 
 NEEDED = ("system", "duration", "initial")
@@ -88,9 +90,10 @@ def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleTyp
     others = table.get("beside", [])
     if not isinstance(others, list) or not all(isinstance(other, dict) for other in others):
         raise SceneError("'beside' must be tables: write [[beside]] and what differs below it")
+    if len(others) > MOST:
+        raise SceneError(f"[[beside]] are {len(others)}: up to {MOST} can be shown")
     for key in ("initial", "parameters"):
-        if not isinstance(table.get(key, {}), dict):
-            raise SceneError(f"{key} = {str(table[key])[:50]!r} must be a table: write [{key}]")
+        _is_table(key, table.get(key, {}))
     beside = tuple(_beside(equations, name, table, other) for other in others)
     title = str(equations.__doc__).partition(":")[0].partition(".")[0]
     return _scene(equations, name, {"title": title, **table}, beside)
@@ -104,8 +107,8 @@ def _beside(
     # another way of integrating owes nothing to this one
     kept = {key: table[key] for key in table if key not in WAY or not WAY & set(other)}
     for key in ("initial", "parameters"):
-        changes = other.get(key, {})
-        kept[key] = table.get(key, {}) | _table(key, changes, list(changes))
+        _is_table(key, other.get(key, {}))
+        kept[key] = table.get(key, {}) | other.get(key, {})
     changed = {key: other[key] for key in other if key not in ("initial", "parameters")}
     return _scene(module, name, {**kept, "label": label, **changed}, ())
 
@@ -175,21 +178,30 @@ def _keys(where: str, table: Mapping[str, Any], known: Sequence[str]) -> None:
 
 
 def _table(key: str, value: object, known: Sequence[str]) -> dict[str, Any]:
-    if not isinstance(value, dict):
-        raise SceneError(f"{key} = {str(value)[:50]!r} must be a table: write [{key}]")
+    _is_table(key, value)
+    assert isinstance(value, dict)
     _keys(f"[{key}]", value, known)
     return value
+
+
+def _is_table(key: str, value: object) -> None:
+    if not isinstance(value, dict):
+        raise SceneError(f"{key} = {str(value)[:50]!r} must be a table: write [{key}]")
 
 
 def _text(key: str, value: object) -> str:
     if not isinstance(value, str):
         raise SceneError(f"{key} = {str(value)[:50]} must be text in quotes")
+    if len(value) > LONGEST or not all(c.isprintable() or c in "\n\t" for c in value):
+        raise SceneError(f"{key} = {value[:50]!r} must be up to {LONGEST} printable characters")
     return value
 
 
 def _texts(key: str, value: object) -> tuple[str, ...]:
     if not isinstance(value, list):
         raise SceneError(f"{key} = {str(value)[:50]!r} must be a list of texts in square brackets")
+    if len(value) > MOST:
+        raise SceneError(f"{key} are {len(value)}: up to {MOST} can be shown")
     return tuple(_text(key, item) for item in value)
 
 
