@@ -179,7 +179,7 @@ class Graph:
         """`number` times `node`, multiplied into every term of a sum."""
         coefficient, rest = node.scaled()
         if rest is None or rest.kind != "sum":
-            return self._scale(node if rest is None else rest, coefficient * number)
+            return self.sum([(node, number)])
         return self.sum([(term, c * coefficient * number) for term, c in rest.content])
 
     def _primitive(self, terms: Mapping[Node, Fraction]) -> Node:

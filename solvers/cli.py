@@ -278,10 +278,14 @@ def specialiser(module: ModuleType, params: Sequence[float], way: Any) -> Module
     """A module with these parameters folded in, and what a way of integrating needs of it."""
     from solvers.specialised import needed, specialised
 
-    sources = sorted((Path(__file__).parent.parent / "derive").glob("*.py"))
-    version = "".join(source.read_text(encoding="utf-8") for source in sources)
     functions = needed(way.method, way.form)
-    return specialised(module, params, functions, _generator, version)
+    return specialised(module, params, functions, _generator, generator_text())
+
+
+def generator_text() -> str:
+    """All that decides what is generated, systems included, in one text."""
+    folder = Path(__file__).parent.parent / "derive"
+    return "".join(source.read_text(encoding="utf-8") for source in sorted(folder.rglob("*.py")))
 
 
 def _generator(name: str, values: Mapping[str, float], functions: Sequence[str]) -> dict[str, str]:

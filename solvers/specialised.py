@@ -81,10 +81,8 @@ def _loaded(path: Path, name: str) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = module_from_spec(spec)
-    writes, sys.dont_write_bytecode = (
-        sys.dont_write_bytecode,
-        True,
-    )  # digests cover all that is there
+    writes = sys.dont_write_bytecode
+    sys.dont_write_bytecode = True  # nothing comes beside the files whose digests are known
     try:
         spec.loader.exec_module(module)
     finally:

@@ -1,6 +1,7 @@
 """What several tests look at."""
 
 import shutil
+import signal
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -16,6 +17,12 @@ from solvers.cli import generated_module
 from solvers.commands.stability import scene_steps
 from solvers.scenes.shipped import find
 from solvers.stability.critical import CriticalStep
+
+
+@pytest.fixture(scope="session", autouse=True)
+def interruptions_arrive() -> None:
+    """Tests interrupt programs; a shell's background job has been told to take no notice."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session", params=names())

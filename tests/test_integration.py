@@ -1,17 +1,16 @@
-"""Integrations against exact solutions; samples, events, and what bad input and faults get."""
+"""Integrations against exact solutions, in every form, and how samples and time behave."""
 
-from functools import partial
 from math import asin, log2, pi, sin, sqrt
-from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
+from made_up import made_up
 from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
-from solvers.catalogue import UnknownMethodError, load, names
+from solvers.catalogue import load, names
 from solvers.horizon import HorizonWarning
 from solvers.integration import integrate
 from solvers.scipy_methods import ode_solver
@@ -233,70 +232,12 @@ def test_implicit_midpoint_keeps_the_energy_where_euler_does_not() -> None:
     assert drift("rk1") > 1
 
 
-def test_events_are_found_to_rounding() -> None:
-    def bottom(t: float, y: np.ndarray) -> float:
-        return float(y[0])
-
-    period = 4 * ellipk(sin(1.0) ** 2) / sqrt(sp.DEFAULTS[2] / sp.DEFAULTS[1])
-    found = integrate(
-        sp, (0, 3 * period), (2.0, 0.0), sp.DEFAULTS, events=bottom, rtol=1e-12, atol=1e-13
-    )
-    assert found.t_events[0] == pytest.approx(period * (np.arange(6) / 2 + 0.25), abs=1e-9)
-    assert np.abs(found.y_events[0][:, 0]).max() < 1e-12
-
-
-def test_events_have_a_direction_and_may_end_the_run() -> None:
-    def bottom(t: float, y: np.ndarray) -> float:
-        return float(y[0])
-
-    bottom.direction, bottom.terminal = 1, True  # type: ignore[attr-defined]
-    found = integrate(sp, (0, 20), (2.0, 0.0), sp.DEFAULTS, events=[bottom])
-    assert found.status is Status.EVENT
-    assert found.success
-    assert found.y[1, -1] > 0
-    assert found.t[-1] == found.t_events[0][0] == found.end[0]
-    assert len(found.t_events[0]) == 1
-
-
 def test_angles_are_counted_even_where_a_step_turns_by_more_than_half() -> None:
     # 3.15 rad a step: so long a step blurs the angle, but counting by halves loses every turn
     found = integrate(
         sp, (0, 10), (0.0, 35.0), (1, 2, 0), method="verner98", h=0.09, form="rational"
     )
     assert found.y[0, -1] == pytest.approx(350.0, abs=2)
-
-
-def test_an_event_function_may_spoil_what_it_is_given() -> None:
-    def spoiling(t: float, y: np.ndarray) -> float:
-        y[:] = 0
-        return 1.0
-
-    run = partial(
-        integrate, sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.1, backend="python"
-    )
-    plain, watched = run(), run(events=spoiling)
-    assert np.array_equal(plain.y, watched.y)
-
-
-def test_a_run_can_go_on_from_an_event_that_ended_it() -> None:
-    def bottom(t: float, y: np.ndarray) -> float:
-        return float(y[0])
-
-    bottom.terminal = True  # type: ignore[attr-defined]
-    t, y, times = 0.0, np.array([2.0, 0.0]), []
-    for _ in range(20):
-        found = integrate(sp, (t, 100), y, sp.DEFAULTS, events=bottom, rtol=1e-10)
-        t, y = found.end
-        times.append(t)
-    assert np.diff(times) == pytest.approx(np.diff(times)[0], rel=1e-6)
-
-
-def test_flat_and_abrupt_events_are_found() -> None:
-    module = made_up(lambda t, y, params: (1.0, 0.0))
-    for event in (lambda t, y: (t - 0.35) ** 5, lambda t, y: 1.0 if t > 0.35 else -1.0,
-                  lambda t, y: 1e-170 * (t - 0.35)):  # fmt: skip
-        found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=0.3, events=event)
-        assert found.t_events[0] == pytest.approx([0.35], abs=1e-3)
 
 
 def test_rest_stays_rest_at_any_time_and_with_any_tolerance() -> None:
@@ -306,146 +247,12 @@ def test_rest_stays_rest_at_any_time_and_with_any_tolerance() -> None:
         assert not found.y.any()
 
 
-def test_a_step_that_cannot_be_filled_ends_with_a_status() -> None:
-    hole = made_up(lambda t, y, params: (1.0, np.nan if 0.501 < t < 0.502 else 0.0))
-    found = integrate(hole, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=1.0, t_eval=[0.5015])
-    assert found.status is Status.NOT_FINITE
-    singular = integrate(sp, (0, 4), (pi, 0), (1, 1, 1), method="gauss1", h=2.0)
-    assert singular.status in (Status.NO_CONVERGENCE, Status.FINISHED)
-    dividing = integrate(sp, (0, 1), (1, 0), (1, 0, 9.81), method="rk4", h=0.1)
-    assert dividing.status is Status.NOT_FINITE
-
-
-def test_nothing_is_evaluated_beyond_what_the_last_step_needs() -> None:
-    edge = made_up(lambda t, y, params: (sqrt(1 - t) if t < 1 else np.nan, 0.0))
-    found = integrate(edge, (0, 1), (0.0, 0.0), (1.0,), method="midpoint", h=0.1)
-    assert found.status is Status.FINISHED
-
-
 def test_small_motions_of_implicit_methods_are_solved_as_well_as_large_ones() -> None:
     ends = [
         integrate(sp, (0, 3), (size, 0), sp.DEFAULTS, method="gauss3", h=0.05).y[0, -1] / size
         for size in (1e-12, 1e-6)
     ]
     assert ends[0] == pytest.approx(ends[1], rel=1e-9)
-
-
-@pytest.mark.parametrize("options", [{"first_step": np.nan}, {"first_step": -0.1},
-                                     {"max_step": -1}, {"rtol": -1}])  # fmt: skip
-def test_senseless_options_inside_solve_ivp_are_refused(options: dict[str, float]) -> None:
-    with pytest.raises(ValueError, match="must"):
-        solve_ivp(sp.rhs, (0, 1), (1, 0), method=ode_solver("verner87"), args=(sp.DEFAULTS,),
-                  **options)  # fmt: skip
-
-
-def test_the_caller_s_arrays_are_left_alone() -> None:
-    y0, params, times = np.array(REPORT), np.array(dp.DEFAULTS), np.array([0.0, 1.0])
-    found = integrate(dp, (0, 1), y0, params, t_eval=times)
-    found.y[:] = 0
-    assert y0.tolist() == list(REPORT)
-    assert params.tolist() == list(dp.DEFAULTS)
-    assert times.tolist() == [0.0, 1.0]
-
-
-def scene(**changes: object) -> dict[str, object]:
-    return {"module": dp, "t_span": (0, 1), "y0": REPORT, "params": dp.DEFAULTS} | changes
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"y0": (1, 2, 3)}, r"y0 has shape \(3,\): give 4 numbers, theta1, theta2, theta1_dot"),
-        ({"y0": (1, 2, 3, np.nan)}, "y0 = .*nan.* must be finite"),
-        ({"y0": "abcd"}, "y0 = abcd must be real numbers"),
-        ({"y0": (1j, 0, 0, 0)}, "must be real numbers"),
-        ({"y0": (True, False, True, True)}, "must be real numbers"),
-        ({"params": (1, 1, 2, 2)}, "params has shape .* m1, m2, l1, l2, g"),
-        ({"params": (1, 1, 2, 2, np.inf)}, "params = .* must be finite"),
-        ({"t_span": (0, np.inf)}, "t_span"),
-        ({"t_span": 1}, "t_span has shape"),
-        ({"t_eval": [0.5, 0.2]}, "must go from t_span's beginning to its end"),
-        ({"t_eval": [0.2, 0.2]}, "no time twice"),
-        ({"t_eval": [0.2, 2.0]}, r"t_eval has 2.0, outside of t_span = \(0.0, 1.0\)"),
-        ({"t_eval": [0.2, np.nan]}, "t_eval = .* must be finite"),
-        ({"rtol": 0, "atol": 0}, "both 0"),
-        ({"rtol": -1e-6}, "rtol = -1e-06 must not be negative"),
-        ({"rtol": np.nan}, "rtol = nan must be finite"),
-        ({"atol": [1e-6, 1e-6]}, "atol a number or 4 of them"),
-        ({"rtol": 1e-17}, "below the resolution of numbers"),
-        ({"h": 0}, "h = 0 must be a positive number"),
-        ({"h": -0.1}, "h = -0.1 must be a positive number"),
-        ({"h": np.nan}, "h = nan"),
-        ({"h": 1e-18}, "below the resolution"),
-        ({"h": 1e-15}, "below the resolution"),
-        ({"max_steps": -1}, "max_steps = -1 must be from 0"),
-        ({"max_steps": 1.5}, "max_steps = 1.5"),
-        ({"events": None}, "events = None must be functions"),
-        ({"events": [3]}, r"events = \[3\] must be functions"),
-        ({"method": "rk4"}, "does not estimate its error: give a fixed step h"),
-        ({"method": "gauss2", "form": "rational", "h": 0.1}, "needs a Jacobian"),
-        ({"form": "linear"}, "form 'linear': .* has lagrangian, hamiltonian, rational"),
-    ],
-)
-def test_what_makes_no_sense_is_refused_before_anything_runs(
-    changes: dict[str, object], message: str
-) -> None:
-    calls = []
-    watched = SimpleNamespace(**{name: getattr(dp, name) for name in dir(dp)})
-    watched.__name__ = "generated.double_pendulum"
-    watched.rhs = lambda *arguments: calls.append(arguments) or dp.rhs(*arguments)
-    with pytest.raises(ValueError, match=message):
-        integrate(**(scene(module=watched) | changes))  # type: ignore[arg-type]
-    assert not calls
-
-
-def test_an_unknown_method_is_refused() -> None:
-    with pytest.raises(UnknownMethodError, match="did you mean 'verner"):
-        integrate(**scene(method="verner78"))  # type: ignore[arg-type]
-
-
-def made_up(rhs: object) -> ModuleType:
-    """A module with one coordinate whose right-hand side is `rhs`."""
-    module = ModuleType("made_up")
-    module.__dict__.update(COORDINATES=("x",), STATE=("x", "x_dot"), PARAMETERS=("a",), rhs=rhs)
-    return module
-
-
-def test_a_blow_up_stops_with_what_there_is() -> None:
-    # x' = x² from 1 has x = 1/(1 - t)
-    module = made_up(lambda t, y, params: (y[0] ** 2, 0.0))
-    found = integrate(module, (0, 2), (1.0, 0.0), (1.0,), rtol=1e-8)
-    assert found.status in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
-    assert not found.success
-    assert found.t[-1] == pytest.approx(1.0, abs=1e-6)
-    assert np.isfinite(found.y).all()
-    assert "t = " in found.message
-
-
-@pytest.mark.parametrize("h", [None, 0.1])
-def test_a_right_hand_side_that_is_not_finite_ends_the_run(h: float | None) -> None:
-    module = made_up(lambda t, y, params: (1.0, np.nan if y[0] > 0.55 else 0.0))
-    found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), h=h)
-    assert found.status in (Status.NOT_FINITE, Status.STEP_TOO_SMALL)
-    assert np.isfinite(found.y).all()
-    assert 0.4 < found.t[-1] < 0.56
-
-
-def test_an_exception_in_the_right_hand_side_is_the_caller_s() -> None:
-    def failing(t: float, y: object, params: object) -> tuple[float, float]:
-        raise RuntimeError("broken model")
-
-    with pytest.raises(RuntimeError, match="broken model"):
-        integrate(made_up(failing), (0, 1), (0.0, 0.0), (1.0,))
-
-
-def test_the_step_limit_leaves_a_state_to_go_on_from() -> None:
-    short = integrate(dp, (0, 5), REPORT, dp.DEFAULTS, rtol=1e-11, max_steps=50, t_eval=[5.0])
-    assert short.status is Status.STEP_LIMIT
-    assert short.steps == 50
-    assert short.y.shape == (4, 0)
-    t, y = short.end
-    rest = integrate(dp, (t, 5), y, dp.DEFAULTS, rtol=1e-11)
-    assert np.abs(rest.y[:, -1] - END).max() < 1e-8
 
 
 @pytest.mark.parametrize("method", EXPLICIT_PAIRS)

@@ -64,7 +64,7 @@ def test_a_named_way_is_told_with_its_error_and_what_is_beside_it(
     apart = [abs(found["final_state"][k] - motion["final_state"][k]) for k in dp.STATE]
     assert 1e-8 < max(apart) < found["error_estimate"] < 1e-5
     assert run("program_3", folder=tmp_path) == 0
-    assert "NOT MET, since the way is named in the scene" in capsys.readouterr().out
+    assert "NOT MET, since it is named how" in capsys.readouterr().out
 
 
 def test_only_digits_that_can_be_trusted_are_printed(

@@ -8,6 +8,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from sympy import symbols
 
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
@@ -15,14 +16,16 @@ import generated.single_pendulum as sp
 from derive import Derivation, load
 from derive.assignments import number
 from derive.functions import body, contents
+from derive.mechanics import Mechanics
 from derive.specialisation import specialised as folded
-from derive.system import SystemDefinitionError
+from derive.system import Coordinate, Parameter, PointMass, System, SystemDefinitionError
 from solvers.cache import cache_folder
-from solvers.cli import specialiser
+from solvers.cli import generator_text, specialiser
 from solvers.integration import integrate
 from solvers.models.way import Way
 from solvers.specialised import needed, specialised
 
+ROOT = Path(__file__).parent.parent
 REPORT = (np.pi / 2, np.pi, 0.0, 0.0)
 
 
@@ -75,6 +78,27 @@ def test_a_folded_number_is_written_so_that_it_is_rounded_once() -> None:
     long = Fraction(1234567890123457581, 1000000000000010473)
     assert float(number(long)) == float(long)
     assert float(long.numerator) / float(long.denominator) != float(long)
+
+
+def test_a_force_that_is_a_number_is_one_even_where_masses_have_a_common_factor() -> None:
+    y, m, g = symbols("y m g", real=True)
+    falling = System(
+        name="falling",
+        title="A mass that falls",
+        coordinates=[Coordinate(y, "m", "height")],
+        parameters=[Parameter(m, "kg", 2.0, "mass"), Parameter(g, "m/s^2", 9.81, "gravity")],
+        masses=[PointMass(m, (y * 0, y))],
+    )
+    special = folded(falling, {"m": 4.0, "g": 9.81})
+    (rate, acceleration) = Mechanics(Derivation(special)).rhs
+    assert acceleration.is_number(Fraction(-981, 100))
+    assert not rate.is_number(0)
+
+
+def test_a_changed_system_is_generated_anew() -> None:
+    text = generator_text()
+    for name in ("systems/double_pendulum.py", "graph.py"):
+        assert (ROOT / "derive" / name).read_text() in text
 
 
 def test_what_is_folded_in_costs_nothing_and_what_is_zero_vanishes() -> None:

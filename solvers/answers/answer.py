@@ -122,13 +122,16 @@ def answer(
     t = scene.times
     y = chosen.model.states(t).T
     y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
-    energy = None
-    if ENERGY in scene.outputs:
-        energy = np.asarray(scene.module.energy_many(np.nan_to_num(y), scene.params))
+    energy = energies(scene, y) if ENERGY in scene.outputs else None
     return Answer(
         scene, chosen, t, y, energy, choosing, _work(chosen, scene), _full(scene),
         _general(chosen, scene),
     )  # fmt: skip
+
+
+def energies(scene: Scene, y: Array) -> Array:
+    """Energy in J along states of shape (state, samples); what does not exist has none."""
+    return np.asarray(scene.module.energy_many(np.nan_to_num(y), scene.params))
 
 
 def _work(chosen: Choice, scene: Scene) -> float:

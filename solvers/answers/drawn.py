@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil
@@ -13,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from solvers.answers.answer import Answer
+from solvers.answers.answer import Answer, energies
 from solvers.energy import energy_error
 from solvers.pictures import COLOURS, panels
-from solvers.scenes.checks import PICTURE
+from solvers.scenes.checks import curves_of
 
 GREEK = ("theta", "phi", "psi", "alpha", "beta")
 STYLES = ("-", "--", ":", "-.")
@@ -102,7 +101,7 @@ def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
         if picture == "path":
             _path(panel, answer, first, style, label)
         elif picture == "energy":
-            error = np.abs(energy_error(answer.scene.module, answer.scene.params, energies(answer)))
+            error = np.abs(energy_errors(answer))
             panel.semilogy(answer.t, np.maximum(error, LEAST), style, color=first[0], label=label,
                            linewidth=0.9)  # fmt: skip
         else:
@@ -118,9 +117,7 @@ def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
 def _curves(
     panel: Axes, picture: str, answer: Answer, colours: Sequence[str], style: str, label: str
 ) -> None:
-    found = PICTURE.match(picture)
-    assert found
-    names, over = re.split(", *", found[1]), found[2]
+    names, over = curves_of(picture)
     columns = dict(zip(answer.scene.module.STATE, answer.y, strict=True)) | {"t": answer.t}
     units = answer.scene.module.UNITS | {"t": "s"}
     for name, colour in zip(names, colours, strict=False):
@@ -148,10 +145,10 @@ def places(answer: Answer) -> np.ndarray:
     return found[np.isfinite(found).all(axis=(1, 2))]
 
 
-def energies(answer: Answer) -> np.ndarray:
-    """Energy in J, shape (samples,); what does not exist has none."""
-    states = np.nan_to_num(answer.y)
-    return np.asarray(answer.scene.module.energy_many(states, answer.scene.params))
+def energy_errors(answer: Answer) -> np.ndarray:
+    """Energy errors in parts of the energy above rest, shape (samples,)."""
+    scene = answer.scene
+    return energy_error(scene.module, scene.params, energies(scene, answer.y))
 
 
 def symbol(name: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -23,7 +23,7 @@ def told(answer: Answer) -> Iterator[str]:
     yield f"  {model.why}"
     for name, reason in answer.choice.declined.items():
         yield f"  not {name}: {reason}"
-    met = "" if answer.is_met else ": NOT MET, since the way is named in the scene"
+    met = "" if answer.is_met else ": NOT MET, since it is named how"
     yield f"error estimate {model.error_estimate:.1e}, asked {scene.accuracy:.0e}{met}"
     digits = trusted(answer)
     yield (
@@ -39,7 +39,7 @@ def told(answer: Answer) -> Iterator[str]:
     yield cost(answer)
 
 
-def trusted(answer: Answer) -> Any:
+def trusted(answer: Answer) -> Callable[[float], str]:
     """A function that writes a number with the digits that its error leaves."""
     error = max(answer.choice.model.error_estimate, 1e-16)
     decimals = int(np.clip(np.floor(-np.log10(error)), 0, 15)) if np.isfinite(error) else 0
@@ -57,13 +57,10 @@ def how(answer: Answer) -> str:
 
 
 def _setting(answer: Answer, model: Full) -> str:
-    return (
-        "digits"
-        if model.way.is_series
-        else "h"
-        if model.way.is_fixed or answer.scene.step
-        else "rtol"
-    )
+    if model.way.is_series:
+        return "digits"
+    is_fixed = model.way.is_fixed or answer.scene.step is not None
+    return "h" if is_fixed else "rtol"
 
 
 def is_specialised(answer: Answer) -> bool:
@@ -125,9 +122,10 @@ def figures(answer: Answer) -> dict[str, Any]:
         "method": answer.method,
         "form": answer.form,
         "setting": {_setting(answer, model): model.setting} if isinstance(model, Full) else None,
-        "code": _code(answer, model)
-        if isinstance(model, Full) and is_specialised(answer)
-        else "general",
+        "code": "specialised" if is_specialised(answer) else "general",
+        "operations": operations(model.asked.module, model.way.form)
+        if isinstance(model, Full)
+        else None,
         "general_seconds": answer.general_seconds,
         "final_state": answer.final_state,
         "units": {name: answer.scene.module.UNITS[name] for name in answer.final_state},

@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 
 from solvers.answers.answer import Answer, Specialiser, answer
-from solvers.answers.drawn import drawn, energies, places, sureness
+from solvers.answers.drawn import drawn, energy_errors, places, sureness
 from solvers.answers.told import figures, special_code, table, told
 from solvers.commands.options import options
-from solvers.energy import energy_error
 from solvers.jsonable import jsonable
 from solvers.page.page import write_page
 from solvers.page.track import Track
@@ -90,11 +89,7 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
 
 def track(answer: Answer) -> Track:
     """What the page plays: masses in a chain, joined by rods or, where lengths change, springs."""
-    scene, positions = answer.scene, places(answer)
-    module = scene.module
-    error = energy_error(module, scene.params, energies(answer))
-    if len(module.positions(scene.y0, scene.params)[0]) != 2:
-        positions = positions[:, ::2]  # seen from the side
+    positions = places(answer)
     rods: list[tuple[int, int]] = []
     springs: list[tuple[int, int]] = []
     before = np.zeros((2, len(answer.t)))
@@ -102,5 +97,6 @@ def track(answer: Answer) -> Track:
         length = np.hypot(*(place - before))
         (rods if np.ptp(length) <= RIGID * length.max() else springs).append((k - 1, k))
         before = place
-    error = np.nan_to_num(error)
-    return Track(scene.label, answer.t, positions, tuple(rods), tuple(springs), error)
+    return Track(
+        answer.scene.label, answer.t, positions, tuple(rods), tuple(springs), energy_errors(answer)
+    )

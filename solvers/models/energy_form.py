@@ -8,7 +8,7 @@ for turning, for turning and changing shape, and for changing shape.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -91,12 +91,12 @@ def energy_form(asked: Asked) -> EnergyForm:
     M = np.array(asked.module.mass_matrix_many(np.concatenate([u * shape, 0 * shape]),
                                                asked.params))  # fmt: skip
     momentum = float(turn @ M @ (u_dot * shape + s_dot * turn))
-    form = EnergyForm(asked, shape, turn, is_angle, (u, u_dot, s), momentum, 0.0)
+    form = replace(form, momentum=momentum)
     mu, potential, _, _ = form.parts(np.array(u))
     energy = float(mu * u_dot**2 / 2 + potential)
     if not np.isfinite(energy):
         raise OutsideDomainError("the energy at the beginning is not finite")
-    return EnergyForm(asked, shape, turn, is_angle, (u, u_dot, s), momentum, energy)
+    return replace(form, energy=energy)
 
 
 def _directions(asked: Asked) -> tuple[Array, Array]:

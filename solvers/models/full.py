@@ -14,7 +14,7 @@ from solvers.forms import fastest_form
 from solvers.horizon import beyond_horizon
 from solvers.integration import integrate
 from solvers.measured import median_seconds
-from solvers.models.model import GOLDEN, Array, Asked
+from solvers.models.model import Array, Asked, scattered
 from solvers.models.way import Way
 from solvers.prepared import prepare
 from solvers.references.taylor import taylor
@@ -38,7 +38,7 @@ class NotAccurateError(ArithmeticError):
     """No run came as close as was asked; the message says how close."""
 
 
-class TooLongError(NotAccurateError):
+class TooLongError(ArithmeticError):
     """A motion that takes more steps than anybody waits for."""
 
 
@@ -55,7 +55,7 @@ class Full:
     setting : float
         Tolerance, or step in s, or digits.
     error_estimate : float
-        Twice the largest difference from the check.
+        Twice the largest difference from the check, and the check's tolerance.
     took : float
         What a run took in s, where it is too long to be timed again.
     kept : pair of ndarray, optional
@@ -103,6 +103,8 @@ def run(asked: Asked, way: Way, setting: float, t: Array) -> Array:
     ------
     NotAccurateError
         When the integration does not reach its end.
+    TooLongError
+        When it takes more steps than anybody waits for.
     """
     if way.is_series:
         # its times begin with the start
@@ -156,6 +158,8 @@ def full(asked: Asked, accuracy: float, way: Way, checked: Asked, setting: float
     ------
     NotAccurateError
         When no run is as accurate, or none reaches its end.
+    TooLongError
+        When that takes more steps than anybody waits for.
     """
     _refuse_endless(checked, MOST_STEPS)
     if setting is not None:
@@ -180,14 +184,14 @@ def full(asked: Asked, accuracy: float, way: Way, checked: Asked, setting: float
 def _error(asked: Asked, way: Way, setting: float, checked: Asked) -> float:
     """Estimated error of a run; infinity for one that does not reach its end."""
     try:
-        times, found = _integrated(asked, way, setting, None)
-    except TooLongError:
-        raise
+        times, _ = _integrated(asked, way, setting, None)
     except NotAccurateError:
         return np.inf
     if len(times) > MOST_LOOKS:
-        some = np.unique((len(times) * np.modf(GOLDEN * np.arange(MOST_LOOKS))[0]).astype(int))
-        times, found = times[some], found[some]
+        times = times[np.unique((len(times) * scattered(MOST_LOOKS)).astype(int))]
+    # steps crowd where the motion is quick; between two of them it may be quicker
+    times = np.unique([*times, *(times[1:] + times[:-1]) / 2, *asked.looks])
+    found = run(asked, way, setting, times)
     # another method in another form: they share no rounding, not even of the start
     method = next(name for name in CHECKS if name != way.method)
     fastest = fastest_form(checked.module)
@@ -212,6 +216,8 @@ def series(asked: Asked, accuracy: float, way: Way, times: Array) -> Full:
     ------
     NotAccurateError
         When not even the most are enough.
+    TooLongError
+        When they take longer than anybody waits for.
     """
     _refuse_endless(asked, MOST_TURNS)
     if max(map(abs, asked.y0)) > LARGEST_ANGLE:

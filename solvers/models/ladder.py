@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solvers.models.full import NotAccurateError, TooLongError, full, series
+from solvers.models.full import NotAccurateError, full, series
 from solvers.models.light import light
 from solvers.models.model import Asked, Model, OutsideDomainError
 from solvers.models.pendulum import pendulum
@@ -64,6 +64,8 @@ def choice(
     ------
     solvers.models.full.NotAccurateError
         When not even the full equations come as close as asked.
+    solvers.models.full.TooLongError
+        When they take longer than anybody waits for.
     solvers.models.model.OutsideDomainError
         When there are no full equations, since a coordinate moves no mass.
     """
@@ -96,8 +98,6 @@ def choice(
     tell(f"full equations by {way.method}")
     try:
         return Choice(full(code(asked, way), scene.accuracy, way, asked, scene.step), declined)
-    except TooLongError:
-        raise
     except NotAccurateError as reason:
         if scene.method or scene.form:
             raise
@@ -111,11 +111,10 @@ def choice(
 def asked_of(scene: Scene) -> Asked:
     """The motion of a scene, and what is wanted of it that exists."""
     asked = Asked(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
-    n = asked.coordinates
-    wanted = tuple(k for k in scene.wanted if k % n in asked.alive)
+    wanted = tuple(k for k in scene.wanted if k % asked.coordinates in asked.alive)
     if not wanted:
         raise OutsideDomainError("nothing that is asked for moves mass")
-    return Asked(scene.module, scene.params, scene.y0, scene.duration, wanted)
+    return replace(asked, wanted=wanted)
 
 
 def _way(scene: Scene) -> Way:

@@ -75,8 +75,12 @@ class Asked:
     @property
     def looks(self) -> Array:
         """Times at which errors are looked at: in step with no period, and at both ends."""
-        scattered = np.sort(np.modf(GOLDEN * np.arange(1, LOOKS))[0])
-        return self.duration * np.concatenate([[0.0], scattered, [1.0]])
+        return self.duration * np.unique([*scattered(LOOKS), 1.0])
+
+
+def scattered(count: int) -> Array:
+    """So many parts of 1, 0 among them, evenly scattered and in step with nothing."""
+    return np.modf(GOLDEN * np.arange(count))[0]
 
 
 class Model(Protocol):

@@ -8,7 +8,7 @@ rule integrates them to rounding.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -113,8 +113,7 @@ def quadrature(asked: Asked) -> Quadrature:
     times = asked.looks
 
     def states(y0: Array) -> Array:
-        moved = Asked(asked.module, asked.params, tuple(y0), asked.duration, asked.wanted)
-        return orbit(energy_form(moved)).states(times)
+        return orbit(energy_form(replace(asked, y0=tuple(y0)))).states(times)
 
     sizes = [max(abs(component), 1.0) for component in asked.y0]
     error = rounding_error(states, asked.y0, sizes)

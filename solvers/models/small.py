@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.models.model import EPS, GOLDEN, ROUNDINGS, Array, Asked, OutsideDomainError
+from solvers.models.model import EPS, ROUNDINGS, Array, Asked, OutsideDomainError, scattered
 from solvers.stability.modes import Modes
 
 #: The defect is looked at at so many times, scattered evenly over the duration.
@@ -50,7 +50,7 @@ def small(asked: Asked) -> Small:
     Raises
     ------
     OutsideDomainError
-        When the module has no stable equilibrium, or the motion is not small.
+        When the module has no stable equilibrium.
     """
     asked.require_mass()
     try:
@@ -63,7 +63,7 @@ def small(asked: Asked) -> Small:
     to_modes = modes.shapes.T @ modes.mass_matrix
     omega = modes.frequencies
     motion = Small(rest, modes, to_modes @ (place - rest), to_modes @ speed / omega, 0.0, "")
-    t = asked.duration * np.modf(GOLDEN * np.arange(SAMPLES))[0]
+    t = asked.duration * scattered(SAMPLES)
     states = motion.states(t)
     full, jacobians = (
         np.asarray(function(0.0, states.T, asked.params))

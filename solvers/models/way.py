@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import log, nan
 from types import ModuleType
 from typing import Any
@@ -62,6 +63,12 @@ def usual_form(module: ModuleType, method: str) -> str:
     return fastest_form(module) if is_plain else "lagrangian"
 
 
+@cache
+def _record() -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = json.loads(RECORD.read_text(encoding="utf-8"))
+    return found
+
+
 def cheapest(module: ModuleType, params: Sequence[float], accuracy: float) -> Way:
     """The way that was cheapest for this accuracy in the charted scene most like this one.
 
@@ -69,17 +76,16 @@ def cheapest(module: ModuleType, params: Sequence[float], accuracy: float) -> Wa
     pays where the fastest mode is hundreds of times as fast as the slowest does not where
     both are alike. Of scenes as alike the one that was charted first counts.
     """
-    record = json.loads(RECORD.read_text(encoding="utf-8"))
     spread = mode_spread(module, params)
     system = module.__name__.rpartition(".")[2]
-    own = [scene for scene in record if scene["system"] == system] or record
+    own = [scene for scene in _record() if scene["system"] == system] or _record()
     nearest = min(own, key=lambda scene: abs(log(scene["spread"] / spread)))
     rows: list[dict[str, Any]] = nearest["frontier"]
     good = [row for row in rows if row["global_error"] <= accuracy] or rows[-1:]
     best = good[0]
     others = ", ".join(
         f"{name} {factor:.2g} x"
-        for choice in ("method", "form", "backend")
+        for choice in ("method", "form")
         for name, factor in list(best["worth"][choice].items())[:2]
     )
     return Way(

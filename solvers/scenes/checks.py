@@ -14,6 +14,7 @@ import numpy as np
 from solvers.catalogue import UnknownMethodError, load
 from solvers.forms import FORMS, has_form
 from solvers.request import SCIPY
+from solvers.scenes.quantity import shown
 
 #: Samples that fit into memory, and the finest accuracy.
 MOST_SAMPLES, FINEST = 1_000_001, 1e-13
@@ -102,13 +103,18 @@ def check_pictures(pictures: Sequence[str], state: Sequence[str]) -> None:
     """
     known = ("t", *state)
     for picture in pictures:
-        found = PICTURE.match(picture)
-        names = [*re.split(", *", found[1]), found[2]] if found else []
-        if picture not in ("path", "energy") and not (names and set(names) <= set(known)):
+        names, over = curves_of(picture)
+        if picture not in ("path", "energy") and not {*names, over} <= set(known):
             raise ValueError(
                 f"pictures name {picture[:50]!r}: write 'path', 'energy' or such as "
                 f"'{state[0]} over t', of {', '.join(known)}"
             )
+
+
+def curves_of(picture: str) -> tuple[list[str], str]:
+    """What is drawn over what; nothing over nothing where that is not said."""
+    found = PICTURE.match(picture)
+    return (re.split(", *", found[1]), found[2]) if found else ([], "")
 
 
 def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[str]) -> None:
@@ -146,7 +152,9 @@ def check_samples(value: object) -> None:
         With what is allowed.
     """
     if isinstance(value, bool) or not isinstance(value, int) or not 2 <= value <= MOST_SAMPLES:
-        raise ValueError(f"samples must be a whole number from 2 to {MOST_SAMPLES}")
+        raise ValueError(
+            f"samples = {shown(value)} must be a whole number from 2 to {MOST_SAMPLES}"
+        )
 
 
 def check_positive(**numbers: float | None) -> None:

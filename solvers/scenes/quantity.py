@@ -53,6 +53,14 @@ class QuantityError(ValueError):
     """A text is no number, or its unit is of another kind."""
 
 
+def shown(value: object) -> str:
+    """What somebody wrote, in short."""
+    try:
+        return repr(value)[:50]
+    except ValueError:  # Python writes no number of thousands of digits
+        return "a number of thousands of digits"
+
+
 def quantity(value: object, unit: str) -> float:
     """A number in `unit`.
 
@@ -69,16 +77,14 @@ def quantity(value: object, unit: str) -> float:
         When it is no finite number, or of another kind.
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise QuantityError(f"{value!r} is no number: write a number in {unit}, or a text such as "
-                            f'"1/2 {unit}"')  # fmt: skip
+        raise QuantityError(f"{shown(value)} is no number: write a number in {unit}, or a text "
+                            f'such as "1/2 {unit}"')  # fmt: skip
     if not isinstance(value, str):
         number = float(value) if abs(value) < 1e308 else inf
     else:
         number = _written(value, unit)
     if not isfinite(number):
-        raise QuantityError(
-            f"{value if isinstance(value, str | float) else 'the number'} is not finite"
-        )
+        raise QuantityError(f"{shown(value)} is not finite")
     return number
 
 

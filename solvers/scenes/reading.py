@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from solvers.scenes.checks import check_samples, near
-from solvers.scenes.quantity import QuantityError, quantity
+from solvers.scenes.quantity import QuantityError, quantity, shown
 from solvers.scenes.scene import Scene
 
 #: Bytes of the largest file; the longest that ships has 2000.
@@ -117,7 +117,8 @@ def _difference(key: str, value: object) -> str:
     """What differs, in words."""
     if isinstance(value, dict):
         return ", ".join(_difference(name, one) for name, one in value.items())
-    return str(value)[:50] if key == "method" else f"{key} = {str(value)[:50]}"
+    words = shown(value).strip("'")
+    return words if key == "method" else f"{key} = {words}"
 
 
 def _scene(
@@ -186,20 +187,20 @@ def _table(key: str, value: object, known: Sequence[str]) -> dict[str, Any]:
 
 def _is_table(key: str, value: object) -> None:
     if not isinstance(value, dict):
-        raise SceneError(f"{key} = {str(value)[:50]!r} must be a table: write [{key}]")
+        raise SceneError(f"{key} = {shown(value)} must be a table: write [{key}]")
 
 
 def _text(key: str, value: object) -> str:
     if not isinstance(value, str):
-        raise SceneError(f"{key} = {str(value)[:50]} must be text in quotes")
+        raise SceneError(f"{key} = {shown(value)} must be text in quotes")
     if len(value) > LONGEST or not all(c.isprintable() or c in "\n\t" for c in value):
-        raise SceneError(f"{key} = {value[:50]!r} must be up to {LONGEST} printable characters")
+        raise SceneError(f"{key} = {shown(value)} must be up to {LONGEST} printable characters")
     return value
 
 
 def _texts(key: str, value: object) -> tuple[str, ...]:
     if not isinstance(value, list):
-        raise SceneError(f"{key} = {str(value)[:50]!r} must be a list of texts in square brackets")
+        raise SceneError(f"{key} = {shown(value)} must be a list of texts in square brackets")
     if len(value) > MOST:
         raise SceneError(f"{key} are {len(value)}: up to {MOST} can be shown")
     return tuple(_text(key, item) for item in value)

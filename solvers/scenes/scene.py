@@ -14,7 +14,9 @@ from solvers.scenes import checks
 #: Usual samples: so many a second, and at least and at most so many.
 RATE, FEWEST, MOST = 100, 501, 20_001
 #: What can be named instead of the smallest model that is good enough.
-MODELS = ("full", "rest", "normal modes", "pendulum", "quadrature")
+MODELS = (
+    "full", "rest", "normal modes", "pendulum", "pendulum and light masses", "quadrature",
+)  # fmt: skip
 #: What else can be asked for, beside components of the state.
 ENERGY = "energy"
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from difflib import get_close_matches
 from pathlib import Path
 from types import ModuleType
 
+from solvers.scenes.checks import near
 from solvers.scenes.reading import read
 from solvers.scenes.scene import Scene
 
@@ -47,9 +47,8 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Scene:
         return read(Path(name), module)
     if name.endswith(".toml"):
         raise UnknownSceneError(f"scene {name[:80]!r}: there is no such file")
-    near = [f"{name}.toml"] if Path(f"{name}.toml").is_file() else []
-    near += get_close_matches(name, names(), n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    own = Path(f"{name}.toml")
+    hint = f" (did you mean '{own}'?)" if own.is_file() else near(name, names())
     raise UnknownSceneError(
-        f"scene {name[:80]!r} is not one of {', '.join(names())}{hint} (your own end in .toml)"
+        f"scene {name[:80]!r} is not one of {', '.join(names())}{hint}; your own end in .toml"
     )

@@ -1,0 +1,146 @@
+"""Compiled loops interrupted, without a compiler, or asked for what they cannot do."""
+
+import os
+import signal
+import threading
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import generated.double_pendulum as dp
+import generated.single_pendulum as sp
+from solvers import compiler
+from solvers.crossing import Crossing
+from solvers.ensemble import ensemble
+from solvers.integration import integrate
+from solvers.kernel import kernel
+from solvers.prepared import prepare
+from solvers.solution import Ensemble, Interrupted, Solution, Status
+
+FORMS = ("lagrangian", "hamiltonian", "rational")
+
+
+def interrupted_after(seconds: float, run: Callable[[], object]) -> Interrupted:
+    """What an interruption by the user leaves behind."""
+    timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        with pytest.raises(Interrupted) as stopped:
+            run()
+    finally:
+        timer.cancel()
+    return stopped.value
+
+
+@pytest.mark.parametrize("backend", ["compiled", "python"])
+def test_an_interrupted_integration_keeps_what_it_has(backend: str) -> None:
+    def endless() -> Solution:
+        return integrate(
+            sp, (0, 1e12), (1.0, 0.0), sp.DEFAULTS, backend=backend, max_steps=10**12,
+            t_eval=[0.0, 1.0, 1e12],
+        )  # fmt: skip
+
+    kept = interrupted_after(0.3, endless).solution
+    assert isinstance(kept, Solution)
+    assert kept.status is Status.INTERRUPTED
+    assert kept.end[0] > 1.0
+    assert kept.t.tolist() == [0.0, 1.0]
+    # and the run can go on from there
+    on = integrate(sp, (kept.end[0], kept.end[0] + 1), kept.end[1], sp.DEFAULTS)
+    assert on.success
+
+
+def test_an_interrupted_ensemble_keeps_what_it_has() -> None:
+    starts = [(1.0, 0.0)] * 40
+    kept = interrupted_after(
+        0.3, lambda: ensemble(sp, (0, 1e12), starts, sp.DEFAULTS, max_steps=10**12)
+    ).solution
+    assert isinstance(kept, Ensemble)
+    assert set(kept.status) == {Status.INTERRUPTED}
+    assert (kept.t > 0).sum() >= 16
+    assert not kept.success.any()
+
+
+def test_without_a_compiler_it_runs_in_python_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler, "compilers", lambda: iter(()))
+    span, start, params = (0.0, 0.7), (1.0, 0.0), sp.DEFAULTS
+    options = {"method": "rk4", "h": 0.0703125}  # not built by any other test
+    kernel.cache_clear()
+    with pytest.warns(UserWarning, match="integrating in Python: no C compiler"):
+        found = integrate(sp, span, start, params, **options)
+    assert (found.backend, found.success) == ("python", True)
+    assert "lagrangian" in found.run
+    with pytest.warns(UserWarning, match="no C compiler"):
+        many = ensemble(sp, span, [start] * 2, params, **options)
+    assert many.success.all()
+    assert np.array_equal(many.y[1], found.y[:, -1])
+    for forced in (
+        lambda: integrate(sp, span, start, params, backend="compiled", **options),
+        lambda: integrate(sp, span, start, params, compensated=True, **options),
+        lambda: ensemble(sp, span, [start], params, backend="compiled", **options),
+        lambda: prepare(sp, params, **options),
+    ):
+        with pytest.raises(compiler.NoCompilerError, match="install one as `cc`"):
+            forced()
+    kernel.cache_clear()
+
+
+def test_what_c_does_not_know_runs_in_python() -> None:
+    def passes(t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    found = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, events=passes)
+    assert found.backend == "python"
+    for options, reason in (
+        ({"events": passes}, "an event is a Python function"),
+        ({"atol": [1e-9, 1e-9], "form": "lagrangian"}, "atol differs"),
+        ({"method": "DOP853"}, "SciPy's"),
+        ({"events": [Crossing(sp, "theta", k) for k in range(9)]}, "more than 8 events"),
+        ({"events": Crossing(sp, "theta_dot", 0.0), "form": "hamiltonian"}, "does not hold"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, backend="compiled", **options)
+    with pytest.raises(ValueError, match="backend 'c' must be"):
+        integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, backend="c")
+    with pytest.raises(ValueError, match="needs a compiled loop"):
+        integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, backend="python", compensated=True)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"Y0": [1.0, 0.0]}, "Y0 has shape .* theta, theta_dot"),
+        ({"Y0": [(1.0, float("inf"))]}, "finite"),
+        ({"params": [(1.0, 2.0, 9.81)] * 3}, "params has 3 rows"),
+        ({"params": (1.0, 2.0)}, "m, l, g"),
+        ({"workers": 0}, "workers = 0"),
+        ({"occurrences": True}, "occurrences = True"),
+        ({"t_eval": [2.0]}, "outside of t_span"),
+        ({"method": "rk4"}, "give a fixed step h"),
+        ({"backend": "gpu"}, "backend 'gpu'"),
+    ],
+)
+def test_an_ensemble_that_makes_no_sense_is_refused(
+    arguments: dict[str, object], message: str
+) -> None:
+    usual = {"t_span": (0, 1), "Y0": [(1.0, 0.0)] * 2, "params": sp.DEFAULTS}
+    with pytest.raises(ValueError, match=message):
+        ensemble(sp, **{**usual, **arguments})
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize(("backend", "lanes"), [("compiled", 1), ("compiled", 3), ("python", 1)])
+def test_a_motion_that_leaves_the_numbers_ends_with_a_status(
+    backend: str, lanes: int, form: str
+) -> None:
+    # Euler with steps far too long, from a huge velocity; its neighbours are left alone
+    starts = [(1.0, 1.0, 1e200, -1e200)] + [(0.0, 0.0, 0.0, 0.0)] * (lanes - 1)
+    options = {"form": form, "backend": backend}
+    fixed = ensemble(dp, (0, 9), starts, dp.DEFAULTS, method="rk1", h=0.5, **options)
+    assert fixed.status[0] is Status.NOT_FINITE
+    assert all(status is Status.FINISHED for status in fixed.status[1:])
+    assert np.isfinite(fixed.y).all()
+    controlled = ensemble(dp, (0, 9), starts, dp.DEFAULTS, **options)
+    assert controlled.status[0] in (Status.NOT_FINITE, Status.STEP_TOO_SMALL, Status.STEP_LIMIT)
+    assert all(status is Status.FINISHED for status in controlled.status[1:])

@@ -1,0 +1,83 @@
+"""Events of an integration: found, directed, ending a run, refused."""
+
+from functools import partial
+from math import sin, sqrt
+
+import numpy as np
+import pytest
+from made_up import made_up
+from scipy.special import ellipk
+
+import generated.double_pendulum as dp
+import generated.single_pendulum as sp
+from solvers.crossing import Crossing
+from solvers.integration import integrate
+from solvers.solution import Status
+
+
+def test_events_are_found_to_rounding() -> None:
+    def bottom(t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    period = 4 * ellipk(sin(1.0) ** 2) / sqrt(sp.DEFAULTS[2] / sp.DEFAULTS[1])
+    found = integrate(
+        sp, (0, 3 * period), (2.0, 0.0), sp.DEFAULTS, events=bottom, rtol=1e-12, atol=1e-13
+    )
+    assert found.t_events[0] == pytest.approx(period * (np.arange(6) / 2 + 0.25), abs=1e-9)
+    assert np.abs(found.y_events[0][:, 0]).max() < 1e-12
+
+
+def test_events_have_a_direction_and_may_end_the_run() -> None:
+    def bottom(t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    bottom.direction, bottom.terminal = 1, True  # type: ignore[attr-defined]
+    found = integrate(sp, (0, 20), (2.0, 0.0), sp.DEFAULTS, events=[bottom])
+    assert found.status is Status.EVENT
+    assert found.success
+    assert found.y[1, -1] > 0
+    assert found.t[-1] == found.t_events[0][0] == found.end[0]
+    assert len(found.t_events[0]) == 1
+
+
+def test_an_event_function_may_spoil_what_it_is_given() -> None:
+    def spoiling(t: float, y: np.ndarray) -> float:
+        y[:] = 0
+        return 1.0
+
+    run = partial(
+        integrate, sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.1, backend="python"
+    )
+    plain, watched = run(), run(events=spoiling)
+    assert np.array_equal(plain.y, watched.y)
+
+
+def test_a_run_can_go_on_from_an_event_that_ended_it() -> None:
+    def bottom(t: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    bottom.terminal = True  # type: ignore[attr-defined]
+    t, y, times = 0.0, np.array([2.0, 0.0]), []
+    for _ in range(20):
+        found = integrate(sp, (t, 100), y, sp.DEFAULTS, events=bottom, rtol=1e-10)
+        t, y = found.end
+        times.append(t)
+    assert np.diff(times) == pytest.approx(np.diff(times)[0], rel=1e-6)
+
+
+def test_flat_and_abrupt_events_are_found() -> None:
+    module = made_up(lambda t, y, params: (1.0, 0.0))
+    for event in (lambda t, y: (t - 0.35) ** 5, lambda t, y: 1.0 if t > 0.35 else -1.0,
+                  lambda t, y: 1e-170 * (t - 0.35)):  # fmt: skip
+        found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=0.3, events=event)
+        assert found.t_events[0] == pytest.approx([0.35], abs=1e-3)
+
+
+def test_crossings_say_what_they_cannot_be() -> None:
+    for arguments, message in (
+        (("theta3", 0.0), "did you mean 'theta2'"),
+        (("theta1", float("nan")), "must be a finite number"),
+        (("theta1", 0.0, 2), "direction = 2"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            Crossing(dp, *arguments)

@@ -1,0 +1,147 @@
+"""Integrations that make no sense are refused; those that go wrong end with a status."""
+
+from math import pi, sqrt
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from made_up import made_up
+from scipy.integrate import solve_ivp
+
+import generated.double_pendulum as dp
+import generated.single_pendulum as sp
+from solvers.catalogue import UnknownMethodError
+from solvers.integration import integrate
+from solvers.scipy_methods import ode_solver
+from solvers.solution import Status
+
+REPORT = (pi / 2, pi, 0.0, 0.0)
+#: The report's scene at 5 s, from an 80-bit Taylor series.
+END = (2.2280642400930692, -0.2670447339117043, -1.9694093323354762, -2.9859792219408772)
+
+
+def test_a_step_that_cannot_be_filled_ends_with_a_status() -> None:
+    hole = made_up(lambda t, y, params: (1.0, np.nan if 0.501 < t < 0.502 else 0.0))
+    found = integrate(hole, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=1.0, t_eval=[0.5015])
+    assert found.status is Status.NOT_FINITE
+    singular = integrate(sp, (0, 4), (pi, 0), (1, 1, 1), method="gauss1", h=2.0)
+    assert singular.status in (Status.NO_CONVERGENCE, Status.FINISHED)
+    dividing = integrate(sp, (0, 1), (1, 0), (1, 0, 9.81), method="rk4", h=0.1)
+    assert dividing.status is Status.NOT_FINITE
+
+
+def test_nothing_is_evaluated_beyond_what_the_last_step_needs() -> None:
+    edge = made_up(lambda t, y, params: (sqrt(1 - t) if t < 1 else np.nan, 0.0))
+    found = integrate(edge, (0, 1), (0.0, 0.0), (1.0,), method="midpoint", h=0.1)
+    assert found.status is Status.FINISHED
+
+
+@pytest.mark.parametrize("options", [{"first_step": np.nan}, {"first_step": -0.1},
+                                     {"max_step": -1}, {"rtol": -1}])  # fmt: skip
+def test_senseless_options_inside_solve_ivp_are_refused(options: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match="must"):
+        solve_ivp(sp.rhs, (0, 1), (1, 0), method=ode_solver("verner87"), args=(sp.DEFAULTS,),
+                  **options)  # fmt: skip
+
+
+def test_the_caller_s_arrays_are_left_alone() -> None:
+    y0, params, times = np.array(REPORT), np.array(dp.DEFAULTS), np.array([0.0, 1.0])
+    found = integrate(dp, (0, 1), y0, params, t_eval=times)
+    found.y[:] = 0
+    assert y0.tolist() == list(REPORT)
+    assert params.tolist() == list(dp.DEFAULTS)
+    assert times.tolist() == [0.0, 1.0]
+
+
+def scene(**changes: object) -> dict[str, object]:
+    return {"module": dp, "t_span": (0, 1), "y0": REPORT, "params": dp.DEFAULTS} | changes
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"y0": (1, 2, 3)}, r"y0 has shape \(3,\): give 4 numbers, theta1, theta2, theta1_dot"),
+        ({"y0": (1, 2, 3, np.nan)}, "y0 = .*nan.* must be finite"),
+        ({"y0": "abcd"}, "y0 = abcd must be real numbers"),
+        ({"y0": (1j, 0, 0, 0)}, "must be real numbers"),
+        ({"y0": (True, False, True, True)}, "must be real numbers"),
+        ({"params": (1, 1, 2, 2)}, "params has shape .* m1, m2, l1, l2, g"),
+        ({"params": (1, 1, 2, 2, np.inf)}, "params = .* must be finite"),
+        ({"t_span": (0, np.inf)}, "t_span"),
+        ({"t_span": 1}, "t_span has shape"),
+        ({"t_eval": [0.5, 0.2]}, "must go from t_span's beginning to its end"),
+        ({"t_eval": [0.2, 0.2]}, "no time twice"),
+        ({"t_eval": [0.2, 2.0]}, r"t_eval has 2.0, outside of t_span = \(0.0, 1.0\)"),
+        ({"t_eval": [0.2, np.nan]}, "t_eval = .* must be finite"),
+        ({"rtol": 0, "atol": 0}, "both 0"),
+        ({"rtol": -1e-6}, "rtol = -1e-06 must not be negative"),
+        ({"rtol": np.nan}, "rtol = nan must be finite"),
+        ({"atol": [1e-6, 1e-6]}, "atol a number or 4 of them"),
+        ({"rtol": 1e-17}, "below the resolution of numbers"),
+        ({"h": 0}, "h = 0 must be a positive number"),
+        ({"h": -0.1}, "h = -0.1 must be a positive number"),
+        ({"h": np.nan}, "h = nan"),
+        ({"h": 1e-18}, "below the resolution"),
+        ({"h": 1e-15}, "below the resolution"),
+        ({"max_steps": -1}, "max_steps = -1 must be from 0"),
+        ({"max_steps": 1.5}, "max_steps = 1.5"),
+        ({"events": None}, "events = None must be functions"),
+        ({"events": [3]}, r"events = \[3\] must be functions"),
+        ({"method": "rk4"}, "does not estimate its error: give a fixed step h"),
+        ({"method": "gauss2", "form": "rational", "h": 0.1}, "needs a Jacobian"),
+        ({"form": "linear"}, "form 'linear': .* has lagrangian, hamiltonian, rational"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_before_anything_runs(
+    changes: dict[str, object], message: str
+) -> None:
+    calls = []
+    watched = SimpleNamespace(**{name: getattr(dp, name) for name in dir(dp)})
+    watched.__name__ = "generated.double_pendulum"
+    watched.rhs = lambda *arguments: calls.append(arguments) or dp.rhs(*arguments)
+    with pytest.raises(ValueError, match=message):
+        integrate(**(scene(module=watched) | changes))  # type: ignore[arg-type]
+    assert not calls
+
+
+def test_an_unknown_method_is_refused() -> None:
+    with pytest.raises(UnknownMethodError, match="did you mean 'verner"):
+        integrate(**scene(method="verner78"))  # type: ignore[arg-type]
+
+
+def test_a_blow_up_stops_with_what_there_is() -> None:
+    # x' = x² from 1 has x = 1/(1 - t)
+    module = made_up(lambda t, y, params: (y[0] ** 2, 0.0))
+    found = integrate(module, (0, 2), (1.0, 0.0), (1.0,), rtol=1e-8)
+    assert found.status in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
+    assert not found.success
+    assert found.t[-1] == pytest.approx(1.0, abs=1e-6)
+    assert np.isfinite(found.y).all()
+    assert "t = " in found.message
+
+
+@pytest.mark.parametrize("h", [None, 0.1])
+def test_a_right_hand_side_that_is_not_finite_ends_the_run(h: float | None) -> None:
+    module = made_up(lambda t, y, params: (1.0, np.nan if y[0] > 0.55 else 0.0))
+    found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), h=h)
+    assert found.status in (Status.NOT_FINITE, Status.STEP_TOO_SMALL)
+    assert np.isfinite(found.y).all()
+    assert 0.4 < found.t[-1] < 0.56
+
+
+def test_an_exception_in_the_right_hand_side_is_the_caller_s() -> None:
+    def failing(t: float, y: object, params: object) -> tuple[float, float]:
+        raise RuntimeError("broken model")
+
+    with pytest.raises(RuntimeError, match="broken model"):
+        integrate(made_up(failing), (0, 1), (0.0, 0.0), (1.0,))
+
+
+def test_the_step_limit_leaves_a_state_to_go_on_from() -> None:
+    short = integrate(dp, (0, 5), REPORT, dp.DEFAULTS, rtol=1e-11, max_steps=50, t_eval=[5.0])
+    assert short.status is Status.STEP_LIMIT
+    assert short.steps == 50
+    assert short.y.shape == (4, 0)
+    t, y = short.end
+    rest = integrate(dp, (t, 5), y, dp.DEFAULTS, rtol=1e-11)
+    assert np.abs(rest.y[:, -1] - END).max() < 1e-8
