@@ -14,15 +14,20 @@ equal, ``lowering`` orders the operations, ``python`` lays out the module, and
 from derive.catalogue import load, names
 from derive.derivation import Derivation
 from derive.linearisation import Linearisation
-from derive.system import Coordinate, Parameter, PointMass, System
+from derive.parts import Coordinate, Parameter, PointMass, RigidBody
+from derive.symbols import TIME, velocity
+from derive.system import System
 
 __all__ = [
+    "TIME",
     "Coordinate",
     "Derivation",
     "Linearisation",
     "Parameter",
     "PointMass",
+    "RigidBody",
     "System",
     "load",
     "names",
+    "velocity",
 ]

@@ -7,10 +7,11 @@ the rest uses it. The expressions are valid in Python and in C alike.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import count
+from types import MappingProxyType
 
 from derive.lowering import Lowering
 from derive.operation import Operation
@@ -55,9 +56,11 @@ class Assignments:
         )
 
 
-def assignments(lowering: Lowering, taken: Collection[str]) -> Assignments:
-    """Lay out `lowering`; no new name is one of those `taken`."""
-    writer = _Writer(lowering, taken)
+def assignments(
+    lowering: Lowering, taken: Collection[str], called: Mapping[str, str] = MappingProxyType({})
+) -> Assignments:
+    """Lay out `lowering`; no new name is one of those `taken`, and inputs are `called` so."""
+    writer = _Writer(lowering, taken, called)
     outputs = tuple(writer.text(output, 0) for output in lowering.outputs)
     used = [lowering.operations[n] for n in writer.uses]
     return Assignments(
@@ -81,8 +84,10 @@ def number(value: Fraction) -> str:
 
 
 class _Writer:
-    def __init__(self, lowering: Lowering, taken: Collection[str]) -> None:
-        self._operations, self._taken = lowering.operations, set(taken)
+    def __init__(
+        self, lowering: Lowering, taken: Collection[str], called: Mapping[str, str]
+    ) -> None:
+        self._operations, self._taken, self._called = lowering.operations, set(taken), called
         self._written: dict[int, tuple[str, int]] = {}
         self._counters = {"c": count(), "x": count()}
         self.constants: list[tuple[str, str]] = []
@@ -131,7 +136,7 @@ class _Writer:
     def _expression(self, operation: Operation) -> tuple[str, int]:
         match operation.kind:
             case "leaf":
-                return operation.label, ATOM
+                return self._called.get(operation.label, operation.label), ATOM
             case "number":
                 return number(operation.value), ATOM
             case "call":

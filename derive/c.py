@@ -130,7 +130,7 @@ def _lines(part: Function, assigned: Assignments, contents: Contents) -> list[st
     lines.append("    /* outputs */")
     lines += [_statement(f"result[{k}]", text) for k, text in enumerate(assigned.outputs)]
     unused = {
-        "t": part.takes_time,
+        "t": part.takes_time and not part.depends_on_time,
         "state": bool(part.state) and not assigned.inputs.intersection(part.state),
         "params": not assigned.inputs.intersection(symbol.name for symbol in system.params),
     }

@@ -1,13 +1,22 @@
-"""The systems that ship with holonomic, found by their files' names."""
+"""The systems that ship with holonomic, found by their files' names.
+
+A file whose name ends in ``_n`` holds a family: its ``system`` is a function of n, and
+``chain_5`` is its member of five.
+"""
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
 from importlib import import_module
 from pkgutil import iter_modules
 
 from derive import systems
-from derive.system import System, SystemDefinitionError
+from derive.parts import SystemDefinitionError
+from derive.system import System
+
+#: The member of a family that is listed and shipped, and the largest that is derived.
+USUAL, LARGEST = 3, 100
 
 
 class UnknownSystemError(ValueError):
@@ -15,8 +24,9 @@ class UnknownSystemError(ValueError):
 
 
 def names() -> tuple[str, ...]:
-    """Names of all systems, in alphabetical order."""
-    return tuple(sorted(module.name for module in iter_modules(systems.__path__)))
+    """Names of all systems, in alphabetical order; of a family its usual member."""
+    stems = (module.name for module in iter_modules(systems.__path__))
+    return tuple(sorted(re.sub(r"_n\Z", f"_{USUAL}", stem) for stem in stems))
 
 
 def load(name: str) -> System:
@@ -29,21 +39,40 @@ def load(name: str) -> System:
     SystemDefinitionError
         When its file is wrong: what it says, or that its name and the system's differ.
     """
-    if name not in names():
-        close = get_close_matches(name, names(), n=1)
-        hint = f" (did you mean {close[0]!r}?)" if close else ""
-        raise UnknownSystemError(
-            f"no system is called {name[:50]!r}{hint}; known are: {', '.join(names())}"
-        )
+    stem, count = _file(name)
     try:
-        system = import_module(f"derive.systems.{name}").system
+        system = import_module(f"derive.systems.{stem}").system
+        if count:
+            system = system(count)
     except Exception as error:
         raise SystemDefinitionError(
-            f"{name}.py does not define a system: {type(error).__name__}: {error}"
+            f"{stem}.py does not define a system: {type(error).__name__}: {error}"
         ) from error
     if not isinstance(system, System) or system.name != name:
         raise SystemDefinitionError(
-            f"in {name}.py, `system` must be a System with the file's name, "
+            f"in {stem}.py, `system` must be a System with the file's name, "
             f"not {getattr(system, 'name', system)!r}"
         )
     return system
+
+
+def drawing(name: str) -> str:
+    """What a system looks like and where its equations are published: its file's docstring."""
+    stem, _ = _file(name)
+    return (import_module(f"derive.systems.{stem}").__doc__ or "").rstrip()
+
+
+def _file(name: str) -> tuple[str, int]:
+    """The file of a system, and which member of a family it is, 0 for none."""
+    family = re.match(r"(\w+)_([1-9]\d{0,2})\Z", name)
+    stems = {module.name for module in iter_modules(systems.__path__)}
+    if family and f"{family[1]}_n" in stems and int(family[2]) <= LARGEST:
+        return f"{family[1]}_n", int(family[2])
+    if name not in stems or name.endswith("_n"):
+        close = get_close_matches(name, names(), n=1)
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        raise UnknownSystemError(
+            f"no system is called {name[:50]!r}{hint}; known are: {', '.join(names())}, "
+            f"and instead of {USUAL} any number up to {LARGEST}"
+        )
+    return name, 0

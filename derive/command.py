@@ -13,8 +13,10 @@ from derive.c import header
 from derive.catalogue import UnknownSystemError, load, names
 from derive.derivation import Derivation
 from derive.functions import contents
+from derive.parts import SystemDefinitionError
 from derive.python import module
-from derive.system import SystemDefinitionError
+from derive.system import System
+from derive.system_file import read_system
 from derive.translation import UnsupportedFunctionError
 from derive.tree import Difference, Tree
 
@@ -22,6 +24,7 @@ EXAMPLE = """\
 examples:
   holonomic derive                                  all systems, into the package `generated`
   holonomic derive double_pendulum --output build   one system, as build/double_pendulum.py, .h
+  holonomic derive my_system.toml --output build    your own system
   holonomic derive --check                          exit 1 if a file is not what this writes
 """
 
@@ -43,6 +46,8 @@ def main(argv: Sequence[str]) -> int:
     except (UnknownSystemError, SystemDefinitionError, UnsupportedFunctionError) as error:
         print(f"holonomic derive: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:
+        raise
     except OSError as error:
         print(
             f"holonomic derive: cannot write {error.filename}: {error.strerror}; "
@@ -60,7 +65,10 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
-        "systems", nargs="*", metavar="SYSTEM", help=f"one of {', '.join(names())}; default: all"
+        "systems",
+        nargs="*",
+        metavar="SYSTEM",
+        help=f"one of {', '.join(names())}, or a TOML file of your own; default: all",
     )
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit 1 and show what differs"
@@ -87,12 +95,22 @@ def planned(systems: list[str], output: Path | None) -> Tree:
     """What the folder should hold after the command."""
     files: dict[str, str] = {}
     for name in systems or names():
-        files |= texts(Derivation(load(name)))
+        system = system_of(name)
+        if output is None and name not in names():
+            raise SystemDefinitionError(
+                f"{name} does not ship: say where to write its module, with --output DIR"
+            )
+        files |= texts(Derivation(system))
     if output is not None:
         return Tree(output, files, complete=False)
     modules = "\n".join(f'    "{name}",' for name in names())
     files["__init__.py"] = PACKAGE.format(names=modules)
     return Tree(_package_folder(), files, complete=not systems)
+
+
+def system_of(name: str) -> System:
+    """The system of this name, or in this file where it ends in ``.toml``."""
+    return read_system(Path(name)) if name.endswith(".toml") else load(name)
 
 
 def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str, str]:
@@ -130,6 +148,7 @@ def _removal(path: Path) -> str:
 def _mending(difference: Difference, arguments: argparse.Namespace) -> str:
     if difference.reason == "orphan":
         return _removal(difference.path)
-    systems = [name for name in names() if difference.path.stem == name]
+    stem = difference.path.stem
+    systems = [name for name in arguments.systems or names() if Path(name).stem == stem]
     output = ["--output", quote(str(arguments.output))] if arguments.output else []
     return " ".join(["holonomic", "derive", *systems, *output])

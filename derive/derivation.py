@@ -1,9 +1,12 @@
 """From positions to motion, one textbook step after the other.
 
 Every step is a plain SymPy value: print it, compare it, or let a notebook set
-it as LaTeX. The mass matrix comes from the Jacobians of the positions,
-M = Σ m JᵀJ, and everything after it from M and the potential alone
-(L. D. Landau, E. M. Lifshitz, Mechanics, § 5 and § 40).
+it as LaTeX. Time is one more coordinate that the Jacobians of the positions
+know, one whose velocity is 1: M̄ = Σ m J̄ᵀJ̄ with J̄ = ∂r/∂(q, t) holds the mass
+matrix, and beside it what moving pivots do. Everything after it follows from
+M̄, the potential and the applied forces alone (L. D. Landau, E. M. Lifshitz,
+Mechanics, § 5 and § 40; C. Lanczos, The Variational Principles of Mechanics,
+chapter VI, for time as a coordinate).
 """
 
 from __future__ import annotations
@@ -15,14 +18,15 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.linearisation import Linearisation, linearised
+from derive.independence import check_independence
+from derive.linearisation import Linearisation, beyond_springs, linearised, resting
+from derive.parts import formula
 from derive.reduction import collected, reduced
-from derive.system import System, SystemDefinitionError, formula
+from derive.symbols import TIME
+from derive.system import System
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
-
-#: A pivot smaller than this part of its diagonal entry, at 50 digits, is zero.
-TINY = sp.Float("1e-30")
+HALF = sp.Rational(1, 2)
 
 
 @dataclass(frozen=True)
@@ -48,7 +52,7 @@ class Derivation:
     system: System
 
     def __post_init__(self) -> None:
-        self._check_independence()
+        check_independence(self.system, self.mass_matrix)
 
     @cached_property
     def position_jacobians(self) -> tuple[Matrix, ...]:
@@ -58,45 +62,75 @@ class Derivation:
 
     @cached_property
     def velocities(self) -> tuple[Matrix, ...]:
-        """Velocity J q̇ of each mass, a column of two or three components."""
+        """Velocity J q̇ + ∂r/∂t of each mass, a column of two or three components."""
         qdot = Matrix(self.system.qdot)
-        return tuple(jacobian * qdot for jacobian in self.position_jacobians)
+        return tuple(
+            jacobian * qdot + Matrix(mass.position).diff(TIME)
+            for jacobian, mass in zip(self.position_jacobians, self.system.masses, strict=True)
+        )
 
     @cached_property
-    def mass_matrix(self) -> Matrix:
-        """M(q) = Σ m JᵀJ, symmetric, n × n."""
+    def variables(self) -> tuple[sp.Symbol, ...]:
+        """Coordinates, time where positions depend on it, and lengths whose reactions are asked."""
+        positions = sp.Tuple(*(r for m in self.system.masses for _, r in m.motions))
+        time = (TIME,) if TIME in positions.free_symbols else ()
+        return (*self.system.q, *time, *self.system.reactions)
+
+    @cached_property
+    def rates(self) -> tuple[sp.Expr, ...]:
+        """Rates of change of the variables: q̇, 1 for time, 0 for what is held."""
         n = len(self.system.q)
-        columns = [[tuple(J[:, i]) for i in range(n)] for J in self.position_jacobians]
+        others = (sp.S.One if variable == TIME else sp.S.Zero for variable in self.variables[n:])
+        return (*self.system.qdot, *others)
+
+    @cached_property
+    def inertia(self) -> Matrix:
+        """M̄ = Σ m J̄ᵀJ̄ over all variables, symmetric; the mass matrix is its upper left part."""
+        motions = [motion for mass in self.system.masses for motion in mass.motions]
+        tangents = [
+            [tuple(_derivative(r, v) for r in place) for v in self.variables]
+            for _, place in motions
+        ]
         dots: dict[object, sp.Expr] = {}
 
         def entry(i: int, j: int) -> sp.Expr:
             # masses below one joint share their dot products: reduce each product once
-            masses: dict[sp.Expr, sp.Expr] = {}
-            for mass, column in zip(self.system.masses, columns, strict=True):
-                pair = (column[i], column[j])
+            inertias: dict[sp.Expr, sp.Expr] = {}
+            for (inertia, _), tangent in zip(motions, tangents, strict=True):
+                pair = (tangent[i], tangent[j])
                 if pair not in dots:
                     products = (a * b for a, b in zip(*pair, strict=True))
                     dots[pair] = sp.factor_terms(reduced(sp.Add(*products)))
-                masses[dots[pair]] = masses.get(dots[pair], sp.S.Zero) + mass.mass
-            return sp.Add(*(total * dot for dot, total in masses.items()))
+                inertias[dots[pair]] = inertias.get(dots[pair], sp.S.Zero) + inertia
+            return sp.Add(*(total * dot for dot, total in inertias.items()))
 
+        n = len(self.variables)
         upper = {(i, j): entry(i, j) for i in range(n) for j in range(i, n)}
         return Matrix(n, n, lambda i, j: upper[min(i, j), max(i, j)])
 
     @cached_property
+    def mass_matrix(self) -> Matrix:
+        """M(q, t), symmetric, n × n."""
+        n = len(self.system.q)
+        return self.inertia[:n, :n]
+
+    @cached_property
     def kinetic_energy(self) -> sp.Expr:
-        """T = ½ q̇ᵀ M q̇."""
-        M, qdot = self.mass_matrix, self.system.qdot
-        n = len(qdot)
+        """T = ½ q̇ᵀ M q̇, and with moving pivots what is linear in q̇ and free of it."""
+        return self._quadratic(len(self.variables))
+
+    def _quadratic(self, n: int) -> sp.Expr:
+        """½ vᵀ M̄ v of the first n variables."""
+        v, M = self.rates, self.inertia
         return sp.Add(
-            *(M[i, i] * qdot[i] ** 2 / 2 for i in range(n)),
-            *(M[i, j] * qdot[i] * qdot[j] for i in range(n) for j in range(i + 1, n)),
+            *(M[i, i] * v[i] ** 2 / 2 for i in range(n)),
+            *(M[i, j] * v[i] * v[j] for i in range(n) for j in range(i + 1, n)),
         )
 
     @cached_property
     def potential_energy(self) -> sp.Expr:
-        """V(q), one term for each function of the coordinates."""
-        return collected(self.system.potential, *self.system.q)
+        """V(q, t), one term for each function of the coordinates."""
+        return collected(self.system.potential_energy, *self.system.q)
 
     @cached_property
     def lagrangian(self) -> sp.Expr:
@@ -104,68 +138,93 @@ class Derivation:
         return self.kinetic_energy - self.potential_energy
 
     @cached_property
+    def effective_potential(self) -> sp.Expr:
+        """U(q, t) = V - T₀, with T₀ the kinetic energy of what moves though q̇ is 0."""
+        at_rest = dict.fromkeys(self.system.qdot, 0)
+        return self.potential_energy - self.kinetic_energy.subs(at_rest)
+
+    @cached_property
     def energy(self) -> sp.Expr:
-        """E = T + V as a function of q and q̇."""
-        return self.kinetic_energy + self.potential_energy
+        """Jacobi's integral q̇·∂L/∂q̇ - L: T + V where no position depends on time."""
+        return self._quadratic(len(self.system.q)) + self.effective_potential
+
+    @cached_property
+    def power(self) -> sp.Expr:
+        """Rate of the energy: work of the applied forces, and -∂L/∂t."""
+        work = (f * v for f, v in zip(self.system.applied, self.system.qdot, strict=True))
+        return sp.Add(*work) - self.lagrangian.diff(TIME)
 
     @cached_property
     def momenta(self) -> Matrix:
-        """P = ∂L/∂q̇ = M q̇, a column."""
-        return self.mass_matrix * Matrix(self.system.qdot)
+        """P = ∂L/∂q̇ = M q̇ + b, a column; b is there where positions depend on time."""
+        return self.mass_matrix * Matrix(self.system.qdot) + self.drift
+
+    @cached_property
+    def drift(self) -> Matrix:
+        """Momenta b that are there though q̇ is 0, a column: Σ m Jᵀ ∂r/∂t."""
+        n, others = len(self.system.q), len(self.variables) - len(self.system.q)
+        return self.inertia[:n, n:] * Matrix(others, 1, self.rates[n:])
 
     @cached_property
     def forcing(self) -> Matrix:
-        """f(q, q̇) of M q̈ = f, a column: what is left of the Euler–Lagrange equations.
+        """f(q, q̇, t) of M q̈ = f, a column: what is left of the Euler–Lagrange equations.
 
-        f_i = -Σ_jk (∂M_ij/∂q_k - ½ ∂M_jk/∂q_i) q̇_j q̇_k - ∂V/∂q_i, in which the
-        brackets are Christoffel symbols of the first kind.
+        f_i = -Σ_jk Γ_ijk v_j v_k - ∂V/∂q_i + Q_i, with v the rates of all variables and
+        Γ_ijk Christoffel's symbols of the first kind of M̄.
         """
-        q, qdot, M = self.system.q, self.system.qdot, self.mass_matrix
-        gradient = [M.diff(qk) for qk in q]
-        n = range(len(q))
         return Matrix(
             [
                 collected(
-                    -sp.Add(
-                        *(
-                            (gradient[k][i, j] - gradient[i][j, k] / 2) * qdot[j] * qdot[k]
-                            for j in n
-                            for k in n
-                        )
-                    )
-                    - self.potential_energy.diff(q[i]),
-                    *q,
-                    *qdot,
+                    applied - self._inertial(i) - self.potential_energy.diff(q),
+                    *self.system.q,
+                    *self.system.qdot,
                 )
-                for i in n
+                for i, (q, applied) in enumerate(
+                    zip(self.system.q, self.system.applied, strict=True)
+                )
             ]
+        )
+
+    def _inertial(self, i: int) -> sp.Expr:
+        """Σ Γ_ijk v_j v_k for the variable i."""
+        v, n = self.rates, len(self.variables)
+        return sp.Add(
+            *(
+                self._christoffel(i, j, k) * v[j] * v[k] * (1 if j == k else 2)
+                for j in range(n)
+                for k in range(j, n)
+            )
+        )
+
+    def _christoffel(self, i: int, j: int, k: int) -> sp.Expr:
+        """½ (∂M̄_ij/∂q_k + ∂M̄_ik/∂q_j - ∂M̄_jk/∂q_i)."""
+        q, M = self.variables, self.inertia
+        return HALF * (
+            _derivative(M[i, j], q[k]) + _derivative(M[i, k], q[j]) - _derivative(M[j, k], q[i])
         )
 
     @cached_property
     def euler_lagrange(self) -> Matrix:
-        """Residuals d/dt ∂L/∂q̇ - ∂L/∂q, a column; the motion makes them zero."""
+        """Residuals d/dt ∂L/∂q̇ - ∂L/∂q - Q, a column; the motion makes them zero."""
         return self.mass_matrix * Matrix(self.system.qddot) - self.forcing
 
-    def _check_independence(self) -> None:
-        """Eliminate the mass matrix at a generic place: a pivot of zero names its coordinate."""
-        system = self.system
-        symbols = (*system.params, *system.q)
-        place = {s: sp.Rational(7 * k + 3, 5 * k + 4) for k, s in enumerate(symbols)}
-        rows = [list(row) for row in self.mass_matrix.evalf(50, subs=place).tolist()]
-        for k, q in enumerate(system.q):
-            if not rows[k][k] > self.mass_matrix[k, k].evalf(50, subs=place) * TINY:
-                why = (
-                    "moves no mass"
-                    if self.mass_matrix[k, k] == 0
-                    else (f"moves the masses only as {', '.join(s.name for s in system.q[:k])} can")
-                )
-                raise SystemDefinitionError(
-                    f"coordinate {q.name!r} of system {system.name!r} {why}: leave it out, or let "
-                    "a position depend on it"
-                )
-            for i in range(k + 1, len(rows)):
-                ratio = rows[i][k] / rows[k][k]
-                rows[i] = [a - ratio * b for a, b in zip(rows[i], rows[k], strict=True)]
+    @cached_property
+    def reactions(self) -> Matrix:
+        """Forces that hold the lengths asked for, a column: a rod's tension, positive if it pulls.
+
+        The multiplier of the constraint that a length l stays: with l free, it is what has
+        to be applied, -(d/dt ∂L/∂l̇ - ∂L/∂l) where l̇ and l̈ are 0. In q, q̇ and q̈.
+        """
+        first = len(self.variables) - len(self.system.reactions)
+        qddot = Matrix(self.system.qddot)
+        return Matrix(
+            [
+                -(self.inertia[i, : len(qddot)] * qddot)[0]
+                - self._inertial(i)
+                - self.potential_energy.diff(self.variables[i])
+                for i in range(first, len(self.variables))
+            ]
+        )
 
     @cached_property
     def _adjugate_and_determinant(self) -> tuple[Matrix, sp.Expr]:
@@ -186,17 +245,22 @@ class Derivation:
 
     @cached_property
     def hamiltonian(self) -> sp.Expr:
-        """H(q, p) = ½ pᵀ M⁻¹ p + V: the energy, since the positions do not depend on time."""
+        """H(q, p, t) = ½ (p - b)ᵀ M⁻¹ (p - b) + U: the energy, as a function of the momenta."""
         adjugate, determinant = self._adjugate_and_determinant
-        p = Matrix(self.system.p)
+        p = Matrix(self.system.p) - self.drift
         numerator = collected((p.T * adjugate * p)[0, 0], *self.system.q, *self.system.p)
-        return sp.factor_terms(numerator) / (2 * determinant) + self.potential_energy
+        return sp.factor_terms(numerator) / (2 * determinant) + self.effective_potential
 
     @cached_property
     def hamilton_equations(self) -> tuple[Matrix, Matrix]:
-        """(q̇, ṗ) = (∂H/∂p, -∂H/∂q), two columns."""
-        velocities = self._divided_by_mass(Matrix(self.system.p))
-        return velocities, Matrix([-self.hamiltonian.diff(q) for q in self.system.q])
+        """(q̇, ṗ) = (∂H/∂p, -∂H/∂q + Q), two columns; without applied forces, canonical."""
+        velocities = self._divided_by_mass(Matrix(self.system.p) - self.drift)
+        known = dict(zip(self.system.qdot, velocities, strict=True))
+        slopes = (
+            force.subs(known) - self.hamiltonian.diff(q)
+            for q, force in zip(self.system.q, self.system.applied, strict=True)
+        )
+        return velocities, Matrix(list(slopes))
 
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
         """Small motions about an equilibrium.
@@ -209,11 +273,36 @@ class Derivation:
         Raises
         ------
         SystemDefinitionError
-            When a force is left at that place, or their number is wrong.
+            When a force is left at that place, or their number is wrong; when time, drag or
+            a rotation of the frame leaves more than masses and springs.
         """
+        return linearised(self, self._place(equilibrium))
+
+    @cached_property
+    def is_sprung(self) -> bool:
+        """Whether small motions are those of masses and springs alone."""
+        return not any(beyond_springs(self).values())
+
+    def resting(self) -> tuple[sp.Expr, ...]:
+        """The system's equilibrium, or zeros, after seeing that it stays there.
+
+        Raises
+        ------
+        SystemDefinitionError
+            When a force is left there.
+        """
+        place = self._place(None)
+        resting(self, place)
+        return place
+
+    def _place(self, equilibrium: Sequence[sp.Expr] | None) -> tuple[sp.Expr, ...]:
         if equilibrium is None:
             equilibrium = self.system.equilibrium
-        place = (0,) * len(self.system.q) if equilibrium is None else equilibrium
-        return linearised(
-            self.system, self.mass_matrix, self.potential_energy, tuple(map(formula, place))
-        )
+        if equilibrium is None:
+            equilibrium = (sp.S.Zero,) * len(self.system.q)
+        return tuple(map(formula, equilibrium))
+
+
+def _derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+    """∂expression/∂symbol, at once where the symbol is not in it."""
+    return expression.diff(symbol) if symbol in expression.free_symbols else sp.S.Zero

@@ -18,6 +18,12 @@ import sympy as sp
 Value: TypeAlias = sp.Expr | sp.MatrixBase
 Scope = Mapping[str, Any]
 
+#: What a formula may call, and the numbers that have names.
+FUNCTIONS: dict[str, Any] = {
+    "sin": sp.sin, "cos": sp.cos, "tan": sp.tan, "exp": sp.exp, "log": sp.log, "sqrt": sp.sqrt,
+    "pi": sp.pi,
+}  # fmt: skip
+
 #: Longest text that is read, largest exponent and most bits of a number: ample on paper.
 LONGEST, LARGEST_POWER, MOST_BITS = 20_000, 100, 256
 

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Literal
 
 from derive.assignments import Assignments, assignments
 from derive.derivation import Derivation
 from derive.lowering import Lowering
 from derive.mechanics import Mechanics
-from derive.system import System, SystemDefinitionError
+from derive.parts import SystemDefinitionError
+from derive.symbols import TIME
+from derive.system import System
 
 Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "parameters"]
+
+#: What is kept in place of the energy where positions depend on time.
+ENERGY = "Jacobi's integral qdot dL/dqdot - L, which is not T + V since positions depend on time"
 
 #: name, form of the state, shape of the result, first line of the docstring, what comes back
 TABLE: tuple[tuple[str, Form, str, str, str], ...] = (
@@ -28,8 +34,18 @@ TABLE: tuple[tuple[str, Form, str, str, str], ...] = (
     ),
     (
         "energy", "lagrangian", "",
-        "Total energy T + V.",
+        "{energy}.",
         "Energy in J.",
+    ),
+    (
+        "power", "lagrangian", "",
+        "Rate at which `energy` grows: work of applied forces, friction and what moves by itself.",
+        "Power in W.",
+    ),
+    (
+        "reactions", "lagrangian", "reactions",
+        "Forces that hold {held}, by Lagrange's multipliers.",
+        "One for each: a rod's tension, positive where it pulls.",
     ),
     (
         "mass_matrix", "lagrangian", "q q",
@@ -58,7 +74,7 @@ TABLE: tuple[tuple[str, Form, str, str, str], ...] = (
     ),
     (
         "energy_hamiltonian", "hamiltonian", "",
-        "Hamiltonian H(q, p), the total energy.",
+        "Hamiltonian H(q, p): `energy` by momenta.",
         "Energy in J.",
     ),
     (
@@ -122,8 +138,14 @@ class Function:
 
     @property
     def takes_time(self) -> bool:
-        """Whether ``t`` comes first, as solvers ask of a right-hand side and its Jacobian."""
-        return self.name.startswith(("rhs", "jacobian"))
+        """Whether ``t`` comes first: solvers ask it of right-hand sides and their Jacobians."""
+        return self.name.startswith(("rhs", "jacobian")) or self.depends_on_time
+
+    @property
+    def depends_on_time(self) -> bool:
+        """Whether the result does."""
+        operations = self.lowering.operations.values()
+        return any(o.kind == "leaf" and o.label == TIME.name for o in operations)
 
 
 @dataclass(frozen=True)
@@ -155,7 +177,18 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     """Everything that is generated for `derivation`, or `only` the functions of these names."""
     system = derivation.system
     states = _states(derivation)
-    at_rest = _equilibrium(derivation)
+    words = {
+        "equilibrium": _rest(derivation),
+        "linear": _rest(derivation) if derivation.is_sprung else "",
+        "held": ", ".join(length.name for length in system.reactions),
+        "energy": ENERGY if TIME in derivation.variables else "Total energy T + V",
+    }
+    missing = {
+        "power": derivation.power == 0,
+        "reactions": not system.reactions,
+        "equilibrium": not words["equilibrium"],
+        "linear": not words["linear"],
+    }
     sizes = {
         "q": len(system.q),
         "state": 2 * len(system.q),
@@ -163,6 +196,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
         "variational": len(states["variational"]),
         "masses": len(system.masses),
         "axes": system.dimension,
+        "reactions": len(system.reactions),
         "2": 2,
     }
     parameters = {symbol.name for symbol in system.params}
@@ -172,8 +206,8 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
         tuple(
             Function(
                 name,
-                summary.format(equilibrium=at_rest),
-                returns.format(equilibrium=at_rest),
+                summary.format(**words),
+                returns.format(**words),
                 form,
                 states.get(form, ()),
                 tuple(sizes[word] for word in shape.split()),
@@ -182,20 +216,19 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
             for name, form, shape, summary, returns in TABLE
             if (only is None or name in only)
             and ("rational" not in (form, shape) or "rational" in states)
-            and (form != "parameters" or at_rest)
+            and not missing.get(name)
         ),
     )
 
 
-def _equilibrium(derivation: Derivation) -> str:
+def _rest(derivation: Derivation) -> str:
     """Where the system rests, in words; empty if no equilibrium is known."""
     try:
-        place = derivation.linearisation().equilibrium
+        return f"({', '.join(map(str, derivation.resting()))})"
     except SystemDefinitionError:
         if derivation.system.equilibrium is not None:
             raise
         return ""
-    return f"({', '.join(map(str, place))})"
 
 
 def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
@@ -216,7 +249,9 @@ def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
     return states
 
 
-def body(part: Function, system: System) -> Assignments:
-    """The function's assignments; what it takes and the parameters keep their names."""
+def body(
+    part: Function, system: System, called: Mapping[str, str] = MappingProxyType({})
+) -> Assignments:
+    """The function's assignments; what it takes and the parameters are `called` as they are."""
     taken = {*part.state, *(s.name for s in system.params), "t", "y", "state", "params", "result"}
-    return assignments(part.lowering, taken)
+    return assignments(part.lowering, taken, called)

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import sympy as sp
 
-from derive.system import System, SystemDefinitionError
+from derive.parts import SystemDefinitionError
+from derive.symbols import TIME
+
+if TYPE_CHECKING:
+    from derive.derivation import Derivation
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
 
@@ -21,7 +25,7 @@ class Linearisation:
     equilibrium : tuple of sympy.Expr
         q₀.
     mass_matrix, stiffness_matrix : sympy.Matrix
-        M₀ = M(q₀) and K = ∂²V/∂q² at q₀, n × n.
+        M₀ = M(q₀) and K = ∂²U/∂q² at q₀, n × n.
     """
 
     equilibrium: tuple[sp.Expr, ...]
@@ -29,29 +33,60 @@ class Linearisation:
     stiffness_matrix: Matrix
 
 
-def linearised(
-    system: System, mass_matrix: Matrix, potential: sp.Expr, equilibrium: tuple[sp.Expr, ...]
-) -> Linearisation:
+def linearised(derivation: Derivation, equilibrium: tuple[sp.Expr, ...]) -> Linearisation:
     """Mass and stiffness matrix at `equilibrium`.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When a force is left there, or the number of coordinates is wrong; when small motions
+        are more than masses and springs.
+    """
+    at_rest = resting(derivation, equilibrium)
+    system = derivation.system
+    for what, holds in beyond_springs(derivation).items():
+        if holds:
+            raise SystemDefinitionError(
+                f"small motions of {system.name!r} {what}: they are more than masses and springs; "
+                "take eigenvalues of the generated jacobian instead"
+            )
+    gradient = [derivation.effective_potential.diff(q) for q in system.q]
+    stiffness = Matrix([[slope.diff(q) for q in system.q] for slope in gradient])
+    return Linearisation(equilibrium, derivation.mass_matrix.subs(at_rest), stiffness.subs(at_rest))
+
+
+def resting(derivation: Derivation, equilibrium: tuple[sp.Expr, ...]) -> dict[sp.Symbol, sp.Expr]:
+    """Coordinates by symbol, after seeing that what is there stays there.
 
     Raises
     ------
     SystemDefinitionError
         When a force is left there, or the number of coordinates is wrong.
     """
+    system = derivation.system
     if len(equilibrium) != len(system.q):
         raise SystemDefinitionError(
             f"an equilibrium of {system.name!r} has {len(system.q)} coordinates "
             f"({', '.join(q.name for q in system.q)}), got {len(equilibrium)}"
         )
     at_rest = dict(zip(system.q, equilibrium, strict=True))
-    gradient = [potential.diff(q) for q in system.q]
-    for q, slope in zip(system.q, gradient, strict=True):
-        force = sp.simplify(-slope.subs(at_rest))
+    still = dict.fromkeys(system.qdot, 0)
+    for i, q in enumerate(system.q):
+        slope = derivation.effective_potential.diff(q) + derivation.drift[i].diff(TIME)
+        force = sp.simplify((system.applied[i].subs(still) - slope).subs(at_rest))
         if force != 0:
             raise SystemDefinitionError(
                 f"{system.name!r} is not at rest at {q.name} = {at_rest[q]}: the force "
                 f"along {q.name} is {force} there; give equilibrium= coordinates where it is 0"
             )
-    stiffness = Matrix([[slope.diff(q) for q in system.q] for slope in gradient])
-    return Linearisation(equilibrium, mass_matrix.subs(at_rest), stiffness.subs(at_rest))
+    return at_rest
+
+
+def beyond_springs(derivation: Derivation) -> dict[str, bool]:
+    """What small motions may have beside masses and springs, and whether they have it."""
+    turning = derivation.drift.jacobian(derivation.system.q)
+    return {
+        "depend on time": derivation.lagrangian.has(TIME),
+        "have applied forces": any(derivation.system.applied),
+        "are turned by a moving frame": not (turning - turning.T).is_zero_matrix,
+    }

@@ -82,13 +82,15 @@ def {name}_many({arguments}) -> Array:
     return {outputs}
 '''
 
+#: Functions call the state y; a coordinate or parameter of that name is called otherwise.
+CALLED = {"y": "y_"}
 TYPES = ("float", "Vector", "Matrix", "tuple[Matrix, ...]")
 
 
 def module(contents: Contents) -> str:
     """The text of the module with `contents`."""
     system = contents.system
-    bodies = [body(part, system) for part in contents.functions]
+    bodies = [body(part, system, CALLED) for part in contents.functions]
     return MODULE.format(
         title=system.title,
         name=system.name,
@@ -119,6 +121,7 @@ def _constants(contents: Contents) -> str:
         "PARAMETERS": [symbol.name for symbol in system.params],
         "DEFAULTS": [float(parameter.default) for parameter in system.parameters],
         "POSITIVE": [symbol.name for symbol in system.params if symbol.is_positive],
+        "TIMED": [part.name for part in contents.functions if part.depends_on_time],
     }
     lines = [f"{name} = {_literal(values)}" for name, values in tables.items()]
     used = {name for names in contents.states.values() for name in names} | {*tables["PARAMETERS"]}
@@ -186,22 +189,23 @@ def _many(part: Function, assigned: Assignments, system: System) -> str:
         shape=f"({shape})",
         imports=f"    from numpy import {called}\n\n" if called else "",
         body=_body(part, assigned, system, plain=False),
-        outputs=_call(part, assigned.outputs, system),
+        outputs=_call(part, assigned, system),
     )
 
 
-def _call(part: Function, outputs: Sequence[str], system: System) -> str:
+def _call(part: Function, assigned: Assignments, system: System) -> str:
     if not part.shape:
-        return outputs[0]
+        return assigned.outputs[0]
     like = "y[0]" if part.state else "params[0]" if system.params else "0.0"
-    return "_stacked" + _tuple([repr(part.shape), like, *outputs], depth=1)
+    return "_stacked" + _tuple([repr(part.shape), like, *assigned.outputs], depth=1)
 
 
 def _parameters(part: Function, system: System) -> str:
     unit = units(system)
     rows = []
     if part.takes_time:
-        rows.append("    t : float\n        Time in s; nothing here depends on it.")
+        idle = "" if part.depends_on_time else "; nothing here depends on it"
+        rows.append(f"    t : float\n        Time in s{idle}.")
     for name, names in (("y", part.state), ("params", [s.name for s in system.params])):
         if names:
             # names of one unit that follow each other share it
@@ -219,7 +223,9 @@ def _body(part: Function, assigned: Assignments, system: System, *, plain: bool)
         ("params", [symbol.name for symbol in system.params]),
     ):
         if assigned.inputs.intersection(names):
-            targets = ", ".join(name if name in assigned.inputs else "_" for name in names)
+            targets = ", ".join(
+                CALLED.get(name, name) if name in assigned.inputs else "_" for name in names
+            )
             comma = "," if len(names) == 1 else ""
             # Python's own floats: arithmetic on NumPy's scalars takes three times as long
             value = f'{argument}.tolist() if hasattr({argument}, "tolist") else {argument}'

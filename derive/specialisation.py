@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.system import PointMass, System, SystemDefinitionError, formula
+from derive.parts import SystemDefinitionError, formula
+from derive.system import System
 
 
 def specialised(system: System, values: Mapping[str, float]) -> System:
@@ -37,14 +38,14 @@ def specialised(system: System, values: Mapping[str, float]) -> System:
     def folded(expression: sp.Expr) -> sp.Expr:
         return expression.subs(numbers)
 
-    assert system.potential is not None
     return replace(
         system,
         parameters=[p for p in system.parameters if p.symbol not in numbers],
-        masses=[
-            PointMass(folded(mass.mass), tuple(map(folded, mass.position)))
-            for mass in system.masses
-        ],
-        potential=folded(system.potential),
+        masses=[mass.mapped(folded) for mass in system.masses],
+        potential=folded(system.potential_energy),
+        gravity=None,
+        dissipation=folded(system.dissipation),
+        forces=tuple(map(folded, system.forces)),
         equilibrium=None if system.equilibrium is None else tuple(map(folded, system.equilibrium)),
+        reactions=[length for length in system.reactions if length not in numbers],
     )

@@ -50,3 +50,7 @@ def variation(variable: sp.Symbol) -> sp.Symbol:
 def momentum(coordinate: sp.Symbol) -> Momentum:
     """The symbol of the momentum conjugate to a coordinate."""
     return Momentum(f"p_{coordinate.name}", real=True)
+
+
+#: Time, in positions, potentials and forces that depend on it.
+TIME = sp.Symbol("t", real=True)

@@ -2,85 +2,15 @@
 
 from __future__ import annotations
 
-import keyword
-import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
 
-from derive.symbols import acceleration, momentum, variation, velocity
-
-IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}\Z")
-
-#: Words that a generated Python or C function needs for itself.
-RESERVED = {
-    *keyword.kwlist,
-    *keyword.softkwlist,
-    *"auto char const default do double enum extern float goto inline int long register".split(),
-    *"restrict short signed sizeof static struct switch typedef union unsigned void".split(),
-    *"volatile NULL NAN INFINITY sin cos tan exp log sqrt pi".split(),
-    *"t params state result numpy math".split(),
-}
-
-
-class SystemDefinitionError(ValueError):
-    """A system that cannot be derived; the message says which part and what is allowed."""
-
-
-def formula(value: sp.Expr | float) -> sp.Expr:
-    """A SymPy expression as it is, a Python number as the fraction that its digits say.
-
-    Raises
-    ------
-    SystemDefinitionError
-        For anything else, text above all: SymPy would execute it.
-    """
-    if isinstance(value, sp.Expr):
-        return value
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        try:
-            return sp.Rational(str(value))
-        except (TypeError, ValueError):
-            pass
-    raise SystemDefinitionError(
-        f"{str(value)[:50]!r} is no formula: use numbers and SymPy expressions"
-    )
-
-
-@dataclass(frozen=True)
-class Coordinate:
-    """A generalized coordinate: its symbol, its unit and what it measures."""
-
-    symbol: sp.Symbol
-    unit: str
-    meaning: str
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A constant of the system: its symbol, unit, default value and meaning.
-
-    A symbol declared positive (``Symbol("l", positive=True)``) takes positive values only.
-    """
-
-    symbol: sp.Symbol
-    unit: str
-    default: float
-    meaning: str
-
-
-@dataclass(frozen=True)
-class PointMass:
-    """A mass and its position, two or three Cartesian components (the last one points up)."""
-
-    mass: sp.Expr
-    position: tuple[sp.Expr, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "mass", formula(self.mass))
-        object.__setattr__(self, "position", tuple(map(formula, self.position)))
+from derive.naming import check_name, check_unique
+from derive.parts import Coordinate, Parameter, PointMass, SystemDefinitionError, formula
+from derive.symbols import TIME, acceleration, momentum, variation, velocity
 
 
 @dataclass(frozen=True)
@@ -97,14 +27,24 @@ class System:
         Generalized coordinates q, in the order of the state.
     parameters : sequence of Parameter
         Constants, in the order of ``params``.
-    masses : sequence of PointMass
-        Point masses with their positions r(q).
+    masses : sequence of PointMass and RigidBody
+        What has inertia, with its positions r(q, t); time is ``derive.TIME``.
     potential : sympy.Expr, optional
-        Potential energy V(q); by default uniform gravity along the last axis,
-        downwards, with the parameter named ``g``.
+        All potential energy V(q, t) but that of `gravity`. Without either, there is uniform
+        gravity along the last axis, downwards, with the parameter named ``g``.
+    gravity : sequence of sympy.Expr, optional
+        Acceleration of free fall, one component for each of a position's, in m/s².
+    dissipation : sympy.Expr, optional
+        Rayleigh's function R(q, q̇, t), half the power that friction takes where it is
+        quadratic in the velocities (``derive.velocity(theta)``): the force is -∂R/∂q̇.
+    forces : sequence of sympy.Expr, optional
+        Further generalized forces Q(q, q̇, t), one for each coordinate.
     equilibrium : sequence of sympy.Expr, optional
         Coordinates about which ``linear`` describes small motions. By default
         zeros if the system is at rest there; else there is no ``linear``.
+    reactions : sequence of sympy.Symbol, optional
+        Parameters, lengths of rods for instance, of which the force that holds them is
+        wanted: a rod's tension.
 
     Raises
     ------
@@ -120,31 +60,28 @@ class System:
     parameters: Sequence[Parameter]
     masses: Sequence[PointMass]
     potential: sp.Expr | None = None
+    gravity: Sequence[sp.Expr] | None = None
+    dissipation: sp.Expr = sp.S.Zero
+    forces: Sequence[sp.Expr] = ()
     equilibrium: Sequence[sp.Expr] | None = None
+    reactions: Sequence[sp.Symbol] = ()
 
     def __post_init__(self) -> None:
-        for field in ("coordinates", "parameters", "masses"):
+        for field in ("coordinates", "parameters", "masses", "reactions"):
             object.__setattr__(self, field, tuple(getattr(self, field)))
-        if self.potential is not None:
-            object.__setattr__(self, "potential", formula(self.potential))
-        if self.equilibrium is not None:
-            object.__setattr__(self, "equilibrium", tuple(map(formula, self.equilibrium)))
+        for field in ("gravity", "forces", "equilibrium"):
+            if getattr(self, field) is not None:
+                object.__setattr__(self, field, tuple(map(formula, getattr(self, field))))
+        for field in ("potential", "dissipation"):
+            if getattr(self, field) is not None:
+                object.__setattr__(self, field, formula(getattr(self, field)))
         if not self.coordinates or not self.masses:
             raise SystemDefinitionError(
                 f"system {self.name!r} needs at least one coordinate and one mass, "
                 f"got {len(self.coordinates)} and {len(self.masses)}"
             )
         self._check_names()
-        if len({len(mass.position) for mass in self.masses} | {self.dimension}) > 1 or not (
-            2 <= self.dimension <= 3
-        ):
-            counts = ", ".join(str(len(mass.position)) for mass in self.masses)
-            raise SystemDefinitionError(
-                f"positions of system {self.name!r} have {counts} components; "
-                "all must have two (x, up) or all three (x, y, up)"
-            )
-        if self.potential is None:
-            object.__setattr__(self, "potential", self._gravity())
+        self._check_counts()
         self._check_symbols()
 
     @property
@@ -182,49 +119,81 @@ class System:
         """The parameters' symbols."""
         return tuple(parameter.symbol for parameter in self.parameters)
 
-    def _gravity(self) -> sp.Expr:
+    @cached_property
+    def potential_energy(self) -> sp.Expr:
+        """V(q, t) of gravity and all else."""
+        gravity, potential = self.gravity, self.potential
+        if potential is None and gravity is None:
+            gravity = (*[sp.S.Zero] * (self.dimension - 1), -self._named_gravity())
+        weights = (
+            -mass.mass * a * r
+            for mass in self.masses
+            for a, r in zip(gravity or (), mass.position, strict=bool(gravity))
+        )
+        return sp.Add(potential or sp.S.Zero, *weights)
+
+    @cached_property
+    def applied(self) -> tuple[sp.Expr, ...]:
+        """Generalized forces that no potential gives: Q - ∂R/∂q̇, one for each coordinate."""
+        forces = self.forces or (sp.S.Zero,) * len(self.q)
+        return tuple(
+            force - self.dissipation.diff(qdot)
+            for force, qdot in zip(forces, self.qdot, strict=True)
+        )
+
+    def _named_gravity(self) -> sp.Symbol:
         g = next((s for s in self.params if s.name == "g"), None)
         if g is None:
             raise SystemDefinitionError(
                 f"system {self.name!r} has no parameter named 'g' for its weight; add one, "
                 "or give the potential yourself (potential=0 for none)"
             )
-        return sp.Add(*(mass.mass * g * mass.position[-1] for mass in self.masses))
+        return g
 
     def _check_names(self) -> None:
         declared = [s.name for s in (*self.q, *self.params)]
         for name in [self.name, *declared]:
-            if not IDENTIFIER.match(name) or name in RESERVED:
-                raise SystemDefinitionError(
-                    f"{name[:50]!r} cannot be a name in system {self.name[:50]!r}: use a letter "
-                    "and then up to 39 letters, digits or underscores, and no word that Python, "
-                    "C or the generated functions reserve"
-                )
-        names = declared + [s.name for s in self.qdot + self.qddot + self.p + self.variations]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
+            check_name(name, self.name)
+        derived = self.qdot + self.qddot + self.p + self.variations
+        check_unique([*declared, *(s.name for s in derived)], self.name)
+
+    def _check_counts(self) -> None:
+        if len({len(mass.position) for mass in self.masses}) > 1 or not 2 <= self.dimension <= 3:
+            counts = ", ".join(str(len(mass.position)) for mass in self.masses)
             raise SystemDefinitionError(
-                f"system {self.name!r} uses a name twice: {', '.join(twice)} (velocities are "
-                "named q_dot, accelerations q_ddot, momenta p_q, small changes delta_q)"
+                f"positions of system {self.name!r} have {counts} components; "
+                "all must have two (x, up) or all three (x, y, up)"
             )
+        for field, wanted in (("gravity", self.dimension), ("forces", len(self.q))):
+            given = getattr(self, field) or ()
+            if len(given) not in (0, wanted):
+                raise SystemDefinitionError(
+                    f"{field} of system {self.name!r} has {len(given)} components: give {wanted}"
+                )
+
+    def _places(self) -> Iterator[tuple[str, sp.Basic, set[sp.Symbol]]]:
+        """Every expression: what to call it, itself, and what it may depend on."""
+        constants, moving = {*self.params}, {*self.q, *self.params, TIME}
+        for mass in self.masses:
+            for inertia, position in mass.motions:
+                yield f"mass {inertia}", inertia, constants
+                yield f"the position of mass {inertia}", sp.Tuple(*position), moving
+        yield "the potential", self.potential_energy, moving
+        yield "the equilibrium", sp.Tuple(*(self.equilibrium or ())), constants
+        yield "the list of forces", sp.Tuple(self.dissipation, *self.forces), {*self.qdot, *moving}
+        yield "the list of reactions", sp.Tuple(*self.reactions), constants
 
     def _check_symbols(self) -> None:
-        known = set(self.q + self.params)
-        places = {
-            f"the position of mass {mass.mass}": sp.Tuple(*mass.position) for mass in self.masses
-        }
-        places["the potential"] = self.potential
-        for place, expression in places.items():
+        for place, expression, known in self._places():
             unknown = sorted(str(s) for s in expression.free_symbols - known)
             if unknown:
                 raise SystemDefinitionError(
-                    f"{place} names unknown symbols: {', '.join(unknown)}; known are "
+                    f"{place} names unknown symbols: {', '.join(unknown)}; known there are "
                     f"{', '.join(sorted(s.name for s in known))}; declare them as coordinates or "
                     "parameters (a symbol of the same name with other assumptions is another one)"
                 )
-        for mass in self.masses:
-            if mass.mass.free_symbols - set(self.params):
-                raise SystemDefinitionError(
-                    f"mass {mass.mass} must depend on parameters alone; "
-                    f"known are {', '.join(s.name for s in self.params)}"
-                )
+        if self.reactions and any(self.applied):
+            raise SystemDefinitionError(
+                f"system {self.name!r} asks for reactions beside forces that no potential gives: "
+                "what these do to a length that is held is not known; leave one of them out"
+            )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -23,10 +25,18 @@ class UnsupportedFunctionError(NotImplementedError):
 
 
 class Translation:
-    """Nodes of SymPy expressions in one graph; every symbol becomes a leaf of its name."""
+    """Nodes of SymPy expressions in one graph; every symbol becomes a leaf of its name.
 
-    def __init__(self, graph: Graph) -> None:
-        self.graph = graph
+    Parameters
+    ----------
+    graph : Graph
+        Where the nodes are.
+    known : mapping of str to Node
+        What stands in place of the leaves of these names.
+    """
+
+    def __init__(self, graph: Graph, known: Mapping[str, Node] = MappingProxyType({})) -> None:
+        self.graph, self._known = graph, known
         self._nodes: dict[sp.Expr, Node] = {}
 
     def __call__(self, expression: sp.Expr) -> Node:
@@ -44,7 +54,7 @@ class Translation:
     def _translated(self, expression: sp.Expr) -> Node:
         graph = self.graph
         if expression.is_Symbol:
-            return graph.leaf(expression.name)
+            return self._known.get(expression.name) or graph.leaf(expression.name)
         if expression.is_Rational:
             return graph.node(Fraction(int(expression.p), int(expression.q)))
         if expression.is_Add:

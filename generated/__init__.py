@@ -2,7 +2,17 @@
 
 
 __all__ = [
+    "cart_3",
+    "chain_3",
+    "coupled_pendulums",
+    "double_bar_pendulum",
     "double_pendulum",
+    "driven_pendulum",
     "elastic_pendulum",
+    "foucault_pendulum",
+    "henon_heiles",
+    "rotating_hoop",
     "single_pendulum",
+    "spherical_pendulum",
+    "swinging_atwood",
 ]

@@ -39,10 +39,10 @@
        delta_theta2_dot [rad/s]
 
    Parameters params:
-       m1 [kg] > 0, default 1.0: mass of the first bob
-       m2 [kg] > 0, default 1.0: mass of the second bob
-       l1 [m] > 0, default 2.0: length of the first rod
-       l2 [m] > 0, default 2.0: length of the second rod
+       m1 [kg] > 0, default 1.0: first mass
+       m2 [kg] > 0, default 1.0: second mass
+       l1 [m] > 0, default 2.0: first length
+       l2 [m] > 0, default 2.0: second length
        g [m/s^2] real, default 9.81: gravitational acceleration
 
    Masses and their positions:
@@ -93,7 +93,7 @@ enum {
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
-   33 operations, 5 of them on parameters alone.
+   32 operations, 5 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void double_pendulum_rhs(
     double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
@@ -110,29 +110,29 @@ static inline void double_pendulum_rhs(
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
     const double_pendulum_real c0 = 1.0/l1;
-    const double_pendulum_real c1 = (m1 + m2)*g;
-    const double_pendulum_real c2 = m2*l2;
+    const double_pendulum_real c1 = m2*l2;
+    const double_pendulum_real c2 = (m1 + m2)*g;
     const double_pendulum_real c3 = 1.0/l2;
     /* intermediate terms */
     const double_pendulum_real x0 = theta1 - theta2;
     const double_pendulum_real sin_x0 = sin(x0);
     const double_pendulum_real cos_x0 = cos(x0);
-    const double_pendulum_real x1 = g*sin(theta2) - l1*theta1_dot*theta1_dot*sin_x0;
+    const double_pendulum_real x1 = l1*theta1_dot*theta1_dot*sin_x0 - g*sin(theta2);
     const double_pendulum_real x2 =
-        c1*sin(theta1) + c2*theta2_dot*theta2_dot*sin_x0 - m2*cos_x0*x1;
+        c1*theta2_dot*theta2_dot*sin_x0 + c2*sin(theta1) + m2*cos_x0*x1;
     const double_pendulum_real x3 = x2/(m1 + m2*sin_x0*sin_x0);
     /* outputs */
     result[0] = theta1_dot;
     result[1] = theta2_dot;
     result[2] = -c0*x3;
-    result[3] = -c3*(x1 - cos_x0*x3);
+    result[3] = c3*(x1 + cos_x0*x3);
     (void)t;
 }
 #endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs`.
-   81 operations, 6 of them on parameters alone.
+   82 operations, 6 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void double_pendulum_jacobian(
     double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
@@ -149,8 +149,8 @@ static inline void double_pendulum_jacobian(
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
     const double_pendulum_real c0 = 1.0/l1;
-    const double_pendulum_real c1 = g*(m1 + m2);
-    const double_pendulum_real c2 = m2*l2;
+    const double_pendulum_real c1 = m2*l2;
+    const double_pendulum_real c2 = (m1 + m2)*g;
     const double_pendulum_real c3 = l1*m2;
     const double_pendulum_real c4 = 1.0/l2;
     /* intermediate terms */
@@ -161,19 +161,19 @@ static inline void double_pendulum_jacobian(
     const double_pendulum_real x3 = l1*theta1_dot;
     const double_pendulum_real sin_x0 = sin(x0);
     const double_pendulum_real x4 = sin_x0*theta1_dot;
-    const double_pendulum_real x5 = g*sin(theta2) - x3*x4;
-    const double_pendulum_real x6 = c2*sin_x0;
+    const double_pendulum_real x5 = x3*x4 - g*sin(theta2);
+    const double_pendulum_real x6 = c1*sin_x0;
     const double_pendulum_real x7 = m2*cos_x0;
     const double_pendulum_real x8 = m2*sin_x0;
     const double_pendulum_real x9 = m1 + sin_x0*x8;
-    const double_pendulum_real x10 = (c1*sin(theta1) + x1*x6 - x5*x7)/x9;
-    const double_pendulum_real x11 = x5 - cos_x0*x10;
+    const double_pendulum_real x10 = (x1*x6 + c2*sin(theta1) + x5*x7)/x9;
+    const double_pendulum_real x11 = x5 + cos_x0*x10;
     const double_pendulum_real x12 = cos_x0*theta1_dot*x3;
     const double_pendulum_real x13 = sin_x0*x10;
     const double_pendulum_real x14 = x12 - x13;
-    const double_pendulum_real x15 = (c1*cos(theta1) + c2*x2 + x11*x8 + x14*x7)/x9;
+    const double_pendulum_real x15 = (c1*x2 + c2*cos(theta1) - x11*x8 + x14*x7)/x9;
     const double_pendulum_real x16 = x13 - (x12 + g*cos(theta2));
-    const double_pendulum_real x17 = m2*(l2*x2 + sin_x0*x11 - cos_x0*x16)/x9;
+    const double_pendulum_real x17 = m2*(sin_x0*x11 - l2*x2 + cos_x0*x16)/x9;
     const double_pendulum_real x18 = c3*cos_x0*x4/x9;
     const double_pendulum_real x19 = theta2_dot*x6/x9;
     /* outputs */
@@ -186,11 +186,11 @@ static inline void double_pendulum_jacobian(
     result[6] = 0.0;
     result[7] = 1.0;
     result[8] = -c0*x15;
-    result[9] = c0*x17;
+    result[9] = -c0*x17;
     result[10] = -2.0*c0*x18;
     result[11] = -2.0*c0*x19;
     result[12] = c4*(x14 + cos_x0*x15);
-    result[13] = c4*(x16 - cos_x0*x17);
+    result[13] = c4*(x16 + cos_x0*x17);
     result[14] = 2.0*c4*(sin_x0*x3 + cos_x0*x18);
     result[15] = 2.0*c4*(cos_x0*x19);
     (void)t;
@@ -229,6 +229,49 @@ static inline void double_pendulum_energy(
         - c6*cos(theta2);
     /* outputs */
     result[0] = x1;
+}
+#endif
+
+#ifndef HOLONOMIC_VECTOR
+/* Forces that hold l1, l2, by Lagrange's multipliers.
+   45 operations, 4 of them on parameters alone.
+   One for each: a rod's tension, positive where it pulls. */
+static inline void double_pendulum_reactions(
+    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+{
+    /* inputs */
+    const double_pendulum_real theta1 = state[0];
+    const double_pendulum_real theta2 = state[1];
+    const double_pendulum_real theta1_dot = state[2];
+    const double_pendulum_real theta2_dot = state[3];
+    const double_pendulum_real m1 = params[0];
+    const double_pendulum_real m2 = params[1];
+    const double_pendulum_real l1 = params[2];
+    const double_pendulum_real l2 = params[3];
+    const double_pendulum_real g = params[4];
+    /* terms of the parameters alone */
+    const double_pendulum_real c0 = m2 + m1;
+    const double_pendulum_real c1 = l1*c0;
+    const double_pendulum_real c2 = m2*l2;
+    const double_pendulum_real c3 = g*c0;
+    /* intermediate terms */
+    const double_pendulum_real x0 = theta1_dot*theta1_dot;
+    const double_pendulum_real x1 = theta1 - theta2;
+    const double_pendulum_real cos_x1 = cos(x1);
+    const double_pendulum_real x2 = theta2_dot*theta2_dot;
+    const double_pendulum_real x3 = c2*x2;
+    const double_pendulum_real sin_x1 = sin(x1);
+    const double_pendulum_real x4 = l1*x0;
+    const double_pendulum_real x5 = sin_x1*x4 - g*sin(theta2);
+    const double_pendulum_real x6 = m2*sin_x1;
+    const double_pendulum_real x7 =
+        (sin_x1*x3 + c3*sin(theta1) + m2*x5*cos_x1)/(m1 + sin_x1*x6);
+    const double_pendulum_real x8 =
+        c1*x0 + cos_x1*x3 + c3*cos(theta1) - (x5 + cos_x1*x7)*x6;
+    const double_pendulum_real x9 = m2*(cos_x1*x4 + l2*x2 + g*cos(theta2) - sin_x1*x7);
+    /* outputs */
+    result[0] = x8;
+    result[1] = x9;
 }
 #endif
 
@@ -345,7 +388,7 @@ static inline void double_pendulum_rhs_hamiltonian(
     /* outputs */
     result[0] = c0*x2;
     result[1] = c1*x3;
-    result[2] = -(x1*x4 + c3*sin(theta1));
+    result[2] = -(c3*sin(theta1) + x1*x4);
     result[3] = m2*(sin_x0*x4 - c4*sin(theta2));
     (void)t;
 }
@@ -353,7 +396,7 @@ static inline void double_pendulum_rhs_hamiltonian(
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs_hamiltonian`.
-   62 operations, 8 of them on parameters alone.
+   65 operations, 8 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void double_pendulum_jacobian_hamiltonian(
     double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
@@ -389,36 +432,37 @@ static inline void double_pendulum_jacobian_hamiltonian(
     const double_pendulum_real x9 = -x8;
     const double_pendulum_real x10 = c0/x3;
     const double_pendulum_real x11 = x1/x3;
-    const double_pendulum_real x12 = sin_x0*x4 - cos_x0*x7;
-    const double_pendulum_real x13 = c2*x12;
-    const double_pendulum_real x14 = -x13;
-    const double_pendulum_real x15 = x5*x6;
-    const double_pendulum_real x16 = x4*x12 + x6*x7;
-    const double_pendulum_real x17 = x15 + sin_x0*x16;
-    const double_pendulum_real x18 = m2*x17;
+    const double_pendulum_real x12 = sin_x0*x4;
+    const double_pendulum_real x13 = x12 - cos_x0*x7;
+    const double_pendulum_real x14 = c2*x13;
+    const double_pendulum_real x15 = -x14;
+    const double_pendulum_real x16 = x5*x6;
+    const double_pendulum_real x17 = x6*x7;
+    const double_pendulum_real x18 = x12*x13 + (x16 + sin_x0*x17);
+    const double_pendulum_real x19 = m2*x18;
     /* outputs */
     result[0] = x8;
     result[1] = x9;
     result[2] = c0*x10;
     result[3] = -c0*x11;
-    result[4] = x13;
-    result[5] = x14;
+    result[4] = x14;
+    result[5] = x15;
     result[6] = -c2*(cos_x0*x10);
     result[7] = c2*(c1 + cos_x0*x11);
-    result[8] = -(m2*x15 + x16*x2 + c3*cos(theta1));
-    result[9] = x18;
+    result[8] = -(m2*x16 + x2*x17 + x4*x13*x2 + c3*cos(theta1));
+    result[9] = x19;
     result[10] = x9;
-    result[11] = x14;
-    result[12] = x18;
-    result[13] = -m2*(x17 + c4*cos(theta2));
+    result[11] = x15;
+    result[12] = x19;
+    result[13] = -m2*(x18 + c4*cos(theta2));
     result[14] = x8;
-    result[15] = x13;
+    result[15] = x14;
     (void)t;
 }
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Hamiltonian H(q, p), the total energy.
+/* Hamiltonian H(q, p): `energy` by momenta.
    31 operations, 6 of them on parameters alone.
    Energy in J. */
 static inline void double_pendulum_energy_hamiltonian(
@@ -512,7 +556,7 @@ static inline void double_pendulum_rational_state(
 #endif
 
 /* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
-   40 operations, 5 of them on parameters alone.
+   39 operations, 5 of them on parameters alone.
    Time derivative of y. */
 static inline void double_pendulum_rhs_rational(
     double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
@@ -531,14 +575,14 @@ static inline void double_pendulum_rhs_rational(
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
     const double_pendulum_real c0 = 1.0/l1;
-    const double_pendulum_real c1 = (m1 + m2)*g;
-    const double_pendulum_real c2 = m2*l2;
+    const double_pendulum_real c1 = m2*l2;
+    const double_pendulum_real c2 = (m1 + m2)*g;
     const double_pendulum_real c3 = 1.0/l2;
     /* intermediate terms */
     const double_pendulum_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const double_pendulum_real x1 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
-    const double_pendulum_real x2 = g*sin_theta2 - l1*theta1_dot*theta1_dot*x0;
-    const double_pendulum_real x3 = c1*sin_theta1 + c2*theta2_dot*theta2_dot*x0 - m2*x1*x2;
+    const double_pendulum_real x2 = l1*theta1_dot*theta1_dot*x0 - g*sin_theta2;
+    const double_pendulum_real x3 = c1*theta2_dot*theta2_dot*x0 + c2*sin_theta1 + m2*x1*x2;
     const double_pendulum_real x4 = x3/(m1 + m2*x0*x0);
     /* outputs */
     result[0] = theta1_dot*cos_theta1;
@@ -546,12 +590,12 @@ static inline void double_pendulum_rhs_rational(
     result[2] = theta2_dot*cos_theta2;
     result[3] = -theta2_dot*sin_theta2;
     result[4] = -c0*x4;
-    result[5] = -c3*(x2 - x1*x4);
+    result[5] = c3*(x2 + x1*x4);
     (void)t;
 }
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
-   78 operations, 5 of them on parameters alone.
+   77 operations, 5 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void double_pendulum_rhs_variational(
     double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
@@ -574,27 +618,27 @@ static inline void double_pendulum_rhs_variational(
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
     const double_pendulum_real c0 = 1.0/l1;
-    const double_pendulum_real c1 = (m1 + m2)*g;
-    const double_pendulum_real c2 = m2*l2;
+    const double_pendulum_real c1 = m2*l2;
+    const double_pendulum_real c2 = (m1 + m2)*g;
     const double_pendulum_real c3 = 1.0/l2;
     /* intermediate terms */
     const double_pendulum_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
-    const double_pendulum_real x1 = c2*theta2_dot;
+    const double_pendulum_real x1 = c1*theta2_dot;
     const double_pendulum_real x2 = theta2_dot*x1;
     const double_pendulum_real x3 = l1*theta1_dot;
     const double_pendulum_real x4 = theta1_dot*x3;
-    const double_pendulum_real x5 = g*sin_theta2 - x0*x4;
+    const double_pendulum_real x5 = x0*x4 - g*sin_theta2;
     const double_pendulum_real x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
     const double_pendulum_real x7 = m2*x6;
     const double_pendulum_real x8 = m2*x0;
     const double_pendulum_real x9 = m1 + x0*x8;
-    const double_pendulum_real x10 = (c1*sin_theta1 + x0*x2 - x5*x7)/x9;
-    const double_pendulum_real x11 = x5 - x6*x10;
+    const double_pendulum_real x10 = (x0*x2 + c2*sin_theta1 + x5*x7)/x9;
+    const double_pendulum_real x11 = x5 + x6*x10;
     const double_pendulum_real x12 = x6*x2;
     const double_pendulum_real x13 = x11*x8;
     const double_pendulum_real x14 =
-        delta_theta1*(c1*cos_theta1 + x12) + 2.0*x0*delta_theta2_dot*x1 + delta_theta1*x13
-        - x12*delta_theta2 - delta_theta2*x13;
+        delta_theta1*(x12 + c2*cos_theta1) + 2.0*x0*delta_theta2_dot*x1 + delta_theta2*x13
+        - x12*delta_theta2 - delta_theta1*x13;
     const double_pendulum_real x15 = x6*x4;
     const double_pendulum_real x16 = x0*x10;
     const double_pendulum_real x17 =
@@ -607,7 +651,7 @@ static inline void double_pendulum_rhs_variational(
     result[2] = theta2_dot*cos_theta2;
     result[3] = -theta2_dot*sin_theta2;
     result[4] = -c0*x10;
-    result[5] = -c3*x11;
+    result[5] = c3*x11;
     result[6] = delta_theta1_dot;
     result[7] = delta_theta2_dot;
     result[8] = -c0*x18;

@@ -104,12 +104,12 @@ static inline void elastic_pendulum_rhs(
     const elastic_pendulum_real c1 = k*l;
     const elastic_pendulum_real c2 = m*g;
     /* intermediate terms */
-    const elastic_pendulum_real x0 = c1 + c2*cos(theta) + m*theta_dot*theta_dot*r - k*r;
+    const elastic_pendulum_real x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos(theta) - k*r);
     /* outputs */
     result[0] = r_dot;
     result[1] = theta_dot;
     result[2] = c0*x0;
-    result[3] = -(g*sin(theta) + 2.0*r_dot*theta_dot)/r;
+    result[3] = -(2.0*r_dot*theta_dot + g*sin(theta))/r;
     (void)t;
 }
 #endif
@@ -261,7 +261,7 @@ static inline void elastic_pendulum_rhs_hamiltonian(
     /* outputs */
     result[0] = c0*p_r;
     result[1] = x0/r;
-    result[2] = m*x0*x0/r + (c1 + c2*cos(theta) - k*r);
+    result[2] = c1 + c2*cos(theta) - k*r + m*x0*x0/r;
     result[3] = -c2*r*sin(theta);
     (void)t;
 }
@@ -312,7 +312,7 @@ static inline void elastic_pendulum_jacobian_hamiltonian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Hamiltonian H(q, p), the total energy.
+/* Hamiltonian H(q, p): `energy` by momenta.
    23 operations, 4 of them on parameters alone.
    Energy in J. */
 static inline void elastic_pendulum_energy_hamiltonian(
@@ -405,13 +405,13 @@ static inline void elastic_pendulum_rhs_rational(
     const elastic_pendulum_real c1 = k*l;
     const elastic_pendulum_real c2 = m*g;
     /* intermediate terms */
-    const elastic_pendulum_real x0 = c1 + c2*cos_theta + m*theta_dot*theta_dot*r - k*r;
+    const elastic_pendulum_real x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos_theta - k*r);
     /* outputs */
     result[0] = r_dot;
     result[1] = theta_dot*cos_theta;
     result[2] = -theta_dot*sin_theta;
     result[3] = c0*x0;
-    result[4] = -(g*sin_theta + 2.0*r_dot*theta_dot)/r;
+    result[4] = -(2.0*r_dot*theta_dot + g*sin_theta)/r;
     (void)t;
 }
 
@@ -442,7 +442,7 @@ static inline void elastic_pendulum_rhs_variational(
     /* intermediate terms */
     const elastic_pendulum_real x0 = m*theta_dot;
     const elastic_pendulum_real x1 = theta_dot*r;
-    const elastic_pendulum_real x2 = g*sin_theta + 2.0*r_dot*theta_dot;
+    const elastic_pendulum_real x2 = 2.0*r_dot*theta_dot + g*sin_theta;
     const elastic_pendulum_real x3 = r*delta_theta_dot;
     const elastic_pendulum_real x4 =
         delta_r*(k - theta_dot*x0) + c2*sin_theta*delta_theta - 2.0*x0*x3;
@@ -452,7 +452,7 @@ static inline void elastic_pendulum_rhs_variational(
     result[0] = r_dot;
     result[1] = theta_dot*cos_theta;
     result[2] = -theta_dot*sin_theta;
-    result[3] = c0*(c1 + c2*cos_theta + x0*x1 - k*r);
+    result[3] = c0*(x0*x1 + (c1 + c2*cos_theta - k*r));
     result[4] = -x2/r;
     result[5] = delta_r_dot;
     result[6] = delta_theta_dot;

@@ -27,7 +27,7 @@
 
    Parameters params:
        m [kg] > 0, default 1.0: mass of the bob
-       l [m] > 0, default 2.0: length of the rod
+       l [m] > 0, default 2.0: length
        g [m/s^2] real, default 9.81: gravitational acceleration
 
    Masses and their positions:
@@ -132,6 +132,24 @@ static inline void single_pendulum_energy(
 }
 #endif
 
+#ifndef HOLONOMIC_VECTOR
+/* Forces that hold l, by Lagrange's multipliers.
+   6 operations, 0 of them on parameters alone.
+   One for each: a rod's tension, positive where it pulls. */
+static inline void single_pendulum_reactions(
+    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+{
+    /* inputs */
+    const single_pendulum_real theta = state[0];
+    const single_pendulum_real theta_dot = state[1];
+    const single_pendulum_real m = params[0];
+    const single_pendulum_real l = params[1];
+    const single_pendulum_real g = params[2];
+    /* outputs */
+    result[0] = m*(l*theta_dot*theta_dot + g*cos(theta));
+}
+#endif
+
 /* Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
    2 operations, 2 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
@@ -230,7 +248,7 @@ static inline void single_pendulum_jacobian_hamiltonian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Hamiltonian H(q, p), the total energy.
+/* Hamiltonian H(q, p): `energy` by momenta.
    11 operations, 4 of them on parameters alone.
    Energy in J. */
 static inline void single_pendulum_energy_hamiltonian(

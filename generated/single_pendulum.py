@@ -27,7 +27,7 @@ State y of `rhs_variational`: where the motion is, and a small change of it:
 
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
-    l [m] > 0, default 2.0: length of the rod
+    l [m] > 0, default 2.0: length
     g [m/s^2] real, default 9.81: gravitational acceleration
 
 Masses and their positions:
@@ -76,6 +76,7 @@ STATE_VARIATIONAL = (
 PARAMETERS = ("m", "l", "g")
 DEFAULTS = (1.0, 2.0, 9.81)
 POSITIVE = ("m", "l")
+TIMED = ()
 UNITS = {
     "m": "kg",
     "l": "m",
@@ -209,6 +210,41 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     c0 = m*l
     # outputs
     return c0*(0.5*l*theta_dot*theta_dot - g*cos(theta))
+
+
+def reactions(y: Numbers, params: Numbers) -> Vector:
+    """Forces that hold l, by Lagrange's multipliers.
+
+    6 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    y : iterable of 2 floats
+        theta in rad; theta_dot in rad/s.
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        One for each: a rod's tension, positive where it pulls.
+    """
+    # inputs
+    theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    m, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # outputs
+    return (m*(l*theta_dot*theta_dot + g*cos(theta)),)
+
+
+def reactions_many(y: Arrays, params: Arrays) -> Array:
+    """`reactions` over arrays: the result has shape (1, ...)."""
+    from numpy import cos
+
+    # inputs
+    theta, theta_dot = y
+    m, l, g = params
+    # outputs
+    return _stacked((1,), y[0], m*(l*theta_dot*theta_dot + g*cos(theta)))
 
 
 def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
@@ -405,7 +441,7 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
 
 
 def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
-    """Hamiltonian H(q, p), the total energy.
+    """Hamiltonian H(q, p): `energy` by momenta.
 
     11 operations, 4 of them on parameters alone.
 

@@ -26,6 +26,7 @@ usage: holonomic COMMAND [OPTION ...]
 Positions in, motion out: equations of motion derived, verified, generated and integrated.
 
 commands:
+  systems    list the systems that ship, with drawings
   derive     write the generated modules from the systems' positions, or check them
   verify     judge every equation, program and claim of the double-pendulum report
   demo       the whole way on one screen, in about ten seconds
@@ -76,6 +77,12 @@ def _derive(argv: Sequence[str]) -> int:
     from derive.command import main as derive
 
     return derive(argv)
+
+
+def _systems(argv: Sequence[str]) -> int:
+    from derive.listing import main as systems
+
+    return systems(argv)
 
 
 def _verify(argv: Sequence[str]) -> int:
@@ -242,11 +249,31 @@ def _integrated(picture: Path) -> list[str]:
 
 
 def generated_module(name: str) -> ModuleType:
-    """The generated module of this name; raises `LookupError` for an unknown one."""
-    known = sorted(module.name for module in iter_modules(generated.__path__))
-    if name not in known:
-        raise LookupError(f"no such system; known are {', '.join(known)}")
-    return import_module(f"generated.{name}")
+    """The generated module of a system that ships, or one that is generated now.
+
+    Raises
+    ------
+    LookupError
+        When no system is called so; a name that ends in ``.toml`` is a file.
+    ValueError
+        When that file makes no sense.
+    """
+    if name in {module.name for module in iter_modules(generated.__path__)}:
+        return import_module(f"generated.{name}")
+    from derive import Derivation
+    from derive.catalogue import UnknownSystemError
+    from derive.command import system_of, texts
+    from solvers.made import made
+
+    try:
+        system = system_of(name)
+    except UnknownSystemError as error:
+        raise LookupError(str(error)) from error
+    module = made(
+        system.name, repr((repr(system), generator_text())), lambda: texts(Derivation(system))
+    )
+    module.SYSTEM = name  # type: ignore[attr-defined]
+    return module
 
 
 def _package(name: str) -> ModuleType | None:
@@ -278,22 +305,26 @@ def specialiser(module: ModuleType, params: Sequence[float], way: Any) -> Module
     """A module with these parameters folded in, and what a way of integrating needs of it."""
     from solvers.specialised import needed, specialised
 
+    def generator(
+        name: str, values: Mapping[str, float], functions: Sequence[str]
+    ) -> dict[str, str]:
+        from derive import Derivation
+        from derive.command import system_of, texts
+        from derive.specialisation import specialised
+
+        system = system_of(getattr(module, "SYSTEM", name))
+        return texts(Derivation(specialised(system, values)), functions)
+
     functions = needed(way.method, way.form)
-    return specialised(module, params, functions, _generator, generator_text())
+    # the name of a module that was made for a file says what was in it
+    version = module.__name__ + generator_text()
+    return specialised(module, params, functions, generator, version)
 
 
 def generator_text() -> str:
     """All that decides what is generated, systems included, in one text."""
     folder = Path(__file__).parent.parent / "derive"
     return "".join(source.read_text(encoding="utf-8") for source in sorted(folder.rglob("*.py")))
-
-
-def _generator(name: str, values: Mapping[str, float], functions: Sequence[str]) -> dict[str, str]:
-    from derive import Derivation, load
-    from derive.command import texts
-    from derive.specialisation import specialised
-
-    return texts(Derivation(specialised(load(name), values)), functions)
 
 
 def _bench(argv: Sequence[str]) -> int:
@@ -319,6 +350,7 @@ def _bench(argv: Sequence[str]) -> int:
 
 
 COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {
+    "systems": _systems,
     "derive": _derive,
     "verify": _verify,
     "demo": _demo,

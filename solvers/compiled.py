@@ -115,12 +115,16 @@ def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
     taken = 0 if problem.samples is None else sum(map(len, outcome.t))
     rows = batch.rows[0, taken : motion["rows"]]
     times = rows["t"] if problem.samples is None else problem.samples[taken : motion["rows"]]
-    states = batch.form.outside_many(rows["z"], rows["turns"])
+    states = batch.form.outside_many(rows["t"], rows["z"], rows["turns"])
     if len(states) and not outcome.t and times[0] == problem.span[0]:
         states[0] = problem.start  # as it was given, not as sine and cosine give it back
     occurred = [batch.event_rows[0, k, : motion["occurred"][k]] for k in events]
-    places = [list(batch.form.outside_many(rows["z"], rows["turns"])) for rows in occurred]
-    place = batch.form.outside_many(motion["z"][np.newaxis], motion["turns"][np.newaxis])[0]
+    places = [
+        list(batch.form.outside_many(rows["t"], rows["z"], rows["turns"])) for rows in occurred
+    ]
+    place = batch.form.outside_many(
+        motion["t"], motion["z"][np.newaxis], motion["turns"][np.newaxis]
+    )[0]
     outcome.t.append(times.copy())
     outcome.y.append(states)
     for k in events:

@@ -7,12 +7,17 @@ from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import cumulative_simpson
+
+from solvers.timed import evaluated
 
 
-def energy_at_rest(module: ModuleType, params: Sequence[float]) -> float:
-    """Energy of the system at its equilibrium, in J."""
+def energy_at_rest(module: ModuleType, params: Sequence[float]) -> float | None:
+    """Energy of the system at its equilibrium, in J; None where it has none that is known."""
+    if not hasattr(module, "equilibrium"):
+        return None
     place = module.equilibrium(params)
-    return float(module.energy((*place, *[0.0] * len(place)), params))
+    return float(evaluated(module, "energy", 0.0, (*place, *[0.0] * len(place)), params))
 
 
 def energy_error(
@@ -20,7 +25,21 @@ def energy_error(
 ) -> NDArray[np.float64]:
     """How far energies in J are from the first of them, in parts of that one above rest.
 
-    At rest there is nothing to be a part of: then in J.
+    At rest there is nothing to be a part of, nor where no rest is known: then in J.
     """
-    found = np.asarray(energy, dtype=float)
-    return (found - found[0]) / (found[0] - energy_at_rest(module, params) or 1.0)
+    found, rest = np.asarray(energy, dtype=float), energy_at_rest(module, params)
+    return (found - found[0]) / ((found[0] - rest if rest is not None else 0.0) or 1.0)
+
+
+def supplied(
+    module: ModuleType, t: ArrayLike, y: ArrayLike, params: Sequence[float]
+) -> NDArray[np.float64]:
+    """Energy in J that forces, friction and what moves by itself have supplied so far.
+
+    By Simpson's rule over the samples; zeros where nothing does.
+    """
+    times = np.asarray(t, dtype=float)
+    if not hasattr(module, "power"):
+        return np.zeros_like(times)
+    power = evaluated(module, "power_many", times, y, params)
+    return np.asarray(cumulative_simpson(power, x=times, initial=0.0))

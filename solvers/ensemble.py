@@ -159,7 +159,7 @@ def _run_one_by_one(
 def _collect(batch: Batch, result: Ensemble) -> None:
     """What the motions of a batch have found."""
     motions, outside = batch.motions, batch.form.outside_many
-    result.t[:], result.y[:] = motions["t"], outside(motions["z"], motions["turns"])
+    result.t[:], result.y[:] = motions["t"], outside(motions["t"], motions["z"], motions["turns"])
     result.status[:] = np.array(STATUSES, object)[motions["status"]]
     result.status[motions["status"] < STATUSES.index(Status.FINISHED)] = Status.INTERRUPTED
     for name in ("steps", "rejected"):
@@ -167,13 +167,14 @@ def _collect(batch: Batch, result: Ensemble) -> None:
     result.nfev[:] = batch.nfev
     for k in range(result.samples.shape[-1]):
         there = motions["rows"] > k
-        states = outside(batch.rows["z"][:, k], batch.rows["turns"][:, k])
+        rows = batch.rows[:, k]
+        states = outside(rows["t"], rows["z"], rows["turns"])
         result.samples[there, :, k] = states[there]
     result.occurred[:] = motions["occurred"][:, : result.occurred.shape[1]]
     for event, k in np.ndindex(result.t_events.shape[1:]):
         rows, there = batch.event_rows[:, event, k], result.occurred[:, event] > k
         result.t_events[there, event, k] = rows["t"][there]
-        result.y_events[there, event, k] = outside(rows["z"], rows["turns"])[there]
+        result.y_events[there, event, k] = outside(rows["t"], rows["z"], rows["turns"])[there]
 
 
 def _take(found: Outcome, k: int, result: Ensemble) -> None:

@@ -10,7 +10,9 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from solvers.timed import evaluated
 
 Array = NDArray[np.float64]
 
@@ -94,10 +96,10 @@ class Form:
         assert self._jacobian is not None
         return np.array(self._jacobian(t, z, self.params))
 
-    def inside(self, y: Array) -> Array:
-        """The state of this form that belongs to the ordinary state `y`."""
+    def inside(self, t: float, y: Array) -> Array:
+        """The state of this form that belongs to the ordinary state `y` at time `t`."""
         if self.name == "hamiltonian":
-            return np.array(self.module.hamiltonian_state(y, self.params))
+            return np.array(evaluated(self.module, "hamiltonian_state", t, y, self.params))
         return self._regrouped(y[np.newaxis])[0]
 
     def _regrouped(self, y: Array) -> Array:
@@ -115,14 +117,14 @@ class Form:
             z[i : i + 2] /= np.hypot(z[i], z[i + 1])
         return z
 
-    def outside(self, z: Array, before: Array, elapsed: float) -> Array:
-        """The ordinary state of `z`.
+    def outside(self, t: float, z: Array, before: Array, elapsed: float) -> Array:
+        """The ordinary state of `z` at time `t`.
 
         Turns of angles that are known by sine and cosine only are counted from the
         state `before`, `elapsed` seconds ago, with the mean of both velocities.
         """
         if self.name == "hamiltonian":
-            return np.array(self.module.lagrangian_state(z, self.params))
+            return np.array(evaluated(self.module, "lagrangian_state", t, z, self.params))
         y = np.empty_like(before)
         for k, i in self.kept:
             y[k] = z[i]
@@ -133,25 +135,25 @@ class Form:
             y[k] = angle + 2 * np.pi * np.round((expected - angle) / (2 * np.pi))
         return y
 
-    def inside_many(self, y: Array) -> tuple[Array, Array]:
+    def inside_many(self, t: ArrayLike, y: Array) -> tuple[Array, Array]:
         """As `inside`, of states (n, state); and the turns of angles, shape (n, angles)."""
         if self.name == "hamiltonian":
-            return self._many("hamiltonian_state_many", y), np.empty((len(y), 0))
+            return self._many("hamiltonian_state_many", t, y), np.empty((len(y), 0))
         z = self._regrouped(y)
         wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.turning]
         turns = np.reshape(wrapped, (len(self.turning), len(y))).T / (2 * np.pi)
         return z, np.round(turns)
 
-    def _many(self, function: str, states: Array) -> Array:
+    def _many(self, function: str, t: ArrayLike, states: Array) -> Array:
         """A function of the module over states in rows; what is not a number stays so."""
         params = [np.asarray(p, float) for p in self.params]
         with np.errstate(all="ignore"):
-            return np.asarray(getattr(self.module, function)(states.T, params)).T
+            return np.asarray(evaluated(self.module, function, t, states.T, params)).T
 
-    def outside_many(self, z: Array, turns: Array) -> Array:
+    def outside_many(self, t: ArrayLike, z: Array, turns: Array) -> Array:
         """The ordinary states, shape (n, state), of `z` and `turns` as `inside_many` gives them."""
         if self.name == "hamiltonian":
-            return self._many("lagrangian_state_many", z)
+            return self._many("lagrangian_state_many", t, z)
         y = np.empty((len(z), len(self.ordinary)))
         for k, i in self.kept:
             y[:, k] = z[:, i]

@@ -20,6 +20,7 @@ from solvers.horizon import HorizonWarning, horizon
 from solvers.problem import Event, Outcome, Problem
 from solvers.solution import Interrupted, Solution, Status
 from solvers.tableau import Tableau
+from solvers.timed import evaluated
 from solvers.unstable import unstable
 
 Array = NDArray[np.float64]
@@ -171,11 +172,11 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, complaint: str =
         rejected=outcome.rejected,
         run=f"{problem.description}, {outcome.backend}",
         backend=outcome.backend.partition(" ")[0],
-        energy=_energy(form, y) if energy else None,
+        energy=_energy(form, times, y) if energy else None,
         end=outcome.end,
     )
 
 
-def _energy(form: Form, y: Array) -> Array:
+def _energy(form: Form, t: Array, y: Array) -> Array:
     states = y[: len(form.module.STATE)]
-    return np.asarray(form.module.energy_many(states, form.params))
+    return np.asarray(evaluated(form.module, "energy_many", t, states, form.params))

@@ -33,7 +33,7 @@ def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
     record = Record(problem, outcome)
     begin, end = problem.span
     direction = np.sign(end - begin)
-    t, z = begin, form.inside(record.place)
+    t, z = begin, form.inside(begin, record.place)
     if t == end:
         return Status.FINISHED
     try:

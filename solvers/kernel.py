@@ -165,7 +165,7 @@ class Batch:
         self.motions = np.zeros(n, kernel.trajectory)
         self.motions["t"], self.motions["t_end"] = problem.span
         self.motions["shortest"] = SHORTEST * np.spacing(np.abs(problem.span).max())
-        self.motions["z"], self.motions["turns"] = form.inside_many(starts)
+        self.motions["z"], self.motions["turns"] = form.inside_many(problem.span[0], starts)
         for k, parameter in enumerate(form.params):
             self.motions["params"][:, k] = parameter
         self.rows = np.zeros((n, capacity), kernel.row)

@@ -40,16 +40,18 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 ONCE = """\
 enum {{ ORDINARY = {ordinary}, SHORTEST = {shortest} }};
 
-static void enter(const double *y, double *z, double *turns, const double *params)
+static void enter(
+    double t, const double *y, double *z, double *turns, const double *params)
 {{
 {enter}
-    (void)turns; (void)params;
+    (void)t; (void)turns; (void)params;
 }}
 
-static void leave(const double *z, const double *turns, double *y, const double *params)
+static void leave(
+    double t, const double *z, const double *turns, double *y, const double *params)
 {{
 {leave}
-    (void)turns; (void)params;
+    (void)t; (void)turns; (void)params;
 }}
 {once_h}
 """

@@ -72,11 +72,16 @@ def equations(module: ModuleType, form: str) -> Equations:
         enter.append(f"turns[{a}] = nearest_whole((y[{k}] - {wrapped})*(0.5/PI));")
         leave.append(f"y[{k}] = {wrapped} + 2*PI*turns[{a}];")
     if form == "hamiltonian":
-        enter = [f"{place.stem}_hamiltonian_state(y, z, params);"]
-        leave = [f"{place.stem}_lagrangian_state(z, y, params);"]
+        enter = [_converted(module, place.stem, "hamiltonian_state", "y, z")]
+        leave = [_converted(module, place.stem, "lagrangian_state", "z, y")]
     sizes = len(described.state), len(module.PARAMETERS), len(described.ordinary)
     jacobian = rhs.replace("_rhs", "_jacobian")
     return Equations(text, rhs, jacobian, *sizes, described.angles, enter, leave)
+
+
+def _converted(module: ModuleType, stem: str, function: str, states: str) -> str:
+    time = "t, " if function in module.TIMED else ""
+    return f"{stem}_{function}({time}{states}, params);"
 
 
 def native_rhs(

@@ -39,7 +39,7 @@ def run(problem: Problem, outcome: Outcome) -> None:
     implicit = {"jac": jacobian} if takes_jacobian else {}
     try:
         solver = getattr(integrate, str(method))(
-            rhs, begin, form.inside(record.place), end, rtol=problem.rtol, atol=problem.atol,
+            rhs, begin, form.inside(begin, record.place), end, rtol=problem.rtol, atol=problem.atol,
             **implicit,
         )  # fmt: skip
         while solver.status == "running":

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
-import sys
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 from types import ModuleType
 
-from solvers.cache import PASSAGE, cache_folder, is_intact, placed, remove_abandoned, seal
 from solvers.catalogue import load
+from solvers.made import made
 from solvers.request import SCIPY
 
-#: Seconds after which what a killed process left behind is removed.
-ABANDONED = 600.0
 #: What each form needs to be integrated in.
 NEEDED = {
     "lagrangian": ("rhs",),
@@ -55,36 +48,5 @@ def specialised(
     """
     name = module.__name__.rpartition(".")[2]
     values = dict(zip(module.PARAMETERS, map(float, params), strict=True))
-    key = hashlib.sha256(repr((name, values, tuple(functions), version)).encode()).hexdigest()[:32]
-    folder = cache_folder()
-    place = folder / f"module-{key}"
-    if not is_intact(place):
-        _made(folder, place, generator(name, values, functions))
-    return _loaded(place / f"{name}.py", f"holonomic_{name}_{key}")
-
-
-def _made(folder: Path, place: Path, texts: Mapping[str, str]) -> None:
-    remove_abandoned(folder, ABANDONED)
-    with tempfile.TemporaryDirectory(prefix=PASSAGE, dir=folder) as name:
-        ready = Path(name) / "ready"
-        ready.mkdir(mode=0o700)
-        for file, text in texts.items():
-            (ready / file).write_text(text, encoding="utf-8")
-        seal(ready)
-        complaint = placed(ready, place, Path(name))
-    if complaint:
-        raise OSError(complaint)
-
-
-def _loaded(path: Path, name: str) -> ModuleType:
-    spec = spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    writes = sys.dont_write_bytecode
-    sys.dont_write_bytecode = True  # nothing comes beside the files whose digests are known
-    try:
-        spec.loader.exec_module(module)
-    finally:
-        sys.dont_write_bytecode = writes
-    return module
+    key = repr((name, values, tuple(functions), version))
+    return made(name, key, lambda: generator(name, values, functions))

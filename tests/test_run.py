@@ -109,7 +109,7 @@ def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:
     found = answer(scene, specialiser)
     assert found.choice.model.asked.module.PARAMETERS == ()
     assert "def rhs_rational(" in special_code(found).read_text()
-    assert any("specialised code (29 operations instead of 35" in line for line in told(found))
+    assert any("specialised code (29 operations instead of 34" in line for line in told(found))
     plain = answer(replace(scene, code=None), specialiser)
     assert plain.choice.model.asked.module is dp
     assert np.abs(found.y - plain.y).max() < 2 * scene.accuracy

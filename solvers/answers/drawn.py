@@ -13,12 +13,17 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from solvers.answers.answer import Answer, energies
-from solvers.energy import energy_error
+from solvers.energy import energy_error, supplied
 from solvers.pictures import COLOURS, panels
 from solvers.scenes.checks import curves_of
+from solvers.timed import evaluated
 
 GREEK = ("theta", "phi", "psi", "alpha", "beta")
 STYLES = ("-", "--", ":", "-.")
+#: Lengths that differ by less are those of rods.
+RIGID = 1e-6
+#: How far around and from above motions in space are looked at, in rad.
+AROUND, ABOVE = 0.5, 0.45
 #: Energy errors below this are drawn there: a logarithm has no zero.
 LEAST = 1e-17
 #: So many pictures at most stand three in a row, more four.
@@ -107,7 +112,9 @@ def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
         else:
             _curves(panel, picture, answer, first, style, label)
     if picture == "path":
-        panel.set(xlabel="x / m", ylabel="y / m")
+        in_space = places(answers[0]).shape[1] == 3
+        across, upwards = ("to the side", "up, seen from above") if in_space else ("x", "y")
+        panel.set(xlabel=f"{across} / m", ylabel=f"{upwards} / m")
         panel.set_aspect("equal", adjustable="datalim")
         panel.plot(0, 0, "k+", markersize=8)
     elif picture == "energy":
@@ -131,24 +138,69 @@ def _curves(
 
 
 def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str, label: str) -> None:
-    for (x, y), colour in zip(places(answer), colours, strict=False):
+    seen = projected(places(answer))
+    for (x, y), colour in zip(seen, colours, strict=False):
         panel.plot(x, y, style, color=colour, linewidth=0.9, label=label)
         panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
         label = ""
-    ends = places(answer)[:, :, -1]
-    panel.plot(*np.vstack([[0, 0], ends]).T, color="#bbbbbb", linewidth=1.5, zorder=0)
+    for a, b in links(answer):
+        ends = [np.zeros(2) if k < 0 else seen[k, :, -1] for k in (a, b)]
+        panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)
 
 
 def places(answer: Answer) -> np.ndarray:
-    """Positions in m of the masses that there are, shape (masses, 2, samples)."""
-    found = np.asarray(answer.scene.module.positions_many(answer.y, answer.scene.params))
+    """Positions in m of the masses that there are, shape (masses, axes, samples)."""
+    found = np.asarray(
+        evaluated(answer.scene.module, "positions_many", answer.t, answer.y, answer.scene.params)
+    )
     return found[np.isfinite(found).all(axis=(1, 2))]
+
+
+def projected(positions: np.ndarray) -> np.ndarray:
+    """Positions of shape (masses, axes, samples) as they are seen: in the plane as they are.
+
+    In space from above and from the side, without perspective.
+    """
+    if positions.shape[1] == 2:
+        return positions
+    x, y, z = np.moveaxis(positions, 1, 0)
+    depth = np.cos(AROUND) * y - np.sin(AROUND) * x
+    right = np.cos(AROUND) * x + np.sin(AROUND) * y
+    return np.stack([right, np.cos(ABOVE) * z + np.sin(ABOVE) * depth], axis=1)
+
+
+def links(answer: Answer) -> list[tuple[int, int]]:
+    """Which masses are joined, by their numbers; -1 is the origin.
+
+    Neighbours that keep their distance are, and a single mass whose distance from the origin
+    is a coordinate.
+    """
+    positions, joined = places(answer), []
+    before = np.zeros(positions.shape[1:])
+    for k, place in enumerate(positions):
+        if is_rigid(before, place):
+            joined.append((k - 1, k))
+        before = place
+    if len(positions) == 1 and not joined:
+        length = np.linalg.norm(positions[0], axis=0)
+        coordinates = answer.y[: len(answer.y) // 2]
+        if any(np.allclose(length, coordinate, rtol=RIGID) for coordinate in coordinates):
+            joined.append((-1, 0))
+    return joined
+
+
+def is_rigid(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two masses keep their distance; positions have the shape (axes, samples)."""
+    length = np.linalg.norm(other - one, axis=0)
+    return bool(np.ptp(length) <= RIGID * length.max())
 
 
 def energy_errors(answer: Answer) -> np.ndarray:
     """Energy errors in parts of the energy above rest, shape (samples,)."""
     scene = answer.scene
-    return energy_error(scene.module, scene.params, energies(scene, answer.y))
+    kept = energies(scene, answer.t, answer.y)
+    kept -= supplied(scene.module, answer.t, answer.y, scene.params)
+    return energy_error(scene.module, scene.params, kept)
 
 
 def symbol(name: str) -> str:

@@ -22,12 +22,12 @@ int64_t once(Task *task, double t0, double t1, const double *y0, double *y1)
         place->t = t0;
         motion->t_end = t1;
         motion->shortest = SHORTEST*(nextafter(largest, INFINITY) - largest);
-        enter(y0, place->z, place->turns, motion->params);
+        enter(t0, y0, place->z, place->turns, motion->params);
         trajectory->status = WAITING;
         trajectory->rows = 0;
     }
     task->next = 0;
     run(task);
-    leave(place->z, place->turns, y1, motion->params);
+    leave(place->t, place->z, place->turns, y1, motion->params);
     return trajectory->status;
 }

@@ -12,7 +12,15 @@ from typing import Any
 import numpy as np
 
 from solvers.answers.answer import Answer, Specialiser, answer
-from solvers.answers.drawn import drawn, energy_errors, places, sureness
+from solvers.answers.drawn import (
+    drawn,
+    energy_errors,
+    is_rigid,
+    links,
+    places,
+    projected,
+    sureness,
+)
 from solvers.answers.told import figures, special_code, table, told
 from solvers.commands.options import options
 from solvers.jsonable import jsonable
@@ -22,9 +30,6 @@ from solvers.pictures import save
 from solvers.progress import Progress
 from solvers.scenes.scene import Scene
 from solvers.written import written
-
-#: Lengths that differ by less are those of rods.
-RIGID = 1e-6
 
 
 def main(argv: Sequence[str], module: Callable[[str], ModuleType], specialiser: Specialiser) -> int:
@@ -88,15 +93,14 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
 
 
 def track(answer: Answer) -> Track:
-    """What the page plays: masses in a chain, joined by rods or, where lengths change, springs."""
+    """What the page plays: masses, joined by rods or, where lengths change, springs."""
     positions = places(answer)
     rods: list[tuple[int, int]] = []
     springs: list[tuple[int, int]] = []
-    before = np.zeros((2, len(answer.t)))
-    for k, place in enumerate(positions):
-        length = np.hypot(*(place - before))
-        (rods if np.ptp(length) <= RIGID * length.max() else springs).append((k - 1, k))
-        before = place
+    for a, b in links(answer):
+        start = positions[a] if a >= 0 else np.zeros_like(positions[b])
+        (rods if is_rigid(start, positions[b]) else springs).append((a, b))
     return Track(
-        answer.scene.label, answer.t, positions, tuple(rods), tuple(springs), energy_errors(answer)
-    )
+        answer.scene.label, answer.t, projected(positions), tuple(rods), tuple(springs),
+        energy_errors(answer),
+    )  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from types import ModuleType
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from solvers.models.rest import rest
 from solvers.models.small import small
 from solvers.models.way import SERIES, Way, cheapest, usual_form
 from solvers.scenes.scene import Scene
+from solvers.timed import depends_on_time
 
 #: Errors above this say nothing any more.
 USELESS = 1e3
@@ -72,10 +74,15 @@ def choice(
     asked = asked_of(scene)
     declined: dict[str, str] = {}
     if scene.model in RUNGS:
+        if obstacle := _obstacle(scene.module, scene.model):
+            raise OutsideDomainError(obstacle)
         with np.errstate(all="ignore"):
             return Choice(RUNGS[scene.model](asked), {})
     if not scene.is_fixed:
         for name, rung in RUNGS.items():
+            if obstacle := _obstacle(scene.module, name):
+                declined[name] = obstacle
+                continue
             tell(name)
             try:
                 with np.errstate(all="ignore"):
@@ -106,6 +113,17 @@ def choice(
     form = usual_form(scene.module, SERIES)
     way = Way(SERIES, form, "the motion loses more digits than ordinary numbers have")
     return Choice(series(asked, scene.accuracy, way, scene.times), declined)
+
+
+def _obstacle(module: ModuleType, rung: str) -> str:
+    """Why a rung says nothing about a system, whatever its motion; empty if it may."""
+    if depends_on_time(module):
+        return "the equations depend on time"
+    if hasattr(module, "power") and rung != "rest":
+        return "energy is not kept"
+    if not hasattr(module, "linear") and rung != "rest":
+        return "small motions are not those of masses and springs"
+    return ""
 
 
 def asked_of(scene: Scene) -> Asked:

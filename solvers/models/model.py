@@ -11,6 +11,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.timed import evaluated
+
 Array = NDArray[np.float64]
 
 #: Relative rounding of a number.
@@ -57,7 +59,11 @@ class Asked:
         """Coordinates that move mass; others are there in name only, where something is absent."""
         n = self.coordinates
         places = np.random.default_rng(0).uniform(0.1, 3.0, (n, 8))
-        row = np.abs(self.module.mass_matrix_many(np.vstack([places, places]), self.params))
+        row = np.abs(
+            evaluated(
+                self.module, "mass_matrix_many", 0.0, np.vstack([places, places]), self.params
+            )
+        )
         return tuple(k for k in range(n) if row[k].max() > 0)
 
     def require_mass(self) -> None:

@@ -15,6 +15,7 @@ from solvers.catalogue import UnknownMethodError, load
 from solvers.forms import FORMS, has_form
 from solvers.request import SCIPY
 from solvers.scenes.quantity import shown
+from solvers.timed import evaluated
 
 #: Samples that fit into memory, and the finest accuracy.
 MOST_SAMPLES, FINEST = 1_000_001, 1e-13
@@ -43,7 +44,7 @@ def check_masses(module: ModuleType, params: Sequence[float], y0: Sequence[float
     n = len(module.COORDINATES)
     worst, weakest = 0.0, ""
     for place in (y0, [y0[0]] * n + [0.0] * n):  # where it begins; and all aligned
-        M = np.array(module.mass_matrix(place, params))
+        M = np.array(evaluated(module, "mass_matrix", 0.0, place, params))
         if not np.isfinite(M).all():
             raise ValueError("the mass matrix is not finite: numbers are too large")
         alive = np.flatnonzero(np.diag(M))

@@ -1,0 +1,107 @@
+"""What a system is made of: coordinates, parameters, and what has inertia."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import sympy as sp
+
+
+class SystemDefinitionError(ValueError):
+    """A system that cannot be derived; the message says which part and what is allowed."""
+
+
+def formula(value: sp.Expr | float) -> sp.Expr:
+    """A SymPy expression as it is, a Python number as the fraction that its digits say.
+
+    Raises
+    ------
+    SystemDefinitionError
+        For anything else, text above all: SymPy would execute it.
+    """
+    if isinstance(value, sp.Expr):
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        try:
+            return sp.Rational(str(value))
+        except (TypeError, ValueError):
+            pass
+    raise SystemDefinitionError(
+        f"{str(value)[:50]!r} is no formula: use numbers and SymPy expressions"
+    )
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A generalized coordinate: its symbol, its unit and what it measures."""
+
+    symbol: sp.Symbol
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A constant of the system: its symbol, unit, default value and meaning.
+
+    A symbol declared positive (``Symbol("l", positive=True)``) takes positive values only.
+    """
+
+    symbol: sp.Symbol
+    unit: str
+    default: float
+    meaning: str
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A mass and its position, two or three Cartesian components (the last one points up)."""
+
+    mass: sp.Expr
+    position: tuple[sp.Expr, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mass", formula(self.mass))
+        object.__setattr__(self, "position", tuple(map(formula, self.position)))
+
+    @property
+    def motions(self) -> tuple[tuple[sp.Expr, tuple[sp.Expr, ...]], ...]:
+        """What moves, each with its inertia: half the inertia times its rate² is energy."""
+        return ((self.mass, self.position),)
+
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> PointMass:
+        """The same with every expression replaced by what `function` makes of it."""
+        return PointMass(function(self.mass), tuple(map(function, self.position)))
+
+
+@dataclass(frozen=True)
+class RigidBody(PointMass):
+    """A rigid body in the plane: mass, centre of mass (x, up), moment of inertia, orientation.
+
+    The moment of inertia is about the centre of mass, m l²/12 for a uniform bar; the angle
+    is any one that turns with the body.
+    """
+
+    inertia: sp.Expr
+    angle: sp.Expr
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "inertia", formula(self.inertia))
+        object.__setattr__(self, "angle", formula(self.angle))
+        if len(self.position) != 2:
+            raise SystemDefinitionError(
+                f"the body of mass {self.mass} has a position of {len(self.position)} components: "
+                "rigid bodies move in the plane, with two (x, up)"
+            )
+
+    @property
+    def motions(self) -> tuple[tuple[sp.Expr, tuple[sp.Expr, ...]], ...]:
+        """The centre of mass, and the orientation."""
+        return ((self.mass, self.position), (self.inertia, (self.angle,)))
+
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> RigidBody:
+        """The same with every expression replaced by what `function` makes of it."""
+        mass, position = function(self.mass), tuple(map(function, self.position))
+        return RigidBody(mass, position, function(self.inertia), function(self.angle))

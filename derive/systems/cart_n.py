@@ -1,0 +1,24 @@
+r"""A cart on a rail, and N point masses on rigid massless rods below it, one below the other.
+
+    ─┤ m0 ├─── x       Wikipedia, Inverted pendulum, for n = 1
+        \ l1
+         o m1 …
+"""
+from sympy import Symbol, cos, sin, symbols
+
+from derive import Coordinate, Parameter, PointMass, System
+
+
+def system(n: int) -> System:
+    x, g, m0 = Symbol("x", real=True), Symbol("g", real=True), Symbol("m0", positive=True)
+    q = symbols(f"theta1:{n + 1}", real=True)
+    m, l = (symbols(f"{letter}1:{n + 1}", positive=True) for letter in "ml")
+    xs, ys = [x, *(a * sin(b) for a, b in zip(l, q))], [-a * cos(b) for a, b in zip(l, q)]
+    return System(
+        name=f"cart_{n}", title=f"Cart on a rail with a chain of {n} pendulums",
+        coordinates=[Coordinate(x, "m", "place of the cart"),
+                     *(Coordinate(s, "rad", "angle of a rod from hanging") for s in q)],
+        parameters=[Parameter(s, "kg", 1.0, "mass") for s in (m0, *m)]
+        + [Parameter(s, "m", 1.0, "length of a rod") for s in l]
+        + [Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
+        masses=[PointMass(s, (sum(xs[:k + 1]), sum(ys[:k]))) for k, s in enumerate((m0, *m))])

@@ -1,0 +1,23 @@
+r"""A pendulum whose pivot is shaken up and down: P. L. Kapitza's, which can stand upright.
+
+    ↕ a cos(Ω t)      L. D. Landau, E. M. Lifshitz, Mechanics, § 5, problem 3c; § 30, problem 1
+    +
+     \ l
+      o m
+"""
+from sympy import cos, sin, symbols
+
+from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
+
+theta, a, Omega, c, g = symbols("theta a Omega c g", real=True)
+m, l = symbols("m l", positive=True)
+system = System(
+    name="driven_pendulum",
+    title="Driven pendulum: its pivot is shaken up and down, and its joint has friction",
+    coordinates=[Coordinate(theta, "rad", "angle of the rod from the downward vertical")],
+    parameters=[Parameter(m, "kg", 1.0, "mass of the bob"), Parameter(l, "m", 1.0, "length"),
+                Parameter(a, "m", 0.1, "amplitude"), Parameter(Omega, "rad/s", 100.0, "frequency"),
+                Parameter(c, "N m s", 0.0, "friction"), Parameter(g, "m/s^2", 9.81, "gravity")],
+    masses=[PointMass(m, (l * sin(theta), a * cos(Omega * TIME) - l * cos(theta)))],
+    dissipation=c * velocity(theta)**2 / 2,
+)

@@ -1,0 +1,232 @@
+"""Every system of the catalogue, at generic states, against mechanics without Lagrange.
+
+The oracle is d'Alembert's principle: along a path q(t) with the accelerations of the generated
+module, Σ m r̈·∂r/∂q + ∂V/∂q is the applied force, with every derivative taken numerically of
+positions, in 50 digits.
+"""
+
+import inspect
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from types import ModuleType
+
+import numpy as np
+import pytest
+import sympy as sp
+from mpmath import diff, fdot, mp, mpf, workdps
+from numpy.testing import assert_allclose
+
+from derive import TIME, System, load, names
+from derive.catalogue import drawing
+from solvers.forms import Form, has_form
+from solvers.timed import evaluated
+
+Case = tuple[float, list[float], list[float]]
+
+
+@pytest.fixture(params=names())
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture
+def module(name: str) -> ModuleType:
+    return import_module(f"generated.{name}")
+
+
+@pytest.fixture
+def system(name: str) -> System:
+    return load(name)
+
+
+def cases(module: ModuleType) -> list[Case]:
+    """Times, states and parameters at which nothing vanishes and every root is real."""
+    random = np.random.default_rng(7)
+    found = []
+    for _ in range(6):
+        y = random.uniform(0.2, 0.9, len(module.STATE)) * random.choice([-1, 1], len(module.STATE))
+        params = random.uniform(1.5, 2.5, len(module.PARAMETERS))
+        for k, coordinate in enumerate(module.COORDINATES):
+            if coordinate == "r":
+                y[k] = abs(y[k]) + 0.5
+        found.append((float(random.uniform(0.1, 2)), y.tolist(), params.tolist()))
+    return found
+
+
+class Alembert:
+    """Forces that a system needs to move as it is told, from its positions alone."""
+
+    def __init__(self, system: System) -> None:
+        self.held = list(system.reactions)
+        self.moving = (*system.q, *self.held)
+        free = [s for s in system.params if s not in self.held]
+        symbols = (TIME, *self.moving, *free)
+        compiled = partial(sp.lambdify, modules="mpmath")
+        self.places = [
+            (compiled(free, inertia), compiled(symbols, r))
+            for mass in system.masses
+            for inertia, place in mass.motions
+            for r in place
+        ]
+        self.potential = compiled(symbols, system.potential_energy)
+        self.applied = compiled((TIME, *system.q, *system.qdot, *system.params), system.applied)
+        self.system = system
+        self.free = free
+
+    def forces(self, t: mpf, q: list[mpf], v: list[mpf], a: list[mpf], values: dict) -> list[mpf]:
+        """Σ m r̈·∂r/∂q + ∂V/∂q along every coordinate, then along every length that is held."""
+        there = [*q, *(values[s] for s in self.held)]
+        free = [values[s] for s in self.free]
+
+        def path(s: mpf) -> list[mpf]:
+            moved = [x + y * s + z * s**2 / 2 for x, y, z in zip(q, v, a, strict=True)]
+            return [t + s, *moved, *there[len(q) :], *free]
+
+        def along(function: Callable[..., mpf], k: int) -> mpf:
+            def shifted(s: mpf) -> mpf:
+                place = [*there]
+                place[k] += s
+                return function(t, *place, *free)
+
+            return diff(shifted, 0)
+
+        return [
+            along(self.potential, k)
+            + fdot(
+                (inertia(*free) * diff(lambda s, r=r: r(*path(s)), 0, 2), along(r, k))
+                for inertia, r in self.places
+            )
+            for k in range(len(there))
+        ]
+
+
+def test_the_motion_is_that_of_d_alembert_and_reactions_hold_what_is_held(
+    system: System, module: ModuleType
+) -> None:
+    alembert, n = Alembert(system), len(system.q)
+    for t, y, params in cases(module)[:2]:
+        rates = module.rhs(t, y, params)
+        with workdps(50):
+            values = dict(zip(system.params, map(mpf, params), strict=True))
+            q, v, a = ([mpf(x) for x in part] for part in (y[:n], y[n:], rates[n:]))
+            needed = alembert.forces(mpf(t), q, v, a, values)
+            applied = [*alembert.applied(t, *q, *v, *values.values())]
+            scale = max(1, *(abs(x) for x in (*needed, *rates)))
+            for force, given in zip(needed[:n], applied, strict=True):
+                assert abs(force - given) < 1e-11 * scale
+            a[0] += mpf("1e-6")
+            wrong = alembert.forces(mpf(t), q, v, a, values)
+            assert abs(wrong[0] - applied[0]) > 1e-9
+        if system.reactions:
+            found = evaluated(module, "reactions", t, y, params)
+            for force, reaction in zip(needed[n:], found, strict=True):
+                assert abs(force + mpf(reaction)) < 1e-11 * scale
+
+
+def turned(
+    module: ModuleType, function: str, t: float, y: list[float], rates: np.ndarray,
+    params: list[float],
+) -> np.ndarray:  # fmt: skip
+    """The rate of a function of time and state along `rates`, by a complex step."""
+    moved = np.array(y) + 1e-30j * np.array(rates)
+    found = evaluated(module, f"{function}_many", t + 1e-30j, moved, params)
+    return np.asarray(found).imag / 1e-30
+
+
+def test_energy_changes_by_what_forces_and_drives_supply_and_else_not_at_all(
+    module: ModuleType,
+) -> None:
+    for t, y, params in cases(module):
+        rates = module.rhs(t, y, params)
+        change = turned(module, "energy", t, y, rates, params)
+        parts = [turned(module, "energy", t, y, e * rates, params) for e in np.eye(len(y))]
+        scale = np.abs(parts).max()
+        power = evaluated(module, "power", t, y, params) if hasattr(module, "power") else 0.0
+        assert abs(change - power) < 1e-12 * scale
+        if power:
+            assert abs(change) > 1e-6 * scale
+
+
+def test_hamilton_s_form_is_the_same_motion(module: ModuleType) -> None:
+    for t, y, params in cases(module):
+        z = evaluated(module, "hamiltonian_state", t, y, params)
+        rates = turned(module, "hamiltonian_state", t, y, module.rhs(t, y, params), params)
+        assert_allclose(module.rhs_hamiltonian(t, z, params), rates, rtol=1e-9, atol=1e-10)
+        assert_allclose(evaluated(module, "lagrangian_state", t, z, params), y, rtol=1e-11)
+        energies = (
+            evaluated(module, "energy", t, y, params),
+            evaluated(module, "energy_hamiltonian", t, z, params),
+        )
+        assert energies[0] == pytest.approx(energies[1], rel=1e-11)
+
+
+@pytest.mark.parametrize("form", ["", "_hamiltonian"])
+def test_jacobians_are_derivatives(module: ModuleType, form: str) -> None:
+    for t, y, params in cases(module):
+        z = y if not form else evaluated(module, "hamiltonian_state", t, y, params)
+        steps = np.array(z)[:, None] + 1e-30j * np.eye(len(z))
+        expected = getattr(module, f"rhs{form}_many")(t, steps, params).imag / 1e-30
+        found = getattr(module, f"jacobian{form}")(t, z, params)
+        assert_allclose(found, expected, rtol=1e-8, atol=1e-10 * np.abs(expected).max())
+
+
+def test_other_forms_are_the_same_motion(module: ModuleType) -> None:
+    n = len(module.COORDINATES)
+    for t, y, params in cases(module):
+        change = np.arange(1.0, 2 * n + 1)
+        direction = module.rhs_many(t, np.array(y) + 1e-30j * change, params).imag / 1e-30
+        form = Form(module, "variational", params)
+        rates = form.rhs(t, form.inside(t, np.array([*y, *change])))
+        assert_allclose(rates[-2 * n :], direction, rtol=1e-8, atol=1e-9)
+        if has_form(module, "rational"):
+            rational = Form(module, "rational", params)
+            rates = rational.rhs(t, rational.inside(t, np.array(y)))
+            assert_allclose(rates[-n:], module.rhs(t, y, params)[n:], rtol=1e-9, atol=1e-10)
+
+
+def test_what_is_at_rest_stays_there_and_moves_about_it_as_its_matrices_say(
+    module: ModuleType,
+) -> None:
+    if not hasattr(module, "equilibrium"):
+        assert not hasattr(module, "linear")
+        return
+    for t, _, params in cases(module):
+        place = module.equilibrium(params)
+        n = len(place)
+        if not np.linalg.det(evaluated(module, "mass_matrix", t, [*place, *[0.0] * n], params)):
+            continue  # where no force acts, but the coordinates fail, as on top of a sphere
+        still = [*place, *[0.0] * n]
+        assert np.abs(module.rhs(t, still, params)).max() < 1e-12
+        if hasattr(module, "linear"):
+            M, K = np.array(module.linear(params))
+            pulled = np.array(module.jacobian(t, still, params))[n:, :n]
+            assert_allclose(pulled, -np.linalg.solve(M, K), rtol=1e-10, atol=1e-11)
+
+
+def test_arrays_give_what_single_states_give(module: ModuleType) -> None:
+    for name in [key.removesuffix("_many") for key in vars(module) if key.endswith("_many")]:
+        one, many = getattr(module, name), getattr(module, f"{name}_many")
+        takes = inspect.signature(one).parameters
+        for t, y, params in cases(module)[:2]:
+            state = y
+            if name in ("rhs_rational", "rhs_variational"):
+                form = Form(module, name.removeprefix("rhs_"), params)
+                state = form.inside(t, np.resize(y, len(form.ordinary))).tolist()
+            given = {"t": t, "y": state, "params": params}
+            alone = np.array(one(*(given[key] for key in takes)))
+            given = {"t": np.full(3, t), "y": np.tile(np.array(state)[:, None], 3),
+                     "params": np.tile(np.array(params).reshape(-1, 1), 3)}  # fmt: skip
+            together = many(*(given[key] for key in takes))
+            if "y" not in takes and not params:
+                continue  # nothing has more than one value
+            assert together.shape == (*alone.shape, 3)
+            assert_allclose(together[..., 1], alone, rtol=1e-10, atol=1e-12)
+
+
+def test_a_system_is_one_short_file_with_a_drawing_and_its_source(name: str) -> None:
+    text = drawing(name)
+    lines = text.splitlines()
+    assert len(lines) >= 5
+    assert any(character in text for character in "|/\\")
+    assert mp.dps == 15  # whatever precision a test took, it gave back

@@ -1,0 +1,213 @@
+"""Systems as TOML files: what they say, and what is refused, at once and without executing it."""
+
+from pathlib import Path
+from time import perf_counter
+
+import pytest
+import sympy as sp
+
+from derive import Coordinate, Derivation, Parameter, PointMass, RigidBody, System, load
+from derive.command import main
+from derive.parts import SystemDefinitionError
+from derive.system_file import read_system
+from solvers.answers.answer import answer
+from solvers.cli import generated_module, specialiser
+from solvers.scenes.shipped import find
+
+BEAD = """
+title = "Bead on a parabola that is shaken"
+potential = "m*g*height"
+dissipation = "c*x_dot**2/2"
+
+[coordinates]
+x = { unit = "m", meaning = "horizontal place of the bead" }
+
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = "1/2", unit = "1/m" }
+c = { value = 0.1, unit = "N s/m" }
+a = { value = 0.2, unit = "m", positive = false }
+Omega = { value = 3, unit = "rad/s" }
+g = { value = 9.81, unit = "m/s^2" }
+
+[definitions]
+height = "k*x**2 + a*cos(Omega*t)"
+
+[[masses]]
+mass = "m"
+position = ["x", "height"]
+"""
+PENDULUM = """
+[coordinates]
+theta = {}
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 1.5, unit = "m" }
+g = { value = "981/100", unit = "m/s^2" }
+[[masses]]
+mass = "m"
+position = ["l*sin(theta)", "-l*cos(theta)"]
+"""
+
+
+def written(folder: Path, text: str, name: str = "mine") -> Path:
+    path = folder / f"{name}.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_file_and_python_say_the_same(tmp_path: Path) -> None:
+    found = read_system(written(tmp_path, PENDULUM, "pendulum"))
+    shipped = load("single_pendulum")
+    assert found.name == "pendulum"
+    assert [p.default for p in found.parameters] == [2.0, 1.5, 9.81]
+    assert Derivation(found).euler_lagrange == Derivation(shipped).euler_lagrange
+
+
+def test_all_that_python_can_say_a_file_can(tmp_path: Path) -> None:
+    text = """
+    gravity = ["g*sin(alpha)", "-g*cos(alpha)"]
+    potential = "k*(s - s0)**2/2"
+    reactions = ["R"]
+    equilibrium = { s = "s0 + m*g*sin(alpha)/k" }
+    [coordinates]
+    s = { unit = "m", meaning = "way down the slope" }
+    [parameters]
+    m = { value = 2, unit = "kg" }
+    R = { value = 0.1, unit = "m" }
+    k = { value = 50, unit = "N/m", positive = true }
+    s0 = { value = 0.5, unit = "m" }
+    alpha = { value = "pi/6", unit = "rad" }
+    g = { value = 9.81, unit = "m/s^2" }
+    [[masses]]
+    mass = "m"
+    position = ["s", "R"]
+    inertia = "m*R**2/2"
+    angle = "s/R"
+    """
+    found = read_system(written(tmp_path, text))
+    m, R, k, s0, alpha, g = found.params
+    (s,) = found.q
+    expected = System(
+        name="mine", title="mine", coordinates=[Coordinate(s, "m", "way down the slope")],
+        parameters=[
+            Parameter(m, "kg", 2.0, "m"), Parameter(R, "m", 0.1, "R"),
+            Parameter(k, "N/m", 50.0, "k"), Parameter(s0, "m", 0.5, "s0"),
+            Parameter(alpha, "rad", float(sp.pi / 6), "alpha"),
+            Parameter(g, "m/s^2", 9.81, "g"),
+        ],
+        masses=[RigidBody(m, (s, R), m * R**2 / 2, s / R)], potential=k * (s - s0) ** 2 / 2,
+        gravity=(g * sp.sin(alpha), -g * sp.cos(alpha)), reactions=[R],
+        equilibrium=[s0 + m * g * sp.sin(alpha) / k],
+    )  # fmt: skip
+    assert found == expected
+    # a rolling cylinder: (3/2) m s̈ = m g sin α - k (s - s₀)
+    derivation = Derivation(found)
+    assert derivation.mass_matrix[0] == sp.Rational(3, 2) * m
+    assert sp.expand(derivation.forcing[0] - m * g * sp.sin(alpha) + k * (s - s0)) == 0
+
+
+def test_a_file_becomes_a_module_and_is_checked_like_the_rest(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = written(tmp_path, BEAD, "bead")
+    output = ["--output", str(tmp_path / "out")]
+    assert main([str(path)]) == 2
+    assert "say where to write its module, with --output DIR" in capsys.readouterr().err
+    assert main([str(path), *output]) == 0
+    assert main(["--check", str(path), *output]) == 0
+    module = tmp_path / "out" / "bead.py"
+    module.write_text(module.read_text().replace("2.0*k", "3.0*k"))
+    capsys.readouterr()
+    assert main(["--check", str(path), *output]) == 1
+    assert f"holonomic derive {path} --output" in capsys.readouterr().out
+
+
+def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
+    written(tmp_path, BEAD, "bead")
+    text = 'system = "bead.toml"\nduration = 5\naccuracy = 1e-7\n[initial]\nx = "50 cm"\n'
+    scene = find(str(written(tmp_path, text, "scene")), generated_module)
+    found = answer(scene)
+    assert found.is_met
+    assert found.choice.declined["rest"] == "the equations depend on time"
+    special = answer(
+        find(str(written(tmp_path, 'code = "specialised"\n' + text, "special")), generated_module),
+        specialiser,
+    )
+    assert special.choice.model.asked.module.PARAMETERS == ()
+    assert abs(special.y - found.y).max() < 2e-7
+    # a file that changes is another system
+    written(tmp_path, BEAD.replace("value = 0.2", "value = 0.4"), "bead")
+    other = answer(find(str(tmp_path / "scene.toml"), generated_module))
+    assert abs(other.y - found.y).max() > 1e-2
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    (('"m*g*height"', '"__import__(\'os\').system(\'touch hacked\')"'), "is not allowed"),
+    (('"m*g*height"', '"m.g"'), "is not allowed in a formula"),
+    (('"m*g*height"', '"(lambda: 1)()"'), "is not allowed"),
+    (('"m*g*height"', '"9**9**9"'), "only numbers up to 100"),
+    (('"m*g*height"', '"m*g^2"'), r"write powers with \*\*, not \^"),
+    (('"m*g*height"', '"m*g*hight"'), "unknown name 'hight' .did you mean 'height'"),
+    (('"m*g*height"', '"m*g*x_dot"'), "the potential names unknown symbols: x_dot"),
+    (('"m*g*height"', "true"), "must be a text in quotes"),
+    (('"m*g*height"', '"' + "(" * 9000 + "m" + ")" * 9000 + '"'), "cannot read|nested too deeply"),
+    (("potential", "potentail"), "unknown key 'potentail' in .*did you mean 'potential'"),
+    (("Omega = {", '"os;rm" = {'), "'os;rm' cannot be a name"),
+    (("Omega = {", "volatile = {"), "'volatile' cannot be a name"),
+    (("value = 1, unit", "value = -1, unit"), "parameters.m = -1.0 must be a positive number"),
+    (("value = 1, unit", "valu = 1, unit"), "unknown key 'valu' in parameters.m"),
+    (("value = 1, unit", "value = inf, unit"), "parameters.m"),
+    (("value = 1, unit", "value = true, unit"), "must be a text in quotes"),
+    (("height = ", "x = "), "definitions.x: that name is taken"),
+    (('"x", "height"', '"x"'), "1 components"),
+    (('["x", "height"]', '"x"'), "must be a list"),
+    (("[[masses]]", "[masses]"), "must be tables: write .*masses"),
+    (("title", "title = [[["), "is no TOML file"),
+])  # fmt: skip
+def test_what_is_no_system_is_refused_at_once(
+    change: tuple[str, str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = written(tmp_path, BEAD.replace(*change))
+    begun = perf_counter()
+    with pytest.raises(SystemDefinitionError, match=words) as refusal:
+        read_system(path)
+    assert str(refusal.value).startswith(str(path))
+    assert perf_counter() - begun < 5
+    assert [p.name for p in tmp_path.iterdir()] == ["mine.toml"]
+
+
+def test_files_that_are_too_large_or_not_there_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = written(tmp_path, "# " + "x" * 600_000)
+    assert main([str(path), "--output", str(tmp_path)]) == 2
+    assert "more than 500000 bytes" in capsys.readouterr().err
+    assert main([str(tmp_path / "none.toml"), "--output", str(tmp_path)]) == 2
+    assert "none.toml cannot be read: No such file" in capsys.readouterr().err
+
+
+def test_forces_drives_and_reactions_are_refused_where_they_make_no_sense() -> None:
+    x, y, F = sp.symbols("x y F", real=True)
+    m = sp.Symbol("m", positive=True)
+
+    def system(**changes: object) -> System:
+        parts = {
+            "name": "thing", "title": "", "coordinates": [Coordinate(x, "m", "")],
+            "parameters": [Parameter(m, "kg", 1.0, ""), Parameter(F, "N", 1.0, "")],
+            "masses": [PointMass(m, (x, x**2))], "potential": 0,
+        }  # fmt: skip
+        return System(**(parts | changes))  # type: ignore[arg-type]
+
+    for changes, words in (
+        ({"forces": (F, F)}, "forces of system 'thing' has 2 components: give 1"),
+        ({"forces": (y,)}, "the list of forces names unknown symbols: y"),
+        ({"gravity": (0, 0, -1)}, "gravity of system 'thing' has 3 components: give 2"),
+        ({"reactions": (F,), "forces": (F,)}, "asks for reactions beside forces"),
+        ({"reactions": (y,)}, "the list of reactions names unknown symbols: y"),
+    ):
+        with pytest.raises(SystemDefinitionError, match=words):
+            system(**changes)
+    with pytest.raises(SystemDefinitionError, match="rigid bodies move in the plane"):
+        RigidBody(m, (x, x, x), m, x)
