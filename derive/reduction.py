@@ -21,8 +21,8 @@ def reduced(expression: sp.Expr) -> sp.Expr:
     """The form of `expression` with the fewest operations, of those described above."""
     if not expression.has(sp.sin, sp.cos):
         return expression
-    harmonics = _harmonics(expression)
-    candidates = [harmonics, expression, *(_halved(harmonics, f) for f in (_by_sine, _by_cosine))]
+    waves = harmonics(expression)
+    candidates = [waves, expression, *(_halved(waves, f) for f in (_by_sine, _by_cosine))]
     return min(candidates, key=lambda candidate: int(candidate.count_ops()))
 
 
@@ -35,7 +35,7 @@ def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
     return sp.Add(*(sp.factor_terms(c) * dependent for dependent, c in coefficients.items()))
 
 
-def _harmonics(expression: sp.Expr) -> sp.Expr:
+def harmonics(expression: sp.Expr) -> sp.Expr:
     """`expression` as a sum of coefficient times sine or cosine of a sum of angles."""
     total: dict[Wave, sp.Expr] = {}
     for term in sp.Add.make_args(sp.expand(expression)):

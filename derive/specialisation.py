@@ -33,19 +33,23 @@ def specialised(system: System, values: Mapping[str, float]) -> System:
                 f"system {system.name!r} has no parameter {name[:50]!r}; known are "
                 f"{', '.join(symbols)}"
             )
-    numbers = {symbols[name]: formula(value) for name, value in values.items()}
+    return substituted(system, {symbols[name]: formula(value) for name, value in values.items()})
+
+
+def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
+    """The system with parameters replaced by numbers, or by what other parameters make of them."""
 
     def folded(expression: sp.Expr) -> sp.Expr:
-        return expression.subs(numbers)
+        return expression.subs(values)
 
     return replace(
         system,
-        parameters=[p for p in system.parameters if p.symbol not in numbers],
+        parameters=[p for p in system.parameters if p.symbol not in values],
         masses=[mass.mapped(folded) for mass in system.masses],
         potential=folded(system.potential_energy),
         gravity=None,
         dissipation=folded(system.dissipation),
         forces=tuple(map(folded, system.forces)),
         equilibrium=None if system.equilibrium is None else tuple(map(folded, system.equilibrium)),
-        reactions=[length for length in system.reactions if length not in numbers],
+        reactions=[length for length in system.reactions if length not in values],
     )

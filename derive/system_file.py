@@ -57,7 +57,7 @@ def _system(stem: str, table: Table) -> System:
         **FUNCTIONS, **{s.name: s for s in symbols},
         **{velocity(c.symbol).name: velocity(c.symbol) for c in coordinates},
     }  # fmt: skip
-    for key, text in _entries(table, "definitions"):
+    for key, text in table.entries("definitions").items():
         check_name(key, name)
         if key in scope:
             raise TableError(f"definitions.{key}: that name is taken")
@@ -67,7 +67,7 @@ def _system(stem: str, table: Table) -> System:
         return _value(key, table.formula(key), scope) if key in table.values else None
 
     def by_coordinate(key: str) -> list[sp.Expr] | None:
-        given = dict(_entries(table, key))
+        given = table.entries(key)
         known = [c.symbol.name for c in coordinates]
         for other in set(given) - set(known):
             raise TableError(f"{key}.{other[:50]}: coordinates are {', '.join(known)}")
@@ -118,14 +118,6 @@ def _parameter(key: str, system: str, row: Table) -> Parameter:
 def _symbol(name: str, system: str, *, positive: bool) -> sp.Symbol:
     check_name(name, system)  # before SymPy or a compiler sees it
     return sp.Symbol(name, positive=True) if positive else sp.Symbol(name, real=True)
-
-
-def _entries(table: Table, key: str) -> Iterator[tuple[str, str]]:
-    """Names and formulas of a table that may be missing."""
-    values = table.values.get(key, {})
-    row = Table(key, values, values if isinstance(values, Mapping) else ())
-    for name in row.values:
-        yield name, row.formula(name)
 
 
 def _value(place: str, text: str, scope: Mapping[str, Any]) -> sp.Expr:

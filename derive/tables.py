@@ -73,7 +73,7 @@ class Table:
         value = self.values.get(key, default)
         if isinstance(value, int | float) and not isinstance(value, bool):
             return repr(value)
-        return self.text(key, default)
+        return " ".join(self.text(key, default).split())
 
     def formulas(self, key: str) -> list[str]:
         """A list of formulas; empty if it is missing."""
@@ -83,6 +83,12 @@ class Table:
                 f"{key} = {_shown(value)} in {self.name} must be a list in square brackets"
             )
         return [Table(self.name, {key: item}, (key,)).formula(key) for item in value]
+
+    def entries(self, key: str) -> dict[str, str]:
+        """Names and formulas of a table in this one; none if it is missing."""
+        values = self.values.get(key, {})
+        row = Table(key, values, values if isinstance(values, Mapping) else ())
+        return {name: row.formula(name) for name in row.values}
 
     def flag(self, key: str, *, default: bool) -> bool:
         """True or false."""

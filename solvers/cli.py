@@ -88,13 +88,24 @@ def _systems(argv: Sequence[str]) -> int:
 def _verify(argv: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(
         prog="holonomic verify",
-        description="Judge the double-pendulum report: equations, programs, claims. Exits with 1 "
-        "if an equation neither holds nor can be corrected.",
-        epilog="example:\n  holonomic verify --json > verdicts.json",
+        description="Judge hand derivations: the double-pendulum report with its programs and "
+        "claims, or anybody's equations. Exits with 1 if an equation is wrong; of the report, if "
+        "it cannot be corrected.",
+        epilog="examples:\n  holonomic verify --json > verdicts.json\n"
+        "  holonomic verify my_equations.toml\n  holonomic verify swinging_atwood",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
-    as_json = parser.parse_args(argv).json
+    parser.add_argument(
+        "equations", nargs="*", metavar="EQUATIONS",
+        help="TOML files, or systems whose published equations ship; the report",
+    )  # fmt: skip
+    arguments = parser.parse_args(argv)
+    as_json = arguments.json
+    if arguments.equations:
+        from derive.hand.command import verify
+
+        return verify(arguments.equations, as_json=as_json)
     from solvers.progress import Progress
 
     with Progress() as tell:

@@ -1,0 +1,1 @@
+"""Anybody's hand derivation, judged equation by equation."""

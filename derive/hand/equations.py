@@ -1,0 +1,105 @@
+"""A hand derivation as a TOML file: whose equations, of which system, in which letters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from derive.derivation import Derivation
+from derive.expression import FUNCTIONS, parsed
+from derive.hand.judgement import VALUES, Judgement, judged
+from derive.hand.meaning import Meaning
+from derive.specialisation import substituted
+from derive.system import System
+from derive.tables import Table, TableError, read
+
+#: Formulas of the whole system, and those that each coordinate has one of.
+WHOLE = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
+EACH = ("momenta", "accelerations", "hamilton")
+KEYS = ("system", "source", "note", "equal", "names", *WHOLE, *EACH, "euler_lagrange")
+
+
+@dataclass(frozen=True)
+class HandDerivation:
+    """Equations as somebody wrote them down, and what was found about each.
+
+    Attributes
+    ----------
+    system : str
+        Of which system.
+    source, note : str
+        Where they stand, and what there is to say about them.
+    judgements : tuple of Judgement
+        In the order of the file.
+    """
+
+    system: str
+    source: str
+    note: str
+    judgements: tuple[Judgement, ...]
+
+
+def judge(path: Path, system_of: Callable[[str], System]) -> HandDerivation:
+    """Judge every equation in a file.
+
+    Parameters
+    ----------
+    path : Path
+        A TOML file.
+    system_of : callable
+        Gives a system by its name, or by the path of its file.
+
+    Raises
+    ------
+    TableError
+        When it is no such file, or names what a system has not.
+    """
+    table = Table(str(path), read(path), KEYS)
+    name = table.text("system")
+    system = system_of(str(path.parent / name) if name.endswith(".toml") else name)
+    meaning = Meaning(Derivation(_equalled(table, system)), table.entries("names"))
+    found = [
+        judged(place, text, meaning, kind, key)
+        for place, kind, key, text in _equations(table, system)
+    ]
+    if not found:
+        raise TableError(f"{path} has no equations: give some of {', '.join(KEYS[5:])}")
+    return HandDerivation(name, table.text("source", ""), table.text("note", ""), tuple(found))
+
+
+def _equalled(table: Table, system: System) -> System:
+    """The system with parameters set to what the equations take them for."""
+    symbols = {s.name: s for s in system.params}
+    values = {}
+    for name, text in table.entries("equal").items():
+        if name not in symbols:
+            raise TableError(f"equal.{name[:50]}: parameters are {', '.join(symbols)}")
+        values[symbols[name]] = parsed(text, symbols | FUNCTIONS)
+    return substituted(system, values)
+
+
+def _equations(table: Table, system: System) -> Iterator[tuple[str, str, str, str]]:
+    """Place, kind, key and text of every equation."""
+    coordinates = [q.name for q in system.q]
+    for kind in table.values:
+        if kind in WHOLE:
+            yield kind, kind, "", table.formula(kind)
+        elif kind in EACH:
+            known = (
+                [*coordinates, *(p.name for p in system.p)] if kind == "hamilton" else coordinates
+            )
+            row = Table(kind, table.values[kind], known)
+            for key in row.values:
+                yield f"{kind}.{key}", kind, key, row.formula(key)
+        elif kind == "euler_lagrange":
+            texts = table.formulas(kind)
+            if len(texts) > len(coordinates):
+                raise TableError(
+                    f"euler_lagrange has {len(texts)} equations for {len(coordinates)} coordinates"
+                )
+            for k, text in enumerate(texts):
+                yield f"{kind} {k + 1}", kind, str(k), text
+
+
+assert {*WHOLE, *EACH} == {*VALUES}
