@@ -17,6 +17,7 @@ from derive.linearisation import Linearisation
 from derive.parts import Coordinate, Parameter, PointMass, RigidBody
 from derive.symbols import TIME, velocity
 from derive.system import System
+from derive.writing import write
 
 __all__ = [
     "TIME",
@@ -30,4 +31,5 @@ __all__ = [
     "load",
     "names",
     "velocity",
+    "write",
 ]

@@ -9,16 +9,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from shlex import quote
 
-from derive.c import header
 from derive.catalogue import UnknownSystemError, load, names
 from derive.derivation import Derivation
-from derive.functions import contents
 from derive.parts import SystemDefinitionError
-from derive.python import module
 from derive.system import System
 from derive.system_file import read_system
 from derive.translation import UnsupportedFunctionError
 from derive.tree import Difference, Tree
+from derive.writing import texts
 
 EXAMPLE = """\
 examples:
@@ -111,12 +109,6 @@ def planned(systems: list[str], output: Path | None) -> Tree:
 def system_of(name: str) -> System:
     """The system of this name, or in this file where it ends in ``.toml``."""
     return read_system(Path(name)) if name.endswith(".toml") else load(name)
-
-
-def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str, str]:
-    """The generated files of a system by name, with all functions or `only` some."""
-    generated, name = contents(derivation, only), derivation.system.name
-    return {f"{name}.py": module(generated), f"{name}.h": header(generated)}
 
 
 def _package_folder() -> Path:

@@ -273,7 +273,8 @@ def generated_module(name: str) -> ModuleType:
         return import_module(f"generated.{name}")
     from derive import Derivation
     from derive.catalogue import UnknownSystemError
-    from derive.command import system_of, texts
+    from derive.command import system_of
+    from derive.writing import texts
     from solvers.made import made
 
     try:
@@ -320,8 +321,9 @@ def specialiser(module: ModuleType, params: Sequence[float], way: Any) -> Module
         name: str, values: Mapping[str, float], functions: Sequence[str]
     ) -> dict[str, str]:
         from derive import Derivation
-        from derive.command import system_of, texts
+        from derive.command import system_of
         from derive.specialisation import specialised
+        from derive.writing import texts
 
         system = system_of(getattr(module, "SYSTEM", name))
         return texts(Derivation(specialised(system, values)), functions)

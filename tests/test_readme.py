@@ -15,7 +15,7 @@ from derive import load, names
 from derive.assignments import assignments
 from derive.functions import contents
 from solvers.answers.answer import answer
-from solvers.cli import generated_module
+from solvers.cli import generated_module, main
 from solvers.failures import drift
 from solvers.failures.chaos import lyapunov
 from solvers.failures.separatrix import upright
@@ -30,10 +30,12 @@ from solvers.verdict.objectives import objectives
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+TABLES = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
 
 
 @pytest.mark.parametrize("snippet", SNIPPETS, ids=range(len(SNIPPETS)))
-def test_snippets_run(snippet: str) -> None:
+def test_snippets_run(snippet: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     exec(compile(snippet, "README.md", "exec"), {})
 
 
@@ -103,8 +105,8 @@ def test_every_command_that_is_shown_exists() -> None:
 
 
 def test_the_scene_that_is_shown_is_answered_with_what_is_beside_it() -> None:
-    main, beside = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
-    found = scene("my_scene", tomllib.loads(main + beside), generated_module)
+    whole = "".join(TABLES[:2])
+    found = scene("my_scene", tomllib.loads(whole), generated_module)
     assert answer(found).is_met
     euler, moved = found.beside
     assert not answer(euler).is_met
@@ -130,6 +132,25 @@ def test_systems_have_the_coordinates_that_are_said() -> None:
             found = [c.symbol.name for c in load(name).coordinates]
             assert re.findall(r"`(\w+)`", coordinates) == found
     assert listed == {*names()}
+
+
+def test_the_system_that_is_shown_is_derived_and_runs(tmp_path: Path) -> None:
+    (tmp_path / "bead.toml").write_text(TABLES[2])
+    text = 'system = "bead.toml"\nduration = 3\ninitial = { x = "10 cm" }\n'
+    (tmp_path / "scene.toml").write_text(text)
+    found = answer(find(str(tmp_path / "scene.toml"), generated_module))
+    assert found.is_met
+    assert hasattr(found.scene.module, "power")
+
+
+def test_the_equations_that_are_shown_are_judged_as_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "page.toml").write_text(TABLES[3])
+    assert main(["verify", str(tmp_path / "page.toml")]) == 1
+    printed = capsys.readouterr().out.splitlines()
+    shown = README.partition("$ holonomic verify page.toml\n")[2].partition("```")[0]
+    assert [line for line in shown.splitlines() if line not in printed] == []
 
 
 def test_keys_and_models_that_are_listed_are_all_that_there_are() -> None:

@@ -1,0 +1,39 @@
+"""Generated files of a system."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+
+from derive.c import header
+from derive.derivation import Derivation
+from derive.functions import contents
+from derive.python import module
+from derive.system import System
+from derive.tree import Tree
+
+
+def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str, str]:
+    """The generated files of a system by name, with all functions or `only` some."""
+    generated, name = contents(derivation, only), derivation.system.name
+    return {f"{name}.py": module(generated), f"{name}.h": header(generated)}
+
+
+def write(system: System, folder: str | PathLike[str]) -> None:
+    """Write the module and the C header of a system; either is there whole or not at all.
+
+    Parameters
+    ----------
+    system : System
+        What is derived.
+    folder : path
+        Where to, made if it is missing; ``import`` finds the module where it is on Python's
+        path.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When a coordinate moves no mass, or moves the masses only as others do.
+    """
+    Tree(Path(folder), texts(Derivation(system)), complete=False).write()
