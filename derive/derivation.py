@@ -13,14 +13,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TypeAlias
 
 import sympy as sp
 
 from derive.independence import check_independence
 from derive.linearisation import Linearisation, beyond_springs, linearised, resting
-from derive.parts import formula
+from derive.parts import SystemDefinitionError, formula
 from derive.reduction import collected, reduced
 from derive.symbols import TIME
 from derive.system import System
@@ -87,9 +87,16 @@ class Derivation:
     def inertia(self) -> Matrix:
         """M̄ = Σ m J̄ᵀJ̄ over all variables, symmetric; the mass matrix is its upper left part."""
         motions = [motion for mass in self.system.masses for motion in mass.motions]
+
+        @cache
+        def slope(place: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+            # the places of a chain share most of their terms
+            if place.is_Add:
+                return sp.Add(*(slope(term, variable) for term in place.args))
+            return _derivative(place, variable)
+
         tangents = [
-            [tuple(_derivative(r, v) for r in place) for v in self.variables]
-            for _, place in motions
+            [tuple(slope(r, v) for r in place) for v in self.variables] for _, place in motions
         ]
         dots: dict[object, sp.Expr] = {}
 
@@ -283,16 +290,22 @@ class Derivation:
         """Whether small motions are those of masses and springs alone."""
         return not any(beyond_springs(self).values())
 
-    def resting(self) -> tuple[sp.Expr, ...]:
-        """The system's equilibrium, or zeros, after seeing that it stays there.
+    @cached_property
+    def rest(self) -> tuple[sp.Expr, ...] | None:
+        """The system's equilibrium, or zeros if it stays there; None if none is known.
 
         Raises
         ------
         SystemDefinitionError
-            When a force is left there.
+            When a force is left at the equilibrium that the system gives.
         """
         place = self._place(None)
-        resting(self, place)
+        try:
+            resting(self, place)
+        except SystemDefinitionError:
+            if self.system.equilibrium is not None:
+                raise
+            return None
         return place
 
     def _place(self, equilibrium: Sequence[sp.Expr] | None) -> tuple[sp.Expr, ...]:

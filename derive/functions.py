@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
@@ -11,7 +12,6 @@ from derive.assignments import Assignments, assignments
 from derive.derivation import Derivation
 from derive.lowering import Lowering
 from derive.mechanics import Mechanics
-from derive.parts import SystemDefinitionError
 from derive.symbols import TIME
 from derive.system import System
 
@@ -177,18 +177,6 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     """Everything that is generated for `derivation`, or `only` the functions of these names."""
     system = derivation.system
     states = _states(derivation)
-    words = {
-        "equilibrium": _rest(derivation),
-        "linear": _rest(derivation) if derivation.is_sprung else "",
-        "held": ", ".join(length.name for length in system.reactions),
-        "energy": ENERGY if TIME in derivation.variables else "Total energy T + V",
-    }
-    missing = {
-        "power": derivation.power == 0,
-        "reactions": not system.reactions,
-        "equilibrium": not words["equilibrium"],
-        "linear": not words["linear"],
-    }
     sizes = {
         "q": len(system.q),
         "state": 2 * len(system.q),
@@ -206,8 +194,8 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
         tuple(
             Function(
                 name,
-                summary.format(**words),
-                returns.format(**words),
+                _said(summary, derivation),
+                _said(returns, derivation),
                 form,
                 states.get(form, ()),
                 tuple(sizes[word] for word in shape.split()),
@@ -216,19 +204,30 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
             for name, form, shape, summary, returns in TABLE
             if (only is None or name in only)
             and ("rational" not in (form, shape) or "rational" in states)
-            and not missing.get(name)
+            and (name not in EXISTS or EXISTS[name](derivation))
         ),
     )
 
 
-def _rest(derivation: Derivation) -> str:
-    """Where the system rests, in words; empty if no equilibrium is known."""
-    try:
-        return f"({', '.join(map(str, derivation.resting()))})"
-    except SystemDefinitionError:
-        if derivation.system.equilibrium is not None:
-            raise
-        return ""
+def _said(text: str, derivation: Derivation) -> str:
+    """A text with what it leaves open filled in."""
+    return re.sub(r"{(\w+)}", lambda found: WORDS[found[1]](derivation), text)
+
+
+#: What the texts of the table leave open.
+WORDS: dict[str, Callable[[Derivation], str]] = {
+    "equilibrium": lambda derivation: f"({', '.join(map(str, derivation.rest or ()))})",
+    "held": lambda derivation: ", ".join(s.name for s in derivation.system.reactions),
+    "energy": lambda derivation: ENERGY if TIME in derivation.variables else "Total energy T + V",
+}
+
+#: Functions that only some systems have, and which.
+EXISTS: dict[str, Callable[[Derivation], bool]] = {
+    "power": lambda derivation: derivation.power != 0,
+    "reactions": lambda derivation: bool(derivation.system.reactions),
+    "equilibrium": lambda derivation: derivation.rest is not None,
+    "linear": lambda derivation: derivation.rest is not None and derivation.is_sprung,
+}
 
 
 def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:

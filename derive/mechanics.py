@@ -131,16 +131,37 @@ class Mechanics:
         ]
 
     def _inertial(self, i: int, v: Sequence[Node]) -> Node:
-        """Σ (∂M̄_ij/∂q_k - ½ ∂M̄_jk/∂q_i) v_j v_k of the variable i; of most entries nothing."""
-        names, M = self._variables, self._inertia
-        terms = []
-        for j, row in enumerate(M):
-            for k, entry in enumerate(row):
-                along = self._derivative(M[i][j], names[k]), self._derivative(entry, names[i])
-                for slope, number in zip(along, (Fraction(1), -HALF), strict=True):
-                    if not slope.is_number(0):
-                        terms.append((slope * v[j] * v[k], number))
+        """Σ (∂M̄_ij/∂q_k - ½ ∂M̄_jk/∂q_i) v_j v_k of the variable i."""
+        names, slope = self._variables, self._derivative
+        terms = [
+            (slope(self._inertia[j][k], names[i]) * v[j] * v[k], -HALF)
+            for j, k in self._dependent[i]
+        ]
+        terms += [
+            (slope(entry, names[k]) * v[j] * v[k], Fraction(1))
+            for j, entry in enumerate(self._inertia[i])
+            for k in self._known_by[entry]
+        ]
         return self._graph.sum(terms)
+
+    @cached_property
+    def _known_by(self) -> dict[Node, list[int]]:
+        """Which variables an entry of M̄ depends on: of a long chain's entries two."""
+        return {
+            entry: [k for k, name in enumerate(self._variables)
+                    if name in self._derivative.leaves(entry)]
+            for row in self._inertia for entry in row
+        }  # fmt: skip
+
+    @cached_property
+    def _dependent(self) -> list[list[tuple[int, int]]]:
+        """Which entries of M̄ depend on each variable."""
+        found: list[list[tuple[int, int]]] = [[] for _ in self._variables]
+        for j, row in enumerate(self._inertia):
+            for k, entry in enumerate(row):
+                for variable in self._known_by[entry]:
+                    found[variable].append((j, k))
+        return found
 
     @cached_property
     def _accelerations(self) -> list[Node]:
@@ -169,14 +190,15 @@ class Mechanics:
 
     @cached_property
     def angles(self) -> tuple[sp.Symbol, ...]:
-        """Coordinates that the equations of motion know through sine and cosine only.
+        """Coordinates that energies and forces know through sine and cosine only.
 
-        Or the positions, of one that the equations do not know.
+        Or the positions, of one that energies and forces do not know.
         """
-        known = self._only_as_angles(self._accelerations)
-        placed = self._only_as_angles(self.positions)
-        felt = frozenset().union(*map(self._derivative.leaves, self._accelerations))
-        names = known | (placed - felt)
+        felt = [*self._known_by, self._potential, *self._applied]
+        names = self._only_as_angles(felt) | (
+            self._only_as_angles(self.positions)
+            - frozenset().union(*map(self._derivative.leaves, felt))
+        )
         return tuple(q for q in self._system.q if q.name in names)
 
     def _only_as_angles(self, nodes: Sequence[Node]) -> frozenset[str]:
@@ -327,7 +349,7 @@ class Mechanics:
     @property
     def equilibrium(self) -> list[Node]:
         """Q₀."""
-        return self._nodes(self._derivation.resting())
+        return self._nodes(self._derivation.rest or ())
 
     @property
     def linear(self) -> list[Node]:

@@ -22,7 +22,9 @@ def reduced(expression: sp.Expr) -> sp.Expr:
     if not expression.has(sp.sin, sp.cos):
         return expression
     waves = harmonics(expression)
-    candidates = [waves, expression, *(_halved(waves, f) for f in (_by_sine, _by_cosine))]
+    candidates = [waves, expression]
+    if halves := _halves(waves):
+        candidates += [_halved(waves, halves, square) for square in (_by_sine, _by_cosine)]
     return min(candidates, key=lambda candidate: int(candidate.count_ops()))
 
 
@@ -79,13 +81,21 @@ def _by_cosine(angle: sp.Expr) -> sp.Expr:
     return 2 * sp.cos(angle) ** 2 - 1
 
 
-def _halved(expression: sp.Expr, square: Callable[[sp.Expr], sp.Expr]) -> sp.Expr:
+def _halves(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
+    """Half the arguments of sines and cosines, where that is a sum of whole angles."""
+    halves = {wave: wave.args[0] / 2 for wave in expression.atoms(sp.sin, sp.cos)}
+    return {
+        wave: half
+        for wave, half in halves.items()
+        if all(c.is_Integer for c in half.as_coefficients_dict().values())
+    }
+
+
+def _halved(
+    expression: sp.Expr, halves: dict[sp.Expr, sp.Expr], square: Callable[[sp.Expr], sp.Expr]
+) -> sp.Expr:
     """`expression` with cos 2a as a square and sin 2a as a product."""
-    halves = {}
-    for wave in expression.atoms(sp.sin, sp.cos):
-        half = wave.args[0] / 2
-        if all(c.is_Integer for c in half.as_coefficients_dict().values()):
-            halves[wave] = (
-                square(half) if isinstance(wave, sp.cos) else 2 * sp.sin(half) * sp.cos(half)
-            )
-    return sp.expand(expression.xreplace(halves))
+    return sp.expand(expression.xreplace({
+        wave: square(half) if isinstance(wave, sp.cos) else 2 * sp.sin(half) * sp.cos(half)
+        for wave, half in halves.items()
+    }))  # fmt: skip

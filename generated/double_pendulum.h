@@ -268,7 +268,7 @@ static inline void double_pendulum_reactions(
         (sin_x1*x3 + c3*sin(theta1) + m2*x5*cos_x1)/(m1 + sin_x1*x6);
     const double_pendulum_real x8 =
         c1*x0 + cos_x1*x3 + c3*cos(theta1) - (x5 + cos_x1*x7)*x6;
-    const double_pendulum_real x9 = m2*(cos_x1*x4 + l2*x2 + g*cos(theta2) - sin_x1*x7);
+    const double_pendulum_real x9 = m2*(l2*x2 + cos_x1*x4 + g*cos(theta2) - sin_x1*x7);
     /* outputs */
     result[0] = x8;
     result[1] = x9;

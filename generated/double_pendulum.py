@@ -419,7 +419,7 @@ def reactions(y: Numbers, params: Numbers) -> Vector:
     x6 = m2*sin_x1
     x7 = (sin_x1*x3 + c3*sin(theta1) + m2*x5*cos_x1)/(m1 + sin_x1*x6)
     x8 = c1*x0 + cos_x1*x3 + c3*cos(theta1) - (x5 + cos_x1*x7)*x6
-    x9 = m2*(cos_x1*x4 + l2*x2 + g*cos(theta2) - sin_x1*x7)
+    x9 = m2*(l2*x2 + cos_x1*x4 + g*cos(theta2) - sin_x1*x7)
     # outputs
     return (x8, x9)
 
@@ -448,7 +448,7 @@ def reactions_many(y: Arrays, params: Arrays) -> Array:
     x6 = m2*sin_x1
     x7 = (sin_x1*x3 + c3*sin(theta1) + m2*x5*cos_x1)/(m1 + sin_x1*x6)
     x8 = c1*x0 + cos_x1*x3 + c3*cos(theta1) - (x5 + cos_x1*x7)*x6
-    x9 = m2*(cos_x1*x4 + l2*x2 + g*cos(theta2) - sin_x1*x7)
+    x9 = m2*(l2*x2 + cos_x1*x4 + g*cos(theta2) - sin_x1*x7)
     # outputs
     return _stacked((2,), y[0], x8, x9)
 

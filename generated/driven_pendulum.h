@@ -429,7 +429,7 @@ static inline void driven_pendulum_rhs_rational(
     const driven_pendulum_real c3 = g*c1;
     const driven_pendulum_real c4 = Omega*Omega*a*c1;
     /* intermediate terms */
-    const driven_pendulum_real x0 = c3*sin_theta + c*theta_dot - c4*sin_theta*cos(Omega*t);
+    const driven_pendulum_real x0 = c*theta_dot + c3*sin_theta - c4*sin_theta*cos(Omega*t);
     /* outputs */
     result[0] = theta_dot*cos_theta;
     result[1] = -theta_dot*sin_theta;

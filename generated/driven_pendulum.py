@@ -761,7 +761,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     c3 = g*c1
     c4 = Omega*Omega*a*c1
     # intermediate terms
-    x0 = c3*sin_theta + c*theta_dot - c4*sin_theta*cos(Omega*t)
+    x0 = c*theta_dot + c3*sin_theta - c4*sin_theta*cos(Omega*t)
     # outputs
     return (theta_dot*cos_theta, -theta_dot*sin_theta, -c0*(c2*x0))
 
@@ -780,7 +780,7 @@ def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
     c3 = g*c1
     c4 = Omega*Omega*a*c1
     # intermediate terms
-    x0 = c3*sin_theta + c*theta_dot - c4*sin_theta*cos(Omega*t)
+    x0 = c*theta_dot + c3*sin_theta - c4*sin_theta*cos(Omega*t)
     # outputs
     return _stacked((3,), y[0], theta_dot*cos_theta, -theta_dot*sin_theta, -c0*(c2*x0))
 

@@ -147,12 +147,12 @@ static inline void foucault_pendulum_rhs(
     const foucault_pendulum_real x15 = sin_latitude - x8*(x11 - x0)/x12;
     const foucault_pendulum_real x16 = x_dot*y_dot;
     const foucault_pendulum_real x17 =
-        x*(x2 - x0)*x3/x4 + x*(x2 - 2.0*x1)*x5/x4 + x5*x7/x4 + x13*x14 + x15*x14
-        - 2.0*x10*x16/x4 - 0.5*c1*x*(c3 + sin_c2*y/x9);
+        x*(x2 - x0)*x3/x4 + x5*x7/x4 + x13*x14 + x15*x14 - 0.5*c1*x*(c3 + sin_c2*y/x9)
+        - 2.0*x10*x16/x4 - x*(2.0*x1 - x2)*x5/x4;
     const foucault_pendulum_real x18 = Omega*x_dot;
     const foucault_pendulum_real x19 =
-        y*(2.0*x0 - x2)*x3/x4 + x15*x18 + 2.0*x16*x7/x4 + x13*x18
-        + 0.5*c1*(2.0*cos_c2*y - sin_c2*(x9 - x1/x9)) - x10*x3/x4 - y*(x2 - x1)*x5/x4;
+        x15*x18 + 0.5*c1*(2.0*cos_c2*y - sin_c2*(x9 - x1/x9)) + 2.0*x16*x7/x4 + x13*x18
+        - x10*x3/x4 - y*(x2 - x1)*x5/x4 - y*(x2 - 2.0*x0)*x3/x4;
     const foucault_pendulum_real x20 = x19 + g*y/x9;
     const foucault_pendulum_real x21 = m*(1.0 - x1/x2);
     const foucault_pendulum_real x22 =
@@ -168,7 +168,7 @@ static inline void foucault_pendulum_rhs(
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs`.
-   392 operations, 10 of them on parameters alone.
+   393 operations, 10 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void foucault_pendulum_jacobian(
     foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
@@ -203,91 +203,92 @@ static inline void foucault_pendulum_jacobian(
     const foucault_pendulum_real x5 = x_dot*x_dot;
     const foucault_pendulum_real x6 = x2*x2;
     const foucault_pendulum_real x7 = x2*x6;
-    const foucault_pendulum_real x8 = x2 - 2.0*x1;
-    const foucault_pendulum_real x9 = y_dot*y_dot;
-    const foucault_pendulum_real x10 = x1*x4;
-    const foucault_pendulum_real x11 = sqrt(-x2);
-    const foucault_pendulum_real x12 = x11*x11;
-    const foucault_pendulum_real x13 = x12 - x0;
-    const foucault_pendulum_real x14 = 4.0*x12 - 3.0*x13;
-    const foucault_pendulum_real x15 = x*y;
-    const foucault_pendulum_real x16 = c1*y_dot;
-    const foucault_pendulum_real x17 = x15*x16;
-    const foucault_pendulum_real x18 = x11*x12;
-    const foucault_pendulum_real x19 = x12*x18;
-    const foucault_pendulum_real x20 = x0 - 0.5*x2;
-    const foucault_pendulum_real x21 = -2.0*x20;
-    const foucault_pendulum_real x22 = x_dot*x15;
-    const foucault_pendulum_real x23 = y_dot*x22;
-    const foucault_pendulum_real x24 = x12 + (3.0*x0 + 2.0*x12);
-    const foucault_pendulum_real x25 = sin_c3*y;
-    const foucault_pendulum_real x26 = c4 + x25/x11;
-    const foucault_pendulum_real x27 = x*x15;
+    const foucault_pendulum_real x8 = y_dot*y_dot;
+    const foucault_pendulum_real x9 = x1*x4;
+    const foucault_pendulum_real x10 = x1 - 0.5*x2;
+    const foucault_pendulum_real x11 = 2.0*x10;
+    const foucault_pendulum_real x12 = sqrt(-x2);
+    const foucault_pendulum_real x13 = x12*x12;
+    const foucault_pendulum_real x14 = x13 - x0;
+    const foucault_pendulum_real x15 = 4.0*x13 - 3.0*x14;
+    const foucault_pendulum_real x16 = x*y;
+    const foucault_pendulum_real x17 = c1*y_dot;
+    const foucault_pendulum_real x18 = x16*x17;
+    const foucault_pendulum_real x19 = x12*x13;
+    const foucault_pendulum_real x20 = x13*x19;
+    const foucault_pendulum_real x21 = x13 + (3.0*x0 + 2.0*x13);
+    const foucault_pendulum_real x22 = sin_c3*y;
+    const foucault_pendulum_real x23 = c4 + x22/x12;
+    const foucault_pendulum_real x24 = x*x16;
+    const foucault_pendulum_real x25 = x2 - 2.0*x0;
+    const foucault_pendulum_real x26 = x_dot*x16;
+    const foucault_pendulum_real x27 = y_dot*x26;
     const foucault_pendulum_real x28 =
-        x3*x4*x5/x7 + (x2*x8 + 2.0*x0*x2 - 4.0*x0*x8)*x9/x7 + x9*x10/x7 + x14*x17/x19
-        - 4.0*x21*x23/x7 - x24*x17/x19 - 0.5*c2*(x26 + sin_c3*x27/x18);
+        x3*x4*x5/x7 + x8*x9/x7 + (4.0*x0*x11 + 2.0*x0*x2 - x2*x11)*x8/x7 + x15*x18/x20
+        - x21*x18/x20 - 0.5*c2*(x23 + sin_c3*x24/x19) - 4.0*x25*x27/x7;
     const foucault_pendulum_real x29 = x*x3;
-    const foucault_pendulum_real x30 = x*x8;
-    const foucault_pendulum_real x31 = x15*x9;
-    const foucault_pendulum_real x32 = cos_latitude*y;
-    const foucault_pendulum_real x33 =
-        Omega*(sin_latitude - x32/x11 - cos_latitude*x27/x18);
-    const foucault_pendulum_real x34 = Omega*(sin_latitude - x13*x32/x18);
+    const foucault_pendulum_real x30 = x16*x8;
+    const foucault_pendulum_real x31 = cos_latitude*y;
+    const foucault_pendulum_real x32 =
+        Omega*(sin_latitude - x31/x12 - cos_latitude*x24/x19);
+    const foucault_pendulum_real x33 = Omega*(sin_latitude - x14*x31/x19);
+    const foucault_pendulum_real x34 = x*x11;
     const foucault_pendulum_real x35 =
-        x5*x29/x6 + x9*x30/x6 + y*x31/x6 + y_dot*x33 + y_dot*x34 - 2.0*x*x23/x6
-        - 0.5*c2*x*x26;
-    const foucault_pendulum_real x36 = 2.0*x20;
-    const foucault_pendulum_real x37 = y*x36;
-    const foucault_pendulum_real x38 = x_dot*x22;
-    const foucault_pendulum_real x39 = x2 - x1;
-    const foucault_pendulum_real x40 = y*x39;
-    const foucault_pendulum_real x41 =
-        x5*x37/x6 + x_dot*x34 + 2.0*y*x23/x6 + x_dot*x33
-        + 0.5*c2*(2.0*cos_c3*y - sin_c3*(x11 - x1/x11)) - x*x38/x6 - x9*x40/x6;
-    const foucault_pendulum_real x42 = x41 + g*y/x11;
-    const foucault_pendulum_real x43 = m*x15;
-    const foucault_pendulum_real x44 = m*(1.0 - x1/x2);
-    const foucault_pendulum_real x45 = x2*x44;
-    const foucault_pendulum_real x46 = x44*x6;
-    const foucault_pendulum_real x47 = m*(1.0 - x0/x2 - x15*x43/x46);
-    const foucault_pendulum_real x48 = m*(x35 - g*x/x11 - x42*x43/x45)/x47;
-    const foucault_pendulum_real x49 = x48*x15;
-    const foucault_pendulum_real x50 = m*(x42 - x49/x2)/x44;
-    const foucault_pendulum_real x51 = x28 - g*(x0 + x12)/x18 + (2.0*x48*x29 + x50*x37)/x6;
-    const foucault_pendulum_real x52 = c1*x22;
-    const foucault_pendulum_real x53 = x1 + x12;
-    const foucault_pendulum_real x54 = c5*x*x53/x18;
-    const foucault_pendulum_real x55 = x_dot*y_dot;
-    const foucault_pendulum_real x56 =
-        x10*x55/x7 + (2.0*x39 - x2)*x31/x7 - (2.0*x36 - x2)*x38/x7 - x21*x38/x7;
-    const foucault_pendulum_real x57 = g*x15/x18;
-    const foucault_pendulum_real x58 = x14*x52/x19 + 0.5*x54 + 2.0*x56 - x24*x52/x19 + x57;
-    const foucault_pendulum_real x59 = x58 + y*(x36*x48 - 2.0*x50*x15)/x6;
-    const foucault_pendulum_real x60 = m*(x51 - x59*x43/x45)/x47;
-    const foucault_pendulum_real x61 = x12*x53 + x0*(3.0*x1 + x12);
-    const foucault_pendulum_real x62 = x12*x13 + 3.0*x1*x13 - 2.0*x1*x12;
+        x5*x29/x6 + y*x30/x6 + y_dot*x32 + y_dot*x33 - 0.5*c2*x*x23 - 2.0*x*x27/x6
+        - x8*x34/x6;
+    const foucault_pendulum_real x36 = x_dot*x26;
+    const foucault_pendulum_real x37 = x2 - x1;
+    const foucault_pendulum_real x38 = y*x37;
+    const foucault_pendulum_real x39 = y*x25;
+    const foucault_pendulum_real x40 =
+        x_dot*x33 + 0.5*c2*(2.0*cos_c3*y - sin_c3*(x12 - x1/x12)) + 2.0*y*x27/x6 + x_dot*x32
+        - x*x36/x6 - x8*x38/x6 - x5*x39/x6;
+    const foucault_pendulum_real x41 = x40 + g*y/x12;
+    const foucault_pendulum_real x42 = m*x16;
+    const foucault_pendulum_real x43 = m*(1.0 - x1/x2);
+    const foucault_pendulum_real x44 = x2*x43;
+    const foucault_pendulum_real x45 = x43*x6;
+    const foucault_pendulum_real x46 = m*(1.0 - x0/x2 - x16*x42/x45);
+    const foucault_pendulum_real x47 = m*(x35 - g*x/x12 - x41*x42/x44)/x46;
+    const foucault_pendulum_real x48 = x47*x16;
+    const foucault_pendulum_real x49 = m*(x41 - x48/x2)/x43;
+    const foucault_pendulum_real x50 = x28 - g*(x0 + x13)/x19 + (2.0*x47*x29 - x49*x39)/x6;
+    const foucault_pendulum_real x51 = c1*x26;
+    const foucault_pendulum_real x52 = x1 + x13;
+    const foucault_pendulum_real x53 = c5*x*x52/x19;
+    const foucault_pendulum_real x54 = x_dot*y_dot;
+    const foucault_pendulum_real x55 =
+        (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x54/x7 - x25*x36/x7;
+    const foucault_pendulum_real x56 = g*x16/x19;
+    const foucault_pendulum_real x57 = x15*x51/x20 + 0.5*x53 + 2.0*x55 - x21*x51/x20 + x56;
+    const foucault_pendulum_real x58 = x57 - y*(x25*x47 + 2.0*x49*x16)/x6;
+    const foucault_pendulum_real x59 = m*(x50 - x58*x42/x44)/x46;
+    const foucault_pendulum_real x60 = x13*x52 + x0*(3.0*x1 + x13);
+    const foucault_pendulum_real x61 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13;
+    const foucault_pendulum_real x62 = -2.0*x10;
     const foucault_pendulum_real x63 = x1 - 0.25*x2;
     const foucault_pendulum_real x64 =
-        (x2 + 2.0*x8)*x31/x7 - (x2 - 2.0*x3)*x38/x7 - x0*(4.0*x63)*x55/x7 - x8*x31/x7;
+        (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x62*x30/x7 - x0*(4.0*x63)*x54/x7;
     const foucault_pendulum_real x65 =
-        x57 + (0.5*x54 + x61*x16/x19 + x62*x16/x19 + 2.0*x64);
+        x56 + (0.5*x53 + x60*x17/x20 + x61*x17/x20 + 2.0*x64);
     const foucault_pendulum_real x66 = -4.0*x63;
     const foucault_pendulum_real x67 = c1*x_dot;
     const foucault_pendulum_real x68 =
-        (4.0*x1*x36 + 2.0*x1*x2 - x2*x36)*x5/x7 + x0*x66*x5/x7 + x62*x67/x19 + x39*x66*x9/x7
-        + x61*x67/x19 - 4.0*x8*x23/x7 - 0.5*c2*(2.0*cos_c3 + x25*(x12 + (x1 + 2.0*x12))/x18);
-    const foucault_pendulum_real x69 = x68 - g*x53/x18 + (x48*x30 - 2.0*x50*x40)/x6;
-    const foucault_pendulum_real x70 = m*(x65 + x*(2.0*x49 + x8*x50)/x6 - x69*x43/x45)/x47;
-    const foucault_pendulum_real x71 = y_dot*x15;
-    const foucault_pendulum_real x72 = x*x22/x6 - y*x71/x6;
-    const foucault_pendulum_real x73 = x34 + x33;
-    const foucault_pendulum_real x74 = 2.0*(x_dot*x37/x6 - x72) + x73;
+        x0*x66*x5/x7 + x61*x67/x20 + x37*x66*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
+        + x60*x67/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
+        - 4.0*x62*x27/x7;
+    const foucault_pendulum_real x69 = x68 - g*x52/x19 - (x47*x34 + 2.0*x49*x38)/x6;
+    const foucault_pendulum_real x70 = m*(x65 + x*(2.0*x48 - x11*x49)/x6 - x69*x42/x44)/x46;
+    const foucault_pendulum_real x71 = y_dot*x16;
+    const foucault_pendulum_real x72 = x*x26/x6 - y*x71/x6;
+    const foucault_pendulum_real x73 = x33 + x32;
+    const foucault_pendulum_real x74 = 2.0*(-(x_dot*x39/x6 + x72)) + x73;
     const foucault_pendulum_real x75 = m*y;
-    const foucault_pendulum_real x76 = m*x*(2.0*(x_dot*x3 - x71) - x2*x74*x75/x44)/(x47*x6);
-    const foucault_pendulum_real x77 = x22 - y_dot*x39;
+    const foucault_pendulum_real x76 = m*x*(2.0*(x_dot*x3 - x71) - x2*x74*x75/x43)/(x46*x6);
+    const foucault_pendulum_real x77 = y_dot*x37 - x26;
     const foucault_pendulum_real x78 =
-        2.0*(y_dot*x30/x6 - x72) + x73 - 2.0*y*x77*x43/(x6*x45);
-    const foucault_pendulum_real x79 = m*x78/x47;
+        2.0*(-(y_dot*x34/x6 + x72)) + x73 + 2.0*y*x77*x42/(x6*x44);
+    const foucault_pendulum_real x79 = m*x78/x46;
     /* outputs */
     result[0] = 0.0;
     result[1] = 0.0;
@@ -297,14 +298,14 @@ static inline void foucault_pendulum_jacobian(
     result[5] = 0.0;
     result[6] = 0.0;
     result[7] = 1.0;
-    result[8] = x60;
+    result[8] = x59;
     result[9] = -x70;
     result[10] = x76;
     result[11] = x79;
-    result[12] = -m*(x59 - x60*x15/x2)/x44;
-    result[13] = m*(x69 - x70*x15/x2)/x44;
-    result[14] = -m*(x74 - x76*x15/x2)/x44;
-    result[15] = -(2.0*x77 - x*x2*x79)*x75/x46;
+    result[12] = -m*(x58 - x59*x16/x2)/x43;
+    result[13] = m*(x69 - x70*x16/x2)/x43;
+    result[14] = -m*(x74 - x76*x16/x2)/x43;
+    result[15] = (2.0*x77 + x*x2*x79)*x75/x45;
     (void)t;
 }
 #endif
@@ -737,7 +738,7 @@ static inline void foucault_pendulum_lagrangian_state(
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
-   372 operations, 10 of them on parameters alone.
+   371 operations, 10 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void foucault_pendulum_rhs_variational(
     foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
@@ -775,56 +776,55 @@ static inline void foucault_pendulum_rhs_variational(
     const foucault_pendulum_real x4 = x1 - x3;
     const foucault_pendulum_real x5 = x*x4;
     const foucault_pendulum_real x6 = x3*x3;
-    const foucault_pendulum_real x7 = x*y;
-    const foucault_pendulum_real x8 = x_dot*x7;
-    const foucault_pendulum_real x9 = y_dot*x8;
-    const foucault_pendulum_real x10 = y_dot*y_dot;
-    const foucault_pendulum_real x11 = 2.0*x2 - x3;
-    const foucault_pendulum_real x12 = x*x11;
-    const foucault_pendulum_real x13 = sin_c2*y;
-    const foucault_pendulum_real x14 = sqrt(-x3);
-    const foucault_pendulum_real x15 = c3 + x13/x14;
-    const foucault_pendulum_real x16 = x7*x10;
+    const foucault_pendulum_real x7 = sin_c2*y;
+    const foucault_pendulum_real x8 = sqrt(-x3);
+    const foucault_pendulum_real x9 = c3 + x7/x8;
+    const foucault_pendulum_real x10 = x*y;
+    const foucault_pendulum_real x11 = x_dot*x10;
+    const foucault_pendulum_real x12 = y_dot*x11;
+    const foucault_pendulum_real x13 = y_dot*y_dot;
+    const foucault_pendulum_real x14 = 2.0*x2 - x3;
+    const foucault_pendulum_real x15 = x*x14;
+    const foucault_pendulum_real x16 = x10*x13;
     const foucault_pendulum_real x17 = cos_latitude*y;
-    const foucault_pendulum_real x18 = x*x7;
-    const foucault_pendulum_real x19 = x14*x14;
-    const foucault_pendulum_real x20 = x14*x19;
-    const foucault_pendulum_real x21 =
-        Omega*(sin_latitude - x17/x14 - cos_latitude*x18/x20);
+    const foucault_pendulum_real x18 = x*x10;
+    const foucault_pendulum_real x19 = x8*x8;
+    const foucault_pendulum_real x20 = x8*x19;
+    const foucault_pendulum_real x21 = Omega*(sin_latitude - x17/x8 - cos_latitude*x18/x20);
     const foucault_pendulum_real x22 = x1 - x19;
     const foucault_pendulum_real x23 = Omega*(sin_latitude + x17*x22/x20);
     const foucault_pendulum_real x24 =
-        x0*x5/x6 + 2.0*x*x9/x6 + x10*x12/x6 + 0.5*c1*x*x15 - y*x16/x6 - y_dot*x21
+        x0*x5/x6 + 0.5*c1*x*x9 + 2.0*x*x12/x6 + x13*x15/x6 - y*x16/x6 - y_dot*x21
         - y_dot*x23;
-    const foucault_pendulum_real x25 = 2.0*x1 - x3;
+    const foucault_pendulum_real x25 = x2 - x3;
     const foucault_pendulum_real x26 = y*x25;
-    const foucault_pendulum_real x27 = x2 - x3;
+    const foucault_pendulum_real x27 = 2.0*x1 - x3;
     const foucault_pendulum_real x28 = y*x27;
-    const foucault_pendulum_real x29 = x_dot*x8;
+    const foucault_pendulum_real x29 = x_dot*x11;
     const foucault_pendulum_real x30 =
-        x0*x26/x6 + x_dot*x23 + 2.0*y*x9/x6 + x10*x28/x6 + x_dot*x21
-        + 0.5*c1*(2.0*cos_c2*y - sin_c2*(x14 - x2/x14)) - x*x29/x6;
-    const foucault_pendulum_real x31 = x30 + g*y/x14;
-    const foucault_pendulum_real x32 = m*x7;
+        x_dot*x23 + x13*x26/x6 + 0.5*c1*(2.0*cos_c2*y - sin_c2*(x8 - x2/x8)) + x0*x28/x6
+        + 2.0*y*x12/x6 + x_dot*x21 - x*x29/x6;
+    const foucault_pendulum_real x31 = x30 + g*y/x8;
+    const foucault_pendulum_real x32 = m*x10;
     const foucault_pendulum_real x33 = m*(1.0 - x2/x3);
     const foucault_pendulum_real x34 = x3*x33;
-    const foucault_pendulum_real x35 = m*(1.0 - x1/x3 - x7*x32/(x33*x6));
-    const foucault_pendulum_real x36 = m*(x24 + g*x/x14 + x31*x32/x34)/x35;
-    const foucault_pendulum_real x37 = x36*x7;
+    const foucault_pendulum_real x35 = m*(1.0 - x1/x3 - x10*x32/(x33*x6));
+    const foucault_pendulum_real x36 = m*(x24 + g*x/x8 + x31*x32/x34)/x35;
+    const foucault_pendulum_real x37 = x36*x10;
     const foucault_pendulum_real x38 = m*(x31 + x37/x3)/x33;
     const foucault_pendulum_real x39 = 4.0*x1 - x3;
     const foucault_pendulum_real x40 = x3*x6;
     const foucault_pendulum_real x41 = 4.0*x19 + 3.0*x22;
     const foucault_pendulum_real x42 = c4*y_dot;
-    const foucault_pendulum_real x43 = x7*x42;
+    const foucault_pendulum_real x43 = x10*x42;
     const foucault_pendulum_real x44 = x20*x19;
     const foucault_pendulum_real x45 = x2*x39;
     const foucault_pendulum_real x46 = x19 + (3.0*x1 + 2.0*x19);
     const foucault_pendulum_real x47 =
-        x4*x39*x0/x40 + 4.0*x25*x9/x40 + (4.0*x1*x11 + 2.0*x1*x3 - x3*x11)*x10/x40
-        + x41*x43/x44 - x10*x45/x40 - x46*x43/x44 - 0.5*c1*(x15 + sin_c2*x18/x20);
-    const foucault_pendulum_real x48 = y_dot*x7;
-    const foucault_pendulum_real x49 = x*x8/x6 - y*x48/x6;
+        x4*x39*x0/x40 + 4.0*x27*x12/x40 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x40
+        + x41*x43/x44 - x13*x45/x40 - x46*x43/x44 - 0.5*c1*(x9 + sin_c2*x18/x20);
+    const foucault_pendulum_real x48 = y_dot*x10;
+    const foucault_pendulum_real x49 = y*x48/x6 - x*x11/x6;
     const foucault_pendulum_real x50 = x21 + x23;
     const foucault_pendulum_real x51 = x2 + x19;
     const foucault_pendulum_real x52 = x19*x51 + x1*(3.0*x2 + x19);
@@ -833,28 +833,28 @@ static inline void foucault_pendulum_rhs_variational(
     const foucault_pendulum_real x55 = 4.0*x2 - x3;
     const foucault_pendulum_real x56 = x1*x55;
     const foucault_pendulum_real x57 =
-        x11*x16/x40 + (x3 - 2.0*x11)*x16/x40 - (x3 + 2.0*x4)*x29/x40 - x54*x56/x40;
+        x14*x16/x40 + (x3 - 2.0*x14)*x16/x40 - (x3 + 2.0*x4)*x29/x40 - x54*x56/x40;
     const foucault_pendulum_real x58 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22;
-    const foucault_pendulum_real x59 = g*x7/x20;
+    const foucault_pendulum_real x59 = g*x10/x20;
     const foucault_pendulum_real x60 = x52*x42/x44 + 0.5*x53 + 2.0*x57 - x58*x42/x44 + x59;
     const foucault_pendulum_real x61 =
-        delta_x*(x47 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(-(y_dot*x12/x6 + x49)) + x50)
-        + delta_x*(2.0*x36*x5 + x38*x26)/x6 + x*delta_y*(2.0*x37 + x11*x38)/x6 - delta_y*x60
+        delta_x*(x47 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x49 - y_dot*x15/x6) + x50)
+        + delta_x*(2.0*x36*x5 + x38*x28)/x6 + x*delta_y*(2.0*x37 + x14*x38)/x6 - delta_y*x60
         - 2.0*x*delta_x_dot*(x_dot*x4 + x48)/x6;
-    const foucault_pendulum_real x62 = c4*x8;
+    const foucault_pendulum_real x62 = c4*x11;
     const foucault_pendulum_real x63 =
-        (x3 - 2.0*x25)*x29/x40 + x25*x29/x40 - x54*x45/x40 - (x3 + 2.0*x27)*x16/x40;
+        x27*x29/x40 + (x3 - 2.0*x27)*x29/x40 - (x3 + 2.0*x25)*x16/x40 - x54*x45/x40;
     const foucault_pendulum_real x64 =
         x59 + (0.5*x53 + x41*x62/x44 + 2.0*x63 - x46*x62/x44);
     const foucault_pendulum_real x65 = c4*x_dot;
     const foucault_pendulum_real x66 =
-        (4.0*x2*x25 + 2.0*x2*x3 - x3*x25)*x0/x40 + 4.0*x11*x9/x40 + x27*x55*x10/x40
+        x25*x55*x13/x40 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x40 + 4.0*x14*x12/x40
         + x52*x65/x44 - x0*x56/x40 - x58*x65/x44
-        - 0.5*c1*(2.0*cos_c2 + x13*(x19 + (x2 + 2.0*x19))/x20);
+        - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20);
     const foucault_pendulum_real x67 =
-        delta_x*x64 + delta_x_dot*(2.0*(x_dot*x26/x6 - x49) + x50)
-        + 2.0*y*delta_y_dot*(x8 + y_dot*x27)/x6 - delta_y*(x66 - g*x51/x20)
-        - y*delta_x*(x25*x36 + 2.0*x38*x7)/x6 - delta_y*(x36*x12 + 2.0*x38*x28)/x6;
+        delta_x*x64 + delta_x_dot*(2.0*(x_dot*x28/x6 + x49) + x50)
+        + 2.0*y*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x66 - g*x51/x20)
+        - y*delta_x*(x27*x36 + 2.0*x38*x10)/x6 - delta_y*(x36*x15 + 2.0*x38*x26)/x6;
     const foucault_pendulum_real x68 = m*(x61 - x67*x32/x34)/x35;
     /* outputs */
     result[0] = x_dot;
@@ -864,7 +864,7 @@ static inline void foucault_pendulum_rhs_variational(
     result[4] = delta_x_dot;
     result[5] = delta_y_dot;
     result[6] = x68;
-    result[7] = -m*(x67 - x68*x7/x3)/x33;
+    result[7] = -m*(x67 - x68*x10/x3)/x33;
     (void)t;
 }
 #endif
