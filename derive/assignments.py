@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import count
+from math import isqrt
 from types import MappingProxyType
 
 from derive.lowering import Lowering
@@ -23,6 +24,33 @@ SUM, PRODUCT, ATOM = 1, 2, 3
 
 
 @dataclass(frozen=True)
+class Statement:
+    """A value with a name.
+
+    Attributes
+    ----------
+    name, text : str
+        The name and the expression; of ``factors`` and ``solved`` that of what is taken apart
+        or solved with.
+    kind : {"value", "factors", "solved"}
+        A number; a symmetric matrix taken apart; the solution with one that is.
+    parts : tuple of str
+        Entries of the matrix, its upper triangle row by row; or the right side.
+    """
+
+    name: str
+    text: str
+    kind: str = "value"
+    parts: tuple[str, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Rows of the matrix, or of the right side."""
+        count = len(self.parts)
+        return (isqrt(8 * count + 1) - 1) // 2 if self.kind == "factors" else count
+
+
+@dataclass(frozen=True)
 class Assignments:
     """A function's body, ready to be laid out in a language.
 
@@ -32,8 +60,8 @@ class Assignments:
         Names of the leaves that are used.
     called : frozenset of str
         Names of the functions that are called.
-    constants, terms : tuple of (str, str)
-        Names and expressions, those of the parameters alone first.
+    constants, terms : tuple of Statement
+        What has a name, that of the parameters alone first.
     outputs : tuple of str
         Expressions of the results.
     operations, constant_operations : int
@@ -42,8 +70,8 @@ class Assignments:
 
     inputs: frozenset[str]
     called: frozenset[str]
-    constants: tuple[tuple[str, str], ...]
-    terms: tuple[tuple[str, str], ...]
+    constants: tuple[Statement, ...]
+    terms: tuple[Statement, ...]
     outputs: tuple[str, ...]
     operations: int
     constant_operations: int
@@ -89,9 +117,9 @@ class _Writer:
     ) -> None:
         self._operations, self._taken, self._called = lowering.operations, set(taken), called
         self._written: dict[int, tuple[str, int]] = {}
-        self._counters = {"c": count(), "x": count()}
-        self.constants: list[tuple[str, str]] = []
-        self.terms: list[tuple[str, str]] = []
+        self._counters = {letter: count() for letter in ("c", "x", "factors", "solved")}
+        self.constants: list[Statement] = []
+        self.terms: list[Statement] = []
         self.uses: dict[int, int] = {}
         self._hoisted: set[int] = set()
         for output in lowering.outputs:
@@ -114,13 +142,24 @@ class _Writer:
 
     def _write(self, n: int) -> tuple[str, int]:
         operation = self._operations[n]
+        if operation.kind in ("factors", "solved"):
+            return self._parts(operation), ATOM
         text, precedence = self._expression(operation)
         in_place = self.uses[n] == 1 and n not in self._hoisted and len(text) <= IN_PLACE
-        if in_place or operation.kind in ("leaf", "number"):
+        if in_place or operation.kind in ("leaf", "number", "component"):
             return text, precedence
         name = self._name(operation)
-        (self.constants if operation.constant else self.terms).append((name, text))
+        (self.constants if operation.constant else self.terms).append(Statement(name, text))
         return name, ATOM
+
+    def _parts(self, operation: Operation) -> str:
+        """The name of a matrix taken apart, or of a solution."""
+        texts = [self.text(operand, 0) for operand in operation.operands]
+        matrix = texts.pop(0) if operation.kind == "solved" else ""
+        name = self._numbered(operation.kind)
+        statement = Statement(name, matrix, operation.kind, tuple(texts))
+        (self.constants if operation.constant else self.terms).append(statement)
+        return name
 
     def _name(self, operation: Operation) -> str:
         if operation.kind == "call":
@@ -129,7 +168,9 @@ class _Writer:
             if argument.isidentifier() and name not in self._taken:
                 self._taken.add(name)
                 return name
-        letter = "c" if operation.constant else "x"
+        return self._numbered("c" if operation.constant else "x")
+
+    def _numbered(self, letter: str) -> str:
         names = (f"{letter}{i}" for i in self._counters[letter])
         return next(name for name in names if name not in self._taken)
 
@@ -141,6 +182,8 @@ class _Writer:
                 return number(operation.value), ATOM
             case "call":
                 return f"{operation.label}({self.text(operation.operands[0], 0)})", ATOM
+            case "component":
+                return f"{self.text(operation.operands[0], 0)}[{operation.value}]", ATOM
             case "quotient":
                 *above, below = operation.operands
                 top = self.text(above[0], PRODUCT) if above else number(Fraction(1))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from textwrap import indent
 
-from derive.assignments import Assignments
+from derive.assignments import Assignments, Statement
 from derive.functions import Contents, Function, body
 from derive.summary import broken_sum, summary
 
@@ -60,6 +60,70 @@ static inline void {system}_{name}(
 """
 
 
+#: Numbers that are taken together in a loop.
+BLOCK = 8
+
+#: Only where a matrix is large. Rows are eliminated from, in whole blocks, so that loops vectorise.
+LOOPS = """\
+#ifdef HOLONOMIC_VECTOR
+enum {{ {guard}_BLOCK = 1 }};
+#else
+enum {{ {guard}_BLOCK = {block} }};
+#endif
+
+/* Room for a matrix whose rows are `stride` apart; a block may reach below the diagonal. */
+static inline void {system}_clear({system}_real *matrix, int count)
+{{
+#ifndef HOLONOMIC_VECTOR
+    for (int k = 0; k < count; k++) {{
+        matrix[k] = 0.0;
+    }}
+#endif
+    (void)matrix; (void)count;
+}}
+
+/* A symmetric matrix M = L D Lᵀ of n rows, from its upper triangle: inverse pivots on the
+   diagonal, rows of Lᵀ beside it. */
+static inline void {system}_take_apart({system}_real *matrix, int n, int stride)
+{{
+    for (int i = 0; i < n; i++) {{
+        {system}_real *row = matrix + i*stride;
+        const {system}_real inverse = 1.0/row[i];
+        for (int j = i + 1; j < n; j++) {{
+            const {system}_real ratio = row[j]*inverse;
+            {system}_real *below = matrix + j*stride;
+            for (int k = j - j % {guard}_BLOCK; k < n; k += {guard}_BLOCK) {{
+                for (int b = k; b < k + {guard}_BLOCK; b++) {{
+                    below[b] = below[b] - ratio*row[b];
+                }}
+            }}
+        }}
+        row[i] = inverse;
+        for (int j = i + 1; j < n; j++) {{
+            row[j] = row[j]*inverse;
+        }}
+    }}
+}}
+
+/* The solution x of M x = right, with M taken apart; x is `right` before. */
+static inline void {system}_solve(const {system}_real *matrix, {system}_real *x, int n, int stride)
+{{
+    for (int i = 0; i < n; i++) {{
+        for (int k = i + 1; k < n; k++) {{
+            x[k] = x[k] - matrix[i*stride + k]*x[i];
+        }}
+    }}
+    for (int i = n - 1; i >= 0; i--) {{
+        x[i] = x[i]*matrix[i*stride + i];
+        for (int k = i + 1; k < n; k++) {{
+            x[i] = x[i] - matrix[i*stride + k]*x[k];
+        }}
+    }}
+}}
+
+"""
+
+
 def header(contents: Contents) -> str:
     """The text of the header with `contents`."""
     system = contents.system
@@ -68,6 +132,7 @@ def header(contents: Contents) -> str:
         **{f"{name}_{form}_state".upper(): len(s) for form, s in contents.states.items()},
         f"{name}_parameters".upper(): len(system.params),
     }
+    functions = "\n".join(_function(part, contents) for part in contents.functions).rstrip("\n")
     return HEADER.format(
         title=system.title,
         name=name,
@@ -77,8 +142,14 @@ def header(contents: Contents) -> str:
         count=len(system.params),
         defaults=", ".join(repr(float(parameter.default)) for parameter in system.parameters),
         sizes="\n".join(f"    {word} = {size}," for word, size in sizes.items()),
-        functions="\n".join(_function(part, contents) for part in contents.functions).rstrip("\n"),
+        functions=_loops(functions, name) + functions,
     )
+
+
+def _loops(functions: str, system: str) -> str:
+    if f"{system}_take_apart(" not in functions:
+        return ""
+    return LOOPS.format(system=system, guard=system.upper(), block=BLOCK)
 
 
 def _function(part: Function, contents: Contents) -> str:
@@ -99,7 +170,8 @@ def _function(part: Function, contents: Contents) -> str:
         arguments=", ".join(argument for argument, wanted in taken.items() if wanted),
         body="\n".join(_lines(part, assigned, contents)),
     )
-    if assigned.called or any(_is_number(output) for output in assigned.outputs):
+    given = [part for statement in assigned.terms for part in statement.parts]
+    if assigned.called or any(map(_is_number, (*assigned.outputs, *given))):
         return f"#ifndef HOLONOMIC_VECTOR\n{text}#endif\n"
     return text
 
@@ -126,7 +198,8 @@ def _lines(part: Function, assigned: Assignments, contents: Contents) -> list[st
     ):
         if named:
             lines.append(f"    /* {title} */")
-            lines += [_statement(f"const {real} {name}", text) for name, text in named]
+            for statement in named:
+                lines += _assignment(statement, system.name)
     lines.append("    /* outputs */")
     lines += [_statement(f"result[{k}]", text) for k, text in enumerate(assigned.outputs)]
     unused = {
@@ -135,6 +208,27 @@ def _lines(part: Function, assigned: Assignments, contents: Contents) -> list[st
         "params": not assigned.inputs.intersection(symbol.name for symbol in system.params),
     }
     return lines + [f"    (void){name};" for name, is_unused in unused.items() if is_unused]
+
+
+def _assignment(statement: Statement, system: str) -> list[str]:
+    real, name, n = f"{system}_real", statement.name, statement.size
+    stride = -(-n // BLOCK) * BLOCK
+    if statement.kind == "value":
+        return [_statement(f"const {real} {name}", statement.text)]
+    if statement.kind == "solved":
+        parts = [_statement(f"{name}[{k}]", text) for k, text in enumerate(statement.parts)]
+        solve = f"    {system}_solve({statement.text}, {name}, {n}, {stride});"
+        return [f"    {real} {name}[{n}];", *parts, solve]
+    places = (i * stride + j for i in range(n) for j in range(i, n))
+    return [
+        f"    {real} {name}[{n * stride}];",
+        f"    {system}_clear({name}, {n * stride});",
+        *(
+            _statement(f"{name}[{k}]", text)
+            for k, text in zip(places, statement.parts, strict=True)
+        ),
+        f"    {system}_take_apart({name}, {n}, {stride});",
+    ]
 
 
 def _statement(left: str, text: str) -> str:

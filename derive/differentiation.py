@@ -53,8 +53,10 @@ class Differentiation:
                 return OUTER[function](node, argument) * self(argument, leaf)
             case "sum":
                 return graph.sum([(self(term, leaf), number) for term, number in node.content])
-            case _:
+            case "product":
                 return graph.sum([
                     (graph.product([*node.content, (factor, -1), (self(factor, leaf), 1)]), power)
                     for factor, power in node.content
                 ])  # fmt: skip
+            case kind:
+                raise NotImplementedError(f"no derivative of a node of kind {kind}")

@@ -1,4 +1,4 @@
-"""Symmetric elimination, written out operation by operation.
+"""Symmetric elimination, written out operation by operation where the matrix is small.
 
 M = c S U D Uᵀ S with U unit upper triangular, D diagonal, S the diagonal of
 those factors that rows and columns have in common (lengths, mostly), and c the
@@ -13,11 +13,40 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import reduce
 from math import gcd, lcm
+from typing import Protocol
 
 from derive.graph import Graph, Node
 
+#: From this size on a loop is as quick as straight-line code, which grows with its cube.
+LARGE = 12
+
 #: A multiplier of more factors than this gets a name, a shorter one is written out.
 SHORT = 3
+
+
+class Solver(Protocol):
+    """A matrix M, ready to solve M x = b."""
+
+    def solve(self, right: Sequence[Node]) -> list[Node]:
+        """The solution x of M x = `right`."""
+        ...
+
+
+def factorisation(graph: Graph, matrix: Sequence[Sequence[Node]]) -> Solver:
+    """A symmetric positive definite matrix, taken apart as its size asks for."""
+    return (Loops if len(matrix) >= LARGE else Factorisation)(graph, matrix)
+
+
+class Loops:
+    """L D Lᵀ by loops: the module has functions that take a matrix apart and solve with it."""
+
+    def __init__(self, graph: Graph, matrix: Sequence[Sequence[Node]]) -> None:
+        self._graph = graph
+        self._factors = graph.factors(entry for i, row in enumerate(matrix) for entry in row[i:])
+
+    def solve(self, right: Sequence[Node]) -> list[Node]:
+        """The solution x of M x = `right`."""
+        return self._graph.solution(self._factors, right)
 
 
 class Factorisation:

@@ -10,8 +10,11 @@ from typing import Literal
 
 from derive.assignments import Assignments, assignments
 from derive.derivation import Derivation
+from derive.factorisation import LARGE
+from derive.graph import Node
 from derive.lowering import Lowering
 from derive.mechanics import Mechanics
+from derive.rational import opened
 from derive.symbols import TIME
 from derive.system import System
 
@@ -199,7 +202,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
                 form,
                 states.get(form, ()),
                 tuple(sizes[word] for word in shape.split()),
-                Lowering(getattr(Mechanics(derivation), name), parameters),
+                Lowering(_nodes(derivation, name), parameters),
             )
             for name, form, shape, summary, returns in TABLE
             if (only is None or name in only)
@@ -207,6 +210,12 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
             and (name not in EXISTS or EXISTS[name](derivation))
         ),
     )
+
+
+def _nodes(derivation: Derivation, name: str) -> list[Node]:
+    """The outputs of a function, with as few calls as may be."""
+    mechanics = Mechanics(derivation)
+    return opened(getattr(mechanics, name), [q.name for q in derivation.system.q])
 
 
 def _said(text: str, derivation: Derivation) -> str:
@@ -225,6 +234,8 @@ WORDS: dict[str, Callable[[Derivation], str]] = {
 EXISTS: dict[str, Callable[[Derivation], bool]] = {
     "power": lambda derivation: derivation.power != 0,
     "reactions": lambda derivation: bool(derivation.system.reactions),
+    # n² entries of n terms each: for a large system that is too much text
+    "jacobian_hamiltonian": lambda derivation: len(derivation.system.q) < LARGE,
     "equilibrium": lambda derivation: derivation.rest is not None,
     "linear": lambda derivation: derivation.rest is not None and derivation.is_sprung,
 }

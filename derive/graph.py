@@ -30,8 +30,9 @@ class Node:
 
     Attributes
     ----------
-    kind : {"leaf", "number", "sum", "product", "call", "let"}
-    content : the name, the number, the terms, the factors, or (function, argument)
+    kind : {"leaf", "number", "sum", "product", "call", "let", "factors", "solved", "component"}
+    content : the name, the number, the terms, the factors, (function, argument); entries of a
+        matrix, (factors, right side), or (solved, index)
     rank : order of creation; operands have a lower rank than what uses them
     """
 
@@ -81,9 +82,19 @@ class Node:
         """The nodes that this one is computed from."""
         if self.kind in ("sum", "product"):
             return tuple(node for node, _ in self.content)
-        if self.kind == "call":
-            return (self.content[1],)
-        return (self.content,) if self.kind == "let" else ()
+        match self.kind:
+            case "call":
+                return (self.content[1],)
+            case "let":
+                return (self.content,)
+            case "factors":
+                return self.content
+            case "solved":
+                return (self.content[0], *self.content[1])
+            case "component":
+                return (self.content[0],)
+            case _:
+                return ()
 
 
 Operand = Node | int | Fraction
@@ -123,6 +134,15 @@ class Graph:
             positive = self._intern("call", (function, -argument))
             return -positive if function == "sin" else positive
         return self._intern("call", (function, argument))
+
+    def factors(self, upper: Iterable[Node]) -> Node:
+        """A symmetric matrix taken apart by a loop: its upper triangle, row by row."""
+        return self._intern("factors", tuple(upper))
+
+    def solution(self, factors: Node, right: Iterable[Node]) -> list[Node]:
+        """What the matrix of `factors` takes to the right side."""
+        solved = self._intern("solved", (factors, tuple(right)))
+        return [self._intern("component", (solved, i)) for i in range(len(solved.content[1]))]
 
     def power(self, base: Node, exponent: int) -> Node:
         """``base**exponent``."""

@@ -62,6 +62,14 @@ class Lowering:
                 operands = (self._lower(argument),)
                 constant = self._constant(operands)
                 return self._add(Operation("call", operands, label=function, constant=constant))
+            case "factors" | "solved":
+                parts = tuple(self._lower(operand) for operand in node.operands())
+                constant = self._constant(parts)
+                return self._add(Operation(node.kind, parts, constant=constant))
+            case "component":
+                solved, index = self._lower(node.content[0]), Fraction(node.content[1])
+                constant = self._constant((solved,))
+                return self._add(Operation("component", (solved,), value=index, constant=constant))
             case "sum":
                 terms = _merged([self._term(term, c) for term, c in node.content])
                 return self._sum(terms) if terms else self._number(0)

@@ -16,7 +16,7 @@ import sympy as sp
 
 from derive.derivation import Derivation
 from derive.differentiation import Differentiation
-from derive.factorisation import Factorisation
+from derive.factorisation import Solver, factorisation
 from derive.graph import Graph, Node
 from derive.rational import angles, rationalised
 from derive.translation import Translation
@@ -59,15 +59,12 @@ class Mechanics:
         return self._nodes(self._system.applied)
 
     @cached_property
-    def _factorisation(self) -> Factorisation:
-        return Factorisation(self._graph, [[self._inertia[i][j] for j in self._n] for i in self._n])
+    def _factorisation(self) -> Solver:
+        return factorisation(self._graph, [[self._inertia[i][j] for j in self._n] for i in self._n])
 
     def _rates(self, velocities: Sequence[Node]) -> list[Node]:
         """Rates of all variables where those of the coordinates are `velocities`."""
         return [*velocities, *self._nodes(self._derivation.rates[len(velocities) :])]
-
-    def _slopes(self, node: Node, variables: Sequence[sp.Symbol]) -> list[Node]:
-        return [self._derivative(node, variable.name) for variable in variables]
 
     @property
     def mass_matrix(self) -> list[Node]:

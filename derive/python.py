@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Sequence
 from itertools import groupby
 from textwrap import indent, wrap
 
-from derive.assignments import Assignments
+from derive.assignments import Assignments, Statement
 from derive.functions import Contents, Function, body
 from derive.summary import broken_sum, summary, units
 from derive.system import System
@@ -82,6 +82,35 @@ def {name}_many({arguments}) -> Array:
     return {outputs}
 '''
 
+#: Only where a matrix is large; term by term what the C header does.
+LOOPS = '''
+
+
+def _taken_apart(upper: Sequence[Any], n: int) -> list[list[Any]]:
+    """A symmetric matrix M = L D Lᵀ, from its upper triangle: inverse pivots, then rows of Lᵀ."""
+    entries = iter(upper)
+    rows = [[next(entries) for _ in range(n - i)] for i in range(n)]
+    for i, row in enumerate(rows):
+        inverse = 1.0/row[0]
+        for j in range(1, n - i):
+            ratio, below = row[j]*inverse, rows[i + j]
+            for k in range(j, n - i):
+                below[k - j] = below[k - j] - ratio*row[k]
+        row[:] = [inverse, *(entry*inverse for entry in row[1:])]
+    return rows
+
+
+def _solved(rows: list[list[Any]], right: Sequence[Any]) -> list[Any]:
+    """The solution x of M x = right, with M taken apart."""
+    x = list(right)
+    for i, row in enumerate(rows):
+        for k in range(1, len(row)):
+            x[i + k] = x[i + k] - row[k]*x[i]
+    for i, row in reversed(list(enumerate(rows))):
+        x[i] = x[i]*row[0]
+        for k in range(1, len(row)):
+            x[i] = x[i] - row[k]*x[i + k]
+    return x'''
 #: Functions call the state y; a coordinate or parameter of that name is called otherwise.
 CALLED = {"y": "y_"}
 TYPES = ("float", "Vector", "Matrix", "tuple[Matrix, ...]")
@@ -102,8 +131,13 @@ def module(contents: Contents) -> str:
             text
             for part, assigned in zip(contents.functions, bodies, strict=True)
             for text in (_one(part, assigned, system), _many(part, assigned, system))
-        ).rstrip("\n"),
+        ).rstrip("\n")
+        + (LOOPS if any(map(_has_loops, bodies)) else ""),
     )
+
+
+def _has_loops(assigned: Assignments) -> bool:
+    return any(s.kind != "value" for s in (*assigned.constants, *assigned.terms))
 
 
 def _imports(called: Collection[str]) -> str:
@@ -150,6 +184,15 @@ def _broken(text: str, margin: int, name: str = "") -> str:
         return start + text
     lines = indent(broken_sum(text, WIDTH - margin - 4), " " * (margin + 4))
     return f"{start}(\n{lines}\n{' ' * margin})"
+
+
+def _assignment(statement: Statement) -> str:
+    if statement.kind == "value":
+        return _broken(statement.text, 4, statement.name)
+    parts = _tuple(statement.parts, depth=1)
+    if statement.kind == "factors":
+        return f"    {statement.name} = _taken_apart({parts}, {statement.size})"
+    return f"    {statement.name} = _solved({statement.text}, {parts})"
 
 
 def _arguments(part: Function, kind: str) -> str:
@@ -236,5 +279,5 @@ def _body(part: Function, assigned: Assignments, system: System, *, plain: bool)
     ):
         if named:
             lines.append(f"    # {title}")
-            lines += [_broken(text, 4, name) for name, text in named]
+            lines += map(_assignment, named)
     return "\n".join([*lines, "    # outputs"])

@@ -26,9 +26,35 @@ def angles(nodes: Sequence[Node], coordinates: Collection[str]) -> frozenset[str
 
 
 def rationalised(nodes: Sequence[Node], names: Collection[str]) -> list[Node]:
-    """`nodes` in a new graph, with leaves ``sin_q`` and ``cos_q`` for each q of `names`."""
+    """`nodes` in a new graph, with leaves ``sin_q`` and ``cos_q`` for each q of `names`.
+
+    These are the state of the rational form.
+    """
     rewriting = _Rewriting(Graph(), names)
     return [rewriting(node) for node in nodes]
+
+
+def opened(nodes: Sequence[Node], names: Collection[str]) -> list[Node]:
+    """`nodes`, or if that calls fewer functions, the same with sums of angles opened.
+
+    A long chain knows all differences of its angles; their sines and cosines follow from
+    those of the angles themselves by sums and products, which are quicker.
+    """
+    rewriting = _Rewriting(Graph(), names, called=True)
+    rewritten = [rewriting(node) for node in nodes]
+    return rewritten if _calls(rewritten) < _calls(nodes) else list(nodes)
+
+
+def _calls(nodes: Sequence[Node]) -> int:
+    """How many functions are called."""
+    visited: set[Node] = set()
+    waiting = list(nodes)
+    while waiting:
+        node = waiting.pop()
+        if node not in visited:
+            visited.add(node)
+            waiting += node.operands()
+    return sum(node.kind == "call" for node in visited)
 
 
 def _seen_plainly(node: Node, names: frozenset[str], visited: set[Node]) -> Iterator[str]:
@@ -58,8 +84,8 @@ def _multiples(node: Node, names: Collection[str]) -> dict[str, int] | None:
 
 
 class _Rewriting:
-    def __init__(self, graph: Graph, names: Collection[str]) -> None:
-        self._graph, self._names = graph, names
+    def __init__(self, graph: Graph, names: Collection[str], *, called: bool = False) -> None:
+        self._graph, self._names, self._called = graph, names, called
         self._nodes: dict[Node, Node] = {}
         self._pairs: dict[tuple[tuple[str, int], ...], Pair] = {}
 
@@ -82,6 +108,12 @@ class _Rewriting:
                 return self._graph.let(self(node.content))
             case "call":
                 return self._graph.call(node.content[0], self(node.content[1]))
+            case "factors":
+                return self._graph.factors([self(entry) for entry in node.content])
+            case "component":
+                solved, index = node.content
+                factors, right = solved.content
+                return self._graph.solution(self(factors), [self(part) for part in right])[index]
             case "sum":
                 return self._graph.sum([(self(term), number) for term, number in node.content])
             case _:
@@ -92,11 +124,16 @@ class _Rewriting:
         if multiples not in self._pairs:
             (name, multiple), *others = multiples
             step = 1 if multiple > 0 else -1
-            leaf = self._graph.leaf(f"sin_{name}"), self._graph.leaf(f"cos_{name}")
-            first = leaf if step == 1 else (-leaf[0], leaf[1])
+            sine, cosine = (self._wave(function, name) for function in ("sin", "cos"))
+            first = (sine, cosine) if step == 1 else (-sine, cosine)
             rest = tuple([(name, multiple - step)] if multiple != step else []) + tuple(others)
             self._pairs[multiples] = self._added(first, self._pair(rest)) if rest else first
         return self._pairs[multiples]
+
+    def _wave(self, function: str, name: str) -> Node:
+        if self._called:
+            return self._graph.call(function, self._graph.leaf(name))
+        return self._graph.leaf(f"{function}_{name}")
 
     def _added(self, a: Pair, b: Pair) -> Pair:
         # under names of their own, since both are used more than once in most equations

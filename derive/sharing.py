@@ -26,17 +26,24 @@ def share_pairs(operations: dict[int, Operation]) -> None:
             holders.setdefault(pair, set()).add(number)
     queue = [(-len(numbers), pair) for pair, numbers in holders.items() if len(numbers) > 1]
     heapify(queue)
+    known = {operation: number for number, operation in operations.items()}
     while queue:
         count, pair = heappop(queue)
         if -count != len(holders[pair]):
             if len(holders[pair]) > 1:
                 heappush(queue, (-len(holders[pair]), pair))
             continue
-        number = _operation_of(pair, operations)
+        wanted = _operation_of(pair, operations)
+        if wanted not in known:
+            known[wanted] = len(operations)
+            operations[len(operations)] = wanted
+        number = known[wanted]
         for holder in sorted(holders[pair] - {number}):
             for old in _pairs(operations[holder]):
                 holders[old].discard(holder)
+            known.pop(operations[holder], None)
             operations[holder] = _without(operations[holder], pair, number)
+            known.setdefault(operations[holder], holder)
             for new in _pairs(operations[holder]):
                 holders.setdefault(new, set()).add(holder)
                 if len(holders[new]) > 1:
@@ -55,17 +62,11 @@ def _pairs(operation: Operation) -> set[Pair]:
     return set()
 
 
-def _operation_of(pair: Pair, operations: dict[int, Operation]) -> int:
+def _operation_of(pair: Pair, operations: dict[int, Operation]) -> Operation:
     kind, a, b, ratio = pair
     coefficients = (Fraction(1), ratio) if kind == "sum" else ()
     constant = operations[a].constant and operations[b].constant
-    wanted = Operation(kind, (a, b), coefficients, constant=constant)
-    for number, operation in operations.items():
-        if operation == wanted:
-            return number
-    number = max(operations) + 1
-    operations[number] = wanted
-    return number
+    return Operation(kind, (a, b), coefficients, constant=constant)
 
 
 def _without(operation: Operation, pair: Pair, number: int) -> Operation:

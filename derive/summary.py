@@ -7,11 +7,15 @@ from textwrap import indent
 
 import sympy as sp
 
+from derive.derivation import Derivation
 from derive.functions import Contents, Form
 from derive.system import System
 
 #: Unit of the momentum conjugate to a coordinate of this unit.
 MOMENTUM_UNIT = {"rad": "J s", "m": "kg m/s"}
+
+#: With more coordinates than this, equations fill pages.
+READABLE = 5
 
 STATES: dict[Form, str] = {
     "lagrangian": "State y = (q, qdot)",
@@ -54,12 +58,19 @@ def summary(contents: Contents) -> str:
                 for p in system.parameters
             ),
             "Masses and their positions": masses,
-            "Lagrangian": [f"L = {_text(derivation.lagrangian)}"],
-            "Equations of motion": (
-                f"{_text(residual)} = 0" for residual in derivation.euler_lagrange
-            ),
+            **_equations(derivation),
         }.items()
     )
+
+
+def _equations(derivation: Derivation) -> dict[str, list[str]]:
+    """The Lagrangian and the equations of motion, of a system in which people can read them."""
+    if len(derivation.system.q) > READABLE:
+        return {}
+    return {
+        "Lagrangian": [f"L = {_text(derivation.lagrangian)}"],
+        "Equations of motion": [f"{_text(residual)} = 0" for residual in derivation.euler_lagrange],
+    }
 
 
 def broken_sum(text: str, width: int) -> str:

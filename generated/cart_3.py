@@ -232,7 +232,7 @@ UNITS = {
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    124 operations, 13 of them on parameters alone.
+    133 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -274,42 +274,40 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x2 = c4*x1
     sin_theta3 = sin(theta3)
     x3 = c5*(theta3_dot*theta3_dot)
-    x4 = theta1 - theta3
-    sin_x4 = sin(x4)
-    x5 = theta2 - theta3
-    sin_x5 = sin(x5)
-    x6 = l1*sin_x4*x0 + l2*sin_x5*x1 - g*sin_theta3
     cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    x4 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    cos_theta2 = cos(theta2)
+    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3
     x7 = m3*cos_theta3
     x8 = c2*sin_theta1*x0 + sin_theta2*x2 + sin_theta3*x3 - x6*x7
-    cos_x5 = cos(x5)
-    x9 = c3*cos(theta2) - cos_x5*x7
-    x10 = theta1 - theta2
-    sin_x10 = sin(x10)
-    x11 = m3*cos_x5
-    x12 = c6*sin_x10*x0 - sin_x5*x3 - c7*sin_theta2 - x6*x11
-    x13 = m2 + m3*sin_x5*sin_x5
-    cos_x4 = cos(x4)
-    x14 = c3*cos(x10) - cos_x4*x11
-    x15 = c1*cos(theta1) - cos_x4*x7 - x9*x14/x13
-    x16 = sin_x10*x2 + sin_x4*x3 + c8*sin_theta1 + m3*cos_x4*x6
-    x17 = x16 + x14*x12/x13
-    x18 = c0 + m3*sin_x4*sin_x4 - x14*x14/x13
-    x19 = c9 + m3*sin_theta3*sin_theta3 - x9*x9/x13 - x15*x15/x18
-    x20 = (x8 - x9*x12/x13 + x15*x17/x18)/x19
-    x21 = (x17 + x15*x20)/x18
-    x22 = (x12 + x14*x21 - x9*x20)/x13
-    x23 = c12*(x6 + cos_x4*x21 - cos_theta3*x20 - cos_x5*x22)
+    x9 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x10 = c3*cos_theta2 - x9*x7
+    x11 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x12 = m3*x9
+    x13 = c6*x11*x0 - x5*x3 - c7*sin_theta2 - x6*x12
+    x14 = m2 + m3*x5*x5
+    x15 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x16 = c3*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x17 = x16 - x15*x12
+    x18 = c1*cos_theta1 - x15*x7 - x10*x17/x14
+    x19 = x11*x2 + x4*x3 + c8*sin_theta1 + m3*x15*x6 + x17*x13/x14
+    x20 = c0 + m3*x4*x4 - x17*x17/x14
+    x21 = c9 + m3*sin_theta3*sin_theta3 - x10*x10/x14 - x18*x18/x20
+    x22 = (x8 - x10*x13/x14 + x18*x19/x20)/x21
+    x23 = (x19 + x18*x22)/x20
+    x24 = (x13 + x17*x23 - x10*x22)/x14
     # outputs
     return (
         x_dot,
         theta1_dot,
         theta2_dot,
         theta3_dot,
-        x20,
-        -c10*x21,
-        c11*x22,
-        x23,
+        x22,
+        -c10*x23,
+        c11*x24,
+        c12*(x6 + x15*x23 - cos_theta3*x22 - x9*x24),
     )
 
 
@@ -342,32 +340,30 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
     x2 = c4*x1
     sin_theta3 = sin(theta3)
     x3 = c5*(theta3_dot*theta3_dot)
-    x4 = theta1 - theta3
-    sin_x4 = sin(x4)
-    x5 = theta2 - theta3
-    sin_x5 = sin(x5)
-    x6 = l1*sin_x4*x0 + l2*sin_x5*x1 - g*sin_theta3
     cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    x4 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    cos_theta2 = cos(theta2)
+    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3
     x7 = m3*cos_theta3
     x8 = c2*sin_theta1*x0 + sin_theta2*x2 + sin_theta3*x3 - x6*x7
-    cos_x5 = cos(x5)
-    x9 = c3*cos(theta2) - cos_x5*x7
-    x10 = theta1 - theta2
-    sin_x10 = sin(x10)
-    x11 = m3*cos_x5
-    x12 = c6*sin_x10*x0 - sin_x5*x3 - c7*sin_theta2 - x6*x11
-    x13 = m2 + m3*sin_x5*sin_x5
-    cos_x4 = cos(x4)
-    x14 = c3*cos(x10) - cos_x4*x11
-    x15 = c1*cos(theta1) - cos_x4*x7 - x9*x14/x13
-    x16 = sin_x10*x2 + sin_x4*x3 + c8*sin_theta1 + m3*cos_x4*x6
-    x17 = x16 + x14*x12/x13
-    x18 = c0 + m3*sin_x4*sin_x4 - x14*x14/x13
-    x19 = c9 + m3*sin_theta3*sin_theta3 - x9*x9/x13 - x15*x15/x18
-    x20 = (x8 - x9*x12/x13 + x15*x17/x18)/x19
-    x21 = (x17 + x15*x20)/x18
-    x22 = (x12 + x14*x21 - x9*x20)/x13
-    x23 = c12*(x6 + cos_x4*x21 - cos_theta3*x20 - cos_x5*x22)
+    x9 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x10 = c3*cos_theta2 - x9*x7
+    x11 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x12 = m3*x9
+    x13 = c6*x11*x0 - x5*x3 - c7*sin_theta2 - x6*x12
+    x14 = m2 + m3*x5*x5
+    x15 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x16 = c3*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x17 = x16 - x15*x12
+    x18 = c1*cos_theta1 - x15*x7 - x10*x17/x14
+    x19 = x11*x2 + x4*x3 + c8*sin_theta1 + m3*x15*x6 + x17*x13/x14
+    x20 = c0 + m3*x4*x4 - x17*x17/x14
+    x21 = c9 + m3*sin_theta3*sin_theta3 - x10*x10/x14 - x18*x18/x20
+    x22 = (x8 - x10*x13/x14 + x18*x19/x20)/x21
+    x23 = (x19 + x18*x22)/x20
+    x24 = (x13 + x17*x23 - x10*x22)/x14
     # outputs
     return _stacked(
         (8,),
@@ -376,17 +372,17 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
         theta1_dot,
         theta2_dot,
         theta3_dot,
-        x20,
-        -c10*x21,
-        c11*x22,
-        x23,
+        x22,
+        -c10*x23,
+        c11*x24,
+        c12*(x6 + x15*x23 - cos_theta3*x22 - x9*x24),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    410 operations, 14 of them on parameters alone.
+    419 operations, 14 of them on parameters alone.
 
     Parameters
     ----------
@@ -426,129 +422,129 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x0 = l1*theta1_dot
     x1 = theta1_dot*x0
     sin_theta1 = sin(theta1)
-    x2 = theta1 - theta2
-    sin_x2 = sin(x2)
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x2 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
     x3 = theta2_dot*theta2_dot
     x4 = c3*x3
-    x5 = theta1 - theta3
-    sin_x5 = sin(x5)
+    cos_theta3 = cos(theta3)
+    sin_theta3 = sin(theta3)
+    x5 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
     x6 = theta3_dot*theta3_dot
     x7 = c4*x6
-    x8 = theta2 - theta3
-    sin_x8 = sin(x8)
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
     x9 = l2*x3
-    sin_theta3 = sin(theta3)
-    x10 = sin_x5*x1 + sin_x8*x9 - g*sin_theta3
-    cos_x5 = cos(x5)
-    x11 = m3*cos_x5
-    cos_x2 = cos(x2)
-    cos_x8 = cos(x8)
-    x12 = m3*cos_x8
-    x13 = c2*cos_x2 - cos_x5*x12
-    x14 = theta1_dot*theta1_dot
-    x15 = c6*x14
-    sin_theta2 = sin(theta2)
-    x16 = sin_x2*x15 - sin_x8*x7 - c7*sin_theta2 - x10*x12
-    x17 = m3*sin_x8
-    x18 = m2 + sin_x8*x17
-    x19 = sin_x2*x4 + sin_x5*x7 + c5*sin_theta1 + x10*x11 + x13*x16/x18
-    cos_theta3 = cos(theta3)
-    x20 = m3*cos_theta3
-    cos_theta2 = cos(theta2)
-    x21 = c2*cos_theta2 - cos_theta3*x12
-    x22 = c1*cos_theta1 - cos_x5*x20 - x21*x13/x18
-    x23 = c8*sin_theta1*x14 + sin_theta2*x4 + sin_theta3*x7
-    x24 = m3*sin_x5
-    x25 = c0 + sin_x5*x24 - x13*x13/x18
-    x26 = c9 + m3*sin_theta3*sin_theta3 - x21*x21/x18 - x22*x22/x25
-    x27 = (x23 - x10*x20 - x21*x16/x18 + x22*x19/x25)/x26
-    x28 = (x19 + x22*x27)/x25
-    x29 = cos_x5*x1
-    x30 = sin_x5*x28
-    x31 = x29 - x30
-    x32 = c2*(cos_x2*x1 - sin_x2*x28) - x31*x12
-    x33 = c1*(cos_theta1*x1 - sin_theta1*x28) - x31*x20 - x21*x32/x18
-    x34 = c1*sin_theta1
-    x35 = (x16 + x13*x28 - x21*x27)/x18
-    x36 = c2*sin_x2
-    x37 = x10 + cos_x5*x28 - cos_theta3*x27 - cos_x8*x35
-    x38 = cos_x2*x4 + cos_x5*x7 + c5*cos_theta1 - (x27*x34 + x35*x36 + x37*x24)
-    x39 = x38 + x31*x11 + x13*x32/x18
-    x40 = (x33 + x22*x39/x25)/x26
-    x41 = cos_x8*x9
-    x42 = sin_x8*x35
-    x43 = x41 + x42
-    x44 = c2*sin_theta2
-    x45 = cos_x2*x15 + cos_x8*x7 + c7*cos_theta2 - (x28*x36 + x27*x44 + x37*x17)
-    x46 = x45 + x43*x12
-    x47 = c2*(cos_theta2*x9 + sin_theta2*x35) - x43*x20 + x21*x46/x18
-    x48 = c2*(sin_x2*x35 - cos_x2*x9) + x43*x11 - x13*x46/x18
-    x49 = (x47 + x22*x48/x25)/x26
-    x50 = l3*x6
-    x51 = x29 + x41 + g*cos_theta3 - (x30 + sin_theta3*x27 - x42)
-    x52 = sin_x8*x37 - cos_x8*x50 - cos_x8*x51
-    x53 = cos_theta3*x50 + sin_theta3*x37 + cos_theta3*x51 + x21*x52/x18
-    x54 = sin_x5*x37 - cos_x5*x50 - cos_x5*x51 - x13*x52/x18
-    x55 = m3*(x53 + x22*x54/x25)/x26
-    x56 = x36 - sin_x5*x12
-    x57 = sin_x5*x11 + x13*x56/x18
-    x58 = (x34 - sin_x5*x20 - x21*x56/x18 + x22*x57/x25)*x0
-    x59 = x58/x26
-    x60 = x21*sin_x8
-    x61 = sin_x8*x13
-    x62 = x36 + sin_x8*x11 - x61*x12/x18
-    x63 = l2*theta2_dot
-    x64 = (x44 - sin_x8*x20 + x60*x12/x18 + x22*x62/x25)*x63
-    x65 = x64/x26
-    x66 = sin_x5 - x61/x18
-    x67 = c4*theta3_dot
-    x68 = (sin_theta3 + x60/x18 + x22*x66/x25)*x67/x26
-    x69 = (x39 + x22*x40)/x25
-    x70 = (x48 + x22*x49)/x25
-    x71 = (m3*x54 + x22*x55)/x25
-    x72 = (x57*x0 + x22*x59)/x25
-    x73 = (x62*x63 + x22*x65)/x25
-    x74 = (x66*x67 + x22*x68)/x25
-    x75 = (x32 + x13*x69 - x21*x40)/x18
-    x76 = (x46 + x21*x49 - x13*x70)/x18
-    x77 = (m3*x52 + x21*x55 - x13*x71)/x18
-    x78 = (x56*x0 + x13*x72 - x21*x59)/x18
-    x79 = (c12*cos_x8*sin_x8*theta2_dot + x21*x65 - x13*x73)/x18
-    x80 = (sin_x8*x67 + x21*x68 - x13*x74)/x18
-    x81 = c13*(x31 + cos_x5*x69 - cos_theta3*x40 - cos_x8*x75)
-    x82 = c13*(x43 + cos_x5*x70 + cos_x8*x76 - cos_theta3*x49)
-    x83 = c13*(x51 + cos_theta3*x55 - cos_x5*x71 - cos_x8*x77)
-    x84 = sin_x5*x0 + cos_x5*x72 - cos_theta3*x59 - cos_x8*x78
-    x85 = sin_x8*x63 + cos_x5*x73 + cos_x8*x79 - cos_theta3*x65
-    x86 = 2.0*c13*(cos_x5*x74 + cos_x8*x80 - cos_theta3*x68)
+    x10 = x5*x1 + x8*x9 - g*sin_theta3
+    x11 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x12 = m3*x11
+    x13 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x14 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x15 = m3*x14
+    x16 = c2*x13 - x11*x15
+    x17 = theta1_dot*theta1_dot
+    x18 = c6*x17
+    x19 = x2*x18 - x8*x7 - c7*sin_theta2 - x10*x15
+    x20 = m3*x8
+    x21 = m2 + x8*x20
+    x22 = x2*x4 + x5*x7 + c5*sin_theta1 + x10*x12 + x16*x19/x21
+    x23 = m3*cos_theta3
+    x24 = c2*cos_theta2 - cos_theta3*x15
+    x25 = c1*cos_theta1 - x11*x23 - x24*x16/x21
+    x26 = c8*sin_theta1*x17 + sin_theta2*x4 + sin_theta3*x7
+    x27 = m3*x5
+    x28 = c0 + x5*x27 - x16*x16/x21
+    x29 = c9 + m3*sin_theta3*sin_theta3 - x24*x24/x21 - x25*x25/x28
+    x30 = (x26 - x10*x23 - x24*x19/x21 + x25*x22/x28)/x29
+    x31 = (x22 + x25*x30)/x28
+    x32 = x11*x1
+    x33 = x5*x31
+    x34 = x32 - x33
+    x35 = c2*(x13*x1 - x2*x31) - x34*x15
+    x36 = c1*(cos_theta1*x1 - sin_theta1*x31) - x34*x23 - x24*x35/x21
+    x37 = c1*sin_theta1
+    x38 = (x19 + x16*x31 - x24*x30)/x21
+    x39 = c2*x2
+    x40 = x10 + x11*x31 - cos_theta3*x30 - x14*x38
+    x41 = x13*x4 + x11*x7 + c5*cos_theta1 - (x30*x37 + x38*x39 + x40*x27)
+    x42 = x41 + x34*x12 + x16*x35/x21
+    x43 = (x36 + x25*x42/x28)/x29
+    x44 = x14*x9
+    x45 = x8*x38
+    x46 = x44 + x45
+    x47 = c2*sin_theta2
+    x48 = x13*x18 + x14*x7 + c7*cos_theta2 - (x31*x39 + x30*x47 + x40*x20)
+    x49 = x48 + x46*x15
+    x50 = c2*(cos_theta2*x9 + sin_theta2*x38) - x46*x23 + x24*x49/x21
+    x51 = c2*(x2*x38 - x13*x9) + x46*x12 - x16*x49/x21
+    x52 = (x50 + x25*x51/x28)/x29
+    x53 = l3*x6
+    x54 = x32 + x44 + g*cos_theta3 - (x33 + sin_theta3*x30 - x45)
+    x55 = x8*x40 - x14*x53 - x14*x54
+    x56 = cos_theta3*x53 + sin_theta3*x40 + cos_theta3*x54 + x24*x55/x21
+    x57 = x5*x40 - x11*x53 - x11*x54 - x16*x55/x21
+    x58 = m3*(x56 + x25*x57/x28)/x29
+    x59 = x39 - x5*x15
+    x60 = x5*x12 + x16*x59/x21
+    x61 = (x37 - x5*x23 - x24*x59/x21 + x25*x60/x28)*x0/x29
+    x62 = x24*x8
+    x63 = x8*x16
+    x64 = x39 + x8*x12 - x63*x15/x21
+    x65 = l2*theta2_dot
+    x66 = (x47 - x8*x23 + x62*x15/x21 + x25*x64/x28)*x65/x29
+    x67 = x5 - x63/x21
+    x68 = c4*theta3_dot
+    x69 = (sin_theta3 + x62/x21 + x25*x67/x28)*x68/x29
+    x70 = (x42 + x25*x43)/x28
+    x71 = (x51 + x25*x52)/x28
+    x72 = (m3*x57 + x25*x58)/x28
+    x73 = (x60*x0 + x25*x61)/x28
+    x74 = (x64*x65 + x25*x66)/x28
+    x75 = (x67*x68 + x25*x69)/x28
+    x76 = (x35 + x16*x70 - x24*x43)/x21
+    x77 = (x49 + x24*x52 - x16*x71)/x21
+    x78 = (m3*x55 + x24*x58 - x16*x72)/x21
+    x79 = (x59*x0 + x16*x73 - x24*x61)/x21
+    x80 = (c12*x14*x8*theta2_dot + x24*x66 - x16*x74)/x21
+    x81 = (x8*x68 + x24*x69 - x16*x75)/x21
+    x82 = 2.0*c13*(x5*x0 + x11*x73 - cos_theta3*x61 - x14*x79)
+    x83 = c13*(x8*x65 + x11*x74 + x14*x80 - cos_theta3*x66)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
-        (0.0, x40, x49, x55, 0.0, 2.0*x59, 2.0*x65, 2.0*x68),
+        (0.0, x43, x52, x58, 0.0, 2.0*x61, 2.0*x66, 2.0*x69),
         (
             0.0,
-            -c10*x69,
             -c10*x70,
             -c10*x71,
+            -c10*x72,
             0.0,
-            -2.0*c10*x72,
             -2.0*c10*x73,
             -2.0*c10*x74,
+            -2.0*c10*x75,
         ),
         (
             0.0,
-            c11*x75,
-            -c11*x76,
+            c11*x76,
             -c11*x77,
+            -c11*x78,
             0.0,
-            2.0*c11*x78,
-            -2.0*c11*x79,
+            2.0*c11*x79,
             -2.0*c11*x80,
+            -2.0*c11*x81,
         ),
-        (0.0, x81, x82, -x83, 0.0, 2.0*c13*x84, 2.0*c13*x85, x86),
+        (
+            0.0,
+            c13*(x34 + x11*x70 - cos_theta3*x43 - x14*x76),
+            c13*(x46 + x11*x71 + x14*x77 - cos_theta3*x52),
+            -c13*(x54 + cos_theta3*x58 - x11*x72 - x14*x78),
+            0.0,
+            x82,
+            2.0*x83,
+            2.0*c13*(x11*x75 + x14*x81 - cos_theta3*x69),
+        ),
     )
 
 
@@ -579,101 +575,92 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     x0 = l1*theta1_dot
     x1 = theta1_dot*x0
     sin_theta1 = sin(theta1)
-    x2 = theta1 - theta2
-    sin_x2 = sin(x2)
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x2 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
     x3 = theta2_dot*theta2_dot
     x4 = c3*x3
-    x5 = theta1 - theta3
-    sin_x5 = sin(x5)
+    cos_theta3 = cos(theta3)
+    sin_theta3 = sin(theta3)
+    x5 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
     x6 = theta3_dot*theta3_dot
     x7 = c4*x6
-    x8 = theta2 - theta3
-    sin_x8 = sin(x8)
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
     x9 = l2*x3
-    sin_theta3 = sin(theta3)
-    x10 = sin_x5*x1 + sin_x8*x9 - g*sin_theta3
-    cos_x5 = cos(x5)
-    x11 = m3*cos_x5
-    cos_x2 = cos(x2)
-    cos_x8 = cos(x8)
-    x12 = m3*cos_x8
-    x13 = c2*cos_x2 - cos_x5*x12
-    x14 = theta1_dot*theta1_dot
-    x15 = c6*x14
-    sin_theta2 = sin(theta2)
-    x16 = sin_x2*x15 - sin_x8*x7 - c7*sin_theta2 - x10*x12
-    x17 = m3*sin_x8
-    x18 = m2 + sin_x8*x17
-    x19 = sin_x2*x4 + sin_x5*x7 + c5*sin_theta1 + x10*x11 + x13*x16/x18
-    cos_theta3 = cos(theta3)
-    x20 = m3*cos_theta3
-    cos_theta2 = cos(theta2)
-    x21 = c2*cos_theta2 - cos_theta3*x12
-    x22 = c1*cos_theta1 - cos_x5*x20 - x21*x13/x18
-    x23 = c8*sin_theta1*x14 + sin_theta2*x4 + sin_theta3*x7
-    x24 = m3*sin_x5
-    x25 = c0 + sin_x5*x24 - x13*x13/x18
-    x26 = c9 + m3*sin_theta3*sin_theta3 - x21*x21/x18 - x22*x22/x25
-    x27 = (x23 - x10*x20 - x21*x16/x18 + x22*x19/x25)/x26
-    x28 = (x19 + x22*x27)/x25
-    x29 = cos_x5*x1
-    x30 = sin_x5*x28
-    x31 = x29 - x30
-    x32 = c2*(cos_x2*x1 - sin_x2*x28) - x31*x12
-    x33 = c1*(cos_theta1*x1 - sin_theta1*x28) - x31*x20 - x21*x32/x18
-    x34 = c1*sin_theta1
-    x35 = (x16 + x13*x28 - x21*x27)/x18
-    x36 = c2*sin_x2
-    x37 = x10 + cos_x5*x28 - cos_theta3*x27 - cos_x8*x35
-    x38 = cos_x2*x4 + cos_x5*x7 + c5*cos_theta1 - (x27*x34 + x35*x36 + x37*x24)
-    x39 = x38 + x31*x11 + x13*x32/x18
-    x40 = (x33 + x22*x39/x25)/x26
-    x41 = cos_x8*x9
-    x42 = sin_x8*x35
-    x43 = x41 + x42
-    x44 = c2*sin_theta2
-    x45 = cos_x2*x15 + cos_x8*x7 + c7*cos_theta2 - (x28*x36 + x27*x44 + x37*x17)
-    x46 = x45 + x43*x12
-    x47 = c2*(cos_theta2*x9 + sin_theta2*x35) - x43*x20 + x21*x46/x18
-    x48 = c2*(sin_x2*x35 - cos_x2*x9) + x43*x11 - x13*x46/x18
-    x49 = (x47 + x22*x48/x25)/x26
-    x50 = l3*x6
-    x51 = x29 + x41 + g*cos_theta3 - (x30 + sin_theta3*x27 - x42)
-    x52 = sin_x8*x37 - cos_x8*x50 - cos_x8*x51
-    x53 = cos_theta3*x50 + sin_theta3*x37 + cos_theta3*x51 + x21*x52/x18
-    x54 = sin_x5*x37 - cos_x5*x50 - cos_x5*x51 - x13*x52/x18
-    x55 = m3*(x53 + x22*x54/x25)/x26
-    x56 = x36 - sin_x5*x12
-    x57 = sin_x5*x11 + x13*x56/x18
-    x58 = (x34 - sin_x5*x20 - x21*x56/x18 + x22*x57/x25)*x0
-    x59 = x58/x26
-    x60 = x21*sin_x8
-    x61 = sin_x8*x13
-    x62 = x36 + sin_x8*x11 - x61*x12/x18
-    x63 = l2*theta2_dot
-    x64 = (x44 - sin_x8*x20 + x60*x12/x18 + x22*x62/x25)*x63
-    x65 = x64/x26
-    x66 = sin_x5 - x61/x18
-    x67 = c4*theta3_dot
-    x68 = (sin_theta3 + x60/x18 + x22*x66/x25)*x67/x26
-    x69 = (x39 + x22*x40)/x25
-    x70 = (x48 + x22*x49)/x25
-    x71 = (m3*x54 + x22*x55)/x25
-    x72 = (x57*x0 + x22*x59)/x25
-    x73 = (x62*x63 + x22*x65)/x25
-    x74 = (x66*x67 + x22*x68)/x25
-    x75 = (x32 + x13*x69 - x21*x40)/x18
-    x76 = (x46 + x21*x49 - x13*x70)/x18
-    x77 = (m3*x52 + x21*x55 - x13*x71)/x18
-    x78 = (x56*x0 + x13*x72 - x21*x59)/x18
-    x79 = (c12*cos_x8*sin_x8*theta2_dot + x21*x65 - x13*x73)/x18
-    x80 = (sin_x8*x67 + x21*x68 - x13*x74)/x18
-    x81 = c13*(x31 + cos_x5*x69 - cos_theta3*x40 - cos_x8*x75)
-    x82 = c13*(x43 + cos_x5*x70 + cos_x8*x76 - cos_theta3*x49)
-    x83 = c13*(x51 + cos_theta3*x55 - cos_x5*x71 - cos_x8*x77)
-    x84 = sin_x5*x0 + cos_x5*x72 - cos_theta3*x59 - cos_x8*x78
-    x85 = sin_x8*x63 + cos_x5*x73 + cos_x8*x79 - cos_theta3*x65
-    x86 = 2.0*c13*(cos_x5*x74 + cos_x8*x80 - cos_theta3*x68)
+    x10 = x5*x1 + x8*x9 - g*sin_theta3
+    x11 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x12 = m3*x11
+    x13 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x14 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x15 = m3*x14
+    x16 = c2*x13 - x11*x15
+    x17 = theta1_dot*theta1_dot
+    x18 = c6*x17
+    x19 = x2*x18 - x8*x7 - c7*sin_theta2 - x10*x15
+    x20 = m3*x8
+    x21 = m2 + x8*x20
+    x22 = x2*x4 + x5*x7 + c5*sin_theta1 + x10*x12 + x16*x19/x21
+    x23 = m3*cos_theta3
+    x24 = c2*cos_theta2 - cos_theta3*x15
+    x25 = c1*cos_theta1 - x11*x23 - x24*x16/x21
+    x26 = c8*sin_theta1*x17 + sin_theta2*x4 + sin_theta3*x7
+    x27 = m3*x5
+    x28 = c0 + x5*x27 - x16*x16/x21
+    x29 = c9 + m3*sin_theta3*sin_theta3 - x24*x24/x21 - x25*x25/x28
+    x30 = (x26 - x10*x23 - x24*x19/x21 + x25*x22/x28)/x29
+    x31 = (x22 + x25*x30)/x28
+    x32 = x11*x1
+    x33 = x5*x31
+    x34 = x32 - x33
+    x35 = c2*(x13*x1 - x2*x31) - x34*x15
+    x36 = c1*(cos_theta1*x1 - sin_theta1*x31) - x34*x23 - x24*x35/x21
+    x37 = c1*sin_theta1
+    x38 = (x19 + x16*x31 - x24*x30)/x21
+    x39 = c2*x2
+    x40 = x10 + x11*x31 - cos_theta3*x30 - x14*x38
+    x41 = x13*x4 + x11*x7 + c5*cos_theta1 - (x30*x37 + x38*x39 + x40*x27)
+    x42 = x41 + x34*x12 + x16*x35/x21
+    x43 = (x36 + x25*x42/x28)/x29
+    x44 = x14*x9
+    x45 = x8*x38
+    x46 = x44 + x45
+    x47 = c2*sin_theta2
+    x48 = x13*x18 + x14*x7 + c7*cos_theta2 - (x31*x39 + x30*x47 + x40*x20)
+    x49 = x48 + x46*x15
+    x50 = c2*(cos_theta2*x9 + sin_theta2*x38) - x46*x23 + x24*x49/x21
+    x51 = c2*(x2*x38 - x13*x9) + x46*x12 - x16*x49/x21
+    x52 = (x50 + x25*x51/x28)/x29
+    x53 = l3*x6
+    x54 = x32 + x44 + g*cos_theta3 - (x33 + sin_theta3*x30 - x45)
+    x55 = x8*x40 - x14*x53 - x14*x54
+    x56 = cos_theta3*x53 + sin_theta3*x40 + cos_theta3*x54 + x24*x55/x21
+    x57 = x5*x40 - x11*x53 - x11*x54 - x16*x55/x21
+    x58 = m3*(x56 + x25*x57/x28)/x29
+    x59 = x39 - x5*x15
+    x60 = x5*x12 + x16*x59/x21
+    x61 = (x37 - x5*x23 - x24*x59/x21 + x25*x60/x28)*x0/x29
+    x62 = x24*x8
+    x63 = x8*x16
+    x64 = x39 + x8*x12 - x63*x15/x21
+    x65 = l2*theta2_dot
+    x66 = (x47 - x8*x23 + x62*x15/x21 + x25*x64/x28)*x65/x29
+    x67 = x5 - x63/x21
+    x68 = c4*theta3_dot
+    x69 = (sin_theta3 + x62/x21 + x25*x67/x28)*x68/x29
+    x70 = (x42 + x25*x43)/x28
+    x71 = (x51 + x25*x52)/x28
+    x72 = (m3*x57 + x25*x58)/x28
+    x73 = (x60*x0 + x25*x61)/x28
+    x74 = (x64*x65 + x25*x66)/x28
+    x75 = (x67*x68 + x25*x69)/x28
+    x76 = (x35 + x16*x70 - x24*x43)/x21
+    x77 = (x49 + x24*x52 - x16*x71)/x21
+    x78 = (m3*x55 + x24*x58 - x16*x72)/x21
+    x79 = (x59*x0 + x16*x73 - x24*x61)/x21
+    x80 = (c12*x14*x8*theta2_dot + x24*x66 - x16*x74)/x21
+    x81 = (x8*x68 + x24*x69 - x16*x75)/x21
+    x82 = 2.0*c13*(x5*x0 + x11*x73 - cos_theta3*x61 - x14*x79)
+    x83 = c13*(x8*x65 + x11*x74 + x14*x80 - cos_theta3*x66)
     # outputs
     return _stacked(
         (8, 8),
@@ -711,37 +698,37 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
         0.0,
         1.0,
         0.0,
-        x40,
-        x49,
-        x55,
+        x43,
+        x52,
+        x58,
         0.0,
-        2.0*x59,
-        2.0*x65,
-        2.0*x68,
+        2.0*x61,
+        2.0*x66,
+        2.0*x69,
         0.0,
-        -c10*x69,
         -c10*x70,
         -c10*x71,
+        -c10*x72,
         0.0,
-        -2.0*c10*x72,
         -2.0*c10*x73,
         -2.0*c10*x74,
+        -2.0*c10*x75,
         0.0,
-        c11*x75,
-        -c11*x76,
+        c11*x76,
         -c11*x77,
+        -c11*x78,
         0.0,
-        2.0*c11*x78,
-        -2.0*c11*x79,
+        2.0*c11*x79,
         -2.0*c11*x80,
+        -2.0*c11*x81,
         0.0,
-        x81,
+        c13*(x34 + x11*x70 - cos_theta3*x43 - x14*x76),
+        c13*(x46 + x11*x71 + x14*x77 - cos_theta3*x52),
+        -c13*(x54 + cos_theta3*x58 - x11*x72 - x14*x78),
+        0.0,
         x82,
-        -x83,
-        0.0,
-        2.0*c13*x84,
-        2.0*c13*x85,
-        x86,
+        2.0*x83,
+        2.0*c13*(x11*x75 + x14*x81 - cos_theta3*x69),
     )
 
 
@@ -1098,7 +1085,7 @@ def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
 
-    131 operations, 14 of them on parameters alone.
+    140 operations, 14 of them on parameters alone.
 
     Parameters
     ----------
@@ -1133,40 +1120,40 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     # intermediate terms
     cos_theta3 = cos(theta3)
     x0 = c0*p_theta3
-    x1 = theta2 - theta3
-    cos_x1 = cos(x1)
-    x2 = m3*cos_theta3
-    x3 = c1*cos(theta2) - cos_x1*x2
-    x4 = c2*p_theta2 - cos_x1*x0
-    sin_x1 = sin(x1)
-    x5 = m3*sin_x1
-    x6 = m2 + sin_x1*x5
-    x7 = theta1 - theta3
-    cos_x7 = cos(x7)
-    x8 = theta1 - theta2
-    x9 = c1*cos(x8) - m3*cos_x1*cos_x7
-    x10 = c4*cos(theta1) - cos_x7*x2 - x3*x9/x6
-    x11 = c5*p_theta1 - cos_x7*x0 - x9*x4/x6
-    sin_x7 = sin(x7)
-    x12 = m3*sin_x7
-    x13 = c3 + sin_x7*x12 - x9*x9/x6
+    cos_theta2 = cos(theta2)
     sin_theta3 = sin(theta3)
-    x14 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x6 - x10*x10/x13
-    x15 = (p_x - cos_theta3*x0 - x3*x4/x6 - x10*x11/x13)/x14
-    x16 = (x11 - x10*x15)/x13
-    x17 = (x3*x15 + x9*x16 - x4)/x6
-    x18 = c7*p_theta3 + cos_x1*x17 - cos_theta3*x15 - cos_x7*x16
-    sin_theta1 = sin(theta1)
-    x19 = x16*x18
-    x20 = c1*x17
-    x21 = x16*sin(x8)*x20
-    x22 = c8*sin_theta1 + c4*x15*x16*sin_theta1 + x12*x19 - x21
     sin_theta2 = sin(theta2)
-    x23 = x17*x18
-    x24 = x21 + c9*sin_theta2 - x15*sin_theta2*x20 - x5*x23
-    x25 = sin_x1*x23 + c10*sin_theta3 + sin_theta3*x15*x18 - sin_x7*x19
+    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x2 = m3*cos_theta3
+    x3 = c1*cos_theta2 - x1*x2
+    x4 = c2*p_theta2 - x1*x0
+    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x6 = m3*x5
+    x7 = m2 + x5*x6
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x9 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x10 = x9 - m3*x1*x8
+    x11 = c4*cos_theta1 - x8*x2 - x3*x10/x7
+    x12 = c5*p_theta1 - x8*x0 - x10*x4/x7
+    x13 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x14 = m3*x13
+    x15 = c3 + x13*x14 - x10*x10/x7
+    x16 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x7 - x11*x11/x15
+    x17 = (p_x - cos_theta3*x0 - x3*x4/x7 - x11*x12/x15)/x16
+    x18 = (x12 - x11*x17)/x15
+    x19 = (x3*x17 + x10*x18 - x4)/x7
+    x20 = c7*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18
+    x21 = x18*x20
+    x22 = c1*x19
+    x23 = x18*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)*x22
+    x24 = c8*sin_theta1 + c4*sin_theta1*x17*x18 + x14*x21 - x23
+    x25 = x19*x20
+    x26 = x23 + c9*sin_theta2 - sin_theta2*x17*x22 - x6*x25
+    x27 = x5*x25 + c10*sin_theta3 + sin_theta3*x17*x20 - x13*x21
     # outputs
-    return (x15, c5*x16, -c2*x17, c0*x18, 0.0, -x22, -x24, -m3*x25)
+    return (x17, c5*x18, -c2*x19, c0*x20, 0.0, -x24, -x26, -m3*x27)
 
 
 def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
@@ -1191,46 +1178,46 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     # intermediate terms
     cos_theta3 = cos(theta3)
     x0 = c0*p_theta3
-    x1 = theta2 - theta3
-    cos_x1 = cos(x1)
-    x2 = m3*cos_theta3
-    x3 = c1*cos(theta2) - cos_x1*x2
-    x4 = c2*p_theta2 - cos_x1*x0
-    sin_x1 = sin(x1)
-    x5 = m3*sin_x1
-    x6 = m2 + sin_x1*x5
-    x7 = theta1 - theta3
-    cos_x7 = cos(x7)
-    x8 = theta1 - theta2
-    x9 = c1*cos(x8) - m3*cos_x1*cos_x7
-    x10 = c4*cos(theta1) - cos_x7*x2 - x3*x9/x6
-    x11 = c5*p_theta1 - cos_x7*x0 - x9*x4/x6
-    sin_x7 = sin(x7)
-    x12 = m3*sin_x7
-    x13 = c3 + sin_x7*x12 - x9*x9/x6
+    cos_theta2 = cos(theta2)
     sin_theta3 = sin(theta3)
-    x14 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x6 - x10*x10/x13
-    x15 = (p_x - cos_theta3*x0 - x3*x4/x6 - x10*x11/x13)/x14
-    x16 = (x11 - x10*x15)/x13
-    x17 = (x3*x15 + x9*x16 - x4)/x6
-    x18 = c7*p_theta3 + cos_x1*x17 - cos_theta3*x15 - cos_x7*x16
-    sin_theta1 = sin(theta1)
-    x19 = x16*x18
-    x20 = c1*x17
-    x21 = x16*sin(x8)*x20
-    x22 = c8*sin_theta1 + c4*x15*x16*sin_theta1 + x12*x19 - x21
     sin_theta2 = sin(theta2)
-    x23 = x17*x18
-    x24 = x21 + c9*sin_theta2 - x15*sin_theta2*x20 - x5*x23
-    x25 = sin_x1*x23 + c10*sin_theta3 + sin_theta3*x15*x18 - sin_x7*x19
+    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x2 = m3*cos_theta3
+    x3 = c1*cos_theta2 - x1*x2
+    x4 = c2*p_theta2 - x1*x0
+    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x6 = m3*x5
+    x7 = m2 + x5*x6
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x9 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x10 = x9 - m3*x1*x8
+    x11 = c4*cos_theta1 - x8*x2 - x3*x10/x7
+    x12 = c5*p_theta1 - x8*x0 - x10*x4/x7
+    x13 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x14 = m3*x13
+    x15 = c3 + x13*x14 - x10*x10/x7
+    x16 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x7 - x11*x11/x15
+    x17 = (p_x - cos_theta3*x0 - x3*x4/x7 - x11*x12/x15)/x16
+    x18 = (x12 - x11*x17)/x15
+    x19 = (x3*x17 + x10*x18 - x4)/x7
+    x20 = c7*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18
+    x21 = x18*x20
+    x22 = c1*x19
+    x23 = x18*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)*x22
+    x24 = c8*sin_theta1 + c4*sin_theta1*x17*x18 + x14*x21 - x23
+    x25 = x19*x20
+    x26 = x23 + c9*sin_theta2 - sin_theta2*x17*x22 - x6*x25
+    x27 = x5*x25 + c10*sin_theta3 + sin_theta3*x17*x20 - x13*x21
     # outputs
-    return _stacked((8,), y[0], x15, c5*x16, -c2*x17, c0*x18, 0.0, -x22, -x24, -m3*x25)
+    return _stacked((8,), y[0], x17, c5*x18, -c2*x19, c0*x20, 0.0, -x24, -x26, -m3*x27)
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    462 operations, 14 of them on parameters alone.
+    471 operations, 14 of them on parameters alone.
 
     Parameters
     ----------
@@ -1263,160 +1250,158 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c9 = c2*l2*g
     c10 = l3*g
     # intermediate terms
-    x0 = theta1 - theta3
-    cos_x0 = cos(x0)
-    x1 = c1*p_theta3
-    x2 = theta1 - theta2
-    x3 = c2*cos(x2)
-    x4 = theta2 - theta3
-    cos_x4 = cos(x4)
-    x5 = x3 - m3*cos_x4*cos_x0
-    x6 = c3*p_theta2 - cos_x4*x1
-    sin_x4 = sin(x4)
-    x7 = m3*sin_x4
-    x8 = m2 + sin_x4*x7
-    x9 = c0*p_theta1 - cos_x0*x1 - x5*x6/x8
-    cos_theta1 = cos(theta1)
-    x10 = c5*cos_theta1
     cos_theta3 = cos(theta3)
-    x11 = m3*cos_theta3
-    cos_theta2 = cos(theta2)
-    x12 = c2*cos_theta2
-    x13 = x12 - cos_x4*x11
-    x14 = x10 - cos_x0*x11 - x13*x5/x8
-    sin_x0 = sin(x0)
-    x15 = m3*sin_x0
-    x16 = c4 + sin_x0*x15 - x5*x5/x8
+    cos_theta1 = cos(theta1)
     sin_theta3 = sin(theta3)
-    x17 = c6 + m3*sin_theta3*sin_theta3 - x13*x13/x8 - x14*x14/x16
-    x18 = (p_x - cos_theta3*x1 - x13*x6/x8 - x14*x9/x16)/x17
-    x19 = (x9 - x14*x18)/x16
-    x20 = c5*sin(theta1)
-    x21 = c2*sin(x2)
-    x22 = x21 - cos_x4*x15
-    x23 = x18*x20
-    x24 = x5*x19
-    x25 = (x13*x18 + x24 - x6)/x8
-    x26 = cos_x4*x25
-    x27 = cos_theta3*x18
-    x28 = cos_x0*x19
-    x29 = c7*p_theta3 + x26 - x27 - x28
-    x30 = x29*x15
-    x31 = x21*x25
-    x32 = x23 + x30 - x31 - x28*x15 - x22*x24/x8
-    x33 = x19*(x20 - cos_theta3*x15 - x13*x22/x8) - x14*x32/x16
-    x34 = x33/x17
-    x35 = c2*sin(theta2)
-    x36 = x18*x35
-    x37 = x29*x7
-    x38 = x19*x21
-    x39 = x36 + x37 - x38 + x26*x7
-    x40 = x25*(x21 + cos_x0*x7) - x5*x39/x8
-    x41 = x25*(x35 - cos_theta3*x7) + x13*x39/x8 + x14*x40/x16
-    x42 = x41/x17
-    x43 = sin_theta3*x29
-    x44 = sin_x4*x25
-    x45 = sin_theta3*x18
-    x46 = sin_x0*x19
-    x47 = x44 + x45 - x46
-    x48 = sin_x4*x29
-    x49 = x48 + cos_x4*x47
-    x50 = sin_x0*x29
-    x51 = x50 + cos_x0*x47 - x5*x49/x8
-    x52 = m3*(x43 - cos_theta3*x47 + x13*x49/x8 + x14*x51/x16)
-    x53 = x52/x17
-    x54 = 1.0/x17
-    x55 = c0*x14/(x16*x17)
-    x56 = c3*(x13 - x5*x14/x16)/(x8*x17)
-    x57 = cos_x0 - cos_x4*x5/x8
-    x58 = c1*(cos_theta3 - cos_x4*x13/x8 - x14*x57/x16)/x17
-    x59 = (x32 - x14*x34)/x16
-    x60 = c0*x59
-    x61 = (x40 + x14*x42)/x16
-    x62 = c0*x61
-    x63 = (m3*x51 + x14*x53)/x16
-    x64 = c0*x63
-    x65 = x14*x54/x16
-    x66 = (c0 + x14*x55)/x16
-    x67 = (c3*x5/x8 - x14*x56)/x16
-    x68 = (c1*x57 - x14*x58)/x16
-    x69 = (x13*x34 + x5*x59 - x19*x22)/x8
-    x70 = c3*x69
-    x71 = (x39 + x13*x42 - x5*x61)/x8
-    x72 = c3*x71
-    x73 = (m3*x49 + x13*x53 - x5*x63)/x8
-    x74 = c3*x73
-    x75 = (x13*x54 - x5*x65)/x8
-    x76 = (x13*x55 - x5*x66)/x8
-    x77 = (c3 + x13*x56 + x5*x67)/x8
-    x78 = (x13*x58 + x5*x68 - c1*cos_x4)/x8
-    x79 = x46 + cos_x4*x69 - cos_theta3*x34 - cos_x0*x59
-    x80 = c1*x79
-    x81 = x44 + cos_x0*x61 + cos_x4*x71 - cos_theta3*x42
-    x82 = c1*x81
-    x83 = x47 + cos_x0*x63 + cos_x4*x73 - cos_theta3*x53
-    x84 = c1*x83
-    x85 = c1*(c7 + cos_theta3*x58 + cos_x0*x68 - cos_x4*x78)
-    x86 = m3*x29
-    x87 = x28*x86
-    x88 = x19*x20
-    x89 = x19*x15
-    x90 = x3*x19*x25
-    x91 = x38*x69 + (x90 + x31*x59)
-    x92 = c8*cos_theta1 + x10*x18*x19 + x87 + x34*x88 + x23*x59 + x30*x59 + x79*x89 - x91
-    x93 = x38*x71 + (x90 - x31*x61)
-    x94 = x31*x63 - x38*x73
-    x95 = x87 + x23*x63 + x30*x63 - x53*x88 - x83*x89 - x94
-    x96 = x25*x35
-    x97 = x25*x7
-    x98 = x26*x86
-    x99 = c9*cos_theta2 + x42*x96 + x36*x71 + x37*x71 + x81*x97 - x12*x18*x25 - x98 - x93
-    x100 = x53*x96 + x36*x73 + x37*x73 + x83*x97 + x94 - x98
-    x101 = x28*x29
-    x102 = x48*x69 + x44*x79 + x34*x43 + x45*x79 - x101 - x50*x59 - x46*x79
-    x103 = x26*x29
-    x104 = x50*x61 + x48*x71 + x44*x81 + x42*x43 + x45*x81 - x46*x81 - x103
+    sin_theta1 = sin(theta1)
+    x0 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x1 = c1*p_theta3
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x2 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x3 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x4 = x2 - m3*x3*x0
+    x5 = c3*p_theta2 - x3*x1
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m3*x6
+    x8 = m2 + x6*x7
+    x9 = c0*p_theta1 - x0*x1 - x4*x5/x8
+    x10 = c5*cos_theta1
+    x11 = m3*cos_theta3
+    x12 = c2*cos_theta2
+    x13 = x12 - x3*x11
+    x14 = x10 - x0*x11 - x13*x4/x8
+    x15 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x16 = m3*x15
+    x17 = c4 + x15*x16 - x4*x4/x8
+    x18 = c6 + m3*sin_theta3*sin_theta3 - x13*x13/x8 - x14*x14/x17
+    x19 = (p_x - cos_theta3*x1 - x13*x5/x8 - x14*x9/x17)/x18
+    x20 = (x9 - x14*x19)/x17
+    x21 = c5*sin_theta1
+    x22 = c2*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)
+    x23 = x22 - x3*x16
+    x24 = x19*x21
+    x25 = x4*x20
+    x26 = (x13*x19 + x25 - x5)/x8
+    x27 = x3*x26
+    x28 = cos_theta3*x19
+    x29 = x0*x20
+    x30 = c7*p_theta3 + x27 - x28 - x29
+    x31 = x30*x16
+    x32 = x22*x26
+    x33 = x24 + x31 - x32 - x29*x16 - x23*x25/x8
+    x34 = x20*(x21 - cos_theta3*x16 - x13*x23/x8) - x14*x33/x17
+    x35 = x34/x18
+    x36 = c2*sin_theta2
+    x37 = x19*x36
+    x38 = x30*x7
+    x39 = x20*x22
+    x40 = x37 + x38 - x39 + x27*x7
+    x41 = x26*(x22 + x0*x7) - x4*x40/x8
+    x42 = x26*(x36 - cos_theta3*x7) + x13*x40/x8 + x14*x41/x17
+    x43 = x42/x18
+    x44 = sin_theta3*x30
+    x45 = x6*x26
+    x46 = sin_theta3*x19
+    x47 = x15*x20
+    x48 = x45 + x46 - x47
+    x49 = x6*x30
+    x50 = x49 + x3*x48
+    x51 = x15*x30
+    x52 = x51 + x0*x48 - x4*x50/x8
+    x53 = m3*(x44 - cos_theta3*x48 + x13*x50/x8 + x14*x52/x17)
+    x54 = x53/x18
+    x55 = 1.0/x18
+    x56 = c0*x14/(x17*x18)
+    x57 = c3*(x13 - x4*x14/x17)/(x8*x18)
+    x58 = x0 - x3*x4/x8
+    x59 = c1*(cos_theta3 - x3*x13/x8 - x14*x58/x17)/x18
+    x60 = (x33 - x14*x35)/x17
+    x61 = c0*x60
+    x62 = (x41 + x14*x43)/x17
+    x63 = c0*x62
+    x64 = (m3*x52 + x14*x54)/x17
+    x65 = c0*x64
+    x66 = x14*x55/x17
+    x67 = (c0 + x14*x56)/x17
+    x68 = (c3*x4/x8 - x14*x57)/x17
+    x69 = (c1*x58 - x14*x59)/x17
+    x70 = (x13*x35 + x4*x60 - x20*x23)/x8
+    x71 = c3*x70
+    x72 = (x40 + x13*x43 - x4*x62)/x8
+    x73 = c3*x72
+    x74 = (m3*x50 + x13*x54 - x4*x64)/x8
+    x75 = c3*x74
+    x76 = (x13*x55 - x4*x66)/x8
+    x77 = (x13*x56 - x4*x67)/x8
+    x78 = (c3 + x13*x57 + x4*x68)/x8
+    x79 = (x13*x59 + x4*x69 - c1*x3)/x8
+    x80 = x47 + x3*x70 - cos_theta3*x35 - x0*x60
+    x81 = c1*x80
+    x82 = x45 + x0*x62 + x3*x72 - cos_theta3*x43
+    x83 = c1*x82
+    x84 = x48 + x0*x64 + x3*x74 - cos_theta3*x54
+    x85 = c1*x84
+    x86 = m3*x30
+    x87 = x29*x86
+    x88 = x20*x21
+    x89 = x20*x16
+    x90 = x2*x20*x26
+    x91 = x39*x70 + (x90 + x32*x60)
+    x92 = c8*cos_theta1 + x10*x19*x20 + x87 + x35*x88 + x24*x60 + x31*x60 + x80*x89 - x91
+    x93 = x39*x72 + (x90 - x32*x62)
+    x94 = x32*x64 - x39*x74
+    x95 = x87 + x24*x64 + x31*x64 - x54*x88 - x84*x89 - x94
+    x96 = x26*x36
+    x97 = x26*x7
+    x98 = x27*x86
+    x99 = c9*cos_theta2 + x43*x96 + x37*x72 + x38*x72 + x82*x97 - x12*x19*x26 - x98 - x93
+    x100 = x54*x96 + x37*x74 + x38*x74 + x84*x97 + x94 - x98
+    x101 = x29*x30
+    x102 = x49*x70 + x45*x80 + x35*x44 + x46*x80 - x101 - x51*x60 - x47*x80
+    x103 = x27*x30
+    x104 = x51*x62 + x49*x72 + x45*x82 + x43*x44 + x46*x82 - x47*x82 - x103
     x105 = (
-        x101 + c10*cos_theta3 + x50*x63 + x48*x73 + x44*x83 + x27*x29 + x43*x53 + x45*x83
-        - x103 - x46*x83
+        x101 + c10*cos_theta3 + x51*x64 + x49*x74 + x45*x84 + x28*x30 + x44*x54 + x46*x84
+        - x103 - x47*x84
     )
     # outputs
     return (
-        (0.0, x34, -x42, x53, x54, -x55, -x56, -x58),
-        (0.0, x60, x62, -x64, -c0*x65, c0*x66, -c0*x67, -c0*x68),
-        (0.0, -x70, x72, -x74, -c3*x75, c3*x76, c3*x77, c3*x78),
+        (0.0, x35, -x43, x54, x55, -x56, -x57, -x59),
+        (0.0, x61, x63, -x65, -c0*x66, c0*x67, -c0*x68, -c0*x69),
+        (0.0, -x71, x73, -x75, -c3*x76, c3*x77, c3*x78, c3*x79),
         (
             0.0,
-            x80,
-            -x82,
-            x84,
-            c1*(cos_x0*x65 + cos_x4*x75 - cos_theta3*x54),
-            -c1*(cos_x0*x66 + cos_x4*x76 - cos_theta3*x55),
-            c1*(cos_theta3*x56 + cos_x0*x67 - cos_x4*x77),
+            x81,
+            -x83,
             x85,
+            c1*(x0*x66 + x3*x76 - cos_theta3*x55),
+            -c1*(x0*x67 + x3*x77 - cos_theta3*x56),
+            c1*(cos_theta3*x57 + x0*x68 - x3*x78),
+            c1*(c7 + cos_theta3*x59 + x0*x69 - x3*x79),
         ),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (
             0.0,
             -x92,
-            -(x23*x61 + x30*x61 + x93 - x42*x88 - x81*x89),
+            -(x24*x62 + x31*x62 + x93 - x43*x88 - x82*x89),
             x95,
-            -x34,
-            -x60,
-            x70,
-            -x80,
+            -x35,
+            -x61,
+            x71,
+            -x81,
         ),
         (
             0.0,
-            x34*x96 + x36*x69 + x37*x69 + x79*x97 - x91,
+            x35*x96 + x37*x70 + x38*x70 + x80*x97 - x91,
             -x99,
             x100,
-            x42,
-            -x62,
-            -x72,
-            x82,
+            x43,
+            -x63,
+            -x73,
+            x83,
         ),
-        (0.0, -m3*x102, m3*x104, -m3*x105, -x53, x64, x74, -x84),
+        (0.0, -m3*x102, m3*x104, -m3*x105, -x54, x65, x75, -x85),
     )
 
 
@@ -1440,159 +1425,157 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     c9 = c2*l2*g
     c10 = l3*g
     # intermediate terms
-    x0 = theta1 - theta3
-    cos_x0 = cos(x0)
-    x1 = c1*p_theta3
-    x2 = theta1 - theta2
-    x3 = c2*cos(x2)
-    x4 = theta2 - theta3
-    cos_x4 = cos(x4)
-    x5 = x3 - m3*cos_x4*cos_x0
-    x6 = c3*p_theta2 - cos_x4*x1
-    sin_x4 = sin(x4)
-    x7 = m3*sin_x4
-    x8 = m2 + sin_x4*x7
-    x9 = c0*p_theta1 - cos_x0*x1 - x5*x6/x8
-    cos_theta1 = cos(theta1)
-    x10 = c5*cos_theta1
     cos_theta3 = cos(theta3)
-    x11 = m3*cos_theta3
-    cos_theta2 = cos(theta2)
-    x12 = c2*cos_theta2
-    x13 = x12 - cos_x4*x11
-    x14 = x10 - cos_x0*x11 - x13*x5/x8
-    sin_x0 = sin(x0)
-    x15 = m3*sin_x0
-    x16 = c4 + sin_x0*x15 - x5*x5/x8
+    cos_theta1 = cos(theta1)
     sin_theta3 = sin(theta3)
-    x17 = c6 + m3*sin_theta3*sin_theta3 - x13*x13/x8 - x14*x14/x16
-    x18 = (p_x - cos_theta3*x1 - x13*x6/x8 - x14*x9/x16)/x17
-    x19 = (x9 - x14*x18)/x16
-    x20 = c5*sin(theta1)
-    x21 = c2*sin(x2)
-    x22 = x21 - cos_x4*x15
-    x23 = x18*x20
-    x24 = x5*x19
-    x25 = (x13*x18 + x24 - x6)/x8
-    x26 = cos_x4*x25
-    x27 = cos_theta3*x18
-    x28 = cos_x0*x19
-    x29 = c7*p_theta3 + x26 - x27 - x28
-    x30 = x29*x15
-    x31 = x21*x25
-    x32 = x23 + x30 - x31 - x28*x15 - x22*x24/x8
-    x33 = x19*(x20 - cos_theta3*x15 - x13*x22/x8) - x14*x32/x16
-    x34 = x33/x17
-    x35 = c2*sin(theta2)
-    x36 = x18*x35
-    x37 = x29*x7
-    x38 = x19*x21
-    x39 = x36 + x37 - x38 + x26*x7
-    x40 = x25*(x21 + cos_x0*x7) - x5*x39/x8
-    x41 = x25*(x35 - cos_theta3*x7) + x13*x39/x8 + x14*x40/x16
-    x42 = x41/x17
-    x43 = sin_theta3*x29
-    x44 = sin_x4*x25
-    x45 = sin_theta3*x18
-    x46 = sin_x0*x19
-    x47 = x44 + x45 - x46
-    x48 = sin_x4*x29
-    x49 = x48 + cos_x4*x47
-    x50 = sin_x0*x29
-    x51 = x50 + cos_x0*x47 - x5*x49/x8
-    x52 = m3*(x43 - cos_theta3*x47 + x13*x49/x8 + x14*x51/x16)
-    x53 = x52/x17
-    x54 = 1.0/x17
-    x55 = c0*x14/(x16*x17)
-    x56 = c3*(x13 - x5*x14/x16)/(x8*x17)
-    x57 = cos_x0 - cos_x4*x5/x8
-    x58 = c1*(cos_theta3 - cos_x4*x13/x8 - x14*x57/x16)/x17
-    x59 = (x32 - x14*x34)/x16
-    x60 = c0*x59
-    x61 = (x40 + x14*x42)/x16
-    x62 = c0*x61
-    x63 = (m3*x51 + x14*x53)/x16
-    x64 = c0*x63
-    x65 = x14*x54/x16
-    x66 = (c0 + x14*x55)/x16
-    x67 = (c3*x5/x8 - x14*x56)/x16
-    x68 = (c1*x57 - x14*x58)/x16
-    x69 = (x13*x34 + x5*x59 - x19*x22)/x8
-    x70 = c3*x69
-    x71 = (x39 + x13*x42 - x5*x61)/x8
-    x72 = c3*x71
-    x73 = (m3*x49 + x13*x53 - x5*x63)/x8
-    x74 = c3*x73
-    x75 = (x13*x54 - x5*x65)/x8
-    x76 = (x13*x55 - x5*x66)/x8
-    x77 = (c3 + x13*x56 + x5*x67)/x8
-    x78 = (x13*x58 + x5*x68 - c1*cos_x4)/x8
-    x79 = x46 + cos_x4*x69 - cos_theta3*x34 - cos_x0*x59
-    x80 = c1*x79
-    x81 = x44 + cos_x0*x61 + cos_x4*x71 - cos_theta3*x42
-    x82 = c1*x81
-    x83 = x47 + cos_x0*x63 + cos_x4*x73 - cos_theta3*x53
-    x84 = c1*x83
-    x85 = c1*(c7 + cos_theta3*x58 + cos_x0*x68 - cos_x4*x78)
-    x86 = m3*x29
-    x87 = x28*x86
-    x88 = x19*x20
-    x89 = x19*x15
-    x90 = x3*x19*x25
-    x91 = x38*x69 + (x90 + x31*x59)
-    x92 = c8*cos_theta1 + x10*x18*x19 + x87 + x34*x88 + x23*x59 + x30*x59 + x79*x89 - x91
-    x93 = x38*x71 + (x90 - x31*x61)
-    x94 = x31*x63 - x38*x73
-    x95 = x87 + x23*x63 + x30*x63 - x53*x88 - x83*x89 - x94
-    x96 = x25*x35
-    x97 = x25*x7
-    x98 = x26*x86
-    x99 = c9*cos_theta2 + x42*x96 + x36*x71 + x37*x71 + x81*x97 - x12*x18*x25 - x98 - x93
-    x100 = x53*x96 + x36*x73 + x37*x73 + x83*x97 + x94 - x98
-    x101 = x28*x29
-    x102 = x48*x69 + x44*x79 + x34*x43 + x45*x79 - x101 - x50*x59 - x46*x79
-    x103 = x26*x29
-    x104 = x50*x61 + x48*x71 + x44*x81 + x42*x43 + x45*x81 - x46*x81 - x103
+    sin_theta1 = sin(theta1)
+    x0 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x1 = c1*p_theta3
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x2 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x3 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x4 = x2 - m3*x3*x0
+    x5 = c3*p_theta2 - x3*x1
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m3*x6
+    x8 = m2 + x6*x7
+    x9 = c0*p_theta1 - x0*x1 - x4*x5/x8
+    x10 = c5*cos_theta1
+    x11 = m3*cos_theta3
+    x12 = c2*cos_theta2
+    x13 = x12 - x3*x11
+    x14 = x10 - x0*x11 - x13*x4/x8
+    x15 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x16 = m3*x15
+    x17 = c4 + x15*x16 - x4*x4/x8
+    x18 = c6 + m3*sin_theta3*sin_theta3 - x13*x13/x8 - x14*x14/x17
+    x19 = (p_x - cos_theta3*x1 - x13*x5/x8 - x14*x9/x17)/x18
+    x20 = (x9 - x14*x19)/x17
+    x21 = c5*sin_theta1
+    x22 = c2*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)
+    x23 = x22 - x3*x16
+    x24 = x19*x21
+    x25 = x4*x20
+    x26 = (x13*x19 + x25 - x5)/x8
+    x27 = x3*x26
+    x28 = cos_theta3*x19
+    x29 = x0*x20
+    x30 = c7*p_theta3 + x27 - x28 - x29
+    x31 = x30*x16
+    x32 = x22*x26
+    x33 = x24 + x31 - x32 - x29*x16 - x23*x25/x8
+    x34 = x20*(x21 - cos_theta3*x16 - x13*x23/x8) - x14*x33/x17
+    x35 = x34/x18
+    x36 = c2*sin_theta2
+    x37 = x19*x36
+    x38 = x30*x7
+    x39 = x20*x22
+    x40 = x37 + x38 - x39 + x27*x7
+    x41 = x26*(x22 + x0*x7) - x4*x40/x8
+    x42 = x26*(x36 - cos_theta3*x7) + x13*x40/x8 + x14*x41/x17
+    x43 = x42/x18
+    x44 = sin_theta3*x30
+    x45 = x6*x26
+    x46 = sin_theta3*x19
+    x47 = x15*x20
+    x48 = x45 + x46 - x47
+    x49 = x6*x30
+    x50 = x49 + x3*x48
+    x51 = x15*x30
+    x52 = x51 + x0*x48 - x4*x50/x8
+    x53 = m3*(x44 - cos_theta3*x48 + x13*x50/x8 + x14*x52/x17)
+    x54 = x53/x18
+    x55 = 1.0/x18
+    x56 = c0*x14/(x17*x18)
+    x57 = c3*(x13 - x4*x14/x17)/(x8*x18)
+    x58 = x0 - x3*x4/x8
+    x59 = c1*(cos_theta3 - x3*x13/x8 - x14*x58/x17)/x18
+    x60 = (x33 - x14*x35)/x17
+    x61 = c0*x60
+    x62 = (x41 + x14*x43)/x17
+    x63 = c0*x62
+    x64 = (m3*x52 + x14*x54)/x17
+    x65 = c0*x64
+    x66 = x14*x55/x17
+    x67 = (c0 + x14*x56)/x17
+    x68 = (c3*x4/x8 - x14*x57)/x17
+    x69 = (c1*x58 - x14*x59)/x17
+    x70 = (x13*x35 + x4*x60 - x20*x23)/x8
+    x71 = c3*x70
+    x72 = (x40 + x13*x43 - x4*x62)/x8
+    x73 = c3*x72
+    x74 = (m3*x50 + x13*x54 - x4*x64)/x8
+    x75 = c3*x74
+    x76 = (x13*x55 - x4*x66)/x8
+    x77 = (x13*x56 - x4*x67)/x8
+    x78 = (c3 + x13*x57 + x4*x68)/x8
+    x79 = (x13*x59 + x4*x69 - c1*x3)/x8
+    x80 = x47 + x3*x70 - cos_theta3*x35 - x0*x60
+    x81 = c1*x80
+    x82 = x45 + x0*x62 + x3*x72 - cos_theta3*x43
+    x83 = c1*x82
+    x84 = x48 + x0*x64 + x3*x74 - cos_theta3*x54
+    x85 = c1*x84
+    x86 = m3*x30
+    x87 = x29*x86
+    x88 = x20*x21
+    x89 = x20*x16
+    x90 = x2*x20*x26
+    x91 = x39*x70 + (x90 + x32*x60)
+    x92 = c8*cos_theta1 + x10*x19*x20 + x87 + x35*x88 + x24*x60 + x31*x60 + x80*x89 - x91
+    x93 = x39*x72 + (x90 - x32*x62)
+    x94 = x32*x64 - x39*x74
+    x95 = x87 + x24*x64 + x31*x64 - x54*x88 - x84*x89 - x94
+    x96 = x26*x36
+    x97 = x26*x7
+    x98 = x27*x86
+    x99 = c9*cos_theta2 + x43*x96 + x37*x72 + x38*x72 + x82*x97 - x12*x19*x26 - x98 - x93
+    x100 = x54*x96 + x37*x74 + x38*x74 + x84*x97 + x94 - x98
+    x101 = x29*x30
+    x102 = x49*x70 + x45*x80 + x35*x44 + x46*x80 - x101 - x51*x60 - x47*x80
+    x103 = x27*x30
+    x104 = x51*x62 + x49*x72 + x45*x82 + x43*x44 + x46*x82 - x47*x82 - x103
     x105 = (
-        x101 + c10*cos_theta3 + x50*x63 + x48*x73 + x44*x83 + x27*x29 + x43*x53 + x45*x83
-        - x103 - x46*x83
+        x101 + c10*cos_theta3 + x51*x64 + x49*x74 + x45*x84 + x28*x30 + x44*x54 + x46*x84
+        - x103 - x47*x84
     )
     # outputs
     return _stacked(
         (8, 8),
         y[0],
         0.0,
-        x34,
-        -x42,
-        x53,
+        x35,
+        -x43,
         x54,
-        -x55,
+        x55,
         -x56,
-        -x58,
+        -x57,
+        -x59,
         0.0,
-        x60,
-        x62,
-        -x64,
-        -c0*x65,
-        c0*x66,
-        -c0*x67,
+        x61,
+        x63,
+        -x65,
+        -c0*x66,
+        c0*x67,
         -c0*x68,
+        -c0*x69,
         0.0,
-        -x70,
-        x72,
-        -x74,
-        -c3*x75,
-        c3*x76,
+        -x71,
+        x73,
+        -x75,
+        -c3*x76,
         c3*x77,
         c3*x78,
+        c3*x79,
         0.0,
-        x80,
-        -x82,
-        x84,
-        c1*(cos_x0*x65 + cos_x4*x75 - cos_theta3*x54),
-        -c1*(cos_x0*x66 + cos_x4*x76 - cos_theta3*x55),
-        c1*(cos_theta3*x56 + cos_x0*x67 - cos_x4*x77),
+        x81,
+        -x83,
         x85,
+        c1*(x0*x66 + x3*x76 - cos_theta3*x55),
+        -c1*(x0*x67 + x3*x77 - cos_theta3*x56),
+        c1*(cos_theta3*x57 + x0*x68 - x3*x78),
+        c1*(c7 + cos_theta3*x59 + x0*x69 - x3*x79),
         0.0,
         0.0,
         0.0,
@@ -1603,35 +1586,35 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         -x92,
-        -(x23*x61 + x30*x61 + x93 - x42*x88 - x81*x89),
+        -(x24*x62 + x31*x62 + x93 - x43*x88 - x82*x89),
         x95,
-        -x34,
-        -x60,
-        x70,
-        -x80,
+        -x35,
+        -x61,
+        x71,
+        -x81,
         0.0,
-        x34*x96 + x36*x69 + x37*x69 + x79*x97 - x91,
+        x35*x96 + x37*x70 + x38*x70 + x80*x97 - x91,
         -x99,
         x100,
-        x42,
-        -x62,
-        -x72,
-        x82,
+        x43,
+        -x63,
+        -x73,
+        x83,
         0.0,
         -m3*x102,
         m3*x104,
         -m3*x105,
-        -x53,
-        x64,
-        x74,
-        -x84,
+        -x54,
+        x65,
+        x75,
+        -x85,
     )
 
 
 def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
-    104 operations, 11 of them on parameters alone.
+    113 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -1665,32 +1648,33 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     cos_theta3 = cos(theta3)
     x0 = c0*p_theta3
     cos_theta2 = cos(theta2)
-    x1 = theta2 - theta3
-    cos_x1 = cos(x1)
-    x2 = m3*cos_theta3
-    x3 = c1*cos_theta2 - cos_x1*x2
-    x4 = c2*p_theta2
-    x5 = x4 - cos_x1*x0
-    sin_x1 = sin(x1)
-    x6 = m2 + m3*sin_x1*sin_x1
-    cos_theta1 = cos(theta1)
-    x7 = theta1 - theta3
-    cos_x7 = cos(x7)
-    x8 = c1*cos(theta1 - theta2) - m3*cos_x1*cos_x7
-    x9 = c4*cos_theta1 - cos_x7*x2 - x3*x8/x6
-    x10 = c5*p_theta1
-    x11 = x10 - cos_x7*x0 - x8*x5/x6
-    sin_x7 = sin(x7)
-    x12 = c3 + m3*sin_x7*sin_x7 - x8*x8/x6
     sin_theta3 = sin(theta3)
-    x13 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x6 - x9*x9/x12
-    x14 = (p_x - cos_theta3*x0 - x3*x5/x6 - x9*x11/x12)/x13
-    x15 = (x11 - x9*x14)/x12
-    x16 = (x3*x14 + x8*x15 - x5)/x6
-    x17 = c8*p_theta3 + cos_x1*x16 - cos_theta3*x14 - cos_x7*x15
-    x18 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
+    sin_theta2 = sin(theta2)
+    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x2 = m3*cos_theta3
+    x3 = c1*cos_theta2 - x1*x2
+    x4 = c2*p_theta2
+    x5 = x4 - x1*x0
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m2 + m3*x6*x6
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x9 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x10 = x9 - m3*x1*x8
+    x11 = c4*cos_theta1 - x8*x2 - x3*x10/x7
+    x12 = c5*p_theta1
+    x13 = x12 - x8*x0 - x10*x5/x7
+    x14 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x15 = c3 + m3*x14*x14 - x10*x10/x7
+    x16 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x7 - x11*x11/x15
+    x17 = (p_x - cos_theta3*x0 - x3*x5/x7 - x11*x13/x15)/x16
+    x18 = (x13 - x11*x17)/x15
+    x19 = (x3*x17 + x10*x18 - x5)/x7
+    x20 = (c8*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18)*x0
+    x21 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
     # outputs
-    return 0.5*(p_x*x14 + x10*x15 + x17*x0 - x4*x16) - x18
+    return 0.5*(p_x*x17 + x12*x18 + x20 - x4*x19) - x21
 
 
 def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
@@ -1716,38 +1700,39 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     cos_theta3 = cos(theta3)
     x0 = c0*p_theta3
     cos_theta2 = cos(theta2)
-    x1 = theta2 - theta3
-    cos_x1 = cos(x1)
-    x2 = m3*cos_theta3
-    x3 = c1*cos_theta2 - cos_x1*x2
-    x4 = c2*p_theta2
-    x5 = x4 - cos_x1*x0
-    sin_x1 = sin(x1)
-    x6 = m2 + m3*sin_x1*sin_x1
-    cos_theta1 = cos(theta1)
-    x7 = theta1 - theta3
-    cos_x7 = cos(x7)
-    x8 = c1*cos(theta1 - theta2) - m3*cos_x1*cos_x7
-    x9 = c4*cos_theta1 - cos_x7*x2 - x3*x8/x6
-    x10 = c5*p_theta1
-    x11 = x10 - cos_x7*x0 - x8*x5/x6
-    sin_x7 = sin(x7)
-    x12 = c3 + m3*sin_x7*sin_x7 - x8*x8/x6
     sin_theta3 = sin(theta3)
-    x13 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x6 - x9*x9/x12
-    x14 = (p_x - cos_theta3*x0 - x3*x5/x6 - x9*x11/x12)/x13
-    x15 = (x11 - x9*x14)/x12
-    x16 = (x3*x14 + x8*x15 - x5)/x6
-    x17 = c8*p_theta3 + cos_x1*x16 - cos_theta3*x14 - cos_x7*x15
-    x18 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
+    sin_theta2 = sin(theta2)
+    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x2 = m3*cos_theta3
+    x3 = c1*cos_theta2 - x1*x2
+    x4 = c2*p_theta2
+    x5 = x4 - x1*x0
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m2 + m3*x6*x6
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x9 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x10 = x9 - m3*x1*x8
+    x11 = c4*cos_theta1 - x8*x2 - x3*x10/x7
+    x12 = c5*p_theta1
+    x13 = x12 - x8*x0 - x10*x5/x7
+    x14 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x15 = c3 + m3*x14*x14 - x10*x10/x7
+    x16 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x7 - x11*x11/x15
+    x17 = (p_x - cos_theta3*x0 - x3*x5/x7 - x11*x13/x15)/x16
+    x18 = (x13 - x11*x17)/x15
+    x19 = (x3*x17 + x10*x18 - x5)/x7
+    x20 = (c8*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18)*x0
+    x21 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
     # outputs
-    return 0.5*(p_x*x14 + x10*x15 + x17*x0 - x4*x16) - x18
+    return 0.5*(p_x*x17 + x12*x18 + x20 - x4*x19) - x21
 
 
 def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
-    91 operations, 9 of them on parameters alone.
+    100 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -1777,28 +1762,31 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     # intermediate terms
     cos_theta3 = cos(theta3)
     x0 = c0*p_theta3
-    x1 = theta2 - theta3
-    cos_x1 = cos(x1)
-    x2 = m3*cos_theta3
-    x3 = c1*cos(theta2) - cos_x1*x2
-    x4 = c2*p_theta2 - cos_x1*x0
-    sin_x1 = sin(x1)
-    x5 = m2 + m3*sin_x1*sin_x1
-    x6 = theta1 - theta3
-    cos_x6 = cos(x6)
-    x7 = c1*cos(theta1 - theta2) - m3*cos_x1*cos_x6
-    x8 = c4*cos(theta1) - cos_x6*x2 - x3*x7/x5
-    x9 = c5*p_theta1 - cos_x6*x0 - x7*x4/x5
-    sin_x6 = sin(x6)
-    x10 = c3 + m3*sin_x6*sin_x6 - x7*x7/x5
+    cos_theta2 = cos(theta2)
     sin_theta3 = sin(theta3)
-    x11 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x5 - x8*x8/x10
-    x12 = (p_x - cos_theta3*x0 - x3*x4/x5 - x8*x9/x10)/x11
-    x13 = (x9 - x8*x12)/x10
-    x14 = (x3*x12 + x7*x13 - x4)/x5
-    x15 = c7*p_theta3 + cos_x1*x14 - cos_theta3*x12 - cos_x6*x13
+    sin_theta2 = sin(theta2)
+    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x2 = m3*cos_theta3
+    x3 = c1*cos_theta2 - x1*x2
+    x4 = c2*p_theta2 - x1*x0
+    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x6 = m2 + m3*x5*x5
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x7 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x8 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x9 = x8 - m3*x1*x7
+    x10 = c4*cos_theta1 - x7*x2 - x3*x9/x6
+    x11 = c5*p_theta1 - x7*x0 - x9*x4/x6
+    x12 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x13 = c3 + m3*x12*x12 - x9*x9/x6
+    x14 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x6 - x10*x10/x13
+    x15 = (p_x - cos_theta3*x0 - x3*x4/x6 - x10*x11/x13)/x14
+    x16 = (x11 - x10*x15)/x13
+    x17 = (x3*x15 + x9*x16 - x4)/x6
+    x18 = c0*(c7*p_theta3 + x1*x17 - cos_theta3*x15 - x7*x16)
     # outputs
-    return (x, theta1, theta2, theta3, x12, c5*x13, -c2*x14, c0*x15)
+    return (x, theta1, theta2, theta3, x15, c5*x16, -c2*x17, x18)
 
 
 def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
@@ -1820,39 +1808,31 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     # intermediate terms
     cos_theta3 = cos(theta3)
     x0 = c0*p_theta3
-    x1 = theta2 - theta3
-    cos_x1 = cos(x1)
-    x2 = m3*cos_theta3
-    x3 = c1*cos(theta2) - cos_x1*x2
-    x4 = c2*p_theta2 - cos_x1*x0
-    sin_x1 = sin(x1)
-    x5 = m2 + m3*sin_x1*sin_x1
-    x6 = theta1 - theta3
-    cos_x6 = cos(x6)
-    x7 = c1*cos(theta1 - theta2) - m3*cos_x1*cos_x6
-    x8 = c4*cos(theta1) - cos_x6*x2 - x3*x7/x5
-    x9 = c5*p_theta1 - cos_x6*x0 - x7*x4/x5
-    sin_x6 = sin(x6)
-    x10 = c3 + m3*sin_x6*sin_x6 - x7*x7/x5
+    cos_theta2 = cos(theta2)
     sin_theta3 = sin(theta3)
-    x11 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x5 - x8*x8/x10
-    x12 = (p_x - cos_theta3*x0 - x3*x4/x5 - x8*x9/x10)/x11
-    x13 = (x9 - x8*x12)/x10
-    x14 = (x3*x12 + x7*x13 - x4)/x5
-    x15 = c7*p_theta3 + cos_x1*x14 - cos_theta3*x12 - cos_x6*x13
+    sin_theta2 = sin(theta2)
+    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x2 = m3*cos_theta3
+    x3 = c1*cos_theta2 - x1*x2
+    x4 = c2*p_theta2 - x1*x0
+    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x6 = m2 + m3*x5*x5
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x7 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x8 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x9 = x8 - m3*x1*x7
+    x10 = c4*cos_theta1 - x7*x2 - x3*x9/x6
+    x11 = c5*p_theta1 - x7*x0 - x9*x4/x6
+    x12 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x13 = c3 + m3*x12*x12 - x9*x9/x6
+    x14 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x6 - x10*x10/x13
+    x15 = (p_x - cos_theta3*x0 - x3*x4/x6 - x10*x11/x13)/x14
+    x16 = (x11 - x10*x15)/x13
+    x17 = (x3*x15 + x9*x16 - x4)/x6
+    x18 = c0*(c7*p_theta3 + x1*x17 - cos_theta3*x15 - x7*x16)
     # outputs
-    return _stacked(
-        (8,),
-        y[0],
-        x,
-        theta1,
-        theta2,
-        theta3,
-        x12,
-        c5*x13,
-        -c2*x14,
-        c0*x15,
-    )
+    return _stacked((8,), y[0], x, theta1, theta2, theta3, x15, c5*x16, -c2*x17, x18)
 
 
 def rational_state(y: Numbers, params: Numbers) -> Vector:

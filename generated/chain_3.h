@@ -120,7 +120,7 @@ enum {
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
-   79 operations, 11 of them on parameters alone.
+   91 operations, 11 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void chain_3_rhs(
     chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
@@ -151,39 +151,43 @@ static inline void chain_3_rhs(
     const chain_3_real c8 = 1.0/l2;
     const chain_3_real c9 = 1.0/l3;
     /* intermediate terms */
-    const chain_3_real x0 = theta1 - theta2;
-    const chain_3_real sin_x0 = sin(x0);
+    const chain_3_real sin_theta1 = sin(theta1);
+    const chain_3_real cos_theta2 = cos(theta2);
+    const chain_3_real cos_theta1 = cos(theta1);
+    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const chain_3_real x1 = theta2_dot*theta2_dot;
-    const chain_3_real x2 = theta1 - theta3;
-    const chain_3_real sin_x2 = sin(x2);
+    const chain_3_real cos_theta3 = cos(theta3);
+    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real x2 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
     const chain_3_real x3 = c3*(theta3_dot*theta3_dot);
     const chain_3_real x4 = theta1_dot*theta1_dot;
-    const chain_3_real x5 = theta2 - theta3;
-    const chain_3_real sin_x5 = sin(x5);
-    const chain_3_real x6 = l1*sin_x2*x4 + l2*sin_x5*x1 - g*sin(theta3);
-    const chain_3_real cos_x2 = cos(x2);
-    const chain_3_real x7 = m3*cos_x2;
-    const chain_3_real x8 = c2*sin_x0*x1 + sin_x2*x3 + c5*sin(theta1) + x6*x7;
-    const chain_3_real cos_x5 = cos(x5);
-    const chain_3_real x9 = c1*cos(x0) - cos_x5*x7;
-    const chain_3_real x10 = c6*sin_x0*x4 - sin_x5*x3 - c7*sin(theta2) - m3*cos_x5*x6;
-    const chain_3_real x11 = m2 + m3*sin_x5*sin_x5;
-    const chain_3_real x12 = (x8 + x9*x10/x11)/(c4 + m3*sin_x2*sin_x2 - x9*x9/x11);
-    const chain_3_real x13 = (x10 + x9*x12)/x11;
+    const chain_3_real x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
+    const chain_3_real x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3;
+    const chain_3_real x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
+    const chain_3_real x8 = m3*x7;
+    const chain_3_real x9 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
+    const chain_3_real x10 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2;
+    const chain_3_real x11 = x9 - x10*x8;
+    const chain_3_real x12 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x10*x6;
+    const chain_3_real x13 = m2 + m3*x5*x5;
+    const chain_3_real x14 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x11*x12/x13;
+    const chain_3_real x15 = x14/(c4 + m3*x2*x2 - x11*x11/x13);
+    const chain_3_real x16 = (x12 + x11*x15)/x13;
     /* outputs */
     result[0] = theta1_dot;
     result[1] = theta2_dot;
     result[2] = theta3_dot;
-    result[3] = -c0*x12;
-    result[4] = c8*x13;
-    result[5] = c9*(x6 + cos_x2*x12 - cos_x5*x13);
+    result[3] = -c0*x15;
+    result[4] = c8*x16;
+    result[5] = c9*(x6 + x7*x15 - x10*x16);
     (void)t;
 }
 #endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs`.
-   253 operations, 12 of them on parameters alone.
+   262 operations, 12 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void chain_3_jacobian(
     chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
@@ -215,68 +219,69 @@ static inline void chain_3_jacobian(
     const chain_3_real c9 = m3*l2;
     const chain_3_real c10 = 1.0/l3;
     /* intermediate terms */
-    const chain_3_real x0 = theta1 - theta2;
-    const chain_3_real cos_x0 = cos(x0);
+    const chain_3_real cos_theta1 = cos(theta1);
+    const chain_3_real cos_theta2 = cos(theta2);
+    const chain_3_real sin_theta1 = sin(theta1);
+    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
     const chain_3_real x1 = theta2_dot*theta2_dot;
     const chain_3_real x2 = c2*x1;
-    const chain_3_real x3 = theta1 - theta3;
-    const chain_3_real cos_x3 = cos(x3);
+    const chain_3_real cos_theta3 = cos(theta3);
+    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real x3 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
     const chain_3_real x4 = theta3_dot*theta3_dot;
     const chain_3_real x5 = c3*x4;
-    const chain_3_real sin_x0 = sin(x0);
-    const chain_3_real x6 = c6*(theta1_dot*theta1_dot);
-    const chain_3_real x7 = theta2 - theta3;
-    const chain_3_real sin_x7 = sin(x7);
-    const chain_3_real sin_x3 = sin(x3);
-    const chain_3_real x8 = l1*theta1_dot;
-    const chain_3_real x9 = theta1_dot*x8;
-    const chain_3_real x10 = l2*x1;
-    const chain_3_real x11 = sin_x3*x9 + sin_x7*x10 - g*sin(theta3);
-    const chain_3_real cos_x7 = cos(x7);
-    const chain_3_real x12 = m3*cos_x7;
-    const chain_3_real x13 = sin_x0*x6 - sin_x7*x5 - c7*sin(theta2) - x11*x12;
-    const chain_3_real x14 = m3*cos_x3;
-    const chain_3_real x15 = c1*cos_x0 - cos_x7*x14;
-    const chain_3_real x16 = m3*sin_x7;
-    const chain_3_real x17 = m2 + sin_x7*x16;
-    const chain_3_real x18 = sin_x0*x2 + sin_x3*x5 + c5*sin(theta1) + x11*x14 + x15*x13/x17;
-    const chain_3_real x19 = m3*sin_x3;
-    const chain_3_real x20 = c4 + sin_x3*x19 - x15*x15/x17;
-    const chain_3_real x21 = x18/x20;
-    const chain_3_real x22 = (x13 + x15*x21)/x17;
-    const chain_3_real x23 = c1*sin_x0;
-    const chain_3_real x24 = x11 + cos_x3*x21 - cos_x7*x22;
-    const chain_3_real x25 = cos_x0*x2 + cos_x3*x5 + c5*cos(theta1) - (x22*x23 + x24*x19);
-    const chain_3_real x26 = cos_x3*x9;
-    const chain_3_real x27 = sin_x3*x21;
-    const chain_3_real x28 = x26 - x27;
-    const chain_3_real x29 = c1*(cos_x0*x9 - sin_x0*x21) - x28*x12;
-    const chain_3_real x30 = (x25 + x28*x14 + x15*x29/x17)/x20;
-    const chain_3_real x31 = cos_x7*x10;
-    const chain_3_real x32 = sin_x7*x22;
-    const chain_3_real x33 = x31 + x32;
-    const chain_3_real x34 = cos_x0*x6 + cos_x7*x5 + c7*cos(theta2) - (x21*x23 + x24*x16);
-    const chain_3_real x35 = x34 + x33*x12;
-    const chain_3_real x36 = c1*(sin_x0*x22 - cos_x0*x10) + x33*x14 - x15*x35/x17;
-    const chain_3_real x37 = x36/x20;
-    const chain_3_real x38 = l3*x4;
-    const chain_3_real x39 = x26 + x31 + g*cos(theta3) - (x27 - x32);
-    const chain_3_real x40 = sin_x7*x24 - cos_x7*x38 - cos_x7*x39;
-    const chain_3_real x41 = sin_x3*x24 - cos_x3*x38 - cos_x3*x39 - x15*x40/x17;
-    const chain_3_real x42 = m3*x41/x20;
-    const chain_3_real x43 = x23 - sin_x3*x12;
-    const chain_3_real x44 = (sin_x3*x14 + x15*x43/x17)*x8/x20;
-    const chain_3_real x45 = x15*sin_x7;
-    const chain_3_real x46 = l2*theta2_dot*(x23 + sin_x7*x14 - x45*x12/x17)/x20;
-    const chain_3_real x47 = c3*theta3_dot;
-    const chain_3_real x48 = (sin_x3 - x45/x17)*x47/x20;
-    const chain_3_real x49 = (x29 + x15*x30)/x17;
-    const chain_3_real x50 = (x35 - x15*x37)/x17;
-    const chain_3_real x51 = (m3*x40 - x15*x42)/x17;
-    const chain_3_real x52 = (x43*x8 + x15*x44)/x17;
-    const chain_3_real x53 = sin_x7*theta2_dot;
-    const chain_3_real x54 = (c9*cos_x7*x53 - x15*x46)/x17;
-    const chain_3_real x55 = (sin_x7*x47 - x15*x48)/x17;
+    const chain_3_real x6 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
+    const chain_3_real x7 = c6*(theta1_dot*theta1_dot);
+    const chain_3_real x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
+    const chain_3_real x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
+    const chain_3_real x10 = l1*theta1_dot;
+    const chain_3_real x11 = theta1_dot*x10;
+    const chain_3_real x12 = l2*x1;
+    const chain_3_real x13 = x9*x11 + x8*x12 - g*sin_theta3;
+    const chain_3_real x14 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2;
+    const chain_3_real x15 = m3*x14;
+    const chain_3_real x16 = x6*x7 - x8*x5 - c7*sin_theta2 - x13*x15;
+    const chain_3_real x17 = m3*x3;
+    const chain_3_real x18 = c1*x0 - x14*x17;
+    const chain_3_real x19 = m3*x8;
+    const chain_3_real x20 = m2 + x8*x19;
+    const chain_3_real x21 = x6*x2 + x9*x5 + c5*sin_theta1 + x13*x17 + x18*x16/x20;
+    const chain_3_real x22 = m3*x9;
+    const chain_3_real x23 = c4 + x9*x22 - x18*x18/x20;
+    const chain_3_real x24 = x21/x23;
+    const chain_3_real x25 = (x16 + x18*x24)/x20;
+    const chain_3_real x26 = c1*x6;
+    const chain_3_real x27 = x13 + x3*x24 - x14*x25;
+    const chain_3_real x28 = x0*x2 + x3*x5 + c5*cos_theta1 - (x25*x26 + x27*x22);
+    const chain_3_real x29 = x3*x11;
+    const chain_3_real x30 = x9*x24;
+    const chain_3_real x31 = x29 - x30;
+    const chain_3_real x32 = c1*(x0*x11 - x6*x24) - x31*x15;
+    const chain_3_real x33 = (x28 + x31*x17 + x18*x32/x20)/x23;
+    const chain_3_real x34 = x14*x12;
+    const chain_3_real x35 = x8*x25;
+    const chain_3_real x36 = x34 + x35;
+    const chain_3_real x37 = x0*x7 + x14*x5 + c7*cos_theta2 - (x24*x26 + x27*x19);
+    const chain_3_real x38 = x37 + x36*x15;
+    const chain_3_real x39 = (c1*(x6*x25 - x0*x12) + x36*x17 - x18*x38/x20)/x23;
+    const chain_3_real x40 = l3*x4;
+    const chain_3_real x41 = x29 + x34 + g*cos_theta3 - (x30 - x35);
+    const chain_3_real x42 = x8*x27 - x14*x40 - x14*x41;
+    const chain_3_real x43 = m3*(x9*x27 - x3*x40 - x3*x41 - x18*x42/x20)/x23;
+    const chain_3_real x44 = x26 - x9*x15;
+    const chain_3_real x45 = (x9*x17 + x18*x44/x20)*x10/x23;
+    const chain_3_real x46 = x18*x8;
+    const chain_3_real x47 = l2*theta2_dot*(x26 + x8*x17 - x46*x15/x20)/x23;
+    const chain_3_real x48 = c3*theta3_dot;
+    const chain_3_real x49 = (x9 - x46/x20)*x48/x23;
+    const chain_3_real x50 = (x32 + x18*x33)/x20;
+    const chain_3_real x51 = (x38 - x18*x39)/x20;
+    const chain_3_real x52 = (m3*x42 - x18*x43)/x20;
+    const chain_3_real x53 = (x44*x10 + x18*x45)/x20;
+    const chain_3_real x54 = x8*theta2_dot;
+    const chain_3_real x55 = (c9*x14*x54 - x18*x47)/x20;
+    const chain_3_real x56 = (x8*x48 - x18*x49)/x20;
     /* outputs */
     result[0] = 0.0;
     result[1] = 0.0;
@@ -296,24 +301,24 @@ static inline void chain_3_jacobian(
     result[15] = 0.0;
     result[16] = 0.0;
     result[17] = 1.0;
-    result[18] = -c0*x30;
-    result[19] = -c0*x37;
-    result[20] = -c0*x42;
-    result[21] = -2.0*c0*x44;
-    result[22] = -2.0*c0*x46;
-    result[23] = -2.0*c0*x48;
-    result[24] = c8*x49;
-    result[25] = -c8*x50;
-    result[26] = -c8*x51;
-    result[27] = 2.0*c8*x52;
-    result[28] = -2.0*c8*x54;
-    result[29] = -2.0*c8*x55;
-    result[30] = c10*(x28 + cos_x3*x30 - cos_x7*x49);
-    result[31] = c10*(x33 + cos_x3*x37 + cos_x7*x50);
-    result[32] = c10*(cos_x3*x42 + cos_x7*x51 - x39);
-    result[33] = 2.0*c10*(sin_x3*x8 + cos_x3*x44 - cos_x7*x52);
-    result[34] = 2.0*c10*(l2*x53 + cos_x3*x46 + cos_x7*x54);
-    result[35] = 2.0*c10*(cos_x3*x48 + cos_x7*x55);
+    result[18] = -c0*x33;
+    result[19] = -c0*x39;
+    result[20] = -c0*x43;
+    result[21] = -2.0*c0*x45;
+    result[22] = -2.0*c0*x47;
+    result[23] = -2.0*c0*x49;
+    result[24] = c8*x50;
+    result[25] = -c8*x51;
+    result[26] = -c8*x52;
+    result[27] = 2.0*c8*x53;
+    result[28] = -2.0*c8*x55;
+    result[29] = -2.0*c8*x56;
+    result[30] = c10*(x31 + x3*x33 - x14*x50);
+    result[31] = c10*(x36 + x3*x39 + x14*x51);
+    result[32] = c10*(x3*x43 + x14*x52 - x41);
+    result[33] = 2.0*c10*(x9*x10 + x3*x45 - x14*x53);
+    result[34] = 2.0*c10*(l2*x54 + x3*x47 + x14*x55);
+    result[35] = 2.0*c10*(x3*x49 + x14*x56);
     (void)t;
 }
 #endif
@@ -481,7 +486,7 @@ static inline void chain_3_hamiltonian_state(
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
-   82 operations, 13 of them on parameters alone.
+   94 operations, 13 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void chain_3_rhs_hamiltonian(
     chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
@@ -511,40 +516,43 @@ static inline void chain_3_rhs_hamiltonian(
     const chain_3_real c7 = c2*l2*g;
     const chain_3_real c8 = l3*g;
     /* intermediate terms */
-    const chain_3_real x0 = theta1 - theta3;
-    const chain_3_real cos_x0 = cos(x0);
+    const chain_3_real cos_theta3 = cos(theta3);
+    const chain_3_real cos_theta1 = cos(theta1);
+    const chain_3_real sin_theta1 = sin(theta1);
+    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
     const chain_3_real x1 = c1*p_theta3;
-    const chain_3_real x2 = theta1 - theta2;
-    const chain_3_real x3 = theta2 - theta3;
-    const chain_3_real cos_x3 = cos(x3);
-    const chain_3_real x4 = c2*cos(x2) - m3*cos_x0*cos_x3;
-    const chain_3_real x5 = c3*p_theta2 - cos_x3*x1;
-    const chain_3_real sin_x3 = sin(x3);
-    const chain_3_real x6 = m3*sin_x3;
-    const chain_3_real x7 = m2 + sin_x3*x6;
-    const chain_3_real sin_x0 = sin(x0);
-    const chain_3_real x8 = m3*sin_x0;
-    const chain_3_real x9 =
-        (c0*p_theta1 - cos_x0*x1 - x4*x5/x7)/(c4 + sin_x0*x8 - x4*x4/x7);
-    const chain_3_real x10 = (x5 - x4*x9)/x7;
-    const chain_3_real x11 = cos_x0*x9 + cos_x3*x10 - c5*p_theta3;
-    const chain_3_real x12 = c2*x9*x10*sin(x2);
-    const chain_3_real x13 = x9*x11;
-    const chain_3_real x14 = x10*x11;
+    const chain_3_real cos_theta2 = cos(theta2);
+    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real x2 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
+    const chain_3_real x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2;
+    const chain_3_real x4 = x2 - m3*x0*x3;
+    const chain_3_real x5 = c3*p_theta2 - x3*x1;
+    const chain_3_real x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
+    const chain_3_real x7 = m3*x6;
+    const chain_3_real x8 = m2 + x6*x7;
+    const chain_3_real x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
+    const chain_3_real x10 = m3*x9;
+    const chain_3_real x11 = (c0*p_theta1 - x0*x1 - x4*x5/x8)/(c4 + x9*x10 - x4*x4/x8);
+    const chain_3_real x12 = (x5 - x4*x11)/x8;
+    const chain_3_real x13 = x0*x11 + x3*x12 - c5*p_theta3;
+    const chain_3_real x14 = c2*x11*x12*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2);
+    const chain_3_real x15 = x11*x13;
+    const chain_3_real x16 = x12*x13;
     /* outputs */
-    result[0] = c0*x9;
-    result[1] = c3*x10;
-    result[2] = -c1*x11;
-    result[3] = -(c6*sin(theta1) + x12 - x8*x13);
-    result[4] = x12 + x6*x14 - c7*sin(theta2);
-    result[5] = -m3*(sin_x0*x13 + sin_x3*x14 + c8*sin(theta3));
+    result[0] = c0*x11;
+    result[1] = c3*x12;
+    result[2] = -c1*x13;
+    result[3] = -(c6*sin_theta1 + x14 - x10*x15);
+    result[4] = x14 + x7*x16 - c7*sin_theta2;
+    result[5] = -m3*(x9*x15 + x6*x16 + c8*sin_theta3);
     (void)t;
 }
 #endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs_hamiltonian`.
-   265 operations, 13 of them on parameters alone.
+   277 operations, 13 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void chain_3_jacobian_hamiltonian(
     chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
@@ -574,124 +582,125 @@ static inline void chain_3_jacobian_hamiltonian(
     const chain_3_real c7 = c3*l2*g;
     const chain_3_real c8 = l3*g;
     /* intermediate terms */
-    const chain_3_real x0 = theta2 - theta3;
-    const chain_3_real cos_x0 = cos(x0);
-    const chain_3_real x1 = c2*cos_x0;
+    const chain_3_real cos_theta3 = cos(theta3);
+    const chain_3_real cos_theta2 = cos(theta2);
+    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real x0 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2;
+    const chain_3_real x1 = c2*x0;
     const chain_3_real x2 = c1*p_theta2 - p_theta3*x1;
-    const chain_3_real x3 = theta1 - theta2;
-    const chain_3_real x4 = c3*cos(x3);
-    const chain_3_real x5 = theta1 - theta3;
-    const chain_3_real cos_x5 = cos(x5);
-    const chain_3_real x6 = x4 - m3*cos_x5*cos_x0;
-    const chain_3_real sin_x0 = sin(x0);
-    const chain_3_real x7 = m3*sin_x0;
-    const chain_3_real x8 = m2 + sin_x0*x7;
-    const chain_3_real sin_x5 = sin(x5);
-    const chain_3_real x9 = m3*sin_x5;
-    const chain_3_real x10 = c4 + sin_x5*x9 - x6*x6/x8;
-    const chain_3_real x11 = (c0*p_theta1 - c2*cos_x5*p_theta3 - x6*x2/x8)/x10;
-    const chain_3_real x12 = x6*x11;
-    const chain_3_real x13 = (x2 - x12)/x8;
-    const chain_3_real x14 = c3*sin(x3);
-    const chain_3_real x15 = x13*x14;
-    const chain_3_real x16 = cos_x5*x11;
-    const chain_3_real x17 = cos_x0*x13;
-    const chain_3_real x18 = x16 + x17 - c5*p_theta3;
-    const chain_3_real x19 = x18*x9;
-    const chain_3_real x20 = x14 - cos_x0*x9;
-    const chain_3_real x21 = (x15 - x19 - x16*x9 - x12*x20/x8)/x10;
-    const chain_3_real x22 = c0*x21;
-    const chain_3_real x23 = x11*x14;
-    const chain_3_real x24 = x18*x7;
-    const chain_3_real x25 = x23 + x24 + x17*x7;
-    const chain_3_real x26 = (x13*(x14 + cos_x5*x7) - x6*x25/x8)/x10;
-    const chain_3_real x27 = c0*x26;
-    const chain_3_real x28 = sin_x5*x18;
-    const chain_3_real x29 = sin_x5*x11;
-    const chain_3_real x30 = sin_x0*x13;
-    const chain_3_real x31 = x29 + x30;
-    const chain_3_real x32 = sin_x0*x18;
-    const chain_3_real x33 = x32 + cos_x0*x31;
-    const chain_3_real x34 = m3*(x28 + cos_x5*x31 - x6*x33/x8)/x10;
-    const chain_3_real x35 = c0*x34;
-    const chain_3_real x36 = c0/x10;
-    const chain_3_real x37 = c1*x6/(x8*x10);
-    const chain_3_real x38 = c2*(cos_x5 - cos_x0*x6/x8)/x10;
-    const chain_3_real x39 = (x11*x20 - x6*x21)/x8;
-    const chain_3_real x40 = c1*x39;
-    const chain_3_real x41 = (x25 - x6*x26)/x8;
-    const chain_3_real x42 = c1*x41;
-    const chain_3_real x43 = (m3*x33 - x6*x34)/x8;
-    const chain_3_real x44 = c1*x43;
-    const chain_3_real x45 = x6*x36/x8;
-    const chain_3_real x46 = (c1 + x6*x37)/x8;
-    const chain_3_real x47 = (x1 - x6*x38)/x8;
-    const chain_3_real x48 = cos_x5*x21 + cos_x0*x39 - x29;
-    const chain_3_real x49 = c2*x48;
-    const chain_3_real x50 = x30 + cos_x5*x26 + cos_x0*x41;
-    const chain_3_real x51 = c2*x50;
-    const chain_3_real x52 = x31 + cos_x5*x34 + cos_x0*x43;
-    const chain_3_real x53 = c2*x52;
-    const chain_3_real x54 = x4*x11*x13;
-    const chain_3_real x55 = x23*x39 + (x54 + x15*x21);
-    const chain_3_real x56 = m3*x18;
-    const chain_3_real x57 = x16*x56;
-    const chain_3_real x58 = x11*x9;
-    const chain_3_real x59 = -(c6*cos(theta1) + x55 - x57 - x19*x21 - x48*x58);
-    const chain_3_real x60 = x23*x41 + (x54 + x15*x26);
-    const chain_3_real x61 = x15*x34 + x23*x43;
-    const chain_3_real x62 = x13*x7;
-    const chain_3_real x63 = x17*x56;
-    const chain_3_real x64 = -(c7*cos(theta2) + x24*x41 + x50*x62 + x60 - x63);
-    const chain_3_real x65 = x16*x18;
-    const chain_3_real x66 = -m3*(x65 + x21*x28 + x29*x48 + x32*x39 + x30*x48);
-    const chain_3_real x67 = x17*x18;
-    const chain_3_real x68 =
-        c8*cos(theta3) + x28*x34 + x29*x52 + x32*x43 + x30*x52 - x65 - x67;
+    const chain_3_real cos_theta1 = cos(theta1);
+    const chain_3_real sin_theta1 = sin(theta1);
+    const chain_3_real x3 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
+    const chain_3_real x4 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
+    const chain_3_real x5 = x3 - m3*x4*x0;
+    const chain_3_real x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
+    const chain_3_real x7 = m3*x6;
+    const chain_3_real x8 = m2 + x6*x7;
+    const chain_3_real x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
+    const chain_3_real x10 = m3*x9;
+    const chain_3_real x11 = c4 + x9*x10 - x5*x5/x8;
+    const chain_3_real x12 = (c0*p_theta1 - c2*x4*p_theta3 - x5*x2/x8)/x11;
+    const chain_3_real x13 = x5*x12;
+    const chain_3_real x14 = (x2 - x13)/x8;
+    const chain_3_real x15 = c3*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2);
+    const chain_3_real x16 = x14*x15;
+    const chain_3_real x17 = x4*x12;
+    const chain_3_real x18 = x0*x14;
+    const chain_3_real x19 = x17 + x18 - c5*p_theta3;
+    const chain_3_real x20 = x19*x10;
+    const chain_3_real x21 = x15 - x0*x10;
+    const chain_3_real x22 = (x16 - x20 - x17*x10 - x13*x21/x8)/x11;
+    const chain_3_real x23 = c0*x22;
+    const chain_3_real x24 = x12*x15;
+    const chain_3_real x25 = x19*x7;
+    const chain_3_real x26 = x24 + x25 + x18*x7;
+    const chain_3_real x27 = (x14*(x15 + x4*x7) - x5*x26/x8)/x11;
+    const chain_3_real x28 = c0*x27;
+    const chain_3_real x29 = x9*x19;
+    const chain_3_real x30 = x9*x12;
+    const chain_3_real x31 = x6*x14;
+    const chain_3_real x32 = x30 + x31;
+    const chain_3_real x33 = x6*x19;
+    const chain_3_real x34 = x33 + x0*x32;
+    const chain_3_real x35 = m3*(x29 + x4*x32 - x5*x34/x8)/x11;
+    const chain_3_real x36 = c0*x35;
+    const chain_3_real x37 = c0/x11;
+    const chain_3_real x38 = c1*x5/(x8*x11);
+    const chain_3_real x39 = c2*(x4 - x0*x5/x8)/x11;
+    const chain_3_real x40 = (x12*x21 - x5*x22)/x8;
+    const chain_3_real x41 = c1*x40;
+    const chain_3_real x42 = (x26 - x5*x27)/x8;
+    const chain_3_real x43 = c1*x42;
+    const chain_3_real x44 = (m3*x34 - x5*x35)/x8;
+    const chain_3_real x45 = c1*x44;
+    const chain_3_real x46 = x5*x37/x8;
+    const chain_3_real x47 = (c1 + x5*x38)/x8;
+    const chain_3_real x48 = (x1 - x5*x39)/x8;
+    const chain_3_real x49 = x4*x22 + x0*x40 - x30;
+    const chain_3_real x50 = c2*x49;
+    const chain_3_real x51 = x31 + x4*x27 + x0*x42;
+    const chain_3_real x52 = c2*x51;
+    const chain_3_real x53 = x32 + x4*x35 + x0*x44;
+    const chain_3_real x54 = c2*x53;
+    const chain_3_real x55 = x3*x12*x14;
+    const chain_3_real x56 = x24*x40 + (x55 + x16*x22);
+    const chain_3_real x57 = m3*x19;
+    const chain_3_real x58 = x17*x57;
+    const chain_3_real x59 = x12*x10;
+    const chain_3_real x60 = x24*x42 + (x55 + x16*x27);
+    const chain_3_real x61 = x16*x35 + x24*x44;
+    const chain_3_real x62 = x14*x7;
+    const chain_3_real x63 = x18*x57;
+    const chain_3_real x64 = x17*x19;
+    const chain_3_real x65 = -m3*(x64 + x22*x29 + x30*x49 + x33*x40 + x31*x49);
+    const chain_3_real x66 = x18*x19;
+    const chain_3_real x67 =
+        c8*cos_theta3 + x29*x35 + x30*x53 + x33*x44 + x31*x53 - x64 - x66;
     /* outputs */
-    result[0] = x22;
-    result[1] = -x27;
-    result[2] = x35;
-    result[3] = c0*x36;
-    result[4] = -c0*x37;
-    result[5] = -c0*x38;
-    result[6] = x40;
-    result[7] = -x42;
-    result[8] = x44;
-    result[9] = -c1*x45;
-    result[10] = c1*x46;
-    result[11] = -c1*x47;
-    result[12] = -x49;
-    result[13] = x51;
-    result[14] = -x53;
-    result[15] = -c2*(cos_x5*x36 - cos_x0*x45);
-    result[16] = c2*(cos_x5*x37 - cos_x0*x46);
-    result[17] = c2*(c5 + cos_x5*x38 + cos_x0*x47);
-    result[18] = x59;
-    result[19] = x60 - x19*x26 - x50*x58;
-    result[20] = -(x57 + x61 - x19*x34 - x52*x58);
-    result[21] = -x22;
-    result[22] = -x40;
-    result[23] = x49;
-    result[24] = x24*x39 + x48*x62 + x55;
-    result[25] = x64;
-    result[26] = x24*x43 + x52*x62 + x61 - x63;
-    result[27] = x27;
-    result[28] = x42;
-    result[29] = -x51;
-    result[30] = x66;
-    result[31] = m3*(x26*x28 + x29*x50 + x32*x41 + x30*x50 - x67);
-    result[32] = -m3*x68;
-    result[33] = -x35;
-    result[34] = -x44;
-    result[35] = x53;
+    result[0] = x23;
+    result[1] = -x28;
+    result[2] = x36;
+    result[3] = c0*x37;
+    result[4] = -c0*x38;
+    result[5] = -c0*x39;
+    result[6] = x41;
+    result[7] = -x43;
+    result[8] = x45;
+    result[9] = -c1*x46;
+    result[10] = c1*x47;
+    result[11] = -c1*x48;
+    result[12] = -x50;
+    result[13] = x52;
+    result[14] = -x54;
+    result[15] = -c2*(x4*x37 - x0*x46);
+    result[16] = c2*(x4*x38 - x0*x47);
+    result[17] = c2*(c5 + x4*x39 + x0*x48);
+    result[18] = -(c6*cos_theta1 + x56 - x58 - x20*x22 - x49*x59);
+    result[19] = x60 - x20*x27 - x51*x59;
+    result[20] = -(x58 + x61 - x20*x35 - x53*x59);
+    result[21] = -x23;
+    result[22] = -x41;
+    result[23] = x50;
+    result[24] = x25*x40 + x49*x62 + x56;
+    result[25] = -(c7*cos_theta2 + x25*x42 + x51*x62 + x60 - x63);
+    result[26] = x25*x44 + x53*x62 + x61 - x63;
+    result[27] = x28;
+    result[28] = x43;
+    result[29] = -x52;
+    result[30] = x65;
+    result[31] = m3*(x27*x29 + x30*x51 + x33*x42 + x31*x51 - x66);
+    result[32] = -m3*x67;
+    result[33] = -x36;
+    result[34] = -x45;
+    result[35] = x54;
     (void)t;
 }
 #endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Hamiltonian H(q, p): `energy` by momenta.
-   66 operations, 10 of them on parameters alone.
+   76 operations, 10 of them on parameters alone.
    Energy in J. */
 static inline void chain_3_energy_hamiltonian(
     const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
@@ -722,23 +731,28 @@ static inline void chain_3_energy_hamiltonian(
     const chain_3_real c8 = c2*l2;
     /* intermediate terms */
     const chain_3_real x0 = c0*p_theta1;
-    const chain_3_real x1 = theta1 - theta3;
-    const chain_3_real cos_x1 = cos(x1);
+    const chain_3_real cos_theta3 = cos(theta3);
+    const chain_3_real cos_theta1 = cos(theta1);
+    const chain_3_real sin_theta1 = sin(theta1);
+    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real x1 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
     const chain_3_real x2 = c1*p_theta3;
-    const chain_3_real x3 = theta2 - theta3;
-    const chain_3_real cos_x3 = cos(x3);
-    const chain_3_real x4 = c2*cos(theta1 - theta2) - m3*cos_x1*cos_x3;
-    const chain_3_real x5 = c3*p_theta2;
-    const chain_3_real x6 = x5 - cos_x3*x2;
-    const chain_3_real sin_x3 = sin(x3);
-    const chain_3_real x7 = m2 + m3*sin_x3*sin_x3;
-    const chain_3_real sin_x1 = sin(x1);
-    const chain_3_real x8 = (x0 - cos_x1*x2 - x4*x6/x7)/(c4 + m3*sin_x1*sin_x1 - x4*x4/x7);
-    const chain_3_real x9 = (x6 - x4*x8)/x7;
-    const chain_3_real x10 = x0*x8 + x5*x9 - (cos_x1*x8 + cos_x3*x9 - c6*p_theta3)*x2;
-    const chain_3_real x11 = g*(c7*cos(theta1) + c8*cos(theta2) + c5*cos(theta3));
+    const chain_3_real cos_theta2 = cos(theta2);
+    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real x3 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
+    const chain_3_real x4 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2;
+    const chain_3_real x5 = x3 - m3*x1*x4;
+    const chain_3_real x6 = c3*p_theta2;
+    const chain_3_real x7 = x6 - x4*x2;
+    const chain_3_real x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
+    const chain_3_real x9 = m2 + m3*x8*x8;
+    const chain_3_real x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
+    const chain_3_real x11 = (x0 - x1*x2 - x5*x7/x9)/(c4 + m3*x10*x10 - x5*x5/x9);
+    const chain_3_real x12 = (x7 - x5*x11)/x9;
+    const chain_3_real x13 = x0*x11 + x6*x12 - (x1*x11 + x4*x12 - c6*p_theta3)*x2;
+    const chain_3_real x14 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3);
     /* outputs */
-    result[0] = 0.5*x10 - x11;
+    result[0] = 0.5*x13 - x14;
 }
 #endif
 

@@ -181,7 +181,7 @@ UNITS = {
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    79 operations, 11 of them on parameters alone.
+    91 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -212,33 +212,37 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     c8 = 1.0/l2
     c9 = 1.0/l3
     # intermediate terms
-    x0 = theta1 - theta2
-    sin_x0 = sin(x0)
+    sin_theta1 = sin(theta1)
+    cos_theta2 = cos(theta2)
+    cos_theta1 = cos(theta1)
+    sin_theta2 = sin(theta2)
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
     x1 = theta2_dot*theta2_dot
-    x2 = theta1 - theta3
-    sin_x2 = sin(x2)
+    cos_theta3 = cos(theta3)
+    sin_theta3 = sin(theta3)
+    x2 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
     x3 = c3*(theta3_dot*theta3_dot)
     x4 = theta1_dot*theta1_dot
-    x5 = theta2 - theta3
-    sin_x5 = sin(x5)
-    x6 = l1*sin_x2*x4 + l2*sin_x5*x1 - g*sin(theta3)
-    cos_x2 = cos(x2)
-    x7 = m3*cos_x2
-    x8 = c2*sin_x0*x1 + sin_x2*x3 + c5*sin(theta1) + x6*x7
-    cos_x5 = cos(x5)
-    x9 = c1*cos(x0) - cos_x5*x7
-    x10 = c6*sin_x0*x4 - sin_x5*x3 - c7*sin(theta2) - m3*cos_x5*x6
-    x11 = m2 + m3*sin_x5*sin_x5
-    x12 = (x8 + x9*x10/x11)/(c4 + m3*sin_x2*sin_x2 - x9*x9/x11)
-    x13 = (x10 + x9*x12)/x11
+    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3
+    x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x8 = m3*x7
+    x9 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x10 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x11 = x9 - x10*x8
+    x12 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x10*x6
+    x13 = m2 + m3*x5*x5
+    x14 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x11*x12/x13
+    x15 = x14/(c4 + m3*x2*x2 - x11*x11/x13)
+    x16 = (x12 + x11*x15)/x13
     # outputs
     return (
         theta1_dot,
         theta2_dot,
         theta3_dot,
-        -c0*x12,
-        c8*x13,
-        c9*(x6 + cos_x2*x12 - cos_x5*x13),
+        -c0*x15,
+        c8*x16,
+        c9*(x6 + x7*x15 - x10*x16),
     )
 
 
@@ -261,25 +265,29 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
     c8 = 1.0/l2
     c9 = 1.0/l3
     # intermediate terms
-    x0 = theta1 - theta2
-    sin_x0 = sin(x0)
+    sin_theta1 = sin(theta1)
+    cos_theta2 = cos(theta2)
+    cos_theta1 = cos(theta1)
+    sin_theta2 = sin(theta2)
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
     x1 = theta2_dot*theta2_dot
-    x2 = theta1 - theta3
-    sin_x2 = sin(x2)
+    cos_theta3 = cos(theta3)
+    sin_theta3 = sin(theta3)
+    x2 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
     x3 = c3*(theta3_dot*theta3_dot)
     x4 = theta1_dot*theta1_dot
-    x5 = theta2 - theta3
-    sin_x5 = sin(x5)
-    x6 = l1*sin_x2*x4 + l2*sin_x5*x1 - g*sin(theta3)
-    cos_x2 = cos(x2)
-    x7 = m3*cos_x2
-    x8 = c2*sin_x0*x1 + sin_x2*x3 + c5*sin(theta1) + x6*x7
-    cos_x5 = cos(x5)
-    x9 = c1*cos(x0) - cos_x5*x7
-    x10 = c6*sin_x0*x4 - sin_x5*x3 - c7*sin(theta2) - m3*cos_x5*x6
-    x11 = m2 + m3*sin_x5*sin_x5
-    x12 = (x8 + x9*x10/x11)/(c4 + m3*sin_x2*sin_x2 - x9*x9/x11)
-    x13 = (x10 + x9*x12)/x11
+    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3
+    x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x8 = m3*x7
+    x9 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x10 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x11 = x9 - x10*x8
+    x12 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x10*x6
+    x13 = m2 + m3*x5*x5
+    x14 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x11*x12/x13
+    x15 = x14/(c4 + m3*x2*x2 - x11*x11/x13)
+    x16 = (x12 + x11*x15)/x13
     # outputs
     return _stacked(
         (6,),
@@ -287,16 +295,16 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
         theta1_dot,
         theta2_dot,
         theta3_dot,
-        -c0*x12,
-        c8*x13,
-        c9*(x6 + cos_x2*x12 - cos_x5*x13),
+        -c0*x15,
+        c8*x16,
+        c9*(x6 + x7*x15 - x10*x16),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    253 operations, 12 of them on parameters alone.
+    262 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
@@ -328,89 +336,90 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c9 = m3*l2
     c10 = 1.0/l3
     # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
+    cos_theta1 = cos(theta1)
+    cos_theta2 = cos(theta2)
+    sin_theta1 = sin(theta1)
+    sin_theta2 = sin(theta2)
+    x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
     x1 = theta2_dot*theta2_dot
     x2 = c2*x1
-    x3 = theta1 - theta3
-    cos_x3 = cos(x3)
+    cos_theta3 = cos(theta3)
+    sin_theta3 = sin(theta3)
+    x3 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x4 = theta3_dot*theta3_dot
     x5 = c3*x4
-    sin_x0 = sin(x0)
-    x6 = c6*(theta1_dot*theta1_dot)
-    x7 = theta2 - theta3
-    sin_x7 = sin(x7)
-    sin_x3 = sin(x3)
-    x8 = l1*theta1_dot
-    x9 = theta1_dot*x8
-    x10 = l2*x1
-    x11 = sin_x3*x9 + sin_x7*x10 - g*sin(theta3)
-    cos_x7 = cos(x7)
-    x12 = m3*cos_x7
-    x13 = sin_x0*x6 - sin_x7*x5 - c7*sin(theta2) - x11*x12
-    x14 = m3*cos_x3
-    x15 = c1*cos_x0 - cos_x7*x14
-    x16 = m3*sin_x7
-    x17 = m2 + sin_x7*x16
-    x18 = sin_x0*x2 + sin_x3*x5 + c5*sin(theta1) + x11*x14 + x15*x13/x17
-    x19 = m3*sin_x3
-    x20 = c4 + sin_x3*x19 - x15*x15/x17
-    x21 = x18/x20
-    x22 = (x13 + x15*x21)/x17
-    x23 = c1*sin_x0
-    x24 = x11 + cos_x3*x21 - cos_x7*x22
-    x25 = cos_x0*x2 + cos_x3*x5 + c5*cos(theta1) - (x22*x23 + x24*x19)
-    x26 = cos_x3*x9
-    x27 = sin_x3*x21
-    x28 = x26 - x27
-    x29 = c1*(cos_x0*x9 - sin_x0*x21) - x28*x12
-    x30 = (x25 + x28*x14 + x15*x29/x17)/x20
-    x31 = cos_x7*x10
-    x32 = sin_x7*x22
-    x33 = x31 + x32
-    x34 = cos_x0*x6 + cos_x7*x5 + c7*cos(theta2) - (x21*x23 + x24*x16)
-    x35 = x34 + x33*x12
-    x36 = c1*(sin_x0*x22 - cos_x0*x10) + x33*x14 - x15*x35/x17
-    x37 = x36/x20
-    x38 = l3*x4
-    x39 = x26 + x31 + g*cos(theta3) - (x27 - x32)
-    x40 = sin_x7*x24 - cos_x7*x38 - cos_x7*x39
-    x41 = sin_x3*x24 - cos_x3*x38 - cos_x3*x39 - x15*x40/x17
-    x42 = m3*x41/x20
-    x43 = x23 - sin_x3*x12
-    x44 = (sin_x3*x14 + x15*x43/x17)*x8/x20
-    x45 = x15*sin_x7
-    x46 = l2*theta2_dot*(x23 + sin_x7*x14 - x45*x12/x17)/x20
-    x47 = c3*theta3_dot
-    x48 = (sin_x3 - x45/x17)*x47/x20
-    x49 = (x29 + x15*x30)/x17
-    x50 = (x35 - x15*x37)/x17
-    x51 = (m3*x40 - x15*x42)/x17
-    x52 = (x43*x8 + x15*x44)/x17
-    x53 = sin_x7*theta2_dot
-    x54 = (c9*cos_x7*x53 - x15*x46)/x17
-    x55 = (sin_x7*x47 - x15*x48)/x17
+    x6 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x7 = c6*(theta1_dot*theta1_dot)
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x10 = l1*theta1_dot
+    x11 = theta1_dot*x10
+    x12 = l2*x1
+    x13 = x9*x11 + x8*x12 - g*sin_theta3
+    x14 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x15 = m3*x14
+    x16 = x6*x7 - x8*x5 - c7*sin_theta2 - x13*x15
+    x17 = m3*x3
+    x18 = c1*x0 - x14*x17
+    x19 = m3*x8
+    x20 = m2 + x8*x19
+    x21 = x6*x2 + x9*x5 + c5*sin_theta1 + x13*x17 + x18*x16/x20
+    x22 = m3*x9
+    x23 = c4 + x9*x22 - x18*x18/x20
+    x24 = x21/x23
+    x25 = (x16 + x18*x24)/x20
+    x26 = c1*x6
+    x27 = x13 + x3*x24 - x14*x25
+    x28 = x0*x2 + x3*x5 + c5*cos_theta1 - (x25*x26 + x27*x22)
+    x29 = x3*x11
+    x30 = x9*x24
+    x31 = x29 - x30
+    x32 = c1*(x0*x11 - x6*x24) - x31*x15
+    x33 = (x28 + x31*x17 + x18*x32/x20)/x23
+    x34 = x14*x12
+    x35 = x8*x25
+    x36 = x34 + x35
+    x37 = x0*x7 + x14*x5 + c7*cos_theta2 - (x24*x26 + x27*x19)
+    x38 = x37 + x36*x15
+    x39 = (c1*(x6*x25 - x0*x12) + x36*x17 - x18*x38/x20)/x23
+    x40 = l3*x4
+    x41 = x29 + x34 + g*cos_theta3 - (x30 - x35)
+    x42 = x8*x27 - x14*x40 - x14*x41
+    x43 = m3*(x9*x27 - x3*x40 - x3*x41 - x18*x42/x20)/x23
+    x44 = x26 - x9*x15
+    x45 = (x9*x17 + x18*x44/x20)*x10/x23
+    x46 = x18*x8
+    x47 = l2*theta2_dot*(x26 + x8*x17 - x46*x15/x20)/x23
+    x48 = c3*theta3_dot
+    x49 = (x9 - x46/x20)*x48/x23
+    x50 = (x32 + x18*x33)/x20
+    x51 = (x38 - x18*x39)/x20
+    x52 = (m3*x42 - x18*x43)/x20
+    x53 = (x44*x10 + x18*x45)/x20
+    x54 = x8*theta2_dot
+    x55 = (c9*x14*x54 - x18*x47)/x20
+    x56 = (x8*x48 - x18*x49)/x20
     # outputs
     return (
         (0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
         (
-            -c0*x30,
-            -c0*x37,
-            -c0*x42,
-            -2.0*c0*x44,
-            -2.0*c0*x46,
-            -2.0*c0*x48,
+            -c0*x33,
+            -c0*x39,
+            -c0*x43,
+            -2.0*c0*x45,
+            -2.0*c0*x47,
+            -2.0*c0*x49,
         ),
-        (c8*x49, -c8*x50, -c8*x51, 2.0*c8*x52, -2.0*c8*x54, -2.0*c8*x55),
+        (c8*x50, -c8*x51, -c8*x52, 2.0*c8*x53, -2.0*c8*x55, -2.0*c8*x56),
         (
-            c10*(x28 + cos_x3*x30 - cos_x7*x49),
-            c10*(x33 + cos_x3*x37 + cos_x7*x50),
-            c10*(cos_x3*x42 + cos_x7*x51 - x39),
-            2.0*c10*(sin_x3*x8 + cos_x3*x44 - cos_x7*x52),
-            2.0*c10*(l2*x53 + cos_x3*x46 + cos_x7*x54),
-            2.0*c10*(cos_x3*x48 + cos_x7*x55),
+            c10*(x31 + x3*x33 - x14*x50),
+            c10*(x36 + x3*x39 + x14*x51),
+            c10*(x3*x43 + x14*x52 - x41),
+            2.0*c10*(x9*x10 + x3*x45 - x14*x53),
+            2.0*c10*(l2*x54 + x3*x47 + x14*x55),
+            2.0*c10*(x3*x49 + x14*x56),
         ),
     )
 
@@ -435,68 +444,69 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     c9 = m3*l2
     c10 = 1.0/l3
     # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
+    cos_theta1 = cos(theta1)
+    cos_theta2 = cos(theta2)
+    sin_theta1 = sin(theta1)
+    sin_theta2 = sin(theta2)
+    x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
     x1 = theta2_dot*theta2_dot
     x2 = c2*x1
-    x3 = theta1 - theta3
-    cos_x3 = cos(x3)
+    cos_theta3 = cos(theta3)
+    sin_theta3 = sin(theta3)
+    x3 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x4 = theta3_dot*theta3_dot
     x5 = c3*x4
-    sin_x0 = sin(x0)
-    x6 = c6*(theta1_dot*theta1_dot)
-    x7 = theta2 - theta3
-    sin_x7 = sin(x7)
-    sin_x3 = sin(x3)
-    x8 = l1*theta1_dot
-    x9 = theta1_dot*x8
-    x10 = l2*x1
-    x11 = sin_x3*x9 + sin_x7*x10 - g*sin(theta3)
-    cos_x7 = cos(x7)
-    x12 = m3*cos_x7
-    x13 = sin_x0*x6 - sin_x7*x5 - c7*sin(theta2) - x11*x12
-    x14 = m3*cos_x3
-    x15 = c1*cos_x0 - cos_x7*x14
-    x16 = m3*sin_x7
-    x17 = m2 + sin_x7*x16
-    x18 = sin_x0*x2 + sin_x3*x5 + c5*sin(theta1) + x11*x14 + x15*x13/x17
-    x19 = m3*sin_x3
-    x20 = c4 + sin_x3*x19 - x15*x15/x17
-    x21 = x18/x20
-    x22 = (x13 + x15*x21)/x17
-    x23 = c1*sin_x0
-    x24 = x11 + cos_x3*x21 - cos_x7*x22
-    x25 = cos_x0*x2 + cos_x3*x5 + c5*cos(theta1) - (x22*x23 + x24*x19)
-    x26 = cos_x3*x9
-    x27 = sin_x3*x21
-    x28 = x26 - x27
-    x29 = c1*(cos_x0*x9 - sin_x0*x21) - x28*x12
-    x30 = (x25 + x28*x14 + x15*x29/x17)/x20
-    x31 = cos_x7*x10
-    x32 = sin_x7*x22
-    x33 = x31 + x32
-    x34 = cos_x0*x6 + cos_x7*x5 + c7*cos(theta2) - (x21*x23 + x24*x16)
-    x35 = x34 + x33*x12
-    x36 = c1*(sin_x0*x22 - cos_x0*x10) + x33*x14 - x15*x35/x17
-    x37 = x36/x20
-    x38 = l3*x4
-    x39 = x26 + x31 + g*cos(theta3) - (x27 - x32)
-    x40 = sin_x7*x24 - cos_x7*x38 - cos_x7*x39
-    x41 = sin_x3*x24 - cos_x3*x38 - cos_x3*x39 - x15*x40/x17
-    x42 = m3*x41/x20
-    x43 = x23 - sin_x3*x12
-    x44 = (sin_x3*x14 + x15*x43/x17)*x8/x20
-    x45 = x15*sin_x7
-    x46 = l2*theta2_dot*(x23 + sin_x7*x14 - x45*x12/x17)/x20
-    x47 = c3*theta3_dot
-    x48 = (sin_x3 - x45/x17)*x47/x20
-    x49 = (x29 + x15*x30)/x17
-    x50 = (x35 - x15*x37)/x17
-    x51 = (m3*x40 - x15*x42)/x17
-    x52 = (x43*x8 + x15*x44)/x17
-    x53 = sin_x7*theta2_dot
-    x54 = (c9*cos_x7*x53 - x15*x46)/x17
-    x55 = (sin_x7*x47 - x15*x48)/x17
+    x6 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x7 = c6*(theta1_dot*theta1_dot)
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x10 = l1*theta1_dot
+    x11 = theta1_dot*x10
+    x12 = l2*x1
+    x13 = x9*x11 + x8*x12 - g*sin_theta3
+    x14 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x15 = m3*x14
+    x16 = x6*x7 - x8*x5 - c7*sin_theta2 - x13*x15
+    x17 = m3*x3
+    x18 = c1*x0 - x14*x17
+    x19 = m3*x8
+    x20 = m2 + x8*x19
+    x21 = x6*x2 + x9*x5 + c5*sin_theta1 + x13*x17 + x18*x16/x20
+    x22 = m3*x9
+    x23 = c4 + x9*x22 - x18*x18/x20
+    x24 = x21/x23
+    x25 = (x16 + x18*x24)/x20
+    x26 = c1*x6
+    x27 = x13 + x3*x24 - x14*x25
+    x28 = x0*x2 + x3*x5 + c5*cos_theta1 - (x25*x26 + x27*x22)
+    x29 = x3*x11
+    x30 = x9*x24
+    x31 = x29 - x30
+    x32 = c1*(x0*x11 - x6*x24) - x31*x15
+    x33 = (x28 + x31*x17 + x18*x32/x20)/x23
+    x34 = x14*x12
+    x35 = x8*x25
+    x36 = x34 + x35
+    x37 = x0*x7 + x14*x5 + c7*cos_theta2 - (x24*x26 + x27*x19)
+    x38 = x37 + x36*x15
+    x39 = (c1*(x6*x25 - x0*x12) + x36*x17 - x18*x38/x20)/x23
+    x40 = l3*x4
+    x41 = x29 + x34 + g*cos_theta3 - (x30 - x35)
+    x42 = x8*x27 - x14*x40 - x14*x41
+    x43 = m3*(x9*x27 - x3*x40 - x3*x41 - x18*x42/x20)/x23
+    x44 = x26 - x9*x15
+    x45 = (x9*x17 + x18*x44/x20)*x10/x23
+    x46 = x18*x8
+    x47 = l2*theta2_dot*(x26 + x8*x17 - x46*x15/x20)/x23
+    x48 = c3*theta3_dot
+    x49 = (x9 - x46/x20)*x48/x23
+    x50 = (x32 + x18*x33)/x20
+    x51 = (x38 - x18*x39)/x20
+    x52 = (m3*x42 - x18*x43)/x20
+    x53 = (x44*x10 + x18*x45)/x20
+    x54 = x8*theta2_dot
+    x55 = (c9*x14*x54 - x18*x47)/x20
+    x56 = (x8*x48 - x18*x49)/x20
     # outputs
     return _stacked(
         (6, 6),
@@ -519,24 +529,24 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         1.0,
-        -c0*x30,
-        -c0*x37,
-        -c0*x42,
-        -2.0*c0*x44,
-        -2.0*c0*x46,
-        -2.0*c0*x48,
-        c8*x49,
-        -c8*x50,
+        -c0*x33,
+        -c0*x39,
+        -c0*x43,
+        -2.0*c0*x45,
+        -2.0*c0*x47,
+        -2.0*c0*x49,
+        c8*x50,
         -c8*x51,
-        2.0*c8*x52,
-        -2.0*c8*x54,
+        -c8*x52,
+        2.0*c8*x53,
         -2.0*c8*x55,
-        c10*(x28 + cos_x3*x30 - cos_x7*x49),
-        c10*(x33 + cos_x3*x37 + cos_x7*x50),
-        c10*(cos_x3*x42 + cos_x7*x51 - x39),
-        2.0*c10*(sin_x3*x8 + cos_x3*x44 - cos_x7*x52),
-        2.0*c10*(l2*x53 + cos_x3*x46 + cos_x7*x54),
-        2.0*c10*(cos_x3*x48 + cos_x7*x55),
+        -2.0*c8*x56,
+        c10*(x31 + x3*x33 - x14*x50),
+        c10*(x36 + x3*x39 + x14*x51),
+        c10*(x3*x43 + x14*x52 - x41),
+        2.0*c10*(x9*x10 + x3*x45 - x14*x53),
+        2.0*c10*(l2*x54 + x3*x47 + x14*x55),
+        2.0*c10*(x3*x49 + x14*x56),
     )
 
 
@@ -826,7 +836,7 @@ def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
 
-    82 operations, 13 of them on parameters alone.
+    94 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -856,33 +866,37 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     c7 = c2*l2*g
     c8 = l3*g
     # intermediate terms
-    x0 = theta1 - theta3
-    cos_x0 = cos(x0)
+    cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    sin_theta3 = sin(theta3)
+    x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x1 = c1*p_theta3
-    x2 = theta1 - theta2
-    x3 = theta2 - theta3
-    cos_x3 = cos(x3)
-    x4 = c2*cos(x2) - m3*cos_x0*cos_x3
-    x5 = c3*p_theta2 - cos_x3*x1
-    sin_x3 = sin(x3)
-    x6 = m3*sin_x3
-    x7 = m2 + sin_x3*x6
-    sin_x0 = sin(x0)
-    x8 = m3*sin_x0
-    x9 = (c0*p_theta1 - cos_x0*x1 - x4*x5/x7)/(c4 + sin_x0*x8 - x4*x4/x7)
-    x10 = (x5 - x4*x9)/x7
-    x11 = cos_x0*x9 + cos_x3*x10 - c5*p_theta3
-    x12 = c2*x9*x10*sin(x2)
-    x13 = x9*x11
-    x14 = x10*x11
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x2 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x4 = x2 - m3*x0*x3
+    x5 = c3*p_theta2 - x3*x1
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m3*x6
+    x8 = m2 + x6*x7
+    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x10 = m3*x9
+    x11 = (c0*p_theta1 - x0*x1 - x4*x5/x8)/(c4 + x9*x10 - x4*x4/x8)
+    x12 = (x5 - x4*x11)/x8
+    x13 = x0*x11 + x3*x12 - c5*p_theta3
+    x14 = c2*x11*x12*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
+    x15 = x11*x13
+    x16 = x12*x13
     # outputs
     return (
-        c0*x9,
-        c3*x10,
-        -c1*x11,
-        -(c6*sin(theta1) + x12 - x8*x13),
-        x12 + x6*x14 - c7*sin(theta2),
-        -m3*(sin_x0*x13 + sin_x3*x14 + c8*sin(theta3)),
+        c0*x11,
+        c3*x12,
+        -c1*x13,
+        -(c6*sin_theta1 + x14 - x10*x15),
+        x14 + x7*x16 - c7*sin_theta2,
+        -m3*(x9*x15 + x6*x16 + c8*sin_theta3),
     )
 
 
@@ -904,42 +918,46 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     c7 = c2*l2*g
     c8 = l3*g
     # intermediate terms
-    x0 = theta1 - theta3
-    cos_x0 = cos(x0)
+    cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    sin_theta3 = sin(theta3)
+    x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x1 = c1*p_theta3
-    x2 = theta1 - theta2
-    x3 = theta2 - theta3
-    cos_x3 = cos(x3)
-    x4 = c2*cos(x2) - m3*cos_x0*cos_x3
-    x5 = c3*p_theta2 - cos_x3*x1
-    sin_x3 = sin(x3)
-    x6 = m3*sin_x3
-    x7 = m2 + sin_x3*x6
-    sin_x0 = sin(x0)
-    x8 = m3*sin_x0
-    x9 = (c0*p_theta1 - cos_x0*x1 - x4*x5/x7)/(c4 + sin_x0*x8 - x4*x4/x7)
-    x10 = (x5 - x4*x9)/x7
-    x11 = cos_x0*x9 + cos_x3*x10 - c5*p_theta3
-    x12 = c2*x9*x10*sin(x2)
-    x13 = x9*x11
-    x14 = x10*x11
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x2 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x4 = x2 - m3*x0*x3
+    x5 = c3*p_theta2 - x3*x1
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m3*x6
+    x8 = m2 + x6*x7
+    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x10 = m3*x9
+    x11 = (c0*p_theta1 - x0*x1 - x4*x5/x8)/(c4 + x9*x10 - x4*x4/x8)
+    x12 = (x5 - x4*x11)/x8
+    x13 = x0*x11 + x3*x12 - c5*p_theta3
+    x14 = c2*x11*x12*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
+    x15 = x11*x13
+    x16 = x12*x13
     # outputs
     return _stacked(
         (6,),
         y[0],
-        c0*x9,
-        c3*x10,
-        -c1*x11,
-        -(c6*sin(theta1) + x12 - x8*x13),
-        x12 + x6*x14 - c7*sin(theta2),
-        -m3*(sin_x0*x13 + sin_x3*x14 + c8*sin(theta3)),
+        c0*x11,
+        c3*x12,
+        -c1*x13,
+        -(c6*sin_theta1 + x14 - x10*x15),
+        x14 + x7*x16 - c7*sin_theta2,
+        -m3*(x9*x15 + x6*x16 + c8*sin_theta3),
     )
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    265 operations, 13 of them on parameters alone.
+    277 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -969,114 +987,115 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c7 = c3*l2*g
     c8 = l3*g
     # intermediate terms
-    x0 = theta2 - theta3
-    cos_x0 = cos(x0)
-    x1 = c2*cos_x0
+    cos_theta3 = cos(theta3)
+    cos_theta2 = cos(theta2)
+    sin_theta3 = sin(theta3)
+    sin_theta2 = sin(theta2)
+    x0 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x1 = c2*x0
     x2 = c1*p_theta2 - p_theta3*x1
-    x3 = theta1 - theta2
-    x4 = c3*cos(x3)
-    x5 = theta1 - theta3
-    cos_x5 = cos(x5)
-    x6 = x4 - m3*cos_x5*cos_x0
-    sin_x0 = sin(x0)
-    x7 = m3*sin_x0
-    x8 = m2 + sin_x0*x7
-    sin_x5 = sin(x5)
-    x9 = m3*sin_x5
-    x10 = c4 + sin_x5*x9 - x6*x6/x8
-    x11 = (c0*p_theta1 - c2*cos_x5*p_theta3 - x6*x2/x8)/x10
-    x12 = x6*x11
-    x13 = (x2 - x12)/x8
-    x14 = c3*sin(x3)
-    x15 = x13*x14
-    x16 = cos_x5*x11
-    x17 = cos_x0*x13
-    x18 = x16 + x17 - c5*p_theta3
-    x19 = x18*x9
-    x20 = x14 - cos_x0*x9
-    x21 = (x15 - x19 - x16*x9 - x12*x20/x8)/x10
-    x22 = c0*x21
-    x23 = x11*x14
-    x24 = x18*x7
-    x25 = x23 + x24 + x17*x7
-    x26 = (x13*(x14 + cos_x5*x7) - x6*x25/x8)/x10
-    x27 = c0*x26
-    x28 = sin_x5*x18
-    x29 = sin_x5*x11
-    x30 = sin_x0*x13
-    x31 = x29 + x30
-    x32 = sin_x0*x18
-    x33 = x32 + cos_x0*x31
-    x34 = m3*(x28 + cos_x5*x31 - x6*x33/x8)/x10
-    x35 = c0*x34
-    x36 = c0/x10
-    x37 = c1*x6/(x8*x10)
-    x38 = c2*(cos_x5 - cos_x0*x6/x8)/x10
-    x39 = (x11*x20 - x6*x21)/x8
-    x40 = c1*x39
-    x41 = (x25 - x6*x26)/x8
-    x42 = c1*x41
-    x43 = (m3*x33 - x6*x34)/x8
-    x44 = c1*x43
-    x45 = x6*x36/x8
-    x46 = (c1 + x6*x37)/x8
-    x47 = (x1 - x6*x38)/x8
-    x48 = cos_x5*x21 + cos_x0*x39 - x29
-    x49 = c2*x48
-    x50 = x30 + cos_x5*x26 + cos_x0*x41
-    x51 = c2*x50
-    x52 = x31 + cos_x5*x34 + cos_x0*x43
-    x53 = c2*x52
-    x54 = x4*x11*x13
-    x55 = x23*x39 + (x54 + x15*x21)
-    x56 = m3*x18
-    x57 = x16*x56
-    x58 = x11*x9
-    x59 = -(c6*cos(theta1) + x55 - x57 - x19*x21 - x48*x58)
-    x60 = x23*x41 + (x54 + x15*x26)
-    x61 = x15*x34 + x23*x43
-    x62 = x13*x7
-    x63 = x17*x56
-    x64 = -(c7*cos(theta2) + x24*x41 + x50*x62 + x60 - x63)
-    x65 = x16*x18
-    x66 = -m3*(x65 + x21*x28 + x29*x48 + x32*x39 + x30*x48)
-    x67 = x17*x18
-    x68 = c8*cos(theta3) + x28*x34 + x29*x52 + x32*x43 + x30*x52 - x65 - x67
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x3 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x4 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x5 = x3 - m3*x4*x0
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m3*x6
+    x8 = m2 + x6*x7
+    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x10 = m3*x9
+    x11 = c4 + x9*x10 - x5*x5/x8
+    x12 = (c0*p_theta1 - c2*x4*p_theta3 - x5*x2/x8)/x11
+    x13 = x5*x12
+    x14 = (x2 - x13)/x8
+    x15 = c3*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
+    x16 = x14*x15
+    x17 = x4*x12
+    x18 = x0*x14
+    x19 = x17 + x18 - c5*p_theta3
+    x20 = x19*x10
+    x21 = x15 - x0*x10
+    x22 = (x16 - x20 - x17*x10 - x13*x21/x8)/x11
+    x23 = c0*x22
+    x24 = x12*x15
+    x25 = x19*x7
+    x26 = x24 + x25 + x18*x7
+    x27 = (x14*(x15 + x4*x7) - x5*x26/x8)/x11
+    x28 = c0*x27
+    x29 = x9*x19
+    x30 = x9*x12
+    x31 = x6*x14
+    x32 = x30 + x31
+    x33 = x6*x19
+    x34 = x33 + x0*x32
+    x35 = m3*(x29 + x4*x32 - x5*x34/x8)/x11
+    x36 = c0*x35
+    x37 = c0/x11
+    x38 = c1*x5/(x8*x11)
+    x39 = c2*(x4 - x0*x5/x8)/x11
+    x40 = (x12*x21 - x5*x22)/x8
+    x41 = c1*x40
+    x42 = (x26 - x5*x27)/x8
+    x43 = c1*x42
+    x44 = (m3*x34 - x5*x35)/x8
+    x45 = c1*x44
+    x46 = x5*x37/x8
+    x47 = (c1 + x5*x38)/x8
+    x48 = (x1 - x5*x39)/x8
+    x49 = x4*x22 + x0*x40 - x30
+    x50 = c2*x49
+    x51 = x31 + x4*x27 + x0*x42
+    x52 = c2*x51
+    x53 = x32 + x4*x35 + x0*x44
+    x54 = c2*x53
+    x55 = x3*x12*x14
+    x56 = x24*x40 + (x55 + x16*x22)
+    x57 = m3*x19
+    x58 = x17*x57
+    x59 = x12*x10
+    x60 = x24*x42 + (x55 + x16*x27)
+    x61 = x16*x35 + x24*x44
+    x62 = x14*x7
+    x63 = x18*x57
+    x64 = x17*x19
+    x65 = -m3*(x64 + x22*x29 + x30*x49 + x33*x40 + x31*x49)
+    x66 = x18*x19
+    x67 = c8*cos_theta3 + x29*x35 + x30*x53 + x33*x44 + x31*x53 - x64 - x66
     # outputs
     return (
-        (x22, -x27, x35, c0*x36, -c0*x37, -c0*x38),
-        (x40, -x42, x44, -c1*x45, c1*x46, -c1*x47),
+        (x23, -x28, x36, c0*x37, -c0*x38, -c0*x39),
+        (x41, -x43, x45, -c1*x46, c1*x47, -c1*x48),
         (
-            -x49,
-            x51,
-            -x53,
-            -c2*(cos_x5*x36 - cos_x0*x45),
-            c2*(cos_x5*x37 - cos_x0*x46),
-            c2*(c5 + cos_x5*x38 + cos_x0*x47),
+            -x50,
+            x52,
+            -x54,
+            -c2*(x4*x37 - x0*x46),
+            c2*(x4*x38 - x0*x47),
+            c2*(c5 + x4*x39 + x0*x48),
         ),
         (
-            x59,
-            x60 - x19*x26 - x50*x58,
-            -(x57 + x61 - x19*x34 - x52*x58),
-            -x22,
-            -x40,
-            x49,
+            -(c6*cos_theta1 + x56 - x58 - x20*x22 - x49*x59),
+            x60 - x20*x27 - x51*x59,
+            -(x58 + x61 - x20*x35 - x53*x59),
+            -x23,
+            -x41,
+            x50,
         ),
         (
-            x24*x39 + x48*x62 + x55,
-            x64,
-            x24*x43 + x52*x62 + x61 - x63,
-            x27,
-            x42,
-            -x51,
+            x25*x40 + x49*x62 + x56,
+            -(c7*cos_theta2 + x25*x42 + x51*x62 + x60 - x63),
+            x25*x44 + x53*x62 + x61 - x63,
+            x28,
+            x43,
+            -x52,
         ),
         (
-            x66,
-            m3*(x26*x28 + x29*x50 + x32*x41 + x30*x50 - x67),
-            -m3*x68,
-            -x35,
-            -x44,
-            x53,
+            x65,
+            m3*(x27*x29 + x30*x51 + x33*x42 + x31*x51 - x66),
+            -m3*x67,
+            -x36,
+            -x45,
+            x54,
         ),
     )
 
@@ -1099,126 +1118,127 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     c7 = c3*l2*g
     c8 = l3*g
     # intermediate terms
-    x0 = theta2 - theta3
-    cos_x0 = cos(x0)
-    x1 = c2*cos_x0
+    cos_theta3 = cos(theta3)
+    cos_theta2 = cos(theta2)
+    sin_theta3 = sin(theta3)
+    sin_theta2 = sin(theta2)
+    x0 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x1 = c2*x0
     x2 = c1*p_theta2 - p_theta3*x1
-    x3 = theta1 - theta2
-    x4 = c3*cos(x3)
-    x5 = theta1 - theta3
-    cos_x5 = cos(x5)
-    x6 = x4 - m3*cos_x5*cos_x0
-    sin_x0 = sin(x0)
-    x7 = m3*sin_x0
-    x8 = m2 + sin_x0*x7
-    sin_x5 = sin(x5)
-    x9 = m3*sin_x5
-    x10 = c4 + sin_x5*x9 - x6*x6/x8
-    x11 = (c0*p_theta1 - c2*cos_x5*p_theta3 - x6*x2/x8)/x10
-    x12 = x6*x11
-    x13 = (x2 - x12)/x8
-    x14 = c3*sin(x3)
-    x15 = x13*x14
-    x16 = cos_x5*x11
-    x17 = cos_x0*x13
-    x18 = x16 + x17 - c5*p_theta3
-    x19 = x18*x9
-    x20 = x14 - cos_x0*x9
-    x21 = (x15 - x19 - x16*x9 - x12*x20/x8)/x10
-    x22 = c0*x21
-    x23 = x11*x14
-    x24 = x18*x7
-    x25 = x23 + x24 + x17*x7
-    x26 = (x13*(x14 + cos_x5*x7) - x6*x25/x8)/x10
-    x27 = c0*x26
-    x28 = sin_x5*x18
-    x29 = sin_x5*x11
-    x30 = sin_x0*x13
-    x31 = x29 + x30
-    x32 = sin_x0*x18
-    x33 = x32 + cos_x0*x31
-    x34 = m3*(x28 + cos_x5*x31 - x6*x33/x8)/x10
-    x35 = c0*x34
-    x36 = c0/x10
-    x37 = c1*x6/(x8*x10)
-    x38 = c2*(cos_x5 - cos_x0*x6/x8)/x10
-    x39 = (x11*x20 - x6*x21)/x8
-    x40 = c1*x39
-    x41 = (x25 - x6*x26)/x8
-    x42 = c1*x41
-    x43 = (m3*x33 - x6*x34)/x8
-    x44 = c1*x43
-    x45 = x6*x36/x8
-    x46 = (c1 + x6*x37)/x8
-    x47 = (x1 - x6*x38)/x8
-    x48 = cos_x5*x21 + cos_x0*x39 - x29
-    x49 = c2*x48
-    x50 = x30 + cos_x5*x26 + cos_x0*x41
-    x51 = c2*x50
-    x52 = x31 + cos_x5*x34 + cos_x0*x43
-    x53 = c2*x52
-    x54 = x4*x11*x13
-    x55 = x23*x39 + (x54 + x15*x21)
-    x56 = m3*x18
-    x57 = x16*x56
-    x58 = x11*x9
-    x59 = -(c6*cos(theta1) + x55 - x57 - x19*x21 - x48*x58)
-    x60 = x23*x41 + (x54 + x15*x26)
-    x61 = x15*x34 + x23*x43
-    x62 = x13*x7
-    x63 = x17*x56
-    x64 = -(c7*cos(theta2) + x24*x41 + x50*x62 + x60 - x63)
-    x65 = x16*x18
-    x66 = -m3*(x65 + x21*x28 + x29*x48 + x32*x39 + x30*x48)
-    x67 = x17*x18
-    x68 = c8*cos(theta3) + x28*x34 + x29*x52 + x32*x43 + x30*x52 - x65 - x67
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x3 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x4 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x5 = x3 - m3*x4*x0
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m3*x6
+    x8 = m2 + x6*x7
+    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x10 = m3*x9
+    x11 = c4 + x9*x10 - x5*x5/x8
+    x12 = (c0*p_theta1 - c2*x4*p_theta3 - x5*x2/x8)/x11
+    x13 = x5*x12
+    x14 = (x2 - x13)/x8
+    x15 = c3*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
+    x16 = x14*x15
+    x17 = x4*x12
+    x18 = x0*x14
+    x19 = x17 + x18 - c5*p_theta3
+    x20 = x19*x10
+    x21 = x15 - x0*x10
+    x22 = (x16 - x20 - x17*x10 - x13*x21/x8)/x11
+    x23 = c0*x22
+    x24 = x12*x15
+    x25 = x19*x7
+    x26 = x24 + x25 + x18*x7
+    x27 = (x14*(x15 + x4*x7) - x5*x26/x8)/x11
+    x28 = c0*x27
+    x29 = x9*x19
+    x30 = x9*x12
+    x31 = x6*x14
+    x32 = x30 + x31
+    x33 = x6*x19
+    x34 = x33 + x0*x32
+    x35 = m3*(x29 + x4*x32 - x5*x34/x8)/x11
+    x36 = c0*x35
+    x37 = c0/x11
+    x38 = c1*x5/(x8*x11)
+    x39 = c2*(x4 - x0*x5/x8)/x11
+    x40 = (x12*x21 - x5*x22)/x8
+    x41 = c1*x40
+    x42 = (x26 - x5*x27)/x8
+    x43 = c1*x42
+    x44 = (m3*x34 - x5*x35)/x8
+    x45 = c1*x44
+    x46 = x5*x37/x8
+    x47 = (c1 + x5*x38)/x8
+    x48 = (x1 - x5*x39)/x8
+    x49 = x4*x22 + x0*x40 - x30
+    x50 = c2*x49
+    x51 = x31 + x4*x27 + x0*x42
+    x52 = c2*x51
+    x53 = x32 + x4*x35 + x0*x44
+    x54 = c2*x53
+    x55 = x3*x12*x14
+    x56 = x24*x40 + (x55 + x16*x22)
+    x57 = m3*x19
+    x58 = x17*x57
+    x59 = x12*x10
+    x60 = x24*x42 + (x55 + x16*x27)
+    x61 = x16*x35 + x24*x44
+    x62 = x14*x7
+    x63 = x18*x57
+    x64 = x17*x19
+    x65 = -m3*(x64 + x22*x29 + x30*x49 + x33*x40 + x31*x49)
+    x66 = x18*x19
+    x67 = c8*cos_theta3 + x29*x35 + x30*x53 + x33*x44 + x31*x53 - x64 - x66
     # outputs
     return _stacked(
         (6, 6),
         y[0],
-        x22,
-        -x27,
-        x35,
-        c0*x36,
-        -c0*x37,
+        x23,
+        -x28,
+        x36,
+        c0*x37,
         -c0*x38,
-        x40,
-        -x42,
-        x44,
-        -c1*x45,
-        c1*x46,
-        -c1*x47,
-        -x49,
-        x51,
-        -x53,
-        -c2*(cos_x5*x36 - cos_x0*x45),
-        c2*(cos_x5*x37 - cos_x0*x46),
-        c2*(c5 + cos_x5*x38 + cos_x0*x47),
-        x59,
-        x60 - x19*x26 - x50*x58,
-        -(x57 + x61 - x19*x34 - x52*x58),
-        -x22,
-        -x40,
-        x49,
-        x24*x39 + x48*x62 + x55,
-        x64,
-        x24*x43 + x52*x62 + x61 - x63,
-        x27,
-        x42,
-        -x51,
-        x66,
-        m3*(x26*x28 + x29*x50 + x32*x41 + x30*x50 - x67),
-        -m3*x68,
-        -x35,
-        -x44,
-        x53,
+        -c0*x39,
+        x41,
+        -x43,
+        x45,
+        -c1*x46,
+        c1*x47,
+        -c1*x48,
+        -x50,
+        x52,
+        -x54,
+        -c2*(x4*x37 - x0*x46),
+        c2*(x4*x38 - x0*x47),
+        c2*(c5 + x4*x39 + x0*x48),
+        -(c6*cos_theta1 + x56 - x58 - x20*x22 - x49*x59),
+        x60 - x20*x27 - x51*x59,
+        -(x58 + x61 - x20*x35 - x53*x59),
+        -x23,
+        -x41,
+        x50,
+        x25*x40 + x49*x62 + x56,
+        -(c7*cos_theta2 + x25*x42 + x51*x62 + x60 - x63),
+        x25*x44 + x53*x62 + x61 - x63,
+        x28,
+        x43,
+        -x52,
+        x65,
+        m3*(x27*x29 + x30*x51 + x33*x42 + x31*x51 - x66),
+        -m3*x67,
+        -x36,
+        -x45,
+        x54,
     )
 
 
 def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
-    66 operations, 10 of them on parameters alone.
+    76 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -1247,23 +1267,28 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     c8 = c2*l2
     # intermediate terms
     x0 = c0*p_theta1
-    x1 = theta1 - theta3
-    cos_x1 = cos(x1)
+    cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    sin_theta3 = sin(theta3)
+    x1 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x2 = c1*p_theta3
-    x3 = theta2 - theta3
-    cos_x3 = cos(x3)
-    x4 = c2*cos(theta1 - theta2) - m3*cos_x1*cos_x3
-    x5 = c3*p_theta2
-    x6 = x5 - cos_x3*x2
-    sin_x3 = sin(x3)
-    x7 = m2 + m3*sin_x3*sin_x3
-    sin_x1 = sin(x1)
-    x8 = (x0 - cos_x1*x2 - x4*x6/x7)/(c4 + m3*sin_x1*sin_x1 - x4*x4/x7)
-    x9 = (x6 - x4*x8)/x7
-    x10 = x0*x8 + x5*x9 - (cos_x1*x8 + cos_x3*x9 - c6*p_theta3)*x2
-    x11 = g*(c7*cos(theta1) + c8*cos(theta2) + c5*cos(theta3))
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x3 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x4 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x5 = x3 - m3*x1*x4
+    x6 = c3*p_theta2
+    x7 = x6 - x4*x2
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x9 = m2 + m3*x8*x8
+    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x11 = (x0 - x1*x2 - x5*x7/x9)/(c4 + m3*x10*x10 - x5*x5/x9)
+    x12 = (x7 - x5*x11)/x9
+    x13 = x0*x11 + x6*x12 - (x1*x11 + x4*x12 - c6*p_theta3)*x2
+    x14 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3)
     # outputs
-    return 0.5*x10 - x11
+    return 0.5*x13 - x14
 
 
 def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
@@ -1285,23 +1310,28 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     c8 = c2*l2
     # intermediate terms
     x0 = c0*p_theta1
-    x1 = theta1 - theta3
-    cos_x1 = cos(x1)
+    cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    sin_theta3 = sin(theta3)
+    x1 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x2 = c1*p_theta3
-    x3 = theta2 - theta3
-    cos_x3 = cos(x3)
-    x4 = c2*cos(theta1 - theta2) - m3*cos_x1*cos_x3
-    x5 = c3*p_theta2
-    x6 = x5 - cos_x3*x2
-    sin_x3 = sin(x3)
-    x7 = m2 + m3*sin_x3*sin_x3
-    sin_x1 = sin(x1)
-    x8 = (x0 - cos_x1*x2 - x4*x6/x7)/(c4 + m3*sin_x1*sin_x1 - x4*x4/x7)
-    x9 = (x6 - x4*x8)/x7
-    x10 = x0*x8 + x5*x9 - (cos_x1*x8 + cos_x3*x9 - c6*p_theta3)*x2
-    x11 = g*(c7*cos(theta1) + c8*cos(theta2) + c5*cos(theta3))
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x3 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x4 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x5 = x3 - m3*x1*x4
+    x6 = c3*p_theta2
+    x7 = x6 - x4*x2
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x9 = m2 + m3*x8*x8
+    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x11 = (x0 - x1*x2 - x5*x7/x9)/(c4 + m3*x10*x10 - x5*x5/x9)
+    x12 = (x7 - x5*x11)/x9
+    x13 = x0*x11 + x6*x12 - (x1*x11 + x4*x12 - c6*p_theta3)*x2
+    x14 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3)
     # outputs
-    return 0.5*x10 - x11
+    return 0.5*x13 - x14
 
 
 def lagrangian_state(y: Numbers, params: Numbers) -> Vector:

@@ -134,7 +134,7 @@ static inline void double_bar_pendulum_rhs(
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs`.
-   96 operations, 9 of them on parameters alone.
+   99 operations, 9 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void double_bar_pendulum_jacobian(
     double_bar_pendulum_real t, const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
@@ -157,30 +157,33 @@ static inline void double_bar_pendulum_jacobian(
     const double_bar_pendulum_real c4 = l1*m2;
     const double_bar_pendulum_real c5 = 1.0/l2;
     /* intermediate terms */
-    const double_bar_pendulum_real x0 = theta1 - theta2;
-    const double_bar_pendulum_real cos_x0 = cos(x0);
+    const double_bar_pendulum_real cos_theta1 = cos(theta1);
+    const double_bar_pendulum_real cos_theta2 = cos(theta2);
+    const double_bar_pendulum_real sin_theta1 = sin(theta1);
+    const double_bar_pendulum_real sin_theta2 = sin(theta2);
+    const double_bar_pendulum_real x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
     const double_bar_pendulum_real x1 = theta2_dot*theta2_dot;
-    const double_bar_pendulum_real x2 = cos_x0*x1;
-    const double_bar_pendulum_real sin_x0 = sin(x0);
-    const double_bar_pendulum_real x3 = l1*theta1_dot;
-    const double_bar_pendulum_real x4 = sin_x0*x3;
-    const double_bar_pendulum_real x5 = theta1_dot*x4 - g*sin(theta2);
-    const double_bar_pendulum_real x6 = c1*sin_x0;
-    const double_bar_pendulum_real x7 = m2*cos_x0;
-    const double_bar_pendulum_real x8 = 2.0*c3 - 1.5*cos_x0*x7;
-    const double_bar_pendulum_real x9 = (x1*x6 + 2.0*c2*sin(theta1) + 1.5*x5*x7)/x8;
-    const double_bar_pendulum_real x10 = sin_x0*(x5 + cos_x0*x9);
-    const double_bar_pendulum_real x11 = cos_x0*theta1_dot;
-    const double_bar_pendulum_real x12 = x3*x11;
-    const double_bar_pendulum_real x13 = sin_x0*x9;
-    const double_bar_pendulum_real x14 = x12 - x13;
-    const double_bar_pendulum_real x15 =
-        2.0*(0.5*c1*x2 + c2*cos(theta1)) - 1.5*m2*x10 + 1.5*x14*x7;
-    const double_bar_pendulum_real x16 = x15/x8;
-    const double_bar_pendulum_real x17 = x13 - (x12 + g*cos(theta2));
-    const double_bar_pendulum_real x18 = m2*(1.5*x10 - l2*x2 + 1.5*cos_x0*x17)/x8;
-    const double_bar_pendulum_real x19 = c4*sin_x0*x11/x8;
-    const double_bar_pendulum_real x20 = theta2_dot*x6/x8;
+    const double_bar_pendulum_real x2 = x0*x1;
+    const double_bar_pendulum_real x3 = cos_theta2*sin_theta1 - cos_theta1*sin_theta2;
+    const double_bar_pendulum_real x4 = l1*theta1_dot;
+    const double_bar_pendulum_real x5 = x3*x4;
+    const double_bar_pendulum_real x6 = theta1_dot*x5 - g*sin_theta2;
+    const double_bar_pendulum_real x7 = c1*x3;
+    const double_bar_pendulum_real x8 = m2*x0;
+    const double_bar_pendulum_real x9 = 2.0*c3 - 1.5*x0*x8;
+    const double_bar_pendulum_real x10 = (x1*x7 + 2.0*c2*sin_theta1 + 1.5*x6*x8)/x9;
+    const double_bar_pendulum_real x11 = x3*(x6 + x0*x10);
+    const double_bar_pendulum_real x12 = x0*theta1_dot;
+    const double_bar_pendulum_real x13 = x4*x12;
+    const double_bar_pendulum_real x14 = x3*x10;
+    const double_bar_pendulum_real x15 = x13 - x14;
+    const double_bar_pendulum_real x16 =
+        2.0*(0.5*c1*x2 + c2*cos_theta1) - 1.5*m2*x11 + 1.5*x15*x8;
+    const double_bar_pendulum_real x17 = x16/x9;
+    const double_bar_pendulum_real x18 = x14 - (x13 + g*cos_theta2);
+    const double_bar_pendulum_real x19 = m2*(1.5*x11 - l2*x2 + 1.5*x0*x18)/x9;
+    const double_bar_pendulum_real x20 = c4*x3*x12/x9;
+    const double_bar_pendulum_real x21 = theta2_dot*x7/x9;
     /* outputs */
     result[0] = 0.0;
     result[1] = 0.0;
@@ -190,14 +193,14 @@ static inline void double_bar_pendulum_jacobian(
     result[5] = 0.0;
     result[6] = 0.0;
     result[7] = 1.0;
-    result[8] = -c0*x16;
-    result[9] = -c0*x18;
-    result[10] = -3.0*c0*x19;
-    result[11] = -2.0*c0*x20;
-    result[12] = 1.5*c5*(x14 + cos_x0*x16);
-    result[13] = 1.5*c5*(x17 + cos_x0*x18);
-    result[14] = 3.0*c5*(x4 + 1.5*cos_x0*x19);
-    result[15] = 3.0*c5*(cos_x0*x20);
+    result[8] = -c0*x17;
+    result[9] = -c0*x19;
+    result[10] = -3.0*c0*x20;
+    result[11] = -2.0*c0*x21;
+    result[12] = 1.5*c5*(x15 + x0*x17);
+    result[13] = 1.5*c5*(x18 + x0*x19);
+    result[14] = 3.0*c5*(x5 + 1.5*x0*x20);
+    result[15] = 3.0*c5*(x0*x21);
     (void)t;
 }
 #endif

@@ -132,7 +132,7 @@ static inline void double_pendulum_rhs(
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs`.
-   82 operations, 6 of them on parameters alone.
+   85 operations, 6 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void double_pendulum_jacobian(
     double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
@@ -154,28 +154,31 @@ static inline void double_pendulum_jacobian(
     const double_pendulum_real c3 = l1*m2;
     const double_pendulum_real c4 = 1.0/l2;
     /* intermediate terms */
-    const double_pendulum_real x0 = theta1 - theta2;
-    const double_pendulum_real cos_x0 = cos(x0);
+    const double_pendulum_real cos_theta2 = cos(theta2);
+    const double_pendulum_real cos_theta1 = cos(theta1);
+    const double_pendulum_real sin_theta1 = sin(theta1);
+    const double_pendulum_real sin_theta2 = sin(theta2);
+    const double_pendulum_real x0 = cos_theta2*cos_theta1 + sin_theta1*sin_theta2;
     const double_pendulum_real x1 = theta2_dot*theta2_dot;
-    const double_pendulum_real x2 = cos_x0*x1;
+    const double_pendulum_real x2 = x0*x1;
     const double_pendulum_real x3 = l1*theta1_dot;
-    const double_pendulum_real sin_x0 = sin(x0);
-    const double_pendulum_real x4 = sin_x0*theta1_dot;
-    const double_pendulum_real x5 = x3*x4 - g*sin(theta2);
-    const double_pendulum_real x6 = c1*sin_x0;
-    const double_pendulum_real x7 = m2*cos_x0;
-    const double_pendulum_real x8 = m2*sin_x0;
-    const double_pendulum_real x9 = m1 + sin_x0*x8;
-    const double_pendulum_real x10 = (x1*x6 + c2*sin(theta1) + x5*x7)/x9;
-    const double_pendulum_real x11 = x5 + cos_x0*x10;
-    const double_pendulum_real x12 = cos_x0*theta1_dot*x3;
-    const double_pendulum_real x13 = sin_x0*x10;
-    const double_pendulum_real x14 = x12 - x13;
-    const double_pendulum_real x15 = (c1*x2 + c2*cos(theta1) - x11*x8 + x14*x7)/x9;
-    const double_pendulum_real x16 = x13 - (x12 + g*cos(theta2));
-    const double_pendulum_real x17 = m2*(sin_x0*x11 - l2*x2 + cos_x0*x16)/x9;
-    const double_pendulum_real x18 = c3*cos_x0*x4/x9;
-    const double_pendulum_real x19 = theta2_dot*x6/x9;
+    const double_pendulum_real x4 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
+    const double_pendulum_real x5 = x4*theta1_dot;
+    const double_pendulum_real x6 = x3*x5 - g*sin_theta2;
+    const double_pendulum_real x7 = c1*x4;
+    const double_pendulum_real x8 = m2*x0;
+    const double_pendulum_real x9 = m2*x4;
+    const double_pendulum_real x10 = m1 + x4*x9;
+    const double_pendulum_real x11 = (x1*x7 + c2*sin_theta1 + x6*x8)/x10;
+    const double_pendulum_real x12 = x6 + x0*x11;
+    const double_pendulum_real x13 = x0*theta1_dot*x3;
+    const double_pendulum_real x14 = x4*x11;
+    const double_pendulum_real x15 = x13 - x14;
+    const double_pendulum_real x16 = (c1*x2 + c2*cos_theta1 - x12*x9 + x15*x8)/x10;
+    const double_pendulum_real x17 = x14 - (x13 + g*cos_theta2);
+    const double_pendulum_real x18 = m2*(x4*x12 - l2*x2 + x0*x17)/x10;
+    const double_pendulum_real x19 = c3*x0*x5/x10;
+    const double_pendulum_real x20 = theta2_dot*x7/x10;
     /* outputs */
     result[0] = 0.0;
     result[1] = 0.0;
@@ -185,14 +188,14 @@ static inline void double_pendulum_jacobian(
     result[5] = 0.0;
     result[6] = 0.0;
     result[7] = 1.0;
-    result[8] = -c0*x15;
-    result[9] = -c0*x17;
-    result[10] = -2.0*c0*x18;
-    result[11] = -2.0*c0*x19;
-    result[12] = c4*(x14 + cos_x0*x15);
-    result[13] = c4*(x16 + cos_x0*x17);
-    result[14] = 2.0*c4*(sin_x0*x3 + cos_x0*x18);
-    result[15] = 2.0*c4*(cos_x0*x19);
+    result[8] = -c0*x16;
+    result[9] = -c0*x18;
+    result[10] = -2.0*c0*x19;
+    result[11] = -2.0*c0*x20;
+    result[12] = c4*(x15 + x0*x16);
+    result[13] = c4*(x17 + x0*x18);
+    result[14] = 2.0*c4*(x4*x3 + x0*x19);
+    result[15] = 2.0*c4*(x0*x20);
     (void)t;
 }
 #endif
@@ -234,7 +237,7 @@ static inline void double_pendulum_energy(
 
 #ifndef HOLONOMIC_VECTOR
 /* Forces that hold l1, l2, by Lagrange's multipliers.
-   45 operations, 4 of them on parameters alone.
+   48 operations, 4 of them on parameters alone.
    One for each: a rod's tension, positive where it pulls. */
 static inline void double_pendulum_reactions(
     const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
@@ -256,22 +259,21 @@ static inline void double_pendulum_reactions(
     const double_pendulum_real c3 = g*c0;
     /* intermediate terms */
     const double_pendulum_real x0 = theta1_dot*theta1_dot;
-    const double_pendulum_real x1 = theta1 - theta2;
-    const double_pendulum_real cos_x1 = cos(x1);
+    const double_pendulum_real cos_theta2 = cos(theta2);
+    const double_pendulum_real cos_theta1 = cos(theta1);
+    const double_pendulum_real sin_theta1 = sin(theta1);
+    const double_pendulum_real sin_theta2 = sin(theta2);
+    const double_pendulum_real x1 = cos_theta2*cos_theta1 + sin_theta1*sin_theta2;
     const double_pendulum_real x2 = theta2_dot*theta2_dot;
     const double_pendulum_real x3 = c2*x2;
-    const double_pendulum_real sin_x1 = sin(x1);
-    const double_pendulum_real x4 = l1*x0;
-    const double_pendulum_real x5 = sin_x1*x4 - g*sin(theta2);
-    const double_pendulum_real x6 = m2*sin_x1;
-    const double_pendulum_real x7 =
-        (sin_x1*x3 + c3*sin(theta1) + m2*x5*cos_x1)/(m1 + sin_x1*x6);
-    const double_pendulum_real x8 =
-        c1*x0 + cos_x1*x3 + c3*cos(theta1) - (x5 + cos_x1*x7)*x6;
-    const double_pendulum_real x9 = m2*(l2*x2 + cos_x1*x4 + g*cos(theta2) - sin_x1*x7);
+    const double_pendulum_real x4 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
+    const double_pendulum_real x5 = l1*x0;
+    const double_pendulum_real x6 = x4*x5 - g*sin_theta2;
+    const double_pendulum_real x7 = m2*x4;
+    const double_pendulum_real x8 = (x4*x3 + c3*sin_theta1 + m2*x6*x1)/(m1 + x4*x7);
     /* outputs */
-    result[0] = x8;
-    result[1] = x9;
+    result[0] = c1*x0 + x1*x3 + c3*cos_theta1 - (x6 + x1*x8)*x7;
+    result[1] = m2*(l2*x2 + x1*x5 + g*cos_theta2 - x4*x8);
 }
 #endif
 

@@ -1,0 +1,90 @@
+"""Large systems: matrices are taken apart by loops, and texts grow with the square of size."""
+
+from types import ModuleType
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from derive import Derivation, load
+from derive.factorisation import LARGE
+from derive.functions import contents
+from derive.python import module as text_of
+from solvers.cli import generated_module
+from solvers.ensemble import ensemble
+from solvers.forms import Form
+from solvers.integration import integrate
+from solvers.references.taylor import taylor
+
+N = LARGE + 1
+
+
+@pytest.fixture(scope="module")
+def chain() -> ModuleType:
+    return generated_module(f"chain_{N}")
+
+
+def state(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    random = np.random.default_rng(seed)
+    return random.uniform(-3, 3, 2 * N), np.array([*random.uniform(0.5, 2, 2 * N), 9.81])
+
+
+def textbook(y: np.ndarray, params: np.ndarray) -> np.ndarray:
+    """Accelerations from M_ij = μ l_i l_j cos(θ_i - θ_j), with μ the mass below both joints."""
+    theta, omega = y[:N], y[N:]
+    m, length, g = params[:N], params[N : 2 * N], params[-1]
+    below = np.cumsum(m[::-1])[::-1]
+    mu = below[np.maximum.outer(np.arange(N), np.arange(N))] * np.outer(length, length)
+    delta = np.subtract.outer(theta, theta)
+    f = -(mu * np.sin(delta)) @ omega**2 - below * g * length * np.sin(theta)
+    return np.linalg.solve(mu * np.cos(delta), f)
+
+
+def test_loops_solve_the_textbook_equations(chain: ModuleType) -> None:
+    assert "_taken_apart" in vars(chain)
+    assert "_taken_apart" not in vars(generated_module("chain_3"))
+    for seed in range(3):
+        y, params = state(seed)
+        expected = textbook(y, params)
+        assert_allclose(chain.rhs(0.0, y, params)[N:], expected, rtol=1e-11)
+        many = chain.rhs_many(0.0, np.tile(y[:, None], 4), params)
+        assert_allclose(many[N:, 2], expected, rtol=1e-11)
+        rational = Form(chain, "rational", params)
+        assert_allclose(rational.rhs(0.0, rational.inside(0.0, y))[-N:], expected, rtol=1e-11)
+
+
+def test_derivatives_and_hamilton_s_form_go_through_the_loops(chain: ModuleType) -> None:
+    y, params = state(5)
+    steps = y[:, None] + 1e-30j * np.eye(2 * N)
+    expected = chain.rhs_many(0.0, steps, params).imag / 1e-30
+    assert_allclose(chain.jacobian(0.0, y, params), expected, rtol=1e-8, atol=1e-8)
+    z = chain.hamiltonian_state(y, params)
+    assert_allclose(chain.lagrangian_state(z, params), y, rtol=1e-11)
+    moved = y + 1e-30j * np.array(chain.rhs(0.0, y, params))
+    slopes = np.asarray(chain.hamiltonian_state_many(moved, params)).imag / 1e-30
+    assert_allclose(chain.rhs_hamiltonian(0.0, z, params), slopes, rtol=1e-9, atol=1e-9)
+    form = Form(chain, "variational", params)
+    rates = form.rhs(0.0, form.inside(0.0, np.array([*y, *np.ones(2 * N)])))
+    assert_allclose(rates[-2 * N :], expected @ np.ones(2 * N), rtol=1e-8, atol=1e-8)
+    assert not hasattr(chain, "jacobian_hamiltonian")
+
+
+def test_loops_are_compiled_for_one_motion_and_for_lanes(chain: ModuleType) -> None:
+    y, params = np.array([*np.linspace(0.3, 0.9, N), *np.zeros(N)]), chain.DEFAULTS
+    truth = taylor(chain, params, y.tolist(), [0.0, 0.5], 22)[-1]
+    for form in ("lagrangian", "rational"):
+        found = integrate(chain, (0, 0.5), y, params, rtol=1e-11, form=form, backend="compiled")
+        assert_allclose(found.y[:, -1], truth, atol=1e-9)
+        loose = integrate(chain, (0, 0.5), y, params, rtol=1e-4, form=form, backend="compiled")
+        assert np.abs(loose.y[:, -1] - truth).max() > 1e-9
+    lanes = ensemble(chain, (0, 0.5), [y, y * 0.5] * 8, params, rtol=1e-11)
+    assert_allclose(lanes.y[::2], np.tile(truth, (8, 1)), atol=1e-8)
+
+
+def test_texts_grow_no_faster_than_the_square() -> None:
+    sizes = {}
+    for n in (12, 24):
+        made = contents(Derivation(load(f"chain_{n}")))
+        assert {f.name for f in made.functions} >= {"rhs", "jacobian", "rhs_variational", "linear"}
+        sizes[n] = len(text_of(made))
+    assert sizes[24] < 4 * sizes[12]
