@@ -35,7 +35,7 @@ HEADER = """\
 
 #ifndef HOLONOMIC_REAL
 #define HOLONOMIC_REAL double
-#endif
+{double}#endif
 
 typedef HOLONOMIC_REAL {name}_real;
 
@@ -65,6 +65,10 @@ BLOCK = 8
 
 #: Only where a matrix is large. Rows are eliminated from, in whole blocks, so that loops vectorise.
 LOOPS = """\
+#if defined(__GNUC__) && defined({guard}_DOUBLE) && !defined(HOLONOMIC_BLOCK)
+typedef double {system}_block __attribute__((vector_size(64), aligned(8), may_alias));
+#define HOLONOMIC_BLOCK {system}_block
+#endif
 #ifdef HOLONOMIC_VECTOR
 enum {{ {guard}_BLOCK = 1 }};
 #else
@@ -93,9 +97,13 @@ static inline void {system}_take_apart({system}_real *matrix, int n, int stride)
             const {system}_real ratio = row[j]*inverse;
             {system}_real *below = matrix + j*stride;
             for (int k = j - j % {guard}_BLOCK; k < n; k += {guard}_BLOCK) {{
+#ifdef HOLONOMIC_BLOCK
+                *(HOLONOMIC_BLOCK *)(below + k) -= ratio*(*(const HOLONOMIC_BLOCK *)(row + k));
+#else
                 for (int b = k; b < k + {guard}_BLOCK; b++) {{
                     below[b] = below[b] - ratio*row[b];
                 }}
+#endif
             }}
         }}
         row[i] = inverse;
@@ -113,9 +121,11 @@ static inline void {system}_solve(const {system}_real *matrix, {system}_real *x,
             x[k] = x[k] - matrix[i*stride + k]*x[i];
         }}
     }}
-    for (int i = n - 1; i >= 0; i--) {{
+    for (int i = 0; i < n; i++) {{
         x[i] = x[i]*matrix[i*stride + i];
-        for (int k = i + 1; k < n; k++) {{
+    }}
+    for (int k = n - 1; k > 0; k--) {{
+        for (int i = 0; i < k; i++) {{
             x[i] = x[i] - matrix[i*stride + k]*x[k];
         }}
     }}
@@ -142,12 +152,17 @@ def header(contents: Contents) -> str:
         count=len(system.params),
         defaults=", ".join(repr(float(parameter.default)) for parameter in system.parameters),
         sizes="\n".join(f"    {word} = {size}," for word, size in sizes.items()),
+        double=f"#define {name.upper()}_DOUBLE\n" if _has_loops(functions, name) else "",
         functions=_loops(functions, name) + functions,
     )
 
 
+def _has_loops(functions: str, system: str) -> bool:
+    return f"{system}_take_apart(" in functions
+
+
 def _loops(functions: str, system: str) -> str:
-    if f"{system}_take_apart(" not in functions:
+    if not _has_loops(functions, system):
         return ""
     return LOOPS.format(system=system, guard=system.upper(), block=BLOCK)
 

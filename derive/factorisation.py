@@ -18,7 +18,7 @@ from typing import Protocol
 from derive.graph import Graph, Node
 
 #: From this size on a loop is as quick as straight-line code, which grows with its cube.
-LARGE = 12
+LARGE = 16
 
 #: A multiplier of more factors than this gets a name, a shorter one is written out.
 SHORT = 3
@@ -68,18 +68,25 @@ class Factorisation:
         ]
         self._graph = graph
         self.pivots = [graph.node(0)] * n
+        self._inverses = [graph.node(0)] * n
         self._multipliers: dict[tuple[int, int], Node] = {}
         for k in reversed(range(n)):
             self.pivots[k] = graph.let(rows[k][k])
             coupled = [i for i in range(k) if not rows[i][k].is_number(0)]
+            self._inverses[k] = self._inverse(self.pivots[k], bool(coupled))
             for i in coupled:
-                multiplier = rows[i][k] / self.pivots[k]
+                multiplier = rows[i][k] * self._inverses[k]
                 short = len(multiplier.factors()) <= SHORT
                 self._multipliers[i, k] = multiplier if short else graph.let(multiplier)
             for i in coupled:
                 for j in (j for j in coupled if j >= i):
                     rows[i][j] = rows[i][j] - self._multipliers[i, k] * rows[j][k]
                     rows[j][i] = rows[i][j]
+
+    def _inverse(self, pivot: Node, is_shared: bool) -> Node:
+        inverse = self._graph.power(pivot, -1)
+        # one division instead of several, where nothing cancels
+        return self._graph.let(inverse) if is_shared and pivot.kind == "let" else inverse
 
     def solve(self, right: Sequence[Node]) -> list[Node]:
         """The solution x of M x = `right`."""
@@ -89,7 +96,7 @@ class Factorisation:
             for node, scale in zip(right, self._scale, strict=True)
         ]
         for k in reversed(range(n)):
-            y[k] = y[k] / self.pivots[k]
+            y[k] = y[k] * self._inverses[k]
             for i in range(k):
                 if (i, k) in self._multipliers:
                     y[i] = y[i] - self._rows[i][k] * y[k]

@@ -106,10 +106,10 @@ def _solved(rows: list[list[Any]], right: Sequence[Any]) -> list[Any]:
     for i, row in enumerate(rows):
         for k in range(1, len(row)):
             x[i + k] = x[i + k] - row[k]*x[i]
-    for i, row in reversed(list(enumerate(rows))):
-        x[i] = x[i]*row[0]
-        for k in range(1, len(row)):
-            x[i] = x[i] - row[k]*x[i + k]
+    x = [part*row[0] for part, row in zip(x, rows)]
+    for k in range(len(x) - 1, 0, -1):
+        for i in range(k):
+            x[i] = x[i] - rows[i][k - i]*x[k]
     return x'''
 #: Functions call the state y; a coordinate or parameter of that name is called otherwise.
 CALLED = {"y": "y_"}

@@ -232,7 +232,7 @@ UNITS = {
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    133 operations, 13 of them on parameters alone.
+    131 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -282,32 +282,35 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3
     x7 = m3*cos_theta3
     x8 = c2*sin_theta1*x0 + sin_theta2*x2 + sin_theta3*x3 - x6*x7
-    x9 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x10 = c3*cos_theta2 - x9*x7
-    x11 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x12 = m3*x9
-    x13 = c6*x11*x0 - x5*x3 - c7*sin_theta2 - x6*x12
-    x14 = m2 + m3*x5*x5
-    x15 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x16 = c3*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x17 = x16 - x15*x12
-    x18 = c1*cos_theta1 - x15*x7 - x10*x17/x14
-    x19 = x11*x2 + x4*x3 + c8*sin_theta1 + m3*x15*x6 + x17*x13/x14
-    x20 = c0 + m3*x4*x4 - x17*x17/x14
-    x21 = c9 + m3*sin_theta3*sin_theta3 - x10*x10/x14 - x18*x18/x20
-    x22 = (x8 - x10*x13/x14 + x18*x19/x20)/x21
-    x23 = (x19 + x18*x22)/x20
-    x24 = (x13 + x17*x23 - x10*x22)/x14
+    x9 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x10 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x11 = m3*x10
+    x12 = c6*x9*x0 - x5*x3 - c7*sin_theta2 - x6*x11
+    x13 = c3*cos_theta2 - x10*x7
+    x14 = 1.0/(m2 + m3*x5*x5)
+    x15 = x13*x14
+    x16 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x17 = c3*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x18 = x17 - x16*x11
+    x19 = x14*x18
+    x20 = x9*x2 + x4*x3 + c8*sin_theta1 + m3*x16*x6 + x12*x19
+    x21 = c1*cos_theta1 - x16*x7 - x18*x15
+    x22 = 1.0/(c0 + m3*x4*x4 - x18*x19)
+    x23 = x21*x22
+    x24 = c9 + m3*sin_theta3*sin_theta3 - x13*x15 - x21*x23
+    x25 = (x8 - x12*x15 + x20*x23)/x24
+    x26 = x22*(x20 + x21*x25)
+    x27 = x14*(x12 + x18*x26 - x13*x25)
     # outputs
     return (
         x_dot,
         theta1_dot,
         theta2_dot,
         theta3_dot,
-        x22,
-        -c10*x23,
-        c11*x24,
-        c12*(x6 + x15*x23 - cos_theta3*x22 - x9*x24),
+        x25,
+        -c10*x26,
+        c11*x27,
+        c12*(x6 + x16*x26 - cos_theta3*x25 - x10*x27),
     )
 
 
@@ -348,22 +351,25 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
     x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3
     x7 = m3*cos_theta3
     x8 = c2*sin_theta1*x0 + sin_theta2*x2 + sin_theta3*x3 - x6*x7
-    x9 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x10 = c3*cos_theta2 - x9*x7
-    x11 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x12 = m3*x9
-    x13 = c6*x11*x0 - x5*x3 - c7*sin_theta2 - x6*x12
-    x14 = m2 + m3*x5*x5
-    x15 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x16 = c3*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x17 = x16 - x15*x12
-    x18 = c1*cos_theta1 - x15*x7 - x10*x17/x14
-    x19 = x11*x2 + x4*x3 + c8*sin_theta1 + m3*x15*x6 + x17*x13/x14
-    x20 = c0 + m3*x4*x4 - x17*x17/x14
-    x21 = c9 + m3*sin_theta3*sin_theta3 - x10*x10/x14 - x18*x18/x20
-    x22 = (x8 - x10*x13/x14 + x18*x19/x20)/x21
-    x23 = (x19 + x18*x22)/x20
-    x24 = (x13 + x17*x23 - x10*x22)/x14
+    x9 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x10 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x11 = m3*x10
+    x12 = c6*x9*x0 - x5*x3 - c7*sin_theta2 - x6*x11
+    x13 = c3*cos_theta2 - x10*x7
+    x14 = 1.0/(m2 + m3*x5*x5)
+    x15 = x13*x14
+    x16 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x17 = c3*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x18 = x17 - x16*x11
+    x19 = x14*x18
+    x20 = x9*x2 + x4*x3 + c8*sin_theta1 + m3*x16*x6 + x12*x19
+    x21 = c1*cos_theta1 - x16*x7 - x18*x15
+    x22 = 1.0/(c0 + m3*x4*x4 - x18*x19)
+    x23 = x21*x22
+    x24 = c9 + m3*sin_theta3*sin_theta3 - x13*x15 - x21*x23
+    x25 = (x8 - x12*x15 + x20*x23)/x24
+    x26 = x22*(x20 + x21*x25)
+    x27 = x14*(x12 + x18*x26 - x13*x25)
     # outputs
     return _stacked(
         (8,),
@@ -372,17 +378,17 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
         theta1_dot,
         theta2_dot,
         theta3_dot,
-        x22,
-        -c10*x23,
-        c11*x24,
-        c12*(x6 + x15*x23 - cos_theta3*x22 - x9*x24),
+        x25,
+        -c10*x26,
+        c11*x27,
+        c12*(x6 + x16*x26 - cos_theta3*x25 - x10*x27),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    419 operations, 14 of them on parameters alone.
+    399 operations, 14 of them on parameters alone.
 
     Parameters
     ----------
@@ -422,128 +428,131 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x0 = l1*theta1_dot
     x1 = theta1_dot*x0
     sin_theta1 = sin(theta1)
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x2 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x3 = theta2_dot*theta2_dot
-    x4 = c3*x3
     cos_theta3 = cos(theta3)
     sin_theta3 = sin(theta3)
-    x5 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x6 = theta3_dot*theta3_dot
-    x7 = c4*x6
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = l2*x3
-    x10 = x5*x1 + x8*x9 - g*sin_theta3
-    x11 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x12 = m3*x11
-    x13 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x14 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x15 = m3*x14
-    x16 = c2*x13 - x11*x15
-    x17 = theta1_dot*theta1_dot
-    x18 = c6*x17
-    x19 = x2*x18 - x8*x7 - c7*sin_theta2 - x10*x15
-    x20 = m3*x8
-    x21 = m2 + x8*x20
-    x22 = x2*x4 + x5*x7 + c5*sin_theta1 + x10*x12 + x16*x19/x21
-    x23 = m3*cos_theta3
-    x24 = c2*cos_theta2 - cos_theta3*x15
-    x25 = c1*cos_theta1 - x11*x23 - x24*x16/x21
-    x26 = c8*sin_theta1*x17 + sin_theta2*x4 + sin_theta3*x7
-    x27 = m3*x5
-    x28 = c0 + x5*x27 - x16*x16/x21
-    x29 = c9 + m3*sin_theta3*sin_theta3 - x24*x24/x21 - x25*x25/x28
-    x30 = (x26 - x10*x23 - x24*x19/x21 + x25*x22/x28)/x29
-    x31 = (x22 + x25*x30)/x28
-    x32 = x11*x1
-    x33 = x5*x31
-    x34 = x32 - x33
-    x35 = c2*(x13*x1 - x2*x31) - x34*x15
-    x36 = c1*(cos_theta1*x1 - sin_theta1*x31) - x34*x23 - x24*x35/x21
-    x37 = c1*sin_theta1
-    x38 = (x19 + x16*x31 - x24*x30)/x21
-    x39 = c2*x2
-    x40 = x10 + x11*x31 - cos_theta3*x30 - x14*x38
-    x41 = x13*x4 + x11*x7 + c5*cos_theta1 - (x30*x37 + x38*x39 + x40*x27)
-    x42 = x41 + x34*x12 + x16*x35/x21
-    x43 = (x36 + x25*x42/x28)/x29
-    x44 = x14*x9
-    x45 = x8*x38
-    x46 = x44 + x45
-    x47 = c2*sin_theta2
-    x48 = x13*x18 + x14*x7 + c7*cos_theta2 - (x31*x39 + x30*x47 + x40*x20)
-    x49 = x48 + x46*x15
-    x50 = c2*(cos_theta2*x9 + sin_theta2*x38) - x46*x23 + x24*x49/x21
-    x51 = c2*(x2*x38 - x13*x9) + x46*x12 - x16*x49/x21
-    x52 = (x50 + x25*x51/x28)/x29
-    x53 = l3*x6
-    x54 = x32 + x44 + g*cos_theta3 - (x33 + sin_theta3*x30 - x45)
-    x55 = x8*x40 - x14*x53 - x14*x54
-    x56 = cos_theta3*x53 + sin_theta3*x40 + cos_theta3*x54 + x24*x55/x21
-    x57 = x5*x40 - x11*x53 - x11*x54 - x16*x55/x21
-    x58 = m3*(x56 + x25*x57/x28)/x29
-    x59 = x39 - x5*x15
-    x60 = x5*x12 + x16*x59/x21
-    x61 = (x37 - x5*x23 - x24*x59/x21 + x25*x60/x28)*x0/x29
-    x62 = x24*x8
-    x63 = x8*x16
-    x64 = x39 + x8*x12 - x63*x15/x21
-    x65 = l2*theta2_dot
-    x66 = (x47 - x8*x23 + x62*x15/x21 + x25*x64/x28)*x65/x29
-    x67 = x5 - x63/x21
-    x68 = c4*theta3_dot
-    x69 = (sin_theta3 + x62/x21 + x25*x67/x28)*x68/x29
-    x70 = (x42 + x25*x43)/x28
-    x71 = (x51 + x25*x52)/x28
-    x72 = (m3*x57 + x25*x58)/x28
-    x73 = (x60*x0 + x25*x61)/x28
-    x74 = (x64*x65 + x25*x66)/x28
-    x75 = (x67*x68 + x25*x69)/x28
-    x76 = (x35 + x16*x70 - x24*x43)/x21
-    x77 = (x49 + x24*x52 - x16*x71)/x21
-    x78 = (m3*x55 + x24*x58 - x16*x72)/x21
-    x79 = (x59*x0 + x16*x73 - x24*x61)/x21
-    x80 = (c12*x14*x8*theta2_dot + x24*x66 - x16*x74)/x21
-    x81 = (x8*x68 + x24*x69 - x16*x75)/x21
-    x82 = 2.0*c13*(x5*x0 + x11*x73 - cos_theta3*x61 - x14*x79)
-    x83 = c13*(x8*x65 + x11*x74 + x14*x80 - cos_theta3*x66)
+    x2 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x3 = m3*x2
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x4 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x5 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x6 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x7 = m3*x6
+    x8 = c2*x4 - x5*x7
+    x9 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x10 = m3*x9
+    x11 = 1.0/(m2 + x9*x10)
+    x12 = x11*x8
+    x13 = 1.0/(c0 + x2*x3 - x8*x12)
+    x14 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x15 = theta2_dot*theta2_dot
+    x16 = c3*x15
+    x17 = theta3_dot*theta3_dot
+    x18 = c4*x17
+    x19 = l2*x15
+    x20 = x2*x1 + x9*x19 - g*sin_theta3
+    x21 = m3*x5
+    x22 = theta1_dot*theta1_dot
+    x23 = c6*x22
+    x24 = x14*x23 - x9*x18 - c7*sin_theta2 - x20*x7
+    x25 = x14*x16 + x2*x18 + c5*sin_theta1 + x20*x21 + x24*x12
+    x26 = m3*cos_theta3
+    x27 = c2*cos_theta2 - cos_theta3*x7
+    x28 = x27*x11
+    x29 = c1*cos_theta1 - x5*x26 - x8*x28
+    x30 = c8*sin_theta1*x22 + sin_theta2*x16 + sin_theta3*x18
+    x31 = x29*x13
+    x32 = c9 + m3*sin_theta3*sin_theta3 - x27*x28 - x29*x31
+    x33 = (x30 - x20*x26 - x24*x28 + x25*x31)/x32
+    x34 = x13*(x25 + x29*x33)
+    x35 = x5*x1
+    x36 = x2*x34
+    x37 = x35 - x36
+    x38 = c2*(x4*x1 - x14*x34) - x37*x7
+    x39 = c1*(cos_theta1*x1 - sin_theta1*x34) - x37*x26 - x38*x28
+    x40 = c1*sin_theta1
+    x41 = x11*(x24 + x8*x34 - x27*x33)
+    x42 = c2*x14
+    x43 = x20 + x5*x34 - cos_theta3*x33 - x6*x41
+    x44 = x4*x16 + x5*x18 + c5*cos_theta1 - (x33*x40 + x41*x42 + x43*x3)
+    x45 = x44 + x37*x21 + x38*x12
+    x46 = (x39 + x45*x31)/x32
+    x47 = x6*x19
+    x48 = x9*x41
+    x49 = x47 + x48
+    x50 = c2*sin_theta2
+    x51 = x4*x23 + x6*x18 + c7*cos_theta2 - (x34*x42 + x33*x50 + x43*x10)
+    x52 = x51 + x49*x7
+    x53 = c2*(cos_theta2*x19 + sin_theta2*x41) - x49*x26 + x52*x28
+    x54 = c2*(x14*x41 - x4*x19) + x49*x21 - x52*x12
+    x55 = (x53 + x54*x31)/x32
+    x56 = l3*x17
+    x57 = x35 + x47 + g*cos_theta3 - (x36 + sin_theta3*x33 - x48)
+    x58 = x9*x43 - x6*x56 - x6*x57
+    x59 = cos_theta3*x56 + sin_theta3*x43 + cos_theta3*x57 + x58*x28
+    x60 = x2*x43 - x5*x56 - x5*x57 - x58*x12
+    x61 = m3*(x59 + x60*x31)/x32
+    x62 = x42 - x2*x7
+    x63 = x2*x21 + x62*x12
+    x64 = (x40 - x2*x26 - x62*x28 + x63*x31)*x0/x32
+    x65 = x9*x28
+    x66 = x9*x12
+    x67 = x42 + x9*x21 - x66*x7
+    x68 = l2*theta2_dot
+    x69 = (x50 - x9*x26 + x65*x7 + x67*x31)*x68/x32
+    x70 = x2 - x66
+    x71 = c4*theta3_dot
+    x72 = (sin_theta3 + x65 + x70*x31)*x71/x32
+    x73 = x13*(x45 + x29*x46)
+    x74 = x13*(x54 + x29*x55)
+    x75 = x13*(m3*x60 + x29*x61)
+    x76 = x13*(x63*x0 + x29*x64)
+    x77 = x13*(x67*x68 + x29*x69)
+    x78 = x13*(x70*x71 + x29*x72)
+    x79 = x11*(x38 + x8*x73 - x27*x46)
+    x80 = x11*(x52 + x27*x55 - x8*x74)
+    x81 = x11*(m3*x58 + x27*x61 - x8*x75)
+    x82 = x11*(x62*x0 + x8*x76 - x27*x64)
+    x83 = x11*(c12*x6*x9*theta2_dot + x27*x69 - x8*x77)
+    x84 = x11*(x9*x71 + x27*x72 - x8*x78)
+    x85 = 2.0*c13*(x2*x0 + x5*x76 - cos_theta3*x64 - x6*x82)
+    x86 = 2.0*c13*(x9*x68 + x5*x77 + x6*x83 - cos_theta3*x69)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
-        (0.0, x43, x52, x58, 0.0, 2.0*x61, 2.0*x66, 2.0*x69),
+        (0.0, x46, x55, x61, 0.0, 2.0*x64, 2.0*x69, 2.0*x72),
         (
             0.0,
-            -c10*x70,
-            -c10*x71,
-            -c10*x72,
+            -c10*x73,
+            -c10*x74,
+            -c10*x75,
             0.0,
-            -2.0*c10*x73,
-            -2.0*c10*x74,
-            -2.0*c10*x75,
+            -2.0*c10*x76,
+            -2.0*c10*x77,
+            -2.0*c10*x78,
         ),
         (
             0.0,
-            c11*x76,
-            -c11*x77,
-            -c11*x78,
+            c11*x79,
+            -c11*x80,
+            -c11*x81,
             0.0,
-            2.0*c11*x79,
-            -2.0*c11*x80,
-            -2.0*c11*x81,
+            2.0*c11*x82,
+            -2.0*c11*x83,
+            -2.0*c11*x84,
         ),
         (
             0.0,
-            c13*(x34 + x11*x70 - cos_theta3*x43 - x14*x76),
-            c13*(x46 + x11*x71 + x14*x77 - cos_theta3*x52),
-            -c13*(x54 + cos_theta3*x58 - x11*x72 - x14*x78),
+            c13*(x37 + x5*x73 - cos_theta3*x46 - x6*x79),
+            c13*(x49 + x5*x74 + x6*x80 - cos_theta3*x55),
+            -c13*(x57 + cos_theta3*x61 - x5*x75 - x6*x81),
             0.0,
-            x82,
-            2.0*x83,
-            2.0*c13*(x11*x75 + x14*x81 - cos_theta3*x69),
+            x85,
+            x86,
+            2.0*c13*(x5*x78 + x6*x84 - cos_theta3*x72),
         ),
     )
 
@@ -575,92 +584,95 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     x0 = l1*theta1_dot
     x1 = theta1_dot*x0
     sin_theta1 = sin(theta1)
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x2 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x3 = theta2_dot*theta2_dot
-    x4 = c3*x3
     cos_theta3 = cos(theta3)
     sin_theta3 = sin(theta3)
-    x5 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x6 = theta3_dot*theta3_dot
-    x7 = c4*x6
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = l2*x3
-    x10 = x5*x1 + x8*x9 - g*sin_theta3
-    x11 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x12 = m3*x11
-    x13 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x14 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x15 = m3*x14
-    x16 = c2*x13 - x11*x15
-    x17 = theta1_dot*theta1_dot
-    x18 = c6*x17
-    x19 = x2*x18 - x8*x7 - c7*sin_theta2 - x10*x15
-    x20 = m3*x8
-    x21 = m2 + x8*x20
-    x22 = x2*x4 + x5*x7 + c5*sin_theta1 + x10*x12 + x16*x19/x21
-    x23 = m3*cos_theta3
-    x24 = c2*cos_theta2 - cos_theta3*x15
-    x25 = c1*cos_theta1 - x11*x23 - x24*x16/x21
-    x26 = c8*sin_theta1*x17 + sin_theta2*x4 + sin_theta3*x7
-    x27 = m3*x5
-    x28 = c0 + x5*x27 - x16*x16/x21
-    x29 = c9 + m3*sin_theta3*sin_theta3 - x24*x24/x21 - x25*x25/x28
-    x30 = (x26 - x10*x23 - x24*x19/x21 + x25*x22/x28)/x29
-    x31 = (x22 + x25*x30)/x28
-    x32 = x11*x1
-    x33 = x5*x31
-    x34 = x32 - x33
-    x35 = c2*(x13*x1 - x2*x31) - x34*x15
-    x36 = c1*(cos_theta1*x1 - sin_theta1*x31) - x34*x23 - x24*x35/x21
-    x37 = c1*sin_theta1
-    x38 = (x19 + x16*x31 - x24*x30)/x21
-    x39 = c2*x2
-    x40 = x10 + x11*x31 - cos_theta3*x30 - x14*x38
-    x41 = x13*x4 + x11*x7 + c5*cos_theta1 - (x30*x37 + x38*x39 + x40*x27)
-    x42 = x41 + x34*x12 + x16*x35/x21
-    x43 = (x36 + x25*x42/x28)/x29
-    x44 = x14*x9
-    x45 = x8*x38
-    x46 = x44 + x45
-    x47 = c2*sin_theta2
-    x48 = x13*x18 + x14*x7 + c7*cos_theta2 - (x31*x39 + x30*x47 + x40*x20)
-    x49 = x48 + x46*x15
-    x50 = c2*(cos_theta2*x9 + sin_theta2*x38) - x46*x23 + x24*x49/x21
-    x51 = c2*(x2*x38 - x13*x9) + x46*x12 - x16*x49/x21
-    x52 = (x50 + x25*x51/x28)/x29
-    x53 = l3*x6
-    x54 = x32 + x44 + g*cos_theta3 - (x33 + sin_theta3*x30 - x45)
-    x55 = x8*x40 - x14*x53 - x14*x54
-    x56 = cos_theta3*x53 + sin_theta3*x40 + cos_theta3*x54 + x24*x55/x21
-    x57 = x5*x40 - x11*x53 - x11*x54 - x16*x55/x21
-    x58 = m3*(x56 + x25*x57/x28)/x29
-    x59 = x39 - x5*x15
-    x60 = x5*x12 + x16*x59/x21
-    x61 = (x37 - x5*x23 - x24*x59/x21 + x25*x60/x28)*x0/x29
-    x62 = x24*x8
-    x63 = x8*x16
-    x64 = x39 + x8*x12 - x63*x15/x21
-    x65 = l2*theta2_dot
-    x66 = (x47 - x8*x23 + x62*x15/x21 + x25*x64/x28)*x65/x29
-    x67 = x5 - x63/x21
-    x68 = c4*theta3_dot
-    x69 = (sin_theta3 + x62/x21 + x25*x67/x28)*x68/x29
-    x70 = (x42 + x25*x43)/x28
-    x71 = (x51 + x25*x52)/x28
-    x72 = (m3*x57 + x25*x58)/x28
-    x73 = (x60*x0 + x25*x61)/x28
-    x74 = (x64*x65 + x25*x66)/x28
-    x75 = (x67*x68 + x25*x69)/x28
-    x76 = (x35 + x16*x70 - x24*x43)/x21
-    x77 = (x49 + x24*x52 - x16*x71)/x21
-    x78 = (m3*x55 + x24*x58 - x16*x72)/x21
-    x79 = (x59*x0 + x16*x73 - x24*x61)/x21
-    x80 = (c12*x14*x8*theta2_dot + x24*x66 - x16*x74)/x21
-    x81 = (x8*x68 + x24*x69 - x16*x75)/x21
-    x82 = 2.0*c13*(x5*x0 + x11*x73 - cos_theta3*x61 - x14*x79)
-    x83 = c13*(x8*x65 + x11*x74 + x14*x80 - cos_theta3*x66)
+    x2 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x3 = m3*x2
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x4 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x5 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x6 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x7 = m3*x6
+    x8 = c2*x4 - x5*x7
+    x9 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x10 = m3*x9
+    x11 = 1.0/(m2 + x9*x10)
+    x12 = x11*x8
+    x13 = 1.0/(c0 + x2*x3 - x8*x12)
+    x14 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x15 = theta2_dot*theta2_dot
+    x16 = c3*x15
+    x17 = theta3_dot*theta3_dot
+    x18 = c4*x17
+    x19 = l2*x15
+    x20 = x2*x1 + x9*x19 - g*sin_theta3
+    x21 = m3*x5
+    x22 = theta1_dot*theta1_dot
+    x23 = c6*x22
+    x24 = x14*x23 - x9*x18 - c7*sin_theta2 - x20*x7
+    x25 = x14*x16 + x2*x18 + c5*sin_theta1 + x20*x21 + x24*x12
+    x26 = m3*cos_theta3
+    x27 = c2*cos_theta2 - cos_theta3*x7
+    x28 = x27*x11
+    x29 = c1*cos_theta1 - x5*x26 - x8*x28
+    x30 = c8*sin_theta1*x22 + sin_theta2*x16 + sin_theta3*x18
+    x31 = x29*x13
+    x32 = c9 + m3*sin_theta3*sin_theta3 - x27*x28 - x29*x31
+    x33 = (x30 - x20*x26 - x24*x28 + x25*x31)/x32
+    x34 = x13*(x25 + x29*x33)
+    x35 = x5*x1
+    x36 = x2*x34
+    x37 = x35 - x36
+    x38 = c2*(x4*x1 - x14*x34) - x37*x7
+    x39 = c1*(cos_theta1*x1 - sin_theta1*x34) - x37*x26 - x38*x28
+    x40 = c1*sin_theta1
+    x41 = x11*(x24 + x8*x34 - x27*x33)
+    x42 = c2*x14
+    x43 = x20 + x5*x34 - cos_theta3*x33 - x6*x41
+    x44 = x4*x16 + x5*x18 + c5*cos_theta1 - (x33*x40 + x41*x42 + x43*x3)
+    x45 = x44 + x37*x21 + x38*x12
+    x46 = (x39 + x45*x31)/x32
+    x47 = x6*x19
+    x48 = x9*x41
+    x49 = x47 + x48
+    x50 = c2*sin_theta2
+    x51 = x4*x23 + x6*x18 + c7*cos_theta2 - (x34*x42 + x33*x50 + x43*x10)
+    x52 = x51 + x49*x7
+    x53 = c2*(cos_theta2*x19 + sin_theta2*x41) - x49*x26 + x52*x28
+    x54 = c2*(x14*x41 - x4*x19) + x49*x21 - x52*x12
+    x55 = (x53 + x54*x31)/x32
+    x56 = l3*x17
+    x57 = x35 + x47 + g*cos_theta3 - (x36 + sin_theta3*x33 - x48)
+    x58 = x9*x43 - x6*x56 - x6*x57
+    x59 = cos_theta3*x56 + sin_theta3*x43 + cos_theta3*x57 + x58*x28
+    x60 = x2*x43 - x5*x56 - x5*x57 - x58*x12
+    x61 = m3*(x59 + x60*x31)/x32
+    x62 = x42 - x2*x7
+    x63 = x2*x21 + x62*x12
+    x64 = (x40 - x2*x26 - x62*x28 + x63*x31)*x0/x32
+    x65 = x9*x28
+    x66 = x9*x12
+    x67 = x42 + x9*x21 - x66*x7
+    x68 = l2*theta2_dot
+    x69 = (x50 - x9*x26 + x65*x7 + x67*x31)*x68/x32
+    x70 = x2 - x66
+    x71 = c4*theta3_dot
+    x72 = (sin_theta3 + x65 + x70*x31)*x71/x32
+    x73 = x13*(x45 + x29*x46)
+    x74 = x13*(x54 + x29*x55)
+    x75 = x13*(m3*x60 + x29*x61)
+    x76 = x13*(x63*x0 + x29*x64)
+    x77 = x13*(x67*x68 + x29*x69)
+    x78 = x13*(x70*x71 + x29*x72)
+    x79 = x11*(x38 + x8*x73 - x27*x46)
+    x80 = x11*(x52 + x27*x55 - x8*x74)
+    x81 = x11*(m3*x58 + x27*x61 - x8*x75)
+    x82 = x11*(x62*x0 + x8*x76 - x27*x64)
+    x83 = x11*(c12*x6*x9*theta2_dot + x27*x69 - x8*x77)
+    x84 = x11*(x9*x71 + x27*x72 - x8*x78)
+    x85 = 2.0*c13*(x2*x0 + x5*x76 - cos_theta3*x64 - x6*x82)
+    x86 = 2.0*c13*(x9*x68 + x5*x77 + x6*x83 - cos_theta3*x69)
     # outputs
     return _stacked(
         (8, 8),
@@ -698,37 +710,37 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
         0.0,
         1.0,
         0.0,
-        x43,
-        x52,
-        x58,
+        x46,
+        x55,
+        x61,
         0.0,
-        2.0*x61,
-        2.0*x66,
+        2.0*x64,
         2.0*x69,
+        2.0*x72,
         0.0,
-        -c10*x70,
-        -c10*x71,
-        -c10*x72,
+        -c10*x73,
+        -c10*x74,
+        -c10*x75,
         0.0,
-        -2.0*c10*x73,
-        -2.0*c10*x74,
-        -2.0*c10*x75,
+        -2.0*c10*x76,
+        -2.0*c10*x77,
+        -2.0*c10*x78,
         0.0,
-        c11*x76,
-        -c11*x77,
-        -c11*x78,
+        c11*x79,
+        -c11*x80,
+        -c11*x81,
         0.0,
-        2.0*c11*x79,
-        -2.0*c11*x80,
-        -2.0*c11*x81,
+        2.0*c11*x82,
+        -2.0*c11*x83,
+        -2.0*c11*x84,
         0.0,
-        c13*(x34 + x11*x70 - cos_theta3*x43 - x14*x76),
-        c13*(x46 + x11*x71 + x14*x77 - cos_theta3*x52),
-        -c13*(x54 + cos_theta3*x58 - x11*x72 - x14*x78),
+        c13*(x37 + x5*x73 - cos_theta3*x46 - x6*x79),
+        c13*(x49 + x5*x74 + x6*x80 - cos_theta3*x55),
+        -c13*(x57 + cos_theta3*x61 - x5*x75 - x6*x81),
         0.0,
-        x82,
-        2.0*x83,
-        2.0*c13*(x11*x75 + x14*x81 - cos_theta3*x69),
+        x85,
+        x86,
+        2.0*c13*(x5*x78 + x6*x84 - cos_theta3*x72),
     )
 
 
@@ -1085,7 +1097,7 @@ def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
 
-    140 operations, 14 of them on parameters alone.
+    138 operations, 14 of them on parameters alone.
 
     Parameters
     ----------
@@ -1107,15 +1119,15 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l3
-    c1 = m2 + m3
-    c2 = 1.0/l2
-    c3 = m1 + m2
-    c4 = m3 + c3
-    c5 = 1.0/l1
-    c6 = m0 + c3
+    c1 = 1.0/l2
+    c2 = m2 + m3
+    c3 = 1.0/l1
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = m0 + c4
     c7 = 1.0/(m3*l3)
-    c8 = c4*l1*g
-    c9 = c1*l2*g
+    c8 = c5*l1*g
+    c9 = c2*l2*g
     c10 = l3*g
     # intermediate terms
     cos_theta3 = cos(theta3)
@@ -1124,36 +1136,40 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     sin_theta3 = sin(theta3)
     sin_theta2 = sin(theta2)
     x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = m3*cos_theta3
-    x3 = c1*cos_theta2 - x1*x2
-    x4 = c2*p_theta2 - x1*x0
+    x2 = c1*p_theta2 - x1*x0
+    x3 = m3*cos_theta3
+    x4 = c2*cos_theta2 - x1*x3
     x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
     x6 = m3*x5
-    x7 = m2 + x5*x6
+    x7 = 1.0/(m2 + x5*x6)
+    x8 = x4*x7
     cos_theta1 = cos(theta1)
     sin_theta1 = sin(theta1)
-    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x9 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x10 = x9 - m3*x1*x8
-    x11 = c4*cos_theta1 - x8*x2 - x3*x10/x7
-    x12 = c5*p_theta1 - x8*x0 - x10*x4/x7
-    x13 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x14 = m3*x13
-    x15 = c3 + x13*x14 - x10*x10/x7
-    x16 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x7 - x11*x11/x15
-    x17 = (p_x - cos_theta3*x0 - x3*x4/x7 - x11*x12/x15)/x16
-    x18 = (x12 - x11*x17)/x15
-    x19 = (x3*x17 + x10*x18 - x4)/x7
-    x20 = c7*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18
-    x21 = x18*x20
-    x22 = c1*x19
-    x23 = x18*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)*x22
-    x24 = c8*sin_theta1 + c4*sin_theta1*x17*x18 + x14*x21 - x23
-    x25 = x19*x20
-    x26 = x23 + c9*sin_theta2 - sin_theta2*x17*x22 - x6*x25
-    x27 = x5*x25 + c10*sin_theta3 + sin_theta3*x17*x20 - x13*x21
+    x9 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x10 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x11 = x10 - m3*x1*x9
+    x12 = x7*x11
+    x13 = c3*p_theta1 - x9*x0 - x2*x12
+    x14 = c5*cos_theta1 - x9*x3 - x11*x8
+    x15 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x16 = m3*x15
+    x17 = 1.0/(c4 + x15*x16 - x11*x12)
+    x18 = x14*x17
+    x19 = (
+        (p_x - cos_theta3*x0 - x2*x8 - x13*x18)/(c6 + m3*sin_theta3*sin_theta3 - x4*x8 - x14*x18)
+    )
+    x20 = x17*(x13 - x14*x19)
+    x21 = x7*(x4*x19 + x11*x20 - x2)
+    x22 = c7*p_theta3 + x1*x21 - cos_theta3*x19 - x9*x20
+    x23 = x20*x22
+    x24 = c2*x21
+    x25 = x20*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)*x24
+    x26 = c8*sin_theta1 + c5*sin_theta1*x19*x20 + x16*x23 - x25
+    x27 = x21*x22
+    x28 = x25 + c9*sin_theta2 - sin_theta2*x19*x24 - x6*x27
+    x29 = x5*x27 + c10*sin_theta3 + sin_theta3*x19*x22 - x15*x23
     # outputs
-    return (x17, c5*x18, -c2*x19, c0*x20, 0.0, -x24, -x26, -m3*x27)
+    return (x19, c3*x20, -c1*x21, c0*x22, 0.0, -x26, -x28, -m3*x29)
 
 
 def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
@@ -1165,15 +1181,15 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     m0, m1, m2, m3, l1, l2, l3, g = params
     # terms of the parameters alone
     c0 = 1.0/l3
-    c1 = m2 + m3
-    c2 = 1.0/l2
-    c3 = m1 + m2
-    c4 = m3 + c3
-    c5 = 1.0/l1
-    c6 = m0 + c3
+    c1 = 1.0/l2
+    c2 = m2 + m3
+    c3 = 1.0/l1
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = m0 + c4
     c7 = 1.0/(m3*l3)
-    c8 = c4*l1*g
-    c9 = c1*l2*g
+    c8 = c5*l1*g
+    c9 = c2*l2*g
     c10 = l3*g
     # intermediate terms
     cos_theta3 = cos(theta3)
@@ -1182,42 +1198,46 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     sin_theta3 = sin(theta3)
     sin_theta2 = sin(theta2)
     x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = m3*cos_theta3
-    x3 = c1*cos_theta2 - x1*x2
-    x4 = c2*p_theta2 - x1*x0
+    x2 = c1*p_theta2 - x1*x0
+    x3 = m3*cos_theta3
+    x4 = c2*cos_theta2 - x1*x3
     x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
     x6 = m3*x5
-    x7 = m2 + x5*x6
+    x7 = 1.0/(m2 + x5*x6)
+    x8 = x4*x7
     cos_theta1 = cos(theta1)
     sin_theta1 = sin(theta1)
-    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x9 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x10 = x9 - m3*x1*x8
-    x11 = c4*cos_theta1 - x8*x2 - x3*x10/x7
-    x12 = c5*p_theta1 - x8*x0 - x10*x4/x7
-    x13 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x14 = m3*x13
-    x15 = c3 + x13*x14 - x10*x10/x7
-    x16 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x7 - x11*x11/x15
-    x17 = (p_x - cos_theta3*x0 - x3*x4/x7 - x11*x12/x15)/x16
-    x18 = (x12 - x11*x17)/x15
-    x19 = (x3*x17 + x10*x18 - x4)/x7
-    x20 = c7*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18
-    x21 = x18*x20
-    x22 = c1*x19
-    x23 = x18*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)*x22
-    x24 = c8*sin_theta1 + c4*sin_theta1*x17*x18 + x14*x21 - x23
-    x25 = x19*x20
-    x26 = x23 + c9*sin_theta2 - sin_theta2*x17*x22 - x6*x25
-    x27 = x5*x25 + c10*sin_theta3 + sin_theta3*x17*x20 - x13*x21
+    x9 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x10 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x11 = x10 - m3*x1*x9
+    x12 = x7*x11
+    x13 = c3*p_theta1 - x9*x0 - x2*x12
+    x14 = c5*cos_theta1 - x9*x3 - x11*x8
+    x15 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x16 = m3*x15
+    x17 = 1.0/(c4 + x15*x16 - x11*x12)
+    x18 = x14*x17
+    x19 = (
+        (p_x - cos_theta3*x0 - x2*x8 - x13*x18)/(c6 + m3*sin_theta3*sin_theta3 - x4*x8 - x14*x18)
+    )
+    x20 = x17*(x13 - x14*x19)
+    x21 = x7*(x4*x19 + x11*x20 - x2)
+    x22 = c7*p_theta3 + x1*x21 - cos_theta3*x19 - x9*x20
+    x23 = x20*x22
+    x24 = c2*x21
+    x25 = x20*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)*x24
+    x26 = c8*sin_theta1 + c5*sin_theta1*x19*x20 + x16*x23 - x25
+    x27 = x21*x22
+    x28 = x25 + c9*sin_theta2 - sin_theta2*x19*x24 - x6*x27
+    x29 = x5*x27 + c10*sin_theta3 + sin_theta3*x19*x22 - x15*x23
     # outputs
-    return _stacked((8,), y[0], x17, c5*x18, -c2*x19, c0*x20, 0.0, -x24, -x26, -m3*x27)
+    return _stacked((8,), y[0], x19, c3*x20, -c1*x21, c0*x22, 0.0, -x26, -x28, -m3*x29)
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    471 operations, 14 of them on parameters alone.
+    453 operations, 14 of them on parameters alone.
 
     Parameters
     ----------
@@ -1238,165 +1258,165 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
     m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l3
-    c2 = m2 + m3
-    c3 = 1.0/l2
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = m0 + c4
+    c0 = m1 + m2
+    c1 = m2 + m3
+    c2 = 1.0/l1
+    c3 = 1.0/l3
+    c4 = 1.0/l2
+    c5 = m3 + c0
+    c6 = m0 + c0
     c7 = 1.0/(m3*l3)
     c8 = c5*l1*g
-    c9 = c2*l2*g
+    c9 = c1*l2*g
     c10 = l3*g
     # intermediate terms
     cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    sin_theta3 = sin(theta3)
     sin_theta1 = sin(theta1)
-    x0 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x1 = c1*p_theta3
+    sin_theta3 = sin(theta3)
+    cos_theta1 = cos(theta1)
+    x0 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x1 = m3*x0
     cos_theta2 = cos(theta2)
     sin_theta2 = sin(theta2)
-    x2 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x2 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
     x3 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x4 = x2 - m3*x3*x0
-    x5 = c3*p_theta2 - x3*x1
+    x4 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x5 = x2 - m3*x3*x4
     x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
     x7 = m3*x6
-    x8 = m2 + x6*x7
-    x9 = c0*p_theta1 - x0*x1 - x4*x5/x8
-    x10 = c5*cos_theta1
-    x11 = m3*cos_theta3
-    x12 = c2*cos_theta2
-    x13 = x12 - x3*x11
-    x14 = x10 - x0*x11 - x13*x4/x8
-    x15 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x16 = m3*x15
-    x17 = c4 + x15*x16 - x4*x4/x8
-    x18 = c6 + m3*sin_theta3*sin_theta3 - x13*x13/x8 - x14*x14/x17
-    x19 = (p_x - cos_theta3*x1 - x13*x5/x8 - x14*x9/x17)/x18
-    x20 = (x9 - x14*x19)/x17
-    x21 = c5*sin_theta1
-    x22 = c2*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)
-    x23 = x22 - x3*x16
-    x24 = x19*x21
-    x25 = x4*x20
-    x26 = (x13*x19 + x25 - x5)/x8
-    x27 = x3*x26
-    x28 = cos_theta3*x19
-    x29 = x0*x20
-    x30 = c7*p_theta3 + x27 - x28 - x29
-    x31 = x30*x16
-    x32 = x22*x26
-    x33 = x24 + x31 - x32 - x29*x16 - x23*x25/x8
-    x34 = x20*(x21 - cos_theta3*x16 - x13*x23/x8) - x14*x33/x17
-    x35 = x34/x18
-    x36 = c2*sin_theta2
-    x37 = x19*x36
-    x38 = x30*x7
-    x39 = x20*x22
-    x40 = x37 + x38 - x39 + x27*x7
-    x41 = x26*(x22 + x0*x7) - x4*x40/x8
-    x42 = x26*(x36 - cos_theta3*x7) + x13*x40/x8 + x14*x41/x17
-    x43 = x42/x18
-    x44 = sin_theta3*x30
-    x45 = x6*x26
-    x46 = sin_theta3*x19
-    x47 = x15*x20
-    x48 = x45 + x46 - x47
-    x49 = x6*x30
-    x50 = x49 + x3*x48
-    x51 = x15*x30
-    x52 = x51 + x0*x48 - x4*x50/x8
-    x53 = m3*(x44 - cos_theta3*x48 + x13*x50/x8 + x14*x52/x17)
-    x54 = x53/x18
-    x55 = 1.0/x18
-    x56 = c0*x14/(x17*x18)
-    x57 = c3*(x13 - x4*x14/x17)/(x8*x18)
-    x58 = x0 - x3*x4/x8
-    x59 = c1*(cos_theta3 - x3*x13/x8 - x14*x58/x17)/x18
-    x60 = (x33 - x14*x35)/x17
-    x61 = c0*x60
-    x62 = (x41 + x14*x43)/x17
-    x63 = c0*x62
-    x64 = (m3*x52 + x14*x54)/x17
-    x65 = c0*x64
-    x66 = x14*x55/x17
-    x67 = (c0 + x14*x56)/x17
-    x68 = (c3*x4/x8 - x14*x57)/x17
-    x69 = (c1*x58 - x14*x59)/x17
-    x70 = (x13*x35 + x4*x60 - x20*x23)/x8
-    x71 = c3*x70
-    x72 = (x40 + x13*x43 - x4*x62)/x8
-    x73 = c3*x72
-    x74 = (m3*x50 + x13*x54 - x4*x64)/x8
-    x75 = c3*x74
-    x76 = (x13*x55 - x4*x66)/x8
-    x77 = (x13*x56 - x4*x67)/x8
-    x78 = (c3 + x13*x57 + x4*x68)/x8
-    x79 = (x13*x59 + x4*x69 - c1*x3)/x8
-    x80 = x47 + x3*x70 - cos_theta3*x35 - x0*x60
-    x81 = c1*x80
-    x82 = x45 + x0*x62 + x3*x72 - cos_theta3*x43
-    x83 = c1*x82
-    x84 = x48 + x0*x64 + x3*x74 - cos_theta3*x54
-    x85 = c1*x84
-    x86 = m3*x30
-    x87 = x29*x86
-    x88 = x20*x21
-    x89 = x20*x16
-    x90 = x2*x20*x26
-    x91 = x39*x70 + (x90 + x32*x60)
-    x92 = c8*cos_theta1 + x10*x19*x20 + x87 + x35*x88 + x24*x60 + x31*x60 + x80*x89 - x91
-    x93 = x39*x72 + (x90 - x32*x62)
-    x94 = x32*x64 - x39*x74
-    x95 = x87 + x24*x64 + x31*x64 - x54*x88 - x84*x89 - x94
-    x96 = x26*x36
-    x97 = x26*x7
-    x98 = x27*x86
-    x99 = c9*cos_theta2 + x43*x96 + x37*x72 + x38*x72 + x82*x97 - x12*x19*x26 - x98 - x93
-    x100 = x54*x96 + x37*x74 + x38*x74 + x84*x97 + x94 - x98
-    x101 = x29*x30
-    x102 = x49*x70 + x45*x80 + x35*x44 + x46*x80 - x101 - x51*x60 - x47*x80
-    x103 = x27*x30
-    x104 = x51*x62 + x49*x72 + x45*x82 + x43*x44 + x46*x82 - x47*x82 - x103
+    x8 = 1.0/(m2 + x6*x7)
+    x9 = x8*x5
+    x10 = 1.0/(c0 + x0*x1 - x5*x9)
+    x11 = c3*p_theta3
+    x12 = c4*p_theta2 - x3*x11
+    x13 = c2*p_theta1 - x4*x11 - x12*x9
+    x14 = c5*cos_theta1
+    x15 = m3*cos_theta3
+    x16 = c1*cos_theta2
+    x17 = x16 - x3*x15
+    x18 = x14 - x4*x15 - x17*x9
+    x19 = x17*x8
+    x20 = x18*x10
+    x21 = c6 + m3*sin_theta3*sin_theta3 - x17*x19 - x18*x20
+    x22 = (p_x - cos_theta3*x11 - x12*x19 - x13*x20)/x21
+    x23 = x10*(x13 - x18*x22)
+    x24 = c5*sin_theta1
+    x25 = c1*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)
+    x26 = x25 - x3*x1
+    x27 = x22*x24
+    x28 = x8*(x17*x22 + x5*x23 - x12)
+    x29 = x3*x28
+    x30 = cos_theta3*x22
+    x31 = x4*x23
+    x32 = c7*p_theta3 + x29 - x30 - x31
+    x33 = x32*x1
+    x34 = x25*x28
+    x35 = x23*x26
+    x36 = x27 + x33 - x34 - x31*x1 - x35*x9
+    x37 = (x23*(x24 - cos_theta3*x1 - x26*x19) - x36*x20)/x21
+    x38 = c1*sin_theta2
+    x39 = x22*x38
+    x40 = x32*x7
+    x41 = x23*x25
+    x42 = x39 + x40 - x41 + x29*x7
+    x43 = x28*(x25 + x4*x7) - x42*x9
+    x44 = (x28*(x38 - cos_theta3*x7) + x42*x19 + x43*x20)/x21
+    x45 = sin_theta3*x32
+    x46 = x6*x28
+    x47 = sin_theta3*x22
+    x48 = x0*x23
+    x49 = x46 + x47 - x48
+    x50 = x6*x32
+    x51 = x50 + x3*x49
+    x52 = x0*x32
+    x53 = x52 + x4*x49 - x51*x9
+    x54 = m3*(x45 - cos_theta3*x49 + x51*x19 + x53*x20)/x21
+    x55 = 1.0/x21
+    x56 = c2*x20/x21
+    x57 = c4*x8*(x17 - x5*x20)/x21
+    x58 = x4 - x3*x9
+    x59 = c3*(cos_theta3 - x3*x19 - x58*x20)/x21
+    x60 = x10*(x36 - x18*x37)
+    x61 = c2*x60
+    x62 = x10*(x43 + x18*x44)
+    x63 = c2*x62
+    x64 = x10*(m3*x53 + x18*x54)
+    x65 = c2*x64
+    x66 = x55*x20
+    x67 = x10*(c2 + x18*x56)
+    x68 = x10*(c4*x9 - x18*x57)
+    x69 = x10*(c3*x58 - x18*x59)
+    x70 = x8*(x17*x37 + x5*x60 - x35)
+    x71 = c4*x70
+    x72 = x8*(x42 + x17*x44 - x5*x62)
+    x73 = c4*x72
+    x74 = x8*(m3*x51 + x17*x54 - x5*x64)
+    x75 = c4*x74
+    x76 = x8*(x17*x55 - x5*x66)
+    x77 = x8*(x17*x56 - x5*x67)
+    x78 = x8*(c4 + x17*x57 + x5*x68)
+    x79 = x8*(x17*x59 + x5*x69 - c3*x3)
+    x80 = x48 + x3*x70 - cos_theta3*x37 - x4*x60
+    x81 = c3*x80
+    x82 = x46 + x4*x62 + x3*x72 - cos_theta3*x44
+    x83 = c3*x82
+    x84 = x49 + x4*x64 + x3*x74 - cos_theta3*x54
+    x85 = c3*x84
+    x86 = m3*x32
+    x87 = x31*x86
+    x88 = x23*x24
+    x89 = x23*x1
+    x90 = x2*x23*x28
+    x91 = x41*x70 + (x90 + x34*x60)
+    x92 = c8*cos_theta1 + x14*x22*x23 + x87 + x37*x88 + x27*x60 + x33*x60 + x80*x89 - x91
+    x93 = x41*x72 + (x90 - x34*x62)
+    x94 = x34*x64 - x41*x74
+    x95 = x87 + x27*x64 + x33*x64 - x54*x88 - x84*x89 - x94
+    x96 = x28*x38
+    x97 = x28*x7
+    x98 = x29*x86
+    x99 = c9*cos_theta2 + x44*x96 + x39*x72 + x40*x72 + x82*x97 - x16*x22*x28 - x98 - x93
+    x100 = x54*x96 + x39*x74 + x40*x74 + x84*x97 + x94 - x98
+    x101 = x31*x32
+    x102 = x50*x70 + x46*x80 + x37*x45 + x47*x80 - x101 - x52*x60 - x48*x80
+    x103 = x29*x32
+    x104 = x52*x62 + x50*x72 + x46*x82 + x44*x45 + x47*x82 - x48*x82 - x103
     x105 = (
-        x101 + c10*cos_theta3 + x51*x64 + x49*x74 + x45*x84 + x28*x30 + x44*x54 + x46*x84
-        - x103 - x47*x84
+        x101 + c10*cos_theta3 + x52*x64 + x50*x74 + x46*x84 + x30*x32 + x45*x54 + x47*x84
+        - x103 - x48*x84
     )
     # outputs
     return (
-        (0.0, x35, -x43, x54, x55, -x56, -x57, -x59),
-        (0.0, x61, x63, -x65, -c0*x66, c0*x67, -c0*x68, -c0*x69),
-        (0.0, -x71, x73, -x75, -c3*x76, c3*x77, c3*x78, c3*x79),
+        (0.0, x37, -x44, x54, x55, -x56, -x57, -x59),
+        (0.0, x61, x63, -x65, -c2*x66, c2*x67, -c2*x68, -c2*x69),
+        (0.0, -x71, x73, -x75, -c4*x76, c4*x77, c4*x78, c4*x79),
         (
             0.0,
             x81,
             -x83,
             x85,
-            c1*(x0*x66 + x3*x76 - cos_theta3*x55),
-            -c1*(x0*x67 + x3*x77 - cos_theta3*x56),
-            c1*(cos_theta3*x57 + x0*x68 - x3*x78),
-            c1*(c7 + cos_theta3*x59 + x0*x69 - x3*x79),
+            c3*(x4*x66 + x3*x76 - cos_theta3*x55),
+            -c3*(x4*x67 + x3*x77 - cos_theta3*x56),
+            c3*(cos_theta3*x57 + x4*x68 - x3*x78),
+            c3*(c7 + cos_theta3*x59 + x4*x69 - x3*x79),
         ),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (
             0.0,
             -x92,
-            -(x24*x62 + x31*x62 + x93 - x43*x88 - x82*x89),
+            -(x27*x62 + x33*x62 + x93 - x44*x88 - x82*x89),
             x95,
-            -x35,
+            -x37,
             -x61,
             x71,
             -x81,
         ),
         (
             0.0,
-            x35*x96 + x37*x70 + x38*x70 + x80*x97 - x91,
+            x37*x96 + x39*x70 + x40*x70 + x80*x97 - x91,
             -x99,
             x100,
-            x43,
+            x44,
             -x63,
             -x73,
             x83,
@@ -1413,140 +1433,140 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
     m0, m1, m2, m3, l1, l2, l3, g = params
     # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l3
-    c2 = m2 + m3
-    c3 = 1.0/l2
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = m0 + c4
+    c0 = m1 + m2
+    c1 = m2 + m3
+    c2 = 1.0/l1
+    c3 = 1.0/l3
+    c4 = 1.0/l2
+    c5 = m3 + c0
+    c6 = m0 + c0
     c7 = 1.0/(m3*l3)
     c8 = c5*l1*g
-    c9 = c2*l2*g
+    c9 = c1*l2*g
     c10 = l3*g
     # intermediate terms
     cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    sin_theta3 = sin(theta3)
     sin_theta1 = sin(theta1)
-    x0 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x1 = c1*p_theta3
+    sin_theta3 = sin(theta3)
+    cos_theta1 = cos(theta1)
+    x0 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x1 = m3*x0
     cos_theta2 = cos(theta2)
     sin_theta2 = sin(theta2)
-    x2 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x2 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
     x3 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x4 = x2 - m3*x3*x0
-    x5 = c3*p_theta2 - x3*x1
+    x4 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x5 = x2 - m3*x3*x4
     x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
     x7 = m3*x6
-    x8 = m2 + x6*x7
-    x9 = c0*p_theta1 - x0*x1 - x4*x5/x8
-    x10 = c5*cos_theta1
-    x11 = m3*cos_theta3
-    x12 = c2*cos_theta2
-    x13 = x12 - x3*x11
-    x14 = x10 - x0*x11 - x13*x4/x8
-    x15 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x16 = m3*x15
-    x17 = c4 + x15*x16 - x4*x4/x8
-    x18 = c6 + m3*sin_theta3*sin_theta3 - x13*x13/x8 - x14*x14/x17
-    x19 = (p_x - cos_theta3*x1 - x13*x5/x8 - x14*x9/x17)/x18
-    x20 = (x9 - x14*x19)/x17
-    x21 = c5*sin_theta1
-    x22 = c2*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)
-    x23 = x22 - x3*x16
-    x24 = x19*x21
-    x25 = x4*x20
-    x26 = (x13*x19 + x25 - x5)/x8
-    x27 = x3*x26
-    x28 = cos_theta3*x19
-    x29 = x0*x20
-    x30 = c7*p_theta3 + x27 - x28 - x29
-    x31 = x30*x16
-    x32 = x22*x26
-    x33 = x24 + x31 - x32 - x29*x16 - x23*x25/x8
-    x34 = x20*(x21 - cos_theta3*x16 - x13*x23/x8) - x14*x33/x17
-    x35 = x34/x18
-    x36 = c2*sin_theta2
-    x37 = x19*x36
-    x38 = x30*x7
-    x39 = x20*x22
-    x40 = x37 + x38 - x39 + x27*x7
-    x41 = x26*(x22 + x0*x7) - x4*x40/x8
-    x42 = x26*(x36 - cos_theta3*x7) + x13*x40/x8 + x14*x41/x17
-    x43 = x42/x18
-    x44 = sin_theta3*x30
-    x45 = x6*x26
-    x46 = sin_theta3*x19
-    x47 = x15*x20
-    x48 = x45 + x46 - x47
-    x49 = x6*x30
-    x50 = x49 + x3*x48
-    x51 = x15*x30
-    x52 = x51 + x0*x48 - x4*x50/x8
-    x53 = m3*(x44 - cos_theta3*x48 + x13*x50/x8 + x14*x52/x17)
-    x54 = x53/x18
-    x55 = 1.0/x18
-    x56 = c0*x14/(x17*x18)
-    x57 = c3*(x13 - x4*x14/x17)/(x8*x18)
-    x58 = x0 - x3*x4/x8
-    x59 = c1*(cos_theta3 - x3*x13/x8 - x14*x58/x17)/x18
-    x60 = (x33 - x14*x35)/x17
-    x61 = c0*x60
-    x62 = (x41 + x14*x43)/x17
-    x63 = c0*x62
-    x64 = (m3*x52 + x14*x54)/x17
-    x65 = c0*x64
-    x66 = x14*x55/x17
-    x67 = (c0 + x14*x56)/x17
-    x68 = (c3*x4/x8 - x14*x57)/x17
-    x69 = (c1*x58 - x14*x59)/x17
-    x70 = (x13*x35 + x4*x60 - x20*x23)/x8
-    x71 = c3*x70
-    x72 = (x40 + x13*x43 - x4*x62)/x8
-    x73 = c3*x72
-    x74 = (m3*x50 + x13*x54 - x4*x64)/x8
-    x75 = c3*x74
-    x76 = (x13*x55 - x4*x66)/x8
-    x77 = (x13*x56 - x4*x67)/x8
-    x78 = (c3 + x13*x57 + x4*x68)/x8
-    x79 = (x13*x59 + x4*x69 - c1*x3)/x8
-    x80 = x47 + x3*x70 - cos_theta3*x35 - x0*x60
-    x81 = c1*x80
-    x82 = x45 + x0*x62 + x3*x72 - cos_theta3*x43
-    x83 = c1*x82
-    x84 = x48 + x0*x64 + x3*x74 - cos_theta3*x54
-    x85 = c1*x84
-    x86 = m3*x30
-    x87 = x29*x86
-    x88 = x20*x21
-    x89 = x20*x16
-    x90 = x2*x20*x26
-    x91 = x39*x70 + (x90 + x32*x60)
-    x92 = c8*cos_theta1 + x10*x19*x20 + x87 + x35*x88 + x24*x60 + x31*x60 + x80*x89 - x91
-    x93 = x39*x72 + (x90 - x32*x62)
-    x94 = x32*x64 - x39*x74
-    x95 = x87 + x24*x64 + x31*x64 - x54*x88 - x84*x89 - x94
-    x96 = x26*x36
-    x97 = x26*x7
-    x98 = x27*x86
-    x99 = c9*cos_theta2 + x43*x96 + x37*x72 + x38*x72 + x82*x97 - x12*x19*x26 - x98 - x93
-    x100 = x54*x96 + x37*x74 + x38*x74 + x84*x97 + x94 - x98
-    x101 = x29*x30
-    x102 = x49*x70 + x45*x80 + x35*x44 + x46*x80 - x101 - x51*x60 - x47*x80
-    x103 = x27*x30
-    x104 = x51*x62 + x49*x72 + x45*x82 + x43*x44 + x46*x82 - x47*x82 - x103
+    x8 = 1.0/(m2 + x6*x7)
+    x9 = x8*x5
+    x10 = 1.0/(c0 + x0*x1 - x5*x9)
+    x11 = c3*p_theta3
+    x12 = c4*p_theta2 - x3*x11
+    x13 = c2*p_theta1 - x4*x11 - x12*x9
+    x14 = c5*cos_theta1
+    x15 = m3*cos_theta3
+    x16 = c1*cos_theta2
+    x17 = x16 - x3*x15
+    x18 = x14 - x4*x15 - x17*x9
+    x19 = x17*x8
+    x20 = x18*x10
+    x21 = c6 + m3*sin_theta3*sin_theta3 - x17*x19 - x18*x20
+    x22 = (p_x - cos_theta3*x11 - x12*x19 - x13*x20)/x21
+    x23 = x10*(x13 - x18*x22)
+    x24 = c5*sin_theta1
+    x25 = c1*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)
+    x26 = x25 - x3*x1
+    x27 = x22*x24
+    x28 = x8*(x17*x22 + x5*x23 - x12)
+    x29 = x3*x28
+    x30 = cos_theta3*x22
+    x31 = x4*x23
+    x32 = c7*p_theta3 + x29 - x30 - x31
+    x33 = x32*x1
+    x34 = x25*x28
+    x35 = x23*x26
+    x36 = x27 + x33 - x34 - x31*x1 - x35*x9
+    x37 = (x23*(x24 - cos_theta3*x1 - x26*x19) - x36*x20)/x21
+    x38 = c1*sin_theta2
+    x39 = x22*x38
+    x40 = x32*x7
+    x41 = x23*x25
+    x42 = x39 + x40 - x41 + x29*x7
+    x43 = x28*(x25 + x4*x7) - x42*x9
+    x44 = (x28*(x38 - cos_theta3*x7) + x42*x19 + x43*x20)/x21
+    x45 = sin_theta3*x32
+    x46 = x6*x28
+    x47 = sin_theta3*x22
+    x48 = x0*x23
+    x49 = x46 + x47 - x48
+    x50 = x6*x32
+    x51 = x50 + x3*x49
+    x52 = x0*x32
+    x53 = x52 + x4*x49 - x51*x9
+    x54 = m3*(x45 - cos_theta3*x49 + x51*x19 + x53*x20)/x21
+    x55 = 1.0/x21
+    x56 = c2*x20/x21
+    x57 = c4*x8*(x17 - x5*x20)/x21
+    x58 = x4 - x3*x9
+    x59 = c3*(cos_theta3 - x3*x19 - x58*x20)/x21
+    x60 = x10*(x36 - x18*x37)
+    x61 = c2*x60
+    x62 = x10*(x43 + x18*x44)
+    x63 = c2*x62
+    x64 = x10*(m3*x53 + x18*x54)
+    x65 = c2*x64
+    x66 = x55*x20
+    x67 = x10*(c2 + x18*x56)
+    x68 = x10*(c4*x9 - x18*x57)
+    x69 = x10*(c3*x58 - x18*x59)
+    x70 = x8*(x17*x37 + x5*x60 - x35)
+    x71 = c4*x70
+    x72 = x8*(x42 + x17*x44 - x5*x62)
+    x73 = c4*x72
+    x74 = x8*(m3*x51 + x17*x54 - x5*x64)
+    x75 = c4*x74
+    x76 = x8*(x17*x55 - x5*x66)
+    x77 = x8*(x17*x56 - x5*x67)
+    x78 = x8*(c4 + x17*x57 + x5*x68)
+    x79 = x8*(x17*x59 + x5*x69 - c3*x3)
+    x80 = x48 + x3*x70 - cos_theta3*x37 - x4*x60
+    x81 = c3*x80
+    x82 = x46 + x4*x62 + x3*x72 - cos_theta3*x44
+    x83 = c3*x82
+    x84 = x49 + x4*x64 + x3*x74 - cos_theta3*x54
+    x85 = c3*x84
+    x86 = m3*x32
+    x87 = x31*x86
+    x88 = x23*x24
+    x89 = x23*x1
+    x90 = x2*x23*x28
+    x91 = x41*x70 + (x90 + x34*x60)
+    x92 = c8*cos_theta1 + x14*x22*x23 + x87 + x37*x88 + x27*x60 + x33*x60 + x80*x89 - x91
+    x93 = x41*x72 + (x90 - x34*x62)
+    x94 = x34*x64 - x41*x74
+    x95 = x87 + x27*x64 + x33*x64 - x54*x88 - x84*x89 - x94
+    x96 = x28*x38
+    x97 = x28*x7
+    x98 = x29*x86
+    x99 = c9*cos_theta2 + x44*x96 + x39*x72 + x40*x72 + x82*x97 - x16*x22*x28 - x98 - x93
+    x100 = x54*x96 + x39*x74 + x40*x74 + x84*x97 + x94 - x98
+    x101 = x31*x32
+    x102 = x50*x70 + x46*x80 + x37*x45 + x47*x80 - x101 - x52*x60 - x48*x80
+    x103 = x29*x32
+    x104 = x52*x62 + x50*x72 + x46*x82 + x44*x45 + x47*x82 - x48*x82 - x103
     x105 = (
-        x101 + c10*cos_theta3 + x51*x64 + x49*x74 + x45*x84 + x28*x30 + x44*x54 + x46*x84
-        - x103 - x47*x84
+        x101 + c10*cos_theta3 + x52*x64 + x50*x74 + x46*x84 + x30*x32 + x45*x54 + x47*x84
+        - x103 - x48*x84
     )
     # outputs
     return _stacked(
         (8, 8),
         y[0],
         0.0,
-        x35,
-        -x43,
+        x37,
+        -x44,
         x54,
         x55,
         -x56,
@@ -1556,26 +1576,26 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
         x61,
         x63,
         -x65,
-        -c0*x66,
-        c0*x67,
-        -c0*x68,
-        -c0*x69,
+        -c2*x66,
+        c2*x67,
+        -c2*x68,
+        -c2*x69,
         0.0,
         -x71,
         x73,
         -x75,
-        -c3*x76,
-        c3*x77,
-        c3*x78,
-        c3*x79,
+        -c4*x76,
+        c4*x77,
+        c4*x78,
+        c4*x79,
         0.0,
         x81,
         -x83,
         x85,
-        c1*(x0*x66 + x3*x76 - cos_theta3*x55),
-        -c1*(x0*x67 + x3*x77 - cos_theta3*x56),
-        c1*(cos_theta3*x57 + x0*x68 - x3*x78),
-        c1*(c7 + cos_theta3*x59 + x0*x69 - x3*x79),
+        c3*(x4*x66 + x3*x76 - cos_theta3*x55),
+        -c3*(x4*x67 + x3*x77 - cos_theta3*x56),
+        c3*(cos_theta3*x57 + x4*x68 - x3*x78),
+        c3*(c7 + cos_theta3*x59 + x4*x69 - x3*x79),
         0.0,
         0.0,
         0.0,
@@ -1586,17 +1606,17 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         -x92,
-        -(x24*x62 + x31*x62 + x93 - x43*x88 - x82*x89),
+        -(x27*x62 + x33*x62 + x93 - x44*x88 - x82*x89),
         x95,
-        -x35,
+        -x37,
         -x61,
         x71,
         -x81,
         0.0,
-        x35*x96 + x37*x70 + x38*x70 + x80*x97 - x91,
+        x37*x96 + x39*x70 + x40*x70 + x80*x97 - x91,
         -x99,
         x100,
-        x43,
+        x44,
         -x63,
         -x73,
         x83,
@@ -1614,7 +1634,7 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
 def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
-    113 operations, 11 of them on parameters alone.
+    111 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -1634,47 +1654,51 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l3
-    c1 = m2 + m3
-    c2 = 1.0/l2
-    c3 = m1 + m2
-    c4 = m3 + c3
-    c5 = 1.0/l1
-    c6 = m0 + c3
+    c1 = 1.0/l2
+    c2 = m2 + m3
+    c3 = 1.0/l1
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = m0 + c4
     c7 = m3*l3
     c8 = 1.0/c7
-    c9 = c4*l1
-    c10 = c1*l2
+    c9 = c5*l1
+    c10 = c2*l2
     # intermediate terms
     cos_theta3 = cos(theta3)
     x0 = c0*p_theta3
+    x1 = c1*p_theta2
     cos_theta2 = cos(theta2)
     sin_theta3 = sin(theta3)
     sin_theta2 = sin(theta2)
-    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = m3*cos_theta3
-    x3 = c1*cos_theta2 - x1*x2
-    x4 = c2*p_theta2
-    x5 = x4 - x1*x0
+    x2 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x3 = x1 - x2*x0
+    x4 = m3*cos_theta3
+    x5 = c2*cos_theta2 - x2*x4
     x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m2 + m3*x6*x6
+    x7 = 1.0/(m2 + m3*x6*x6)
+    x8 = x5*x7
+    x9 = c3*p_theta1
     cos_theta1 = cos(theta1)
     sin_theta1 = sin(theta1)
-    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x9 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x10 = x9 - m3*x1*x8
-    x11 = c4*cos_theta1 - x8*x2 - x3*x10/x7
-    x12 = c5*p_theta1
-    x13 = x12 - x8*x0 - x10*x5/x7
-    x14 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x15 = c3 + m3*x14*x14 - x10*x10/x7
-    x16 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x7 - x11*x11/x15
-    x17 = (p_x - cos_theta3*x0 - x3*x5/x7 - x11*x13/x15)/x16
-    x18 = (x13 - x11*x17)/x15
-    x19 = (x3*x17 + x10*x18 - x5)/x7
-    x20 = (c8*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18)*x0
-    x21 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
+    x10 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x11 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x12 = x11 - m3*x2*x10
+    x13 = x7*x12
+    x14 = x9 - x10*x0 - x3*x13
+    x15 = c5*cos_theta1 - x10*x4 - x12*x8
+    x16 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x17 = 1.0/(c4 + m3*x16*x16 - x12*x13)
+    x18 = x15*x17
+    x19 = (
+        (p_x - cos_theta3*x0 - x3*x8 - x14*x18)/(c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x15*x18)
+    )
+    x20 = x17*(x14 - x15*x19)
+    x21 = x7*(x5*x19 + x12*x20 - x3)
+    x22 = (c8*p_theta3 + x2*x21 - cos_theta3*x19 - x10*x20)*x0
+    x23 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
     # outputs
-    return 0.5*(p_x*x17 + x12*x18 + x20 - x4*x19) - x21
+    return 0.5*(p_x*x19 + x9*x20 + x22 - x1*x21) - x23
 
 
 def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
@@ -1686,53 +1710,57 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     m0, m1, m2, m3, l1, l2, l3, g = params
     # terms of the parameters alone
     c0 = 1.0/l3
-    c1 = m2 + m3
-    c2 = 1.0/l2
-    c3 = m1 + m2
-    c4 = m3 + c3
-    c5 = 1.0/l1
-    c6 = m0 + c3
+    c1 = 1.0/l2
+    c2 = m2 + m3
+    c3 = 1.0/l1
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = m0 + c4
     c7 = m3*l3
     c8 = 1.0/c7
-    c9 = c4*l1
-    c10 = c1*l2
+    c9 = c5*l1
+    c10 = c2*l2
     # intermediate terms
     cos_theta3 = cos(theta3)
     x0 = c0*p_theta3
+    x1 = c1*p_theta2
     cos_theta2 = cos(theta2)
     sin_theta3 = sin(theta3)
     sin_theta2 = sin(theta2)
-    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = m3*cos_theta3
-    x3 = c1*cos_theta2 - x1*x2
-    x4 = c2*p_theta2
-    x5 = x4 - x1*x0
+    x2 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x3 = x1 - x2*x0
+    x4 = m3*cos_theta3
+    x5 = c2*cos_theta2 - x2*x4
     x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m2 + m3*x6*x6
+    x7 = 1.0/(m2 + m3*x6*x6)
+    x8 = x5*x7
+    x9 = c3*p_theta1
     cos_theta1 = cos(theta1)
     sin_theta1 = sin(theta1)
-    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x9 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x10 = x9 - m3*x1*x8
-    x11 = c4*cos_theta1 - x8*x2 - x3*x10/x7
-    x12 = c5*p_theta1
-    x13 = x12 - x8*x0 - x10*x5/x7
-    x14 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x15 = c3 + m3*x14*x14 - x10*x10/x7
-    x16 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x7 - x11*x11/x15
-    x17 = (p_x - cos_theta3*x0 - x3*x5/x7 - x11*x13/x15)/x16
-    x18 = (x13 - x11*x17)/x15
-    x19 = (x3*x17 + x10*x18 - x5)/x7
-    x20 = (c8*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18)*x0
-    x21 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
+    x10 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x11 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x12 = x11 - m3*x2*x10
+    x13 = x7*x12
+    x14 = x9 - x10*x0 - x3*x13
+    x15 = c5*cos_theta1 - x10*x4 - x12*x8
+    x16 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x17 = 1.0/(c4 + m3*x16*x16 - x12*x13)
+    x18 = x15*x17
+    x19 = (
+        (p_x - cos_theta3*x0 - x3*x8 - x14*x18)/(c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x15*x18)
+    )
+    x20 = x17*(x14 - x15*x19)
+    x21 = x7*(x5*x19 + x12*x20 - x3)
+    x22 = (c8*p_theta3 + x2*x21 - cos_theta3*x19 - x10*x20)*x0
+    x23 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
     # outputs
-    return 0.5*(p_x*x17 + x12*x18 + x20 - x4*x19) - x21
+    return 0.5*(p_x*x19 + x9*x20 + x22 - x1*x21) - x23
 
 
 def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
-    100 operations, 9 of them on parameters alone.
+    98 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -1752,12 +1780,12 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     m0, m1, m2, m3, l1, l2, l3, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l3
-    c1 = m2 + m3
-    c2 = 1.0/l2
-    c3 = m1 + m2
-    c4 = m3 + c3
-    c5 = 1.0/l1
-    c6 = m0 + c3
+    c1 = 1.0/l2
+    c2 = m2 + m3
+    c3 = 1.0/l1
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = m0 + c4
     c7 = 1.0/(m3*l3)
     # intermediate terms
     cos_theta3 = cos(theta3)
@@ -1766,27 +1794,31 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     sin_theta3 = sin(theta3)
     sin_theta2 = sin(theta2)
     x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = m3*cos_theta3
-    x3 = c1*cos_theta2 - x1*x2
-    x4 = c2*p_theta2 - x1*x0
+    x2 = c1*p_theta2 - x1*x0
+    x3 = m3*cos_theta3
+    x4 = c2*cos_theta2 - x1*x3
     x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x6 = m2 + m3*x5*x5
+    x6 = 1.0/(m2 + m3*x5*x5)
+    x7 = x4*x6
     cos_theta1 = cos(theta1)
     sin_theta1 = sin(theta1)
-    x7 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x8 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x9 = x8 - m3*x1*x7
-    x10 = c4*cos_theta1 - x7*x2 - x3*x9/x6
-    x11 = c5*p_theta1 - x7*x0 - x9*x4/x6
-    x12 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x13 = c3 + m3*x12*x12 - x9*x9/x6
-    x14 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x6 - x10*x10/x13
-    x15 = (p_x - cos_theta3*x0 - x3*x4/x6 - x10*x11/x13)/x14
-    x16 = (x11 - x10*x15)/x13
-    x17 = (x3*x15 + x9*x16 - x4)/x6
-    x18 = c0*(c7*p_theta3 + x1*x17 - cos_theta3*x15 - x7*x16)
+    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x9 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x10 = x9 - m3*x1*x8
+    x11 = x6*x10
+    x12 = c3*p_theta1 - x8*x0 - x2*x11
+    x13 = c5*cos_theta1 - x8*x3 - x10*x7
+    x14 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x15 = 1.0/(c4 + m3*x14*x14 - x10*x11)
+    x16 = x13*x15
+    x17 = (
+        (p_x - cos_theta3*x0 - x2*x7 - x12*x16)/(c6 + m3*sin_theta3*sin_theta3 - x4*x7 - x13*x16)
+    )
+    x18 = x15*(x12 - x13*x17)
+    x19 = x6*(x4*x17 + x10*x18 - x2)
+    x20 = c0*(c7*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18)
     # outputs
-    return (x, theta1, theta2, theta3, x15, c5*x16, -c2*x17, x18)
+    return (x, theta1, theta2, theta3, x17, c3*x18, -c1*x19, x20)
 
 
 def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
@@ -1798,12 +1830,12 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     m0, m1, m2, m3, l1, l2, l3, _ = params
     # terms of the parameters alone
     c0 = 1.0/l3
-    c1 = m2 + m3
-    c2 = 1.0/l2
-    c3 = m1 + m2
-    c4 = m3 + c3
-    c5 = 1.0/l1
-    c6 = m0 + c3
+    c1 = 1.0/l2
+    c2 = m2 + m3
+    c3 = 1.0/l1
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = m0 + c4
     c7 = 1.0/(m3*l3)
     # intermediate terms
     cos_theta3 = cos(theta3)
@@ -1812,27 +1844,31 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     sin_theta3 = sin(theta3)
     sin_theta2 = sin(theta2)
     x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = m3*cos_theta3
-    x3 = c1*cos_theta2 - x1*x2
-    x4 = c2*p_theta2 - x1*x0
+    x2 = c1*p_theta2 - x1*x0
+    x3 = m3*cos_theta3
+    x4 = c2*cos_theta2 - x1*x3
     x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x6 = m2 + m3*x5*x5
+    x6 = 1.0/(m2 + m3*x5*x5)
+    x7 = x4*x6
     cos_theta1 = cos(theta1)
     sin_theta1 = sin(theta1)
-    x7 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x8 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x9 = x8 - m3*x1*x7
-    x10 = c4*cos_theta1 - x7*x2 - x3*x9/x6
-    x11 = c5*p_theta1 - x7*x0 - x9*x4/x6
-    x12 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x13 = c3 + m3*x12*x12 - x9*x9/x6
-    x14 = c6 + m3*sin_theta3*sin_theta3 - x3*x3/x6 - x10*x10/x13
-    x15 = (p_x - cos_theta3*x0 - x3*x4/x6 - x10*x11/x13)/x14
-    x16 = (x11 - x10*x15)/x13
-    x17 = (x3*x15 + x9*x16 - x4)/x6
-    x18 = c0*(c7*p_theta3 + x1*x17 - cos_theta3*x15 - x7*x16)
+    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x9 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
+    x10 = x9 - m3*x1*x8
+    x11 = x6*x10
+    x12 = c3*p_theta1 - x8*x0 - x2*x11
+    x13 = c5*cos_theta1 - x8*x3 - x10*x7
+    x14 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x15 = 1.0/(c4 + m3*x14*x14 - x10*x11)
+    x16 = x13*x15
+    x17 = (
+        (p_x - cos_theta3*x0 - x2*x7 - x12*x16)/(c6 + m3*sin_theta3*sin_theta3 - x4*x7 - x13*x16)
+    )
+    x18 = x15*(x12 - x13*x17)
+    x19 = x6*(x4*x17 + x10*x18 - x2)
+    x20 = c0*(c7*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18)
     # outputs
-    return _stacked((8,), y[0], x, theta1, theta2, theta3, x15, c5*x16, -c2*x17, x18)
+    return _stacked((8,), y[0], x, theta1, theta2, theta3, x17, c3*x18, -c1*x19, x20)
 
 
 def rational_state(y: Numbers, params: Numbers) -> Vector:
@@ -1898,7 +1934,7 @@ def rational_state_many(y: Arrays, params: Arrays) -> Array:
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params): no function is called.
 
-    136 operations, 13 of them on parameters alone.
+    134 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -1942,22 +1978,25 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3
     x7 = m3*cos_theta3
     x8 = c2*sin_theta1*x0 + sin_theta2*x2 + sin_theta3*x3 - x6*x7
-    x9 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x10 = c3*cos_theta2 - x9*x7
-    x11 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x12 = m3*x9
-    x13 = c6*x11*x0 - x5*x3 - c7*sin_theta2 - x6*x12
-    x14 = m2 + m3*x5*x5
-    x15 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x16 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x17 = x16 - x15*x12
-    x18 = c1*cos_theta1 - x15*x7 - x10*x17/x14
-    x19 = x11*x2 + x4*x3 + c8*sin_theta1 + m3*x15*x6 + x17*x13/x14
-    x20 = c0 + m3*x4*x4 - x17*x17/x14
-    x21 = c9 + m3*sin_theta3*sin_theta3 - x10*x10/x14 - x18*x18/x20
-    x22 = (x8 - x10*x13/x14 + x18*x19/x20)/x21
-    x23 = (x19 + x18*x22)/x20
-    x24 = (x13 + x17*x23 - x10*x22)/x14
+    x9 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x10 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x11 = m3*x10
+    x12 = c6*x9*x0 - x5*x3 - c7*sin_theta2 - x6*x11
+    x13 = c3*cos_theta2 - x10*x7
+    x14 = 1.0/(m2 + m3*x5*x5)
+    x15 = x13*x14
+    x16 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x17 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x18 = x17 - x16*x11
+    x19 = x14*x18
+    x20 = x9*x2 + x4*x3 + c8*sin_theta1 + m3*x16*x6 + x12*x19
+    x21 = c1*cos_theta1 - x16*x7 - x18*x15
+    x22 = 1.0/(c0 + m3*x4*x4 - x18*x19)
+    x23 = x21*x22
+    x24 = c9 + m3*sin_theta3*sin_theta3 - x13*x15 - x21*x23
+    x25 = (x8 - x12*x15 + x20*x23)/x24
+    x26 = x22*(x20 + x21*x25)
+    x27 = x14*(x12 + x18*x26 - x13*x25)
     # outputs
     return (
         x_dot,
@@ -1967,10 +2006,10 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        x22,
-        -c10*x23,
-        c11*x24,
-        c12*(x6 + x15*x23 - cos_theta3*x22 - x9*x24),
+        x25,
+        -c10*x26,
+        c11*x27,
+        c12*(x6 + x16*x26 - cos_theta3*x25 - x10*x27),
     )
 
 
@@ -2003,22 +2042,25 @@ def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
     x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3
     x7 = m3*cos_theta3
     x8 = c2*sin_theta1*x0 + sin_theta2*x2 + sin_theta3*x3 - x6*x7
-    x9 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x10 = c3*cos_theta2 - x9*x7
-    x11 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x12 = m3*x9
-    x13 = c6*x11*x0 - x5*x3 - c7*sin_theta2 - x6*x12
-    x14 = m2 + m3*x5*x5
-    x15 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x16 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x17 = x16 - x15*x12
-    x18 = c1*cos_theta1 - x15*x7 - x10*x17/x14
-    x19 = x11*x2 + x4*x3 + c8*sin_theta1 + m3*x15*x6 + x17*x13/x14
-    x20 = c0 + m3*x4*x4 - x17*x17/x14
-    x21 = c9 + m3*sin_theta3*sin_theta3 - x10*x10/x14 - x18*x18/x20
-    x22 = (x8 - x10*x13/x14 + x18*x19/x20)/x21
-    x23 = (x19 + x18*x22)/x20
-    x24 = (x13 + x17*x23 - x10*x22)/x14
+    x9 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x10 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x11 = m3*x10
+    x12 = c6*x9*x0 - x5*x3 - c7*sin_theta2 - x6*x11
+    x13 = c3*cos_theta2 - x10*x7
+    x14 = 1.0/(m2 + m3*x5*x5)
+    x15 = x13*x14
+    x16 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x17 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x18 = x17 - x16*x11
+    x19 = x14*x18
+    x20 = x9*x2 + x4*x3 + c8*sin_theta1 + m3*x16*x6 + x12*x19
+    x21 = c1*cos_theta1 - x16*x7 - x18*x15
+    x22 = 1.0/(c0 + m3*x4*x4 - x18*x19)
+    x23 = x21*x22
+    x24 = c9 + m3*sin_theta3*sin_theta3 - x13*x15 - x21*x23
+    x25 = (x8 - x12*x15 + x20*x23)/x24
+    x26 = x22*(x20 + x21*x25)
+    x27 = x14*(x12 + x18*x26 - x13*x25)
     # outputs
     return _stacked(
         (11,),
@@ -2030,17 +2072,17 @@ def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        x22,
-        -c10*x23,
-        c11*x24,
-        c12*(x6 + x15*x23 - cos_theta3*x22 - x9*x24),
+        x25,
+        -c10*x26,
+        c11*x27,
+        c12*(x6 + x16*x26 - cos_theta3*x25 - x10*x27),
     )
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
 
-    284 operations, 13 of them on parameters alone.
+    279 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -2089,67 +2131,70 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     x9 = l2*x2
     x10 = x6*x7 + x8*x9 - g*sin_theta3
     x11 = m3*cos_theta3
-    x12 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x13 = c3*cos_theta2 - x12*x11
-    x14 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x15 = c6*x0
-    x16 = m3*x12
-    x17 = x14*x15 - x8*x5 - c7*sin_theta2 - x10*x16
-    x18 = m2 + m3*x8*x8
-    x19 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x13*x17/x18
-    x20 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x21 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x22 = c3*x21 - x20*x16
-    x23 = c1*cos_theta1 - x20*x11 - x13*x22/x18
-    x24 = m3*x20
-    x25 = x14*x3 + x6*x5 + c8*sin_theta1 + x10*x24 + x22*x17/x18
-    x26 = c0 + m3*x6*x6 - x22*x22/x18
-    x27 = c9 + m3*sin_theta3*sin_theta3 - x13*x13/x18 - x23*x23/x26
-    x28 = (x19 + x23*x25/x26)/x27
-    x29 = (x25 + x23*x28)/x26
-    x30 = (x17 + x22*x29 - x13*x28)/x18
-    x31 = x10 + x20*x29 - cos_theta3*x28 - x12*x30
-    x32 = delta_theta3*x5
-    x33 = x30*delta_theta2
-    x34 = c3*sin_theta2
-    x35 = m3*x31
-    x36 = delta_theta3*x35
-    x37 = theta1_dot*delta_theta1_dot
-    x38 = theta2_dot*delta_theta2_dot
-    x39 = c4*x38
-    x40 = delta_theta3_dot*x4
-    x41 = x29*delta_theta1
-    x42 = c1*sin_theta1
-    x43 = (
-        c2*cos_theta1*delta_theta1*x0 + cos_theta2*delta_theta2*x3 + cos_theta3*x32
-        + x33*x34 + sin_theta3*x36 + 2.0*(x37*x1 + sin_theta2*x39 + sin_theta3*x40)
-        - x41*x42
-    )
-    x44 = x20*x7
-    x45 = x12*x9
+    x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x13 = c6*x0
+    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x15 = m3*x14
+    x16 = x12*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x17 = c3*cos_theta2 - x14*x11
+    x18 = 1.0/(m2 + m3*x8*x8)
+    x19 = x17*x18
+    x20 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x19
+    x21 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x22 = m3*x21
+    x23 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x24 = c3*x23 - x21*x15
+    x25 = x18*x24
+    x26 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x22 + x16*x25
+    x27 = c1*cos_theta1 - x21*x11 - x24*x19
+    x28 = 1.0/(c0 + m3*x6*x6 - x24*x25)
+    x29 = x27*x28
+    x30 = c9 + m3*sin_theta3*sin_theta3 - x17*x19 - x27*x29
+    x31 = (x20 + x26*x29)/x30
+    x32 = x28*(x26 + x27*x31)
+    x33 = x18*(x16 + x24*x32 - x17*x31)
+    x34 = x10 + x21*x32 - cos_theta3*x31 - x14*x33
+    x35 = delta_theta3*x5
+    x36 = x33*delta_theta2
+    x37 = c3*sin_theta2
+    x38 = m3*x34
+    x39 = delta_theta3*x38
+    x40 = theta1_dot*delta_theta1_dot
+    x41 = theta2_dot*delta_theta2_dot
+    x42 = c4*x41
+    x43 = delta_theta3_dot*x4
+    x44 = x32*delta_theta1
+    x45 = c1*sin_theta1
     x46 = (
-        delta_theta1*x44 + delta_theta2*x45 + x8*x33
-        + delta_theta3*(x6*x29 + sin_theta3*x28 - x8*x30) + 2.0*(l1*x6*x37 + l2*x8*x38)
-        - delta_theta3*(x44 + x45 + g*cos_theta3) - x6*x41
+        c2*cos_theta1*delta_theta1*x0 + cos_theta2*delta_theta2*x3 + cos_theta3*x35
+        + x36*x37 + sin_theta3*x39 + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
+        - x44*x45
     )
-    x47 = x21*x15
-    x48 = c3*x14
+    x47 = x21*x7
+    x48 = x14*x9
     x49 = (
-        delta_theta1*x47 + x12*x32 + delta_theta2*(x29*x48 + x28*x34 + x8*x35)
-        + 2.0*(c6*x14*x37 - x8*x40) - delta_theta2*(x47 + x12*x5 + c7*cos_theta2) - x48*x41
-        - x8*x36
+        delta_theta1*x47 + delta_theta2*x48 + x8*x36
+        + delta_theta3*(x6*x32 + sin_theta3*x31 - x8*x33) + 2.0*(l1*x6*x40 + l2*x8*x41)
+        - delta_theta3*(x47 + x48 + g*cos_theta3) - x6*x44
     )
-    x50 = x49 - x46*x16
-    x51 = x21*x3
+    x50 = x23*x13
+    x51 = c3*x12
     x52 = (
-        delta_theta1*(x51 + x20*x5 + c8*cos_theta1) + x48*x33 + x6*x36
-        + 2.0*(x14*x39 + x6*x40) - delta_theta2*x51 - x20*x32
-        - delta_theta1*(x28*x42 + x30*x48 + x6*x35)
+        delta_theta1*x50 + x14*x35 + delta_theta2*(x32*x51 + x31*x37 + x8*x38)
+        + 2.0*(c6*x12*x40 - x8*x43) - delta_theta2*(x50 + x14*x5 + c7*cos_theta2) - x51*x44
+        - x8*x39
     )
-    x53 = x52 + x46*x24 + x22*x50/x18
-    x54 = (x43 - x46*x11 - x13*x50/x18 + x23*x53/x26)/x27
-    x55 = (x53 + x23*x54)/x26
-    x56 = (x50 + x22*x55 - x13*x54)/x18
+    x53 = x52 - x49*x15
+    x54 = x23*x3
+    x55 = (
+        delta_theta1*(x54 + x21*x5 + c8*cos_theta1) + x51*x36 + x6*x39
+        + 2.0*(x12*x42 + x6*x43) - delta_theta2*x54 - x21*x35
+        - delta_theta1*(x31*x45 + x33*x51 + x6*x38)
+    )
+    x56 = x55 + x49*x22 + x53*x25
+    x57 = (x46 - x49*x11 - x53*x19 + x56*x29)/x30
+    x58 = x28*(x56 + x27*x57)
+    x59 = x18*(x53 + x24*x58 - x17*x57)
     # outputs
     return (
         x_dot,
@@ -2159,18 +2204,18 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        x28,
-        -c10*x29,
-        c11*x30,
-        c12*x31,
+        x31,
+        -c10*x32,
+        c11*x33,
+        c12*x34,
         delta_x_dot,
         delta_theta1_dot,
         delta_theta2_dot,
         delta_theta3_dot,
-        x54,
-        -c10*x55,
-        c11*x56,
-        c12*(x46 + x20*x55 - cos_theta3*x54 - x12*x56),
+        x57,
+        -c10*x58,
+        c11*x59,
+        c12*(x49 + x21*x58 - cos_theta3*x57 - x14*x59),
     )
 
 
@@ -2206,67 +2251,70 @@ def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
     x9 = l2*x2
     x10 = x6*x7 + x8*x9 - g*sin_theta3
     x11 = m3*cos_theta3
-    x12 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x13 = c3*cos_theta2 - x12*x11
-    x14 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x15 = c6*x0
-    x16 = m3*x12
-    x17 = x14*x15 - x8*x5 - c7*sin_theta2 - x10*x16
-    x18 = m2 + m3*x8*x8
-    x19 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x13*x17/x18
-    x20 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x21 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x22 = c3*x21 - x20*x16
-    x23 = c1*cos_theta1 - x20*x11 - x13*x22/x18
-    x24 = m3*x20
-    x25 = x14*x3 + x6*x5 + c8*sin_theta1 + x10*x24 + x22*x17/x18
-    x26 = c0 + m3*x6*x6 - x22*x22/x18
-    x27 = c9 + m3*sin_theta3*sin_theta3 - x13*x13/x18 - x23*x23/x26
-    x28 = (x19 + x23*x25/x26)/x27
-    x29 = (x25 + x23*x28)/x26
-    x30 = (x17 + x22*x29 - x13*x28)/x18
-    x31 = x10 + x20*x29 - cos_theta3*x28 - x12*x30
-    x32 = delta_theta3*x5
-    x33 = x30*delta_theta2
-    x34 = c3*sin_theta2
-    x35 = m3*x31
-    x36 = delta_theta3*x35
-    x37 = theta1_dot*delta_theta1_dot
-    x38 = theta2_dot*delta_theta2_dot
-    x39 = c4*x38
-    x40 = delta_theta3_dot*x4
-    x41 = x29*delta_theta1
-    x42 = c1*sin_theta1
-    x43 = (
-        c2*cos_theta1*delta_theta1*x0 + cos_theta2*delta_theta2*x3 + cos_theta3*x32
-        + x33*x34 + sin_theta3*x36 + 2.0*(x37*x1 + sin_theta2*x39 + sin_theta3*x40)
-        - x41*x42
-    )
-    x44 = x20*x7
-    x45 = x12*x9
+    x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x13 = c6*x0
+    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x15 = m3*x14
+    x16 = x12*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x17 = c3*cos_theta2 - x14*x11
+    x18 = 1.0/(m2 + m3*x8*x8)
+    x19 = x17*x18
+    x20 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x19
+    x21 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x22 = m3*x21
+    x23 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x24 = c3*x23 - x21*x15
+    x25 = x18*x24
+    x26 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x22 + x16*x25
+    x27 = c1*cos_theta1 - x21*x11 - x24*x19
+    x28 = 1.0/(c0 + m3*x6*x6 - x24*x25)
+    x29 = x27*x28
+    x30 = c9 + m3*sin_theta3*sin_theta3 - x17*x19 - x27*x29
+    x31 = (x20 + x26*x29)/x30
+    x32 = x28*(x26 + x27*x31)
+    x33 = x18*(x16 + x24*x32 - x17*x31)
+    x34 = x10 + x21*x32 - cos_theta3*x31 - x14*x33
+    x35 = delta_theta3*x5
+    x36 = x33*delta_theta2
+    x37 = c3*sin_theta2
+    x38 = m3*x34
+    x39 = delta_theta3*x38
+    x40 = theta1_dot*delta_theta1_dot
+    x41 = theta2_dot*delta_theta2_dot
+    x42 = c4*x41
+    x43 = delta_theta3_dot*x4
+    x44 = x32*delta_theta1
+    x45 = c1*sin_theta1
     x46 = (
-        delta_theta1*x44 + delta_theta2*x45 + x8*x33
-        + delta_theta3*(x6*x29 + sin_theta3*x28 - x8*x30) + 2.0*(l1*x6*x37 + l2*x8*x38)
-        - delta_theta3*(x44 + x45 + g*cos_theta3) - x6*x41
+        c2*cos_theta1*delta_theta1*x0 + cos_theta2*delta_theta2*x3 + cos_theta3*x35
+        + x36*x37 + sin_theta3*x39 + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
+        - x44*x45
     )
-    x47 = x21*x15
-    x48 = c3*x14
+    x47 = x21*x7
+    x48 = x14*x9
     x49 = (
-        delta_theta1*x47 + x12*x32 + delta_theta2*(x29*x48 + x28*x34 + x8*x35)
-        + 2.0*(c6*x14*x37 - x8*x40) - delta_theta2*(x47 + x12*x5 + c7*cos_theta2) - x48*x41
-        - x8*x36
+        delta_theta1*x47 + delta_theta2*x48 + x8*x36
+        + delta_theta3*(x6*x32 + sin_theta3*x31 - x8*x33) + 2.0*(l1*x6*x40 + l2*x8*x41)
+        - delta_theta3*(x47 + x48 + g*cos_theta3) - x6*x44
     )
-    x50 = x49 - x46*x16
-    x51 = x21*x3
+    x50 = x23*x13
+    x51 = c3*x12
     x52 = (
-        delta_theta1*(x51 + x20*x5 + c8*cos_theta1) + x48*x33 + x6*x36
-        + 2.0*(x14*x39 + x6*x40) - delta_theta2*x51 - x20*x32
-        - delta_theta1*(x28*x42 + x30*x48 + x6*x35)
+        delta_theta1*x50 + x14*x35 + delta_theta2*(x32*x51 + x31*x37 + x8*x38)
+        + 2.0*(c6*x12*x40 - x8*x43) - delta_theta2*(x50 + x14*x5 + c7*cos_theta2) - x51*x44
+        - x8*x39
     )
-    x53 = x52 + x46*x24 + x22*x50/x18
-    x54 = (x43 - x46*x11 - x13*x50/x18 + x23*x53/x26)/x27
-    x55 = (x53 + x23*x54)/x26
-    x56 = (x50 + x22*x55 - x13*x54)/x18
+    x53 = x52 - x49*x15
+    x54 = x23*x3
+    x55 = (
+        delta_theta1*(x54 + x21*x5 + c8*cos_theta1) + x51*x36 + x6*x39
+        + 2.0*(x12*x42 + x6*x43) - delta_theta2*x54 - x21*x35
+        - delta_theta1*(x31*x45 + x33*x51 + x6*x38)
+    )
+    x56 = x55 + x49*x22 + x53*x25
+    x57 = (x46 - x49*x11 - x53*x19 + x56*x29)/x30
+    x58 = x28*(x56 + x27*x57)
+    x59 = x18*(x53 + x24*x58 - x17*x57)
     # outputs
     return _stacked(
         (19,),
@@ -2278,18 +2326,18 @@ def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        x28,
-        -c10*x29,
-        c11*x30,
-        c12*x31,
+        x31,
+        -c10*x32,
+        c11*x33,
+        c12*x34,
         delta_x_dot,
         delta_theta1_dot,
         delta_theta2_dot,
         delta_theta3_dot,
-        x54,
-        -c10*x55,
-        c11*x56,
-        c12*(x46 + x20*x55 - cos_theta3*x54 - x12*x56),
+        x57,
+        -c10*x58,
+        c11*x59,
+        c12*(x49 + x21*x58 - cos_theta3*x57 - x14*x59),
     )
 
 

@@ -227,22 +227,23 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3
     x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x8 = m3*x7
-    x9 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x10 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x11 = x9 - x10*x8
-    x12 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x10*x6
-    x13 = m2 + m3*x5*x5
-    x14 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x11*x12/x13
-    x15 = x14/(c4 + m3*x2*x2 - x11*x11/x13)
-    x16 = (x12 + x11*x15)/x13
+    x9 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x10 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x9*x6
+    x11 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x12 = x11 - x9*x8
+    x13 = 1.0/(m2 + m3*x5*x5)
+    x14 = x12*x13
+    x15 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x10*x14
+    x16 = x15/(c4 + m3*x2*x2 - x12*x14)
+    x17 = x13*(x10 + x12*x16)
     # outputs
     return (
         theta1_dot,
         theta2_dot,
         theta3_dot,
-        -c0*x15,
-        c8*x16,
-        c9*(x6 + x7*x15 - x10*x16),
+        -c0*x16,
+        c8*x17,
+        c9*(x6 + x7*x16 - x9*x17),
     )
 
 
@@ -280,14 +281,15 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
     x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3
     x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x8 = m3*x7
-    x9 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x10 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x11 = x9 - x10*x8
-    x12 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x10*x6
-    x13 = m2 + m3*x5*x5
-    x14 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x11*x12/x13
-    x15 = x14/(c4 + m3*x2*x2 - x11*x11/x13)
-    x16 = (x12 + x11*x15)/x13
+    x9 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x10 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x9*x6
+    x11 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x12 = x11 - x9*x8
+    x13 = 1.0/(m2 + m3*x5*x5)
+    x14 = x12*x13
+    x15 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x10*x14
+    x16 = x15/(c4 + m3*x2*x2 - x12*x14)
+    x17 = x13*(x10 + x12*x16)
     # outputs
     return _stacked(
         (6,),
@@ -295,16 +297,16 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
         theta1_dot,
         theta2_dot,
         theta3_dot,
-        -c0*x15,
-        c8*x16,
-        c9*(x6 + x7*x15 - x10*x16),
+        -c0*x16,
+        c8*x17,
+        c9*(x6 + x7*x16 - x9*x17),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    262 operations, 12 of them on parameters alone.
+    256 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
@@ -348,78 +350,79 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x3 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x4 = theta3_dot*theta3_dot
     x5 = c3*x4
-    x6 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x7 = c6*(theta1_dot*theta1_dot)
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x10 = l1*theta1_dot
-    x11 = theta1_dot*x10
-    x12 = l2*x1
-    x13 = x9*x11 + x8*x12 - g*sin_theta3
-    x14 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x15 = m3*x14
-    x16 = x6*x7 - x8*x5 - c7*sin_theta2 - x13*x15
-    x17 = m3*x3
-    x18 = c1*x0 - x14*x17
-    x19 = m3*x8
-    x20 = m2 + x8*x19
-    x21 = x6*x2 + x9*x5 + c5*sin_theta1 + x13*x17 + x18*x16/x20
-    x22 = m3*x9
-    x23 = c4 + x9*x22 - x18*x18/x20
-    x24 = x21/x23
-    x25 = (x16 + x18*x24)/x20
-    x26 = c1*x6
-    x27 = x13 + x3*x24 - x14*x25
-    x28 = x0*x2 + x3*x5 + c5*cos_theta1 - (x25*x26 + x27*x22)
-    x29 = x3*x11
-    x30 = x9*x24
-    x31 = x29 - x30
-    x32 = c1*(x0*x11 - x6*x24) - x31*x15
-    x33 = (x28 + x31*x17 + x18*x32/x20)/x23
-    x34 = x14*x12
-    x35 = x8*x25
-    x36 = x34 + x35
-    x37 = x0*x7 + x14*x5 + c7*cos_theta2 - (x24*x26 + x27*x19)
-    x38 = x37 + x36*x15
-    x39 = (c1*(x6*x25 - x0*x12) + x36*x17 - x18*x38/x20)/x23
-    x40 = l3*x4
-    x41 = x29 + x34 + g*cos_theta3 - (x30 - x35)
-    x42 = x8*x27 - x14*x40 - x14*x41
-    x43 = m3*(x9*x27 - x3*x40 - x3*x41 - x18*x42/x20)/x23
-    x44 = x26 - x9*x15
-    x45 = (x9*x17 + x18*x44/x20)*x10/x23
-    x46 = x18*x8
-    x47 = l2*theta2_dot*(x26 + x8*x17 - x46*x15/x20)/x23
-    x48 = c3*theta3_dot
-    x49 = (x9 - x46/x20)*x48/x23
-    x50 = (x32 + x18*x33)/x20
-    x51 = (x38 - x18*x39)/x20
-    x52 = (m3*x42 - x18*x43)/x20
-    x53 = (x44*x10 + x18*x45)/x20
-    x54 = x8*theta2_dot
-    x55 = (c9*x14*x54 - x18*x47)/x20
-    x56 = (x8*x48 - x18*x49)/x20
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m3*x6
+    x8 = 1.0/(m2 + x6*x7)
+    x9 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x10 = c6*(theta1_dot*theta1_dot)
+    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x12 = l1*theta1_dot
+    x13 = theta1_dot*x12
+    x14 = l2*x1
+    x15 = x11*x13 + x6*x14 - g*sin_theta3
+    x16 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x17 = m3*x16
+    x18 = x9*x10 - x6*x5 - c7*sin_theta2 - x15*x17
+    x19 = m3*x3
+    x20 = c1*x0 - x16*x19
+    x21 = x20*x8
+    x22 = x9*x2 + x11*x5 + c5*sin_theta1 + x15*x19 + x18*x21
+    x23 = m3*x11
+    x24 = c4 + x11*x23 - x20*x21
+    x25 = x22/x24
+    x26 = x8*(x18 + x20*x25)
+    x27 = c1*x9
+    x28 = x15 + x3*x25 - x16*x26
+    x29 = x0*x2 + x3*x5 + c5*cos_theta1 - (x26*x27 + x28*x23)
+    x30 = x3*x13
+    x31 = x11*x25
+    x32 = x30 - x31
+    x33 = c1*(x0*x13 - x9*x25) - x32*x17
+    x34 = (x29 + x32*x19 + x33*x21)/x24
+    x35 = x16*x14
+    x36 = x6*x26
+    x37 = x35 + x36
+    x38 = x0*x10 + x16*x5 + c7*cos_theta2 - (x25*x27 + x28*x7)
+    x39 = x38 + x37*x17
+    x40 = (c1*(x9*x26 - x0*x14) + x37*x19 - x39*x21)/x24
+    x41 = l3*x4
+    x42 = x30 + x35 + g*cos_theta3 - (x31 - x36)
+    x43 = x6*x28 - x16*x41 - x16*x42
+    x44 = m3*(x11*x28 - x3*x41 - x3*x42 - x43*x21)/x24
+    x45 = x27 - x11*x17
+    x46 = (x11*x19 + x45*x21)*x12/x24
+    x47 = x6*x21
+    x48 = l2*theta2_dot*(x27 + x6*x19 - x47*x17)/x24
+    x49 = c3*theta3_dot
+    x50 = (x11 - x47)*x49/x24
+    x51 = x8*(x33 + x20*x34)
+    x52 = x8*(x39 - x20*x40)
+    x53 = x8*(m3*x43 - x20*x44)
+    x54 = x8*(x45*x12 + x20*x46)
+    x55 = x6*theta2_dot
+    x56 = x8*(c9*x16*x55 - x20*x48)
+    x57 = x8*(x6*x49 - x20*x50)
     # outputs
     return (
         (0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
         (
-            -c0*x33,
-            -c0*x39,
-            -c0*x43,
-            -2.0*c0*x45,
-            -2.0*c0*x47,
-            -2.0*c0*x49,
+            -c0*x34,
+            -c0*x40,
+            -c0*x44,
+            -2.0*c0*x46,
+            -2.0*c0*x48,
+            -2.0*c0*x50,
         ),
-        (c8*x50, -c8*x51, -c8*x52, 2.0*c8*x53, -2.0*c8*x55, -2.0*c8*x56),
+        (c8*x51, -c8*x52, -c8*x53, 2.0*c8*x54, -2.0*c8*x56, -2.0*c8*x57),
         (
-            c10*(x31 + x3*x33 - x14*x50),
-            c10*(x36 + x3*x39 + x14*x51),
-            c10*(x3*x43 + x14*x52 - x41),
-            2.0*c10*(x9*x10 + x3*x45 - x14*x53),
-            2.0*c10*(l2*x54 + x3*x47 + x14*x55),
-            2.0*c10*(x3*x49 + x14*x56),
+            c10*(x32 + x3*x34 - x16*x51),
+            c10*(x37 + x3*x40 + x16*x52),
+            c10*(x3*x44 + x16*x53 - x42),
+            2.0*c10*(x11*x12 + x3*x46 - x16*x54),
+            2.0*c10*(l2*x55 + x3*x48 + x16*x56),
+            2.0*c10*(x3*x50 + x16*x57),
         ),
     )
 
@@ -456,57 +459,58 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     x3 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x4 = theta3_dot*theta3_dot
     x5 = c3*x4
-    x6 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x7 = c6*(theta1_dot*theta1_dot)
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x10 = l1*theta1_dot
-    x11 = theta1_dot*x10
-    x12 = l2*x1
-    x13 = x9*x11 + x8*x12 - g*sin_theta3
-    x14 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x15 = m3*x14
-    x16 = x6*x7 - x8*x5 - c7*sin_theta2 - x13*x15
-    x17 = m3*x3
-    x18 = c1*x0 - x14*x17
-    x19 = m3*x8
-    x20 = m2 + x8*x19
-    x21 = x6*x2 + x9*x5 + c5*sin_theta1 + x13*x17 + x18*x16/x20
-    x22 = m3*x9
-    x23 = c4 + x9*x22 - x18*x18/x20
-    x24 = x21/x23
-    x25 = (x16 + x18*x24)/x20
-    x26 = c1*x6
-    x27 = x13 + x3*x24 - x14*x25
-    x28 = x0*x2 + x3*x5 + c5*cos_theta1 - (x25*x26 + x27*x22)
-    x29 = x3*x11
-    x30 = x9*x24
-    x31 = x29 - x30
-    x32 = c1*(x0*x11 - x6*x24) - x31*x15
-    x33 = (x28 + x31*x17 + x18*x32/x20)/x23
-    x34 = x14*x12
-    x35 = x8*x25
-    x36 = x34 + x35
-    x37 = x0*x7 + x14*x5 + c7*cos_theta2 - (x24*x26 + x27*x19)
-    x38 = x37 + x36*x15
-    x39 = (c1*(x6*x25 - x0*x12) + x36*x17 - x18*x38/x20)/x23
-    x40 = l3*x4
-    x41 = x29 + x34 + g*cos_theta3 - (x30 - x35)
-    x42 = x8*x27 - x14*x40 - x14*x41
-    x43 = m3*(x9*x27 - x3*x40 - x3*x41 - x18*x42/x20)/x23
-    x44 = x26 - x9*x15
-    x45 = (x9*x17 + x18*x44/x20)*x10/x23
-    x46 = x18*x8
-    x47 = l2*theta2_dot*(x26 + x8*x17 - x46*x15/x20)/x23
-    x48 = c3*theta3_dot
-    x49 = (x9 - x46/x20)*x48/x23
-    x50 = (x32 + x18*x33)/x20
-    x51 = (x38 - x18*x39)/x20
-    x52 = (m3*x42 - x18*x43)/x20
-    x53 = (x44*x10 + x18*x45)/x20
-    x54 = x8*theta2_dot
-    x55 = (c9*x14*x54 - x18*x47)/x20
-    x56 = (x8*x48 - x18*x49)/x20
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = m3*x6
+    x8 = 1.0/(m2 + x6*x7)
+    x9 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x10 = c6*(theta1_dot*theta1_dot)
+    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x12 = l1*theta1_dot
+    x13 = theta1_dot*x12
+    x14 = l2*x1
+    x15 = x11*x13 + x6*x14 - g*sin_theta3
+    x16 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x17 = m3*x16
+    x18 = x9*x10 - x6*x5 - c7*sin_theta2 - x15*x17
+    x19 = m3*x3
+    x20 = c1*x0 - x16*x19
+    x21 = x20*x8
+    x22 = x9*x2 + x11*x5 + c5*sin_theta1 + x15*x19 + x18*x21
+    x23 = m3*x11
+    x24 = c4 + x11*x23 - x20*x21
+    x25 = x22/x24
+    x26 = x8*(x18 + x20*x25)
+    x27 = c1*x9
+    x28 = x15 + x3*x25 - x16*x26
+    x29 = x0*x2 + x3*x5 + c5*cos_theta1 - (x26*x27 + x28*x23)
+    x30 = x3*x13
+    x31 = x11*x25
+    x32 = x30 - x31
+    x33 = c1*(x0*x13 - x9*x25) - x32*x17
+    x34 = (x29 + x32*x19 + x33*x21)/x24
+    x35 = x16*x14
+    x36 = x6*x26
+    x37 = x35 + x36
+    x38 = x0*x10 + x16*x5 + c7*cos_theta2 - (x25*x27 + x28*x7)
+    x39 = x38 + x37*x17
+    x40 = (c1*(x9*x26 - x0*x14) + x37*x19 - x39*x21)/x24
+    x41 = l3*x4
+    x42 = x30 + x35 + g*cos_theta3 - (x31 - x36)
+    x43 = x6*x28 - x16*x41 - x16*x42
+    x44 = m3*(x11*x28 - x3*x41 - x3*x42 - x43*x21)/x24
+    x45 = x27 - x11*x17
+    x46 = (x11*x19 + x45*x21)*x12/x24
+    x47 = x6*x21
+    x48 = l2*theta2_dot*(x27 + x6*x19 - x47*x17)/x24
+    x49 = c3*theta3_dot
+    x50 = (x11 - x47)*x49/x24
+    x51 = x8*(x33 + x20*x34)
+    x52 = x8*(x39 - x20*x40)
+    x53 = x8*(m3*x43 - x20*x44)
+    x54 = x8*(x45*x12 + x20*x46)
+    x55 = x6*theta2_dot
+    x56 = x8*(c9*x16*x55 - x20*x48)
+    x57 = x8*(x6*x49 - x20*x50)
     # outputs
     return _stacked(
         (6, 6),
@@ -529,24 +533,24 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         1.0,
-        -c0*x33,
-        -c0*x39,
-        -c0*x43,
-        -2.0*c0*x45,
-        -2.0*c0*x47,
-        -2.0*c0*x49,
-        c8*x50,
-        -c8*x51,
+        -c0*x34,
+        -c0*x40,
+        -c0*x44,
+        -2.0*c0*x46,
+        -2.0*c0*x48,
+        -2.0*c0*x50,
+        c8*x51,
         -c8*x52,
-        2.0*c8*x53,
-        -2.0*c8*x55,
+        -c8*x53,
+        2.0*c8*x54,
         -2.0*c8*x56,
-        c10*(x31 + x3*x33 - x14*x50),
-        c10*(x36 + x3*x39 + x14*x51),
-        c10*(x3*x43 + x14*x52 - x41),
-        2.0*c10*(x9*x10 + x3*x45 - x14*x53),
-        2.0*c10*(l2*x54 + x3*x47 + x14*x55),
-        2.0*c10*(x3*x49 + x14*x56),
+        -2.0*c8*x57,
+        c10*(x32 + x3*x34 - x16*x51),
+        c10*(x37 + x3*x40 + x16*x52),
+        c10*(x3*x44 + x16*x53 - x42),
+        2.0*c10*(x11*x12 + x3*x46 - x16*x54),
+        2.0*c10*(l2*x55 + x3*x48 + x16*x56),
+        2.0*c10*(x3*x50 + x16*x57),
     )
 
 
@@ -858,12 +862,12 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l3
-    c2 = m2 + m3
-    c3 = 1.0/l2
+    c2 = 1.0/l2
+    c3 = m2 + m3
     c4 = m1 + m2
     c5 = 1.0/(m3*l3)
     c6 = l1*(m3 + c4)*g
-    c7 = c2*l2*g
+    c7 = c3*l2*g
     c8 = l3*g
     # intermediate terms
     cos_theta3 = cos(theta3)
@@ -874,29 +878,30 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     x1 = c1*p_theta3
     cos_theta2 = cos(theta2)
     sin_theta2 = sin(theta2)
-    x2 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x4 = x2 - m3*x0*x3
-    x5 = c3*p_theta2 - x3*x1
+    x2 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x3 = c2*p_theta2 - x2*x1
+    x4 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x5 = x4 - m3*x0*x2
     x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
     x7 = m3*x6
-    x8 = m2 + x6*x7
-    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x10 = m3*x9
-    x11 = (c0*p_theta1 - x0*x1 - x4*x5/x8)/(c4 + x9*x10 - x4*x4/x8)
-    x12 = (x5 - x4*x11)/x8
-    x13 = x0*x11 + x3*x12 - c5*p_theta3
-    x14 = c2*x11*x12*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
-    x15 = x11*x13
-    x16 = x12*x13
+    x8 = 1.0/(m2 + x6*x7)
+    x9 = x5*x8
+    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x11 = m3*x10
+    x12 = (c0*p_theta1 - x0*x1 - x3*x9)/(c4 + x10*x11 - x5*x9)
+    x13 = x8*(x3 - x5*x12)
+    x14 = x0*x12 + x2*x13 - c5*p_theta3
+    x15 = c3*x12*x13*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
+    x16 = x12*x14
+    x17 = x13*x14
     # outputs
     return (
-        c0*x11,
-        c3*x12,
-        -c1*x13,
-        -(c6*sin_theta1 + x14 - x10*x15),
-        x14 + x7*x16 - c7*sin_theta2,
-        -m3*(x9*x15 + x6*x16 + c8*sin_theta3),
+        c0*x12,
+        c2*x13,
+        -c1*x14,
+        -(c6*sin_theta1 + x15 - x11*x16),
+        x15 + x7*x17 - c7*sin_theta2,
+        -m3*(x10*x16 + x6*x17 + c8*sin_theta3),
     )
 
 
@@ -910,12 +915,12 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l3
-    c2 = m2 + m3
-    c3 = 1.0/l2
+    c2 = 1.0/l2
+    c3 = m2 + m3
     c4 = m1 + m2
     c5 = 1.0/(m3*l3)
     c6 = l1*(m3 + c4)*g
-    c7 = c2*l2*g
+    c7 = c3*l2*g
     c8 = l3*g
     # intermediate terms
     cos_theta3 = cos(theta3)
@@ -926,38 +931,39 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     x1 = c1*p_theta3
     cos_theta2 = cos(theta2)
     sin_theta2 = sin(theta2)
-    x2 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x4 = x2 - m3*x0*x3
-    x5 = c3*p_theta2 - x3*x1
+    x2 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x3 = c2*p_theta2 - x2*x1
+    x4 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x5 = x4 - m3*x0*x2
     x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
     x7 = m3*x6
-    x8 = m2 + x6*x7
-    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x10 = m3*x9
-    x11 = (c0*p_theta1 - x0*x1 - x4*x5/x8)/(c4 + x9*x10 - x4*x4/x8)
-    x12 = (x5 - x4*x11)/x8
-    x13 = x0*x11 + x3*x12 - c5*p_theta3
-    x14 = c2*x11*x12*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
-    x15 = x11*x13
-    x16 = x12*x13
+    x8 = 1.0/(m2 + x6*x7)
+    x9 = x5*x8
+    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x11 = m3*x10
+    x12 = (c0*p_theta1 - x0*x1 - x3*x9)/(c4 + x10*x11 - x5*x9)
+    x13 = x8*(x3 - x5*x12)
+    x14 = x0*x12 + x2*x13 - c5*p_theta3
+    x15 = c3*x12*x13*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
+    x16 = x12*x14
+    x17 = x13*x14
     # outputs
     return _stacked(
         (6,),
         y[0],
-        c0*x11,
-        c3*x12,
-        -c1*x13,
-        -(c6*sin_theta1 + x14 - x10*x15),
-        x14 + x7*x16 - c7*sin_theta2,
-        -m3*(x9*x15 + x6*x16 + c8*sin_theta3),
+        c0*x12,
+        c2*x13,
+        -c1*x14,
+        -(c6*sin_theta1 + x15 - x11*x16),
+        x15 + x7*x17 - c7*sin_theta2,
+        -m3*(x10*x16 + x6*x17 + c8*sin_theta3),
     )
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    277 operations, 13 of them on parameters alone.
+    271 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -988,74 +994,74 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c8 = l3*g
     # intermediate terms
     cos_theta3 = cos(theta3)
-    cos_theta2 = cos(theta2)
-    sin_theta3 = sin(theta3)
     sin_theta2 = sin(theta2)
-    x0 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x1 = c2*x0
-    x2 = c1*p_theta2 - p_theta3*x1
+    sin_theta3 = sin(theta3)
+    cos_theta2 = cos(theta2)
+    x0 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x1 = m3*x0
+    x2 = 1.0/(m2 + x0*x1)
+    x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x4 = c2*x3
+    x5 = c1*p_theta2 - p_theta3*x4
     cos_theta1 = cos(theta1)
     sin_theta1 = sin(theta1)
-    x3 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x4 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x5 = x3 - m3*x4*x0
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m3*x6
-    x8 = m2 + x6*x7
-    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x10 = m3*x9
-    x11 = c4 + x9*x10 - x5*x5/x8
-    x12 = (c0*p_theta1 - c2*x4*p_theta3 - x5*x2/x8)/x11
-    x13 = x5*x12
-    x14 = (x2 - x13)/x8
+    x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x8 = x6 - m3*x7*x3
+    x9 = x8*x2
+    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x11 = m3*x10
+    x12 = c4 + x10*x11 - x8*x9
+    x13 = (c0*p_theta1 - c2*x7*p_theta3 - x5*x9)/x12
+    x14 = x2*(x5 - x8*x13)
     x15 = c3*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
     x16 = x14*x15
-    x17 = x4*x12
-    x18 = x0*x14
+    x17 = x7*x13
+    x18 = x3*x14
     x19 = x17 + x18 - c5*p_theta3
-    x20 = x19*x10
-    x21 = x15 - x0*x10
-    x22 = (x16 - x20 - x17*x10 - x13*x21/x8)/x11
+    x20 = x19*x11
+    x21 = x13*(x15 - x3*x11)
+    x22 = (x16 - x20 - x17*x11 - x21*x9)/x12
     x23 = c0*x22
-    x24 = x12*x15
-    x25 = x19*x7
-    x26 = x24 + x25 + x18*x7
-    x27 = (x14*(x15 + x4*x7) - x5*x26/x8)/x11
+    x24 = x13*x15
+    x25 = x19*x1
+    x26 = x24 + x25 + x18*x1
+    x27 = (x14*(x15 + x7*x1) - x26*x9)/x12
     x28 = c0*x27
-    x29 = x9*x19
-    x30 = x9*x12
-    x31 = x6*x14
+    x29 = x10*x19
+    x30 = x10*x13
+    x31 = x0*x14
     x32 = x30 + x31
-    x33 = x6*x19
-    x34 = x33 + x0*x32
-    x35 = m3*(x29 + x4*x32 - x5*x34/x8)/x11
+    x33 = x0*x19
+    x34 = x33 + x3*x32
+    x35 = m3*(x29 + x7*x32 - x34*x9)/x12
     x36 = c0*x35
-    x37 = c0/x11
-    x38 = c1*x5/(x8*x11)
-    x39 = c2*(x4 - x0*x5/x8)/x11
-    x40 = (x12*x21 - x5*x22)/x8
+    x37 = c0/x12
+    x38 = c1*x9/x12
+    x39 = c2*(x7 - x3*x9)/x12
+    x40 = x2*(x21 - x8*x22)
     x41 = c1*x40
-    x42 = (x26 - x5*x27)/x8
+    x42 = x2*(x26 - x8*x27)
     x43 = c1*x42
-    x44 = (m3*x34 - x5*x35)/x8
+    x44 = x2*(m3*x34 - x8*x35)
     x45 = c1*x44
-    x46 = x5*x37/x8
-    x47 = (c1 + x5*x38)/x8
-    x48 = (x1 - x5*x39)/x8
-    x49 = x4*x22 + x0*x40 - x30
+    x46 = x37*x9
+    x47 = x2*(c1 + x8*x38)
+    x48 = x2*(x4 - x8*x39)
+    x49 = x7*x22 + x3*x40 - x30
     x50 = c2*x49
-    x51 = x31 + x4*x27 + x0*x42
+    x51 = x31 + x7*x27 + x3*x42
     x52 = c2*x51
-    x53 = x32 + x4*x35 + x0*x44
+    x53 = x32 + x7*x35 + x3*x44
     x54 = c2*x53
-    x55 = x3*x12*x14
+    x55 = x6*x13*x14
     x56 = x24*x40 + (x55 + x16*x22)
     x57 = m3*x19
     x58 = x17*x57
-    x59 = x12*x10
+    x59 = x13*x11
     x60 = x24*x42 + (x55 + x16*x27)
     x61 = x16*x35 + x24*x44
-    x62 = x14*x7
+    x62 = x14*x1
     x63 = x18*x57
     x64 = x17*x19
     x65 = -m3*(x64 + x22*x29 + x30*x49 + x33*x40 + x31*x49)
@@ -1069,9 +1075,9 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
             -x50,
             x52,
             -x54,
-            -c2*(x4*x37 - x0*x46),
-            c2*(x4*x38 - x0*x47),
-            c2*(c5 + x4*x39 + x0*x48),
+            -c2*(x7*x37 - x3*x46),
+            c2*(x7*x38 - x3*x47),
+            c2*(c5 + x7*x39 + x3*x48),
         ),
         (
             -(c6*cos_theta1 + x56 - x58 - x20*x22 - x49*x59),
@@ -1119,74 +1125,74 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     c8 = l3*g
     # intermediate terms
     cos_theta3 = cos(theta3)
-    cos_theta2 = cos(theta2)
-    sin_theta3 = sin(theta3)
     sin_theta2 = sin(theta2)
-    x0 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x1 = c2*x0
-    x2 = c1*p_theta2 - p_theta3*x1
+    sin_theta3 = sin(theta3)
+    cos_theta2 = cos(theta2)
+    x0 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x1 = m3*x0
+    x2 = 1.0/(m2 + x0*x1)
+    x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x4 = c2*x3
+    x5 = c1*p_theta2 - p_theta3*x4
     cos_theta1 = cos(theta1)
     sin_theta1 = sin(theta1)
-    x3 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x4 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x5 = x3 - m3*x4*x0
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m3*x6
-    x8 = m2 + x6*x7
-    x9 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x10 = m3*x9
-    x11 = c4 + x9*x10 - x5*x5/x8
-    x12 = (c0*p_theta1 - c2*x4*p_theta3 - x5*x2/x8)/x11
-    x13 = x5*x12
-    x14 = (x2 - x13)/x8
+    x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x8 = x6 - m3*x7*x3
+    x9 = x8*x2
+    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x11 = m3*x10
+    x12 = c4 + x10*x11 - x8*x9
+    x13 = (c0*p_theta1 - c2*x7*p_theta3 - x5*x9)/x12
+    x14 = x2*(x5 - x8*x13)
     x15 = c3*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
     x16 = x14*x15
-    x17 = x4*x12
-    x18 = x0*x14
+    x17 = x7*x13
+    x18 = x3*x14
     x19 = x17 + x18 - c5*p_theta3
-    x20 = x19*x10
-    x21 = x15 - x0*x10
-    x22 = (x16 - x20 - x17*x10 - x13*x21/x8)/x11
+    x20 = x19*x11
+    x21 = x13*(x15 - x3*x11)
+    x22 = (x16 - x20 - x17*x11 - x21*x9)/x12
     x23 = c0*x22
-    x24 = x12*x15
-    x25 = x19*x7
-    x26 = x24 + x25 + x18*x7
-    x27 = (x14*(x15 + x4*x7) - x5*x26/x8)/x11
+    x24 = x13*x15
+    x25 = x19*x1
+    x26 = x24 + x25 + x18*x1
+    x27 = (x14*(x15 + x7*x1) - x26*x9)/x12
     x28 = c0*x27
-    x29 = x9*x19
-    x30 = x9*x12
-    x31 = x6*x14
+    x29 = x10*x19
+    x30 = x10*x13
+    x31 = x0*x14
     x32 = x30 + x31
-    x33 = x6*x19
-    x34 = x33 + x0*x32
-    x35 = m3*(x29 + x4*x32 - x5*x34/x8)/x11
+    x33 = x0*x19
+    x34 = x33 + x3*x32
+    x35 = m3*(x29 + x7*x32 - x34*x9)/x12
     x36 = c0*x35
-    x37 = c0/x11
-    x38 = c1*x5/(x8*x11)
-    x39 = c2*(x4 - x0*x5/x8)/x11
-    x40 = (x12*x21 - x5*x22)/x8
+    x37 = c0/x12
+    x38 = c1*x9/x12
+    x39 = c2*(x7 - x3*x9)/x12
+    x40 = x2*(x21 - x8*x22)
     x41 = c1*x40
-    x42 = (x26 - x5*x27)/x8
+    x42 = x2*(x26 - x8*x27)
     x43 = c1*x42
-    x44 = (m3*x34 - x5*x35)/x8
+    x44 = x2*(m3*x34 - x8*x35)
     x45 = c1*x44
-    x46 = x5*x37/x8
-    x47 = (c1 + x5*x38)/x8
-    x48 = (x1 - x5*x39)/x8
-    x49 = x4*x22 + x0*x40 - x30
+    x46 = x37*x9
+    x47 = x2*(c1 + x8*x38)
+    x48 = x2*(x4 - x8*x39)
+    x49 = x7*x22 + x3*x40 - x30
     x50 = c2*x49
-    x51 = x31 + x4*x27 + x0*x42
+    x51 = x31 + x7*x27 + x3*x42
     x52 = c2*x51
-    x53 = x32 + x4*x35 + x0*x44
+    x53 = x32 + x7*x35 + x3*x44
     x54 = c2*x53
-    x55 = x3*x12*x14
+    x55 = x6*x13*x14
     x56 = x24*x40 + (x55 + x16*x22)
     x57 = m3*x19
     x58 = x17*x57
-    x59 = x12*x10
+    x59 = x13*x11
     x60 = x24*x42 + (x55 + x16*x27)
     x61 = x16*x35 + x24*x44
-    x62 = x14*x7
+    x62 = x14*x1
     x63 = x18*x57
     x64 = x17*x19
     x65 = -m3*(x64 + x22*x29 + x30*x49 + x33*x40 + x31*x49)
@@ -1211,9 +1217,9 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
         -x50,
         x52,
         -x54,
-        -c2*(x4*x37 - x0*x46),
-        c2*(x4*x38 - x0*x47),
-        c2*(c5 + x4*x39 + x0*x48),
+        -c2*(x7*x37 - x3*x46),
+        c2*(x7*x38 - x3*x47),
+        c2*(c5 + x7*x39 + x3*x48),
         -(c6*cos_theta1 + x56 - x58 - x20*x22 - x49*x59),
         x60 - x20*x27 - x51*x59,
         -(x58 + x61 - x20*x35 - x53*x59),
@@ -1258,13 +1264,13 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l3
-    c2 = m2 + m3
-    c3 = 1.0/l2
+    c2 = 1.0/l2
+    c3 = m2 + m3
     c4 = m1 + m2
     c5 = m3*l3
     c6 = 1.0/c5
     c7 = l1*(m3 + c4)
-    c8 = c2*l2
+    c8 = c3*l2
     # intermediate terms
     x0 = c0*p_theta1
     cos_theta3 = cos(theta3)
@@ -1273,22 +1279,23 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     sin_theta3 = sin(theta3)
     x1 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x2 = c1*p_theta3
+    x3 = c2*p_theta2
     cos_theta2 = cos(theta2)
     sin_theta2 = sin(theta2)
-    x3 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
     x4 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x5 = x3 - m3*x1*x4
-    x6 = c3*p_theta2
-    x7 = x6 - x4*x2
+    x5 = x3 - x4*x2
+    x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x7 = x6 - m3*x1*x4
     x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = m2 + m3*x8*x8
-    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x11 = (x0 - x1*x2 - x5*x7/x9)/(c4 + m3*x10*x10 - x5*x5/x9)
-    x12 = (x7 - x5*x11)/x9
-    x13 = x0*x11 + x6*x12 - (x1*x11 + x4*x12 - c6*p_theta3)*x2
-    x14 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3)
+    x9 = 1.0/(m2 + m3*x8*x8)
+    x10 = x7*x9
+    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x12 = (x0 - x1*x2 - x5*x10)/(c4 + m3*x11*x11 - x7*x10)
+    x13 = x9*(x5 - x7*x12)
+    x14 = x0*x12 + x3*x13 - (x1*x12 + x4*x13 - c6*p_theta3)*x2
+    x15 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3)
     # outputs
-    return 0.5*x13 - x14
+    return 0.5*x14 - x15
 
 
 def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
@@ -1301,13 +1308,13 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l3
-    c2 = m2 + m3
-    c3 = 1.0/l2
+    c2 = 1.0/l2
+    c3 = m2 + m3
     c4 = m1 + m2
     c5 = m3*l3
     c6 = 1.0/c5
     c7 = l1*(m3 + c4)
-    c8 = c2*l2
+    c8 = c3*l2
     # intermediate terms
     x0 = c0*p_theta1
     cos_theta3 = cos(theta3)
@@ -1316,22 +1323,23 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     sin_theta3 = sin(theta3)
     x1 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
     x2 = c1*p_theta3
+    x3 = c2*p_theta2
     cos_theta2 = cos(theta2)
     sin_theta2 = sin(theta2)
-    x3 = c2*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
     x4 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x5 = x3 - m3*x1*x4
-    x6 = c3*p_theta2
-    x7 = x6 - x4*x2
+    x5 = x3 - x4*x2
+    x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x7 = x6 - m3*x1*x4
     x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = m2 + m3*x8*x8
-    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x11 = (x0 - x1*x2 - x5*x7/x9)/(c4 + m3*x10*x10 - x5*x5/x9)
-    x12 = (x7 - x5*x11)/x9
-    x13 = x0*x11 + x6*x12 - (x1*x11 + x4*x12 - c6*p_theta3)*x2
-    x14 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3)
+    x9 = 1.0/(m2 + m3*x8*x8)
+    x10 = x7*x9
+    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x12 = (x0 - x1*x2 - x5*x10)/(c4 + m3*x11*x11 - x7*x10)
+    x13 = x9*(x5 - x7*x12)
+    x14 = x0*x12 + x3*x13 - (x1*x12 + x4*x13 - c6*p_theta3)*x2
+    x15 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3)
     # outputs
-    return 0.5*x13 - x14
+    return 0.5*x14 - x15
 
 
 def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
@@ -1357,8 +1365,8 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l3
-    c2 = m2 + m3
-    c3 = 1.0/l2
+    c2 = 1.0/l2
+    c3 = m2 + m3
     c4 = m1 + m2
     c5 = 1.0/(m3*l3)
     # intermediate terms
@@ -1367,21 +1375,22 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     x1 = c1*p_theta3
     x2 = theta2 - theta3
     cos_x2 = cos(x2)
-    x3 = c2*cos(theta1 - theta2) - m3*cos_x0*cos_x2
-    x4 = c3*p_theta2 - cos_x2*x1
+    x3 = c2*p_theta2 - cos_x2*x1
+    x4 = c3*cos(theta1 - theta2) - m3*cos_x0*cos_x2
     sin_x2 = sin(x2)
-    x5 = m2 + m3*sin_x2*sin_x2
+    x5 = 1.0/(m2 + m3*sin_x2*sin_x2)
+    x6 = x4*x5
     sin_x0 = sin(x0)
-    x6 = (c0*p_theta1 - cos_x0*x1 - x3*x4/x5)/(c4 + m3*sin_x0*sin_x0 - x3*x3/x5)
-    x7 = (x4 - x3*x6)/x5
+    x7 = (c0*p_theta1 - cos_x0*x1 - x3*x6)/(c4 + m3*sin_x0*sin_x0 - x4*x6)
+    x8 = x5*(x3 - x4*x7)
     # outputs
     return (
         theta1,
         theta2,
         theta3,
-        c0*x6,
-        c3*x7,
-        -c1*(cos_x0*x6 + cos_x2*x7 - c5*p_theta3),
+        c0*x7,
+        c2*x8,
+        -c1*(cos_x0*x7 + cos_x2*x8 - c5*p_theta3),
     )
 
 
@@ -1395,8 +1404,8 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l3
-    c2 = m2 + m3
-    c3 = 1.0/l2
+    c2 = 1.0/l2
+    c3 = m2 + m3
     c4 = m1 + m2
     c5 = 1.0/(m3*l3)
     # intermediate terms
@@ -1405,13 +1414,14 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     x1 = c1*p_theta3
     x2 = theta2 - theta3
     cos_x2 = cos(x2)
-    x3 = c2*cos(theta1 - theta2) - m3*cos_x0*cos_x2
-    x4 = c3*p_theta2 - cos_x2*x1
+    x3 = c2*p_theta2 - cos_x2*x1
+    x4 = c3*cos(theta1 - theta2) - m3*cos_x0*cos_x2
     sin_x2 = sin(x2)
-    x5 = m2 + m3*sin_x2*sin_x2
+    x5 = 1.0/(m2 + m3*sin_x2*sin_x2)
+    x6 = x4*x5
     sin_x0 = sin(x0)
-    x6 = (c0*p_theta1 - cos_x0*x1 - x3*x4/x5)/(c4 + m3*sin_x0*sin_x0 - x3*x3/x5)
-    x7 = (x4 - x3*x6)/x5
+    x7 = (c0*p_theta1 - cos_x0*x1 - x3*x6)/(c4 + m3*sin_x0*sin_x0 - x4*x6)
+    x8 = x5*(x3 - x4*x7)
     # outputs
     return _stacked(
         (6,),
@@ -1419,9 +1429,9 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
         theta1,
         theta2,
         theta3,
-        c0*x6,
-        c3*x7,
-        -c1*(cos_x0*x6 + cos_x2*x7 - c5*p_theta3),
+        c0*x7,
+        c2*x8,
+        -c1*(cos_x0*x7 + cos_x2*x8 - c5*p_theta3),
     )
 
 
@@ -1524,14 +1534,15 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3
     x7 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
     x8 = m3*x7
-    x9 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x10 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x11 = x9 - x10*x8
-    x12 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x10*x6
-    x13 = m2 + m3*x5*x5
-    x14 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x11*x12/x13
-    x15 = x14/(c4 + m3*x2*x2 - x11*x11/x13)
-    x16 = (x12 + x11*x15)/x13
+    x9 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x10 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x9*x6
+    x11 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x12 = x11 - x9*x8
+    x13 = 1.0/(m2 + m3*x5*x5)
+    x14 = x12*x13
+    x15 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x10*x14
+    x16 = x15/(c4 + m3*x2*x2 - x12*x14)
+    x17 = x13*(x10 + x12*x16)
     # outputs
     return (
         theta1_dot*cos_theta1,
@@ -1540,9 +1551,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        -c0*x15,
-        c8*x16,
-        c9*(x6 + x7*x15 - x10*x16),
+        -c0*x16,
+        c8*x17,
+        c9*(x6 + x7*x16 - x9*x17),
     )
 
 
@@ -1572,14 +1583,15 @@ def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
     x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3
     x7 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
     x8 = m3*x7
-    x9 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x10 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x11 = x9 - x10*x8
-    x12 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x10*x6
-    x13 = m2 + m3*x5*x5
-    x14 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x11*x12/x13
-    x15 = x14/(c4 + m3*x2*x2 - x11*x11/x13)
-    x16 = (x12 + x11*x15)/x13
+    x9 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x10 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x9*x6
+    x11 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
+    x12 = x11 - x9*x8
+    x13 = 1.0/(m2 + m3*x5*x5)
+    x14 = x12*x13
+    x15 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x10*x14
+    x16 = x15/(c4 + m3*x2*x2 - x12*x14)
+    x17 = x13*(x10 + x12*x16)
     # outputs
     return _stacked(
         (9,),
@@ -1590,16 +1602,16 @@ def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        -c0*x15,
-        c8*x16,
-        c9*(x6 + x7*x15 - x10*x16),
+        -c0*x16,
+        c8*x17,
+        c9*(x6 + x7*x16 - x9*x17),
     )
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
 
-    194 operations, 11 of them on parameters alone.
+    193 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -1645,53 +1657,54 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     x10 = x3*x7 + x8*x9 - g*sin_theta3
     x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
     x12 = m3*x11
-    x13 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x13 = c6*x6
     x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = c1*x13 - x14*x12
-    x16 = c6*x6
-    x17 = m3*x14
-    x18 = x0*x16 - x8*x5 - c7*sin_theta2 - x10*x17
-    x19 = m2 + m3*x8*x8
-    x20 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x15*x18/x19
-    x21 = c4 + m3*x3*x3 - x15*x15/x19
-    x22 = x20/x21
-    x23 = (x18 + x15*x22)/x19
-    x24 = x10 + x11*x22 - x14*x23
-    x25 = x13*x2
-    x26 = x11*x5
-    x27 = c1*x0
-    x28 = x23*x27
-    x29 = m3*x24
-    x30 = x3*x29
-    x31 = theta2_dot*delta_theta2_dot
-    x32 = delta_theta3_dot*x4
-    x33 = (
-        delta_theta1*(x25 + x26 + c5*cos_theta1) + delta_theta2*x28 + delta_theta3*x30
-        + 2.0*(c2*x0*x31 + x3*x32) - x25*delta_theta2 - x26*delta_theta3
-        - delta_theta1*(x28 + x30)
+    x15 = m3*x14
+    x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x17 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x18 = c1*x17 - x14*x12
+    x19 = 1.0/(m2 + m3*x8*x8)
+    x20 = x18*x19
+    x21 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x20
+    x22 = c4 + m3*x3*x3 - x18*x20
+    x23 = x21/x22
+    x24 = x19*(x16 + x18*x23)
+    x25 = x10 + x11*x23 - x14*x24
+    x26 = x17*x2
+    x27 = x11*x5
+    x28 = c1*x0
+    x29 = x24*x28
+    x30 = m3*x25
+    x31 = x3*x30
+    x32 = theta2_dot*delta_theta2_dot
+    x33 = delta_theta3_dot*x4
+    x34 = (
+        delta_theta1*(x26 + x27 + c5*cos_theta1) + delta_theta2*x29 + delta_theta3*x31
+        + 2.0*(c2*x0*x32 + x3*x33) - x26*delta_theta2 - x27*delta_theta3
+        - delta_theta1*(x29 + x31)
     )
-    x34 = x11*x7
-    x35 = x14*x9
-    x36 = x8*x23
-    x37 = x3*x22
-    x38 = theta1_dot*delta_theta1_dot
-    x39 = (
-        delta_theta1*x34 + delta_theta2*x35 + delta_theta2*x36 + delta_theta3*(x37 - x36)
-        + 2.0*(l1*x3*x38 + l2*x8*x31) - delta_theta3*(x34 + x35 + g*cos_theta3)
-        - delta_theta1*x37
+    x35 = x11*x7
+    x36 = x14*x9
+    x37 = x8*x24
+    x38 = x3*x23
+    x39 = theta1_dot*delta_theta1_dot
+    x40 = (
+        delta_theta1*x35 + delta_theta2*x36 + delta_theta2*x37 + delta_theta3*(x38 - x37)
+        + 2.0*(l1*x3*x39 + l2*x8*x32) - delta_theta3*(x35 + x36 + g*cos_theta3)
+        - delta_theta1*x38
     )
-    x40 = x13*x16
-    x41 = x14*x5
-    x42 = x22*x27
-    x43 = x8*x29
-    x44 = (
-        delta_theta1*x40 + delta_theta3*x41 + delta_theta2*(x42 + x43)
-        + 2.0*(c6*x0*x38 - x8*x32) - delta_theta2*(x40 + x41 + c7*cos_theta2)
-        - delta_theta1*x42 - delta_theta3*x43
+    x41 = x17*x13
+    x42 = x14*x5
+    x43 = x23*x28
+    x44 = x8*x30
+    x45 = (
+        delta_theta1*x41 + delta_theta3*x42 + delta_theta2*(x43 + x44)
+        + 2.0*(c6*x0*x39 - x8*x33) - delta_theta2*(x41 + x42 + c7*cos_theta2)
+        - delta_theta1*x43 - delta_theta3*x44
     )
-    x45 = x44 - x39*x17
-    x46 = (x33 + x39*x12 + x15*x45/x19)/x21
-    x47 = (x45 + x15*x46)/x19
+    x46 = x45 - x40*x15
+    x47 = (x34 + x40*x12 + x46*x20)/x22
+    x48 = x19*(x46 + x18*x47)
     # outputs
     return (
         theta1_dot*cos_theta1,
@@ -1700,15 +1713,15 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        -c0*x22,
-        c8*x23,
-        c9*x24,
+        -c0*x23,
+        c8*x24,
+        c9*x25,
         delta_theta1_dot,
         delta_theta2_dot,
         delta_theta3_dot,
-        -c0*x46,
-        c8*x47,
-        c9*(x39 + x11*x46 - x14*x47),
+        -c0*x47,
+        c8*x48,
+        c9*(x40 + x11*x47 - x14*x48),
     )
 
 
@@ -1742,53 +1755,54 @@ def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
     x10 = x3*x7 + x8*x9 - g*sin_theta3
     x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
     x12 = m3*x11
-    x13 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x13 = c6*x6
     x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = c1*x13 - x14*x12
-    x16 = c6*x6
-    x17 = m3*x14
-    x18 = x0*x16 - x8*x5 - c7*sin_theta2 - x10*x17
-    x19 = m2 + m3*x8*x8
-    x20 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x15*x18/x19
-    x21 = c4 + m3*x3*x3 - x15*x15/x19
-    x22 = x20/x21
-    x23 = (x18 + x15*x22)/x19
-    x24 = x10 + x11*x22 - x14*x23
-    x25 = x13*x2
-    x26 = x11*x5
-    x27 = c1*x0
-    x28 = x23*x27
-    x29 = m3*x24
-    x30 = x3*x29
-    x31 = theta2_dot*delta_theta2_dot
-    x32 = delta_theta3_dot*x4
-    x33 = (
-        delta_theta1*(x25 + x26 + c5*cos_theta1) + delta_theta2*x28 + delta_theta3*x30
-        + 2.0*(c2*x0*x31 + x3*x32) - x25*delta_theta2 - x26*delta_theta3
-        - delta_theta1*(x28 + x30)
+    x15 = m3*x14
+    x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x17 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x18 = c1*x17 - x14*x12
+    x19 = 1.0/(m2 + m3*x8*x8)
+    x20 = x18*x19
+    x21 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x20
+    x22 = c4 + m3*x3*x3 - x18*x20
+    x23 = x21/x22
+    x24 = x19*(x16 + x18*x23)
+    x25 = x10 + x11*x23 - x14*x24
+    x26 = x17*x2
+    x27 = x11*x5
+    x28 = c1*x0
+    x29 = x24*x28
+    x30 = m3*x25
+    x31 = x3*x30
+    x32 = theta2_dot*delta_theta2_dot
+    x33 = delta_theta3_dot*x4
+    x34 = (
+        delta_theta1*(x26 + x27 + c5*cos_theta1) + delta_theta2*x29 + delta_theta3*x31
+        + 2.0*(c2*x0*x32 + x3*x33) - x26*delta_theta2 - x27*delta_theta3
+        - delta_theta1*(x29 + x31)
     )
-    x34 = x11*x7
-    x35 = x14*x9
-    x36 = x8*x23
-    x37 = x3*x22
-    x38 = theta1_dot*delta_theta1_dot
-    x39 = (
-        delta_theta1*x34 + delta_theta2*x35 + delta_theta2*x36 + delta_theta3*(x37 - x36)
-        + 2.0*(l1*x3*x38 + l2*x8*x31) - delta_theta3*(x34 + x35 + g*cos_theta3)
-        - delta_theta1*x37
+    x35 = x11*x7
+    x36 = x14*x9
+    x37 = x8*x24
+    x38 = x3*x23
+    x39 = theta1_dot*delta_theta1_dot
+    x40 = (
+        delta_theta1*x35 + delta_theta2*x36 + delta_theta2*x37 + delta_theta3*(x38 - x37)
+        + 2.0*(l1*x3*x39 + l2*x8*x32) - delta_theta3*(x35 + x36 + g*cos_theta3)
+        - delta_theta1*x38
     )
-    x40 = x13*x16
-    x41 = x14*x5
-    x42 = x22*x27
-    x43 = x8*x29
-    x44 = (
-        delta_theta1*x40 + delta_theta3*x41 + delta_theta2*(x42 + x43)
-        + 2.0*(c6*x0*x38 - x8*x32) - delta_theta2*(x40 + x41 + c7*cos_theta2)
-        - delta_theta1*x42 - delta_theta3*x43
+    x41 = x17*x13
+    x42 = x14*x5
+    x43 = x23*x28
+    x44 = x8*x30
+    x45 = (
+        delta_theta1*x41 + delta_theta3*x42 + delta_theta2*(x43 + x44)
+        + 2.0*(c6*x0*x39 - x8*x33) - delta_theta2*(x41 + x42 + c7*cos_theta2)
+        - delta_theta1*x43 - delta_theta3*x44
     )
-    x45 = x44 - x39*x17
-    x46 = (x33 + x39*x12 + x15*x45/x19)/x21
-    x47 = (x45 + x15*x46)/x19
+    x46 = x45 - x40*x15
+    x47 = (x34 + x40*x12 + x46*x20)/x22
+    x48 = x19*(x46 + x18*x47)
     # outputs
     return _stacked(
         (15,),
@@ -1799,15 +1813,15 @@ def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        -c0*x22,
-        c8*x23,
-        c9*x24,
+        -c0*x23,
+        c8*x24,
+        c9*x25,
         delta_theta1_dot,
         delta_theta2_dot,
         delta_theta3_dot,
-        -c0*x46,
-        c8*x47,
-        c9*(x39 + x11*x46 - x14*x47),
+        -c0*x47,
+        c8*x48,
+        c9*(x40 + x11*x47 - x14*x48),
     )
 
 

@@ -104,7 +104,7 @@ enum {
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
-   123 operations, 8 of them on parameters alone.
+   122 operations, 8 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void foucault_pendulum_rhs(
     foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
@@ -154,21 +154,21 @@ static inline void foucault_pendulum_rhs(
         x15*x18 + 0.5*c1*(2.0*cos_c2*y - sin_c2*(x9 - x1/x9)) + 2.0*x16*x7/x4 + x13*x18
         - x10*x3/x4 - y*(x2 - x1)*x5/x4 - y*(x2 - 2.0*x0)*x3/x4;
     const foucault_pendulum_real x20 = x19 + g*y/x9;
-    const foucault_pendulum_real x21 = m*(1.0 - x1/x2);
+    const foucault_pendulum_real x21 = m*(1.0/(m*(1.0 - x1/x2)));
     const foucault_pendulum_real x22 =
-        m*(x17 - g*x/x9 - m*x20*x6/(x2*x21))/(m*(1.0 - x0/x2 - m*y*x10/(x21*x4)));
+        m*(x17 - g*x/x9 - x20*x6*x21/x2)/(m*(1.0 - x0/x2 - y*x10*x21/x4));
     /* outputs */
     result[0] = x_dot;
     result[1] = y_dot;
     result[2] = x22;
-    result[3] = -m*(x20 - x22*x6/x2)/x21;
+    result[3] = -(x20 - x22*x6/x2)*x21;
     (void)t;
 }
 #endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs`.
-   393 operations, 10 of them on parameters alone.
+   387 operations, 10 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void foucault_pendulum_jacobian(
     foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
@@ -244,51 +244,48 @@ static inline void foucault_pendulum_jacobian(
         x_dot*x33 + 0.5*c2*(2.0*cos_c3*y - sin_c3*(x12 - x1/x12)) + 2.0*y*x27/x6 + x_dot*x32
         - x*x36/x6 - x8*x38/x6 - x5*x39/x6;
     const foucault_pendulum_real x41 = x40 + g*y/x12;
-    const foucault_pendulum_real x42 = m*x16;
-    const foucault_pendulum_real x43 = m*(1.0 - x1/x2);
-    const foucault_pendulum_real x44 = x2*x43;
-    const foucault_pendulum_real x45 = x43*x6;
-    const foucault_pendulum_real x46 = m*(1.0 - x0/x2 - x16*x42/x45);
-    const foucault_pendulum_real x47 = m*(x35 - g*x/x12 - x41*x42/x44)/x46;
-    const foucault_pendulum_real x48 = x47*x16;
-    const foucault_pendulum_real x49 = m*(x41 - x48/x2)/x43;
-    const foucault_pendulum_real x50 = x28 - g*(x0 + x13)/x19 + (2.0*x47*x29 - x49*x39)/x6;
-    const foucault_pendulum_real x51 = c1*x26;
-    const foucault_pendulum_real x52 = x1 + x13;
-    const foucault_pendulum_real x53 = c5*x*x52/x19;
-    const foucault_pendulum_real x54 = x_dot*y_dot;
-    const foucault_pendulum_real x55 =
-        (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x54/x7 - x25*x36/x7;
-    const foucault_pendulum_real x56 = g*x16/x19;
-    const foucault_pendulum_real x57 = x15*x51/x20 + 0.5*x53 + 2.0*x55 - x21*x51/x20 + x56;
-    const foucault_pendulum_real x58 = x57 - y*(x25*x47 + 2.0*x49*x16)/x6;
-    const foucault_pendulum_real x59 = m*(x50 - x58*x42/x44)/x46;
-    const foucault_pendulum_real x60 = x13*x52 + x0*(3.0*x1 + x13);
-    const foucault_pendulum_real x61 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13;
-    const foucault_pendulum_real x62 = -2.0*x10;
-    const foucault_pendulum_real x63 = x1 - 0.25*x2;
-    const foucault_pendulum_real x64 =
-        (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x62*x30/x7 - x0*(4.0*x63)*x54/x7;
-    const foucault_pendulum_real x65 =
-        x56 + (0.5*x53 + x60*x17/x20 + x61*x17/x20 + 2.0*x64);
-    const foucault_pendulum_real x66 = -4.0*x63;
-    const foucault_pendulum_real x67 = c1*x_dot;
-    const foucault_pendulum_real x68 =
-        x0*x66*x5/x7 + x61*x67/x20 + x37*x66*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
-        + x60*x67/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
-        - 4.0*x62*x27/x7;
-    const foucault_pendulum_real x69 = x68 - g*x52/x19 - (x47*x34 + 2.0*x49*x38)/x6;
-    const foucault_pendulum_real x70 = m*(x65 + x*(2.0*x48 - x11*x49)/x6 - x69*x42/x44)/x46;
-    const foucault_pendulum_real x71 = y_dot*x16;
-    const foucault_pendulum_real x72 = x*x26/x6 - y*x71/x6;
-    const foucault_pendulum_real x73 = x33 + x32;
-    const foucault_pendulum_real x74 = 2.0*(-(x_dot*x39/x6 + x72)) + x73;
-    const foucault_pendulum_real x75 = m*y;
-    const foucault_pendulum_real x76 = m*x*(2.0*(x_dot*x3 - x71) - x2*x74*x75/x43)/(x46*x6);
-    const foucault_pendulum_real x77 = y_dot*x37 - x26;
-    const foucault_pendulum_real x78 =
-        2.0*(-(y_dot*x34/x6 + x72)) + x73 + 2.0*y*x77*x42/(x6*x44);
-    const foucault_pendulum_real x79 = m*x78/x46;
+    const foucault_pendulum_real x42 = m*(1.0/(m*(1.0 - x1/x2)));
+    const foucault_pendulum_real x43 = x16*x42;
+    const foucault_pendulum_real x44 = m*(1.0 - x0/x2 - x16*x43/x6);
+    const foucault_pendulum_real x45 = m*(x35 - g*x/x12 - x41*x43/x2)/x44;
+    const foucault_pendulum_real x46 = x45*x16;
+    const foucault_pendulum_real x47 = (x41 - x46/x2)*x42;
+    const foucault_pendulum_real x48 = x28 - g*(x0 + x13)/x19 + (2.0*x45*x29 - x47*x39)/x6;
+    const foucault_pendulum_real x49 = c1*x26;
+    const foucault_pendulum_real x50 = x1 + x13;
+    const foucault_pendulum_real x51 = c5*x*x50/x19;
+    const foucault_pendulum_real x52 = x_dot*y_dot;
+    const foucault_pendulum_real x53 =
+        (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x52/x7 - x25*x36/x7;
+    const foucault_pendulum_real x54 = g*x16/x19;
+    const foucault_pendulum_real x55 = x15*x49/x20 + 0.5*x51 + 2.0*x53 - x21*x49/x20 + x54;
+    const foucault_pendulum_real x56 = x55 - y*(x25*x45 + 2.0*x47*x16)/x6;
+    const foucault_pendulum_real x57 = m*(x48 - x56*x43/x2)/x44;
+    const foucault_pendulum_real x58 = x13*x50 + x0*(3.0*x1 + x13);
+    const foucault_pendulum_real x59 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13;
+    const foucault_pendulum_real x60 = -2.0*x10;
+    const foucault_pendulum_real x61 = x1 - 0.25*x2;
+    const foucault_pendulum_real x62 =
+        (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x60*x30/x7 - x0*(4.0*x61)*x52/x7;
+    const foucault_pendulum_real x63 =
+        x54 + (0.5*x51 + x58*x17/x20 + x59*x17/x20 + 2.0*x62);
+    const foucault_pendulum_real x64 = -4.0*x61;
+    const foucault_pendulum_real x65 = c1*x_dot;
+    const foucault_pendulum_real x66 =
+        x0*x64*x5/x7 + x59*x65/x20 + x37*x64*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
+        + x58*x65/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
+        - 4.0*x60*x27/x7;
+    const foucault_pendulum_real x67 = x66 - g*x50/x19 - (x45*x34 + 2.0*x47*x38)/x6;
+    const foucault_pendulum_real x68 = m*(x63 + x*(2.0*x46 - x11*x47)/x6 - x67*x43/x2)/x44;
+    const foucault_pendulum_real x69 = y_dot*x16;
+    const foucault_pendulum_real x70 = x*x26/x6 - y*x69/x6;
+    const foucault_pendulum_real x71 = x33 + x32;
+    const foucault_pendulum_real x72 = 2.0*(-(x_dot*x39/x6 + x70)) + x71;
+    const foucault_pendulum_real x73 = y*x42;
+    const foucault_pendulum_real x74 = m*x*(2.0*(x_dot*x3 - x69) - x2*x72*x73)/(x6*x44);
+    const foucault_pendulum_real x75 = y_dot*x37 - x26;
+    const foucault_pendulum_real x76 = 2.0*(-(y_dot*x34/x6 + x70)) + x71 + 2.0*y*x75*x43/x7;
+    const foucault_pendulum_real x77 = m*x76/x44;
     /* outputs */
     result[0] = 0.0;
     result[1] = 0.0;
@@ -298,14 +295,14 @@ static inline void foucault_pendulum_jacobian(
     result[5] = 0.0;
     result[6] = 0.0;
     result[7] = 1.0;
-    result[8] = x59;
-    result[9] = -x70;
-    result[10] = x76;
-    result[11] = x79;
-    result[12] = -m*(x58 - x59*x16/x2)/x43;
-    result[13] = m*(x69 - x70*x16/x2)/x43;
-    result[14] = -m*(x74 - x76*x16/x2)/x43;
-    result[15] = (2.0*x77 + x*x2*x79)*x75/x45;
+    result[8] = x57;
+    result[9] = -x68;
+    result[10] = x74;
+    result[11] = x77;
+    result[12] = -(x56 - x57*x16/x2)*x42;
+    result[13] = (x67 - x68*x16/x2)*x42;
+    result[14] = -(x72 - x74*x16/x2)*x42;
+    result[15] = (2.0*x75 + x*x2*x77)*x73/x6;
     (void)t;
 }
 #endif
@@ -476,39 +473,39 @@ static inline void foucault_pendulum_rhs_hamiltonian(
     const foucault_pendulum_real x5 = cos_latitude*y;
     const foucault_pendulum_real x6 = sin_latitude - x5/x3;
     const foucault_pendulum_real x7 = p_y - c0*x*x6;
-    const foucault_pendulum_real x8 = x*y;
-    const foucault_pendulum_real x9 = m*x8;
-    const foucault_pendulum_real x10 = m*(1.0 - x1/x2);
-    const foucault_pendulum_real x11 = x2*x2;
-    const foucault_pendulum_real x12 =
-        (x4 + x7*x9/(x2*x10))/(m*(1.0 - x0/x2 - x8*x9/(x10*x11)));
-    const foucault_pendulum_real x13 = (x7 + x12*x9/x2)/x10;
-    const foucault_pendulum_real x14 = x*x12;
-    const foucault_pendulum_real x15 = x12*x14;
-    const foucault_pendulum_real x16 = y*x13;
-    const foucault_pendulum_real x17 = x3*x3;
-    const foucault_pendulum_real x18 = x3*x17;
-    const foucault_pendulum_real x19 = x13*x16;
-    const foucault_pendulum_real x20 =
-        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y/x3) + (x2 - x0)*x15/x11 + x12*(x2 - 2.0*x0)*x16/x11
-        - c5*(x17 - (x0 + 2.0*x17))*x14/x18 - x8*x19/x11
-        - Omega*x13*(x6 - cos_latitude*x*x8/x18);
+    const foucault_pendulum_real x8 = 1.0/(m*(1.0 - x1/x2));
+    const foucault_pendulum_real x9 = x*y;
+    const foucault_pendulum_real x10 = m*x9;
+    const foucault_pendulum_real x11 = x8*x10;
+    const foucault_pendulum_real x12 = x2*x2;
+    const foucault_pendulum_real x13 = (x4 + x7*x11/x2)/(m*(1.0 - x0/x2 - x9*x11/x12));
+    const foucault_pendulum_real x14 = x8*(x7 + x13*x10/x2);
+    const foucault_pendulum_real x15 = x*x13;
+    const foucault_pendulum_real x16 = x13*x15;
+    const foucault_pendulum_real x17 = y*x14;
+    const foucault_pendulum_real x18 = x3*x3;
+    const foucault_pendulum_real x19 = x3*x18;
+    const foucault_pendulum_real x20 = x14*x17;
     const foucault_pendulum_real x21 =
+        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y/x3) + (x2 - x0)*x16/x12 + x13*(x2 - 2.0*x0)*x17/x12
+        - c5*(x18 - (x0 + 2.0*x18))*x15/x19 - x9*x20/x12
+        - Omega*x14*(x6 - cos_latitude*x*x9/x19);
+    const foucault_pendulum_real x22 =
         g*y/x3 + 0.5*c2*(2.0*cos_c3*y - sin_c3*(x3 - x1/x3))
-        + Omega*x12*(sin_latitude - x5*(x17 - x0)/x18) + (x2 - x1)*x19/x11
-        + c5*x*x13*(x1 + x17)/x18 - x8*x15/x11 - x13*(2.0*x1 - x2)*x14/x11;
+        + Omega*x13*(sin_latitude - x5*(x18 - x0)/x19) + (x2 - x1)*x20/x12
+        + c5*x*x14*(x1 + x18)/x19 - x9*x16/x12 - x14*(2.0*x1 - x2)*x15/x12;
     /* outputs */
-    result[0] = x12;
-    result[1] = x13;
-    result[2] = -m*x20;
-    result[3] = -m*x21;
+    result[0] = x13;
+    result[1] = x14;
+    result[2] = -m*x21;
+    result[3] = -m*x22;
     (void)t;
 }
 #endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs_hamiltonian`.
-   396 operations, 11 of them on parameters alone.
+   395 operations, 11 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void foucault_pendulum_jacobian_hamiltonian(
     foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
@@ -546,17 +543,17 @@ static inline void foucault_pendulum_jacobian_hamiltonian(
     const foucault_pendulum_real x7 = sin_latitude - x6/x4;
     const foucault_pendulum_real x8 = p_y - c1*x*x7;
     const foucault_pendulum_real x9 = x*y;
-    const foucault_pendulum_real x10 = m*x9;
-    const foucault_pendulum_real x11 = m*(1.0 - x1/x2);
-    const foucault_pendulum_real x12 = x2*x11;
+    const foucault_pendulum_real x10 = 1.0/(m*(1.0 - x1/x2));
+    const foucault_pendulum_real x11 = m*x10;
+    const foucault_pendulum_real x12 = x9*x11;
     const foucault_pendulum_real x13 = x2*x2;
-    const foucault_pendulum_real x14 = m*(1.0 - x0/x2 - x10*x9/(x11*x13));
-    const foucault_pendulum_real x15 = (x5 + x8*x10/x12)/x14;
+    const foucault_pendulum_real x14 = m*(1.0 - x0/x2 - x12*x9/x13);
+    const foucault_pendulum_real x15 = (x5 + x8*x12/x2)/x14;
     const foucault_pendulum_real x16 = x*x15;
     const foucault_pendulum_real x17 = x3*x16;
     const foucault_pendulum_real x18 = x2 - 2.0*x0;
     const foucault_pendulum_real x19 = x15*x9;
-    const foucault_pendulum_real x20 = (x8 + m*x19/x2)/x11;
+    const foucault_pendulum_real x20 = x10*(x8 + m*x19/x2);
     const foucault_pendulum_real x21 = y*x20;
     const foucault_pendulum_real x22 = x18*x21;
     const foucault_pendulum_real x23 = x4*x4;
@@ -569,7 +566,7 @@ static inline void foucault_pendulum_jacobian_hamiltonian(
     const foucault_pendulum_real x30 = x*x9;
     const foucault_pendulum_real x31 = Omega*(x7 - cos_latitude*x30/x27);
     const foucault_pendulum_real x32 = y*(x28 - 2.0*x29)/x13 - x31;
-    const foucault_pendulum_real x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x10/x12)/x14;
+    const foucault_pendulum_real x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x12/x2)/x14;
     const foucault_pendulum_real x34 = x1 - 0.5*x2;
     const foucault_pendulum_real x35 = 2.0*x34;
     const foucault_pendulum_real x36 = x20*x35;
@@ -581,11 +578,11 @@ static inline void foucault_pendulum_jacobian_hamiltonian(
     const foucault_pendulum_real x42 = x1 + x23;
     const foucault_pendulum_real x43 = x42*x25;
     const foucault_pendulum_real x44 = (x39 - 2.0*x41)/x13 - x43/x27;
-    const foucault_pendulum_real x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x10/x12)/x14;
+    const foucault_pendulum_real x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x12/x2)/x14;
     const foucault_pendulum_real x46 = 1.0/x14;
-    const foucault_pendulum_real x47 = x10/(x14*x12);
-    const foucault_pendulum_real x48 = m*(x32 + x33*x9/x2)/x11;
-    const foucault_pendulum_real x49 = m*(x44 + x45*x9/x2)/x11;
+    const foucault_pendulum_real x47 = x12/(x2*x14);
+    const foucault_pendulum_real x48 = (x32 + x33*x9/x2)*x11;
+    const foucault_pendulum_real x49 = (x44 + x45*x9/x2)*x11;
     const foucault_pendulum_real x50 = sin_c4*y;
     const foucault_pendulum_real x51 = x2 - 4.0*x0;
     const foucault_pendulum_real x52 = x15*x15;
@@ -635,8 +632,8 @@ static inline void foucault_pendulum_jacobian_hamiltonian(
     result[3] = x47;
     result[4] = x48;
     result[5] = -x49;
-    result[6] = x46*x10/x12;
-    result[7] = (1.0 + x10*x47/x2)/x11;
+    result[6] = x46*x12/x2;
+    result[7] = x10*(1.0 + m*x47*x9/x2);
     result[8] = -m*x61;
     result[9] = -m*x69;
     result[10] = -x33;
@@ -651,7 +648,7 @@ static inline void foucault_pendulum_jacobian_hamiltonian(
 
 #ifndef HOLONOMIC_VECTOR
 /* Hamiltonian H(q, p): `energy` by momenta.
-   68 operations, 8 of them on parameters alone.
+   69 operations, 8 of them on parameters alone.
    Energy in J. */
 static inline void foucault_pendulum_energy_hamiltonian(
     const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
@@ -683,13 +680,13 @@ static inline void foucault_pendulum_energy_hamiltonian(
     const foucault_pendulum_real x4 = sqrt(-x3);
     const foucault_pendulum_real x5 = p_x + c0*(sin_latitude*y + cos_latitude*(x4 + x1/x4));
     const foucault_pendulum_real x6 = p_y - c0*x*(sin_latitude - cos_latitude*y/x4);
-    const foucault_pendulum_real x7 = x*(m*y);
-    const foucault_pendulum_real x8 = m*(1.0 - x0/x3);
-    const foucault_pendulum_real x9 = x3*x8;
-    const foucault_pendulum_real x10 = (x5 + x6*x7/x9)/(m*(1.0 - x1/x3 - y*x*x7/(x3*x9)));
+    const foucault_pendulum_real x7 = 1.0/(m*(1.0 - x0/x3));
+    const foucault_pendulum_real x8 = x*(m*y);
+    const foucault_pendulum_real x9 = x7*x8;
+    const foucault_pendulum_real x10 = (x5 + x6*x9/x3)/(m*(1.0 - x1/x3 - y*x*x9/(x3*x3)));
     const foucault_pendulum_real x11 = sin_c3*y*x4 + 0.5*(c1 + x1 - cos_c3*(2.0*x0 - x2));
     const foucault_pendulum_real x12 =
-        0.5*(x5*x10 + x6*((x6 + x10*x7/x3)/x8)) - m*(0.5*c2*x11 + g*x4);
+        0.5*(x5*x10 + x6*(x7*(x6 + x10*x8/x3))) - m*(0.5*c2*x11 + g*x4);
     /* outputs */
     result[0] = x12;
 }
@@ -697,7 +694,7 @@ static inline void foucault_pendulum_energy_hamiltonian(
 
 #ifndef HOLONOMIC_VECTOR
 /* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
-   44 operations, 4 of them on parameters alone.
+   45 operations, 4 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void foucault_pendulum_lagrangian_state(
     const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
@@ -723,22 +720,22 @@ static inline void foucault_pendulum_lagrangian_state(
     const foucault_pendulum_real x3 = sqrt(-x2);
     const foucault_pendulum_real x4 = p_x + c0*(sin_latitude*y + cos_latitude*(x3 + x0/x3));
     const foucault_pendulum_real x5 = p_y - c0*x*(sin_latitude - cos_latitude*y/x3);
-    const foucault_pendulum_real x6 = x*y;
-    const foucault_pendulum_real x7 = m*x6;
-    const foucault_pendulum_real x8 = m*(1.0 - x1/x2);
-    const foucault_pendulum_real x9 = x2*x8;
-    const foucault_pendulum_real x10 = (x4 + x5*x7/x9)/(m*(1.0 - x0/x2 - x6*x7/(x2*x9)));
+    const foucault_pendulum_real x6 = 1.0/(m*(1.0 - x1/x2));
+    const foucault_pendulum_real x7 = x*y;
+    const foucault_pendulum_real x8 = m*x7;
+    const foucault_pendulum_real x9 = x6*x8;
+    const foucault_pendulum_real x10 = (x4 + x5*x9/x2)/(m*(1.0 - x0/x2 - x7*x9/(x2*x2)));
     /* outputs */
     result[0] = x;
     result[1] = y;
     result[2] = x10;
-    result[3] = (x5 + x10*x7/x2)/x8;
+    result[3] = x6*(x5 + x10*x8/x2);
 }
 #endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
-   371 operations, 10 of them on parameters alone.
+   370 operations, 10 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void foucault_pendulum_rhs_variational(
     foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
@@ -805,66 +802,65 @@ static inline void foucault_pendulum_rhs_variational(
         x_dot*x23 + x13*x26/x6 + 0.5*c1*(2.0*cos_c2*y - sin_c2*(x8 - x2/x8)) + x0*x28/x6
         + 2.0*y*x12/x6 + x_dot*x21 - x*x29/x6;
     const foucault_pendulum_real x31 = x30 + g*y/x8;
-    const foucault_pendulum_real x32 = m*x10;
-    const foucault_pendulum_real x33 = m*(1.0 - x2/x3);
-    const foucault_pendulum_real x34 = x3*x33;
-    const foucault_pendulum_real x35 = m*(1.0 - x1/x3 - x10*x32/(x33*x6));
-    const foucault_pendulum_real x36 = m*(x24 + g*x/x8 + x31*x32/x34)/x35;
-    const foucault_pendulum_real x37 = x36*x10;
-    const foucault_pendulum_real x38 = m*(x31 + x37/x3)/x33;
-    const foucault_pendulum_real x39 = 4.0*x1 - x3;
-    const foucault_pendulum_real x40 = x3*x6;
-    const foucault_pendulum_real x41 = 4.0*x19 + 3.0*x22;
-    const foucault_pendulum_real x42 = c4*y_dot;
-    const foucault_pendulum_real x43 = x10*x42;
-    const foucault_pendulum_real x44 = x20*x19;
-    const foucault_pendulum_real x45 = x2*x39;
-    const foucault_pendulum_real x46 = x19 + (3.0*x1 + 2.0*x19);
-    const foucault_pendulum_real x47 =
-        x4*x39*x0/x40 + 4.0*x27*x12/x40 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x40
-        + x41*x43/x44 - x13*x45/x40 - x46*x43/x44 - 0.5*c1*(x9 + sin_c2*x18/x20);
-    const foucault_pendulum_real x48 = y_dot*x10;
-    const foucault_pendulum_real x49 = y*x48/x6 - x*x11/x6;
-    const foucault_pendulum_real x50 = x21 + x23;
-    const foucault_pendulum_real x51 = x2 + x19;
-    const foucault_pendulum_real x52 = x19*x51 + x1*(3.0*x2 + x19);
-    const foucault_pendulum_real x53 = c5*x*x51/x20;
-    const foucault_pendulum_real x54 = x_dot*y_dot;
-    const foucault_pendulum_real x55 = 4.0*x2 - x3;
-    const foucault_pendulum_real x56 = x1*x55;
-    const foucault_pendulum_real x57 =
-        x14*x16/x40 + (x3 - 2.0*x14)*x16/x40 - (x3 + 2.0*x4)*x29/x40 - x54*x56/x40;
-    const foucault_pendulum_real x58 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22;
-    const foucault_pendulum_real x59 = g*x10/x20;
-    const foucault_pendulum_real x60 = x52*x42/x44 + 0.5*x53 + 2.0*x57 - x58*x42/x44 + x59;
-    const foucault_pendulum_real x61 =
-        delta_x*(x47 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x49 - y_dot*x15/x6) + x50)
-        + delta_x*(2.0*x36*x5 + x38*x28)/x6 + x*delta_y*(2.0*x37 + x14*x38)/x6 - delta_y*x60
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x48)/x6;
-    const foucault_pendulum_real x62 = c4*x11;
+    const foucault_pendulum_real x32 = m*(1.0/(m*(1.0 - x2/x3)));
+    const foucault_pendulum_real x33 = x10*x32;
+    const foucault_pendulum_real x34 = m*(1.0 - x1/x3 - y*x32*x18/x6);
+    const foucault_pendulum_real x35 = m*(x24 + g*x/x8 + x31*x33/x3)/x34;
+    const foucault_pendulum_real x36 = x35*x10;
+    const foucault_pendulum_real x37 = (x31 + x36/x3)*x32;
+    const foucault_pendulum_real x38 = 4.0*x1 - x3;
+    const foucault_pendulum_real x39 = x3*x6;
+    const foucault_pendulum_real x40 = 4.0*x19 + 3.0*x22;
+    const foucault_pendulum_real x41 = c4*y_dot;
+    const foucault_pendulum_real x42 = x10*x41;
+    const foucault_pendulum_real x43 = x20*x19;
+    const foucault_pendulum_real x44 = x2*x38;
+    const foucault_pendulum_real x45 = x19 + (3.0*x1 + 2.0*x19);
+    const foucault_pendulum_real x46 =
+        x4*x38*x0/x39 + 4.0*x27*x12/x39 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x39
+        + x40*x42/x43 - x13*x44/x39 - x45*x42/x43 - 0.5*c1*(x9 + sin_c2*x18/x20);
+    const foucault_pendulum_real x47 = y_dot*x10;
+    const foucault_pendulum_real x48 = y*x47/x6 - x*x11/x6;
+    const foucault_pendulum_real x49 = x21 + x23;
+    const foucault_pendulum_real x50 = x2 + x19;
+    const foucault_pendulum_real x51 = x19*x50 + x1*(3.0*x2 + x19);
+    const foucault_pendulum_real x52 = c5*x*x50/x20;
+    const foucault_pendulum_real x53 = x_dot*y_dot;
+    const foucault_pendulum_real x54 = 4.0*x2 - x3;
+    const foucault_pendulum_real x55 = x1*x54;
+    const foucault_pendulum_real x56 =
+        x14*x16/x39 + (x3 - 2.0*x14)*x16/x39 - (x3 + 2.0*x4)*x29/x39 - x53*x55/x39;
+    const foucault_pendulum_real x57 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22;
+    const foucault_pendulum_real x58 = g*x10/x20;
+    const foucault_pendulum_real x59 = x51*x41/x43 + 0.5*x52 + 2.0*x56 - x57*x41/x43 + x58;
+    const foucault_pendulum_real x60 =
+        delta_x*(x46 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x48 - y_dot*x15/x6) + x49)
+        + delta_x*(2.0*x35*x5 + x37*x28)/x6 + x*delta_y*(2.0*x36 + x14*x37)/x6 - delta_y*x59
+        - 2.0*x*delta_x_dot*(x_dot*x4 + x47)/x6;
+    const foucault_pendulum_real x61 = c4*x11;
+    const foucault_pendulum_real x62 =
+        x27*x29/x39 + (x3 - 2.0*x27)*x29/x39 - (x3 + 2.0*x25)*x16/x39 - x53*x44/x39;
     const foucault_pendulum_real x63 =
-        x27*x29/x40 + (x3 - 2.0*x27)*x29/x40 - (x3 + 2.0*x25)*x16/x40 - x54*x45/x40;
-    const foucault_pendulum_real x64 =
-        x59 + (0.5*x53 + x41*x62/x44 + 2.0*x63 - x46*x62/x44);
-    const foucault_pendulum_real x65 = c4*x_dot;
-    const foucault_pendulum_real x66 =
-        x25*x55*x13/x40 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x40 + 4.0*x14*x12/x40
-        + x52*x65/x44 - x0*x56/x40 - x58*x65/x44
+        x58 + (0.5*x52 + x40*x61/x43 + 2.0*x62 - x45*x61/x43);
+    const foucault_pendulum_real x64 = c4*x_dot;
+    const foucault_pendulum_real x65 =
+        x25*x54*x13/x39 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x39 + 4.0*x14*x12/x39
+        + x51*x64/x43 - x0*x55/x39 - x57*x64/x43
         - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20);
-    const foucault_pendulum_real x67 =
-        delta_x*x64 + delta_x_dot*(2.0*(x_dot*x28/x6 + x49) + x50)
-        + 2.0*y*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x66 - g*x51/x20)
-        - y*delta_x*(x27*x36 + 2.0*x38*x10)/x6 - delta_y*(x36*x15 + 2.0*x38*x26)/x6;
-    const foucault_pendulum_real x68 = m*(x61 - x67*x32/x34)/x35;
+    const foucault_pendulum_real x66 =
+        delta_x*x63 + delta_x_dot*(2.0*(x_dot*x28/x6 + x48) + x49)
+        + 2.0*y*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x65 - g*x50/x20)
+        - y*delta_x*(x27*x35 + 2.0*x37*x10)/x6 - delta_y*(x35*x15 + 2.0*x37*x26)/x6;
+    const foucault_pendulum_real x67 = m*(x60 - x66*x33/x3)/x34;
     /* outputs */
     result[0] = x_dot;
     result[1] = y_dot;
-    result[2] = -x36;
-    result[3] = -x38;
+    result[2] = -x35;
+    result[3] = -x37;
     result[4] = delta_x_dot;
     result[5] = delta_y_dot;
-    result[6] = x68;
-    result[7] = -m*(x67 - x68*x10/x3)/x33;
+    result[6] = x67;
+    result[7] = -(x66 - x67*x10/x3)*x32;
     (void)t;
 }
 #endif

@@ -135,7 +135,7 @@ UNITS = {
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    123 operations, 8 of them on parameters alone.
+    122 operations, 8 of them on parameters alone.
 
     Parameters
     ----------
@@ -191,10 +191,10 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
         - x10*x3/x4 - y_*(x2 - x1)*x5/x4 - y_*(x2 - 2.0*x0)*x3/x4
     )
     x20 = x19 + g*y_/x9
-    x21 = m*(1.0 - x1/x2)
-    x22 = m*(x17 - g*x/x9 - m*x20*x6/(x2*x21))/(m*(1.0 - x0/x2 - m*y_*x10/(x21*x4)))
+    x21 = m*(1.0/(m*(1.0 - x1/x2)))
+    x22 = m*(x17 - g*x/x9 - x20*x6*x21/x2)/(m*(1.0 - x0/x2 - y_*x10*x21/x4))
     # outputs
-    return (x_dot, y_dot, x22, -m*(x20 - x22*x6/x2)/x21)
+    return (x_dot, y_dot, x22, -(x20 - x22*x6/x2)*x21)
 
 
 def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
@@ -241,16 +241,16 @@ def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
         - x10*x3/x4 - y_*(x2 - x1)*x5/x4 - y_*(x2 - 2.0*x0)*x3/x4
     )
     x20 = x19 + g*y_/x9
-    x21 = m*(1.0 - x1/x2)
-    x22 = m*(x17 - g*x/x9 - m*x20*x6/(x2*x21))/(m*(1.0 - x0/x2 - m*y_*x10/(x21*x4)))
+    x21 = m*(1.0/(m*(1.0 - x1/x2)))
+    x22 = m*(x17 - g*x/x9 - x20*x6*x21/x2)/(m*(1.0 - x0/x2 - y_*x10*x21/x4))
     # outputs
-    return _stacked((4,), y[0], x_dot, y_dot, x22, -m*(x20 - x22*x6/x2)/x21)
+    return _stacked((4,), y[0], x_dot, y_dot, x22, -(x20 - x22*x6/x2)*x21)
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    393 operations, 10 of them on parameters alone.
+    387 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -332,58 +332,56 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         + x_dot*x32 - x*x36/x6 - x8*x38/x6 - x5*x39/x6
     )
     x41 = x40 + g*y_/x12
-    x42 = m*x16
-    x43 = m*(1.0 - x1/x2)
-    x44 = x2*x43
-    x45 = x43*x6
-    x46 = m*(1.0 - x0/x2 - x16*x42/x45)
-    x47 = m*(x35 - g*x/x12 - x41*x42/x44)/x46
-    x48 = x47*x16
-    x49 = m*(x41 - x48/x2)/x43
-    x50 = x28 - g*(x0 + x13)/x19 + (2.0*x47*x29 - x49*x39)/x6
-    x51 = c1*x26
-    x52 = x1 + x13
-    x53 = c5*x*x52/x19
-    x54 = x_dot*y_dot
-    x55 = (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x54/x7 - x25*x36/x7
-    x56 = g*x16/x19
-    x57 = x15*x51/x20 + 0.5*x53 + 2.0*x55 - x21*x51/x20 + x56
-    x58 = x57 - y_*(x25*x47 + 2.0*x49*x16)/x6
-    x59 = m*(x50 - x58*x42/x44)/x46
-    x60 = x13*x52 + x0*(3.0*x1 + x13)
-    x61 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13
-    x62 = -2.0*x10
-    x63 = x1 - 0.25*x2
-    x64 = (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x62*x30/x7 - x0*(4.0*x63)*x54/x7
-    x65 = x56 + (0.5*x53 + x60*x17/x20 + x61*x17/x20 + 2.0*x64)
-    x66 = -4.0*x63
-    x67 = c1*x_dot
-    x68 = (
-        x0*x66*x5/x7 + x61*x67/x20 + x37*x66*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
-        + x60*x67/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
-        - 4.0*x62*x27/x7
+    x42 = m*(1.0/(m*(1.0 - x1/x2)))
+    x43 = x16*x42
+    x44 = m*(1.0 - x0/x2 - x16*x43/x6)
+    x45 = m*(x35 - g*x/x12 - x41*x43/x2)/x44
+    x46 = x45*x16
+    x47 = (x41 - x46/x2)*x42
+    x48 = x28 - g*(x0 + x13)/x19 + (2.0*x45*x29 - x47*x39)/x6
+    x49 = c1*x26
+    x50 = x1 + x13
+    x51 = c5*x*x50/x19
+    x52 = x_dot*y_dot
+    x53 = (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x52/x7 - x25*x36/x7
+    x54 = g*x16/x19
+    x55 = x15*x49/x20 + 0.5*x51 + 2.0*x53 - x21*x49/x20 + x54
+    x56 = x55 - y_*(x25*x45 + 2.0*x47*x16)/x6
+    x57 = m*(x48 - x56*x43/x2)/x44
+    x58 = x13*x50 + x0*(3.0*x1 + x13)
+    x59 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13
+    x60 = -2.0*x10
+    x61 = x1 - 0.25*x2
+    x62 = (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x60*x30/x7 - x0*(4.0*x61)*x52/x7
+    x63 = x54 + (0.5*x51 + x58*x17/x20 + x59*x17/x20 + 2.0*x62)
+    x64 = -4.0*x61
+    x65 = c1*x_dot
+    x66 = (
+        x0*x64*x5/x7 + x59*x65/x20 + x37*x64*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
+        + x58*x65/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
+        - 4.0*x60*x27/x7
     )
-    x69 = x68 - g*x52/x19 - (x47*x34 + 2.0*x49*x38)/x6
-    x70 = m*(x65 + x*(2.0*x48 - x11*x49)/x6 - x69*x42/x44)/x46
-    x71 = y_dot*x16
-    x72 = x*x26/x6 - y_*x71/x6
-    x73 = x33 + x32
-    x74 = 2.0*(-(x_dot*x39/x6 + x72)) + x73
-    x75 = m*y_
-    x76 = m*x*(2.0*(x_dot*x3 - x71) - x2*x74*x75/x43)/(x46*x6)
-    x77 = y_dot*x37 - x26
-    x78 = 2.0*(-(y_dot*x34/x6 + x72)) + x73 + 2.0*y_*x77*x42/(x6*x44)
-    x79 = m*x78/x46
+    x67 = x66 - g*x50/x19 - (x45*x34 + 2.0*x47*x38)/x6
+    x68 = m*(x63 + x*(2.0*x46 - x11*x47)/x6 - x67*x43/x2)/x44
+    x69 = y_dot*x16
+    x70 = x*x26/x6 - y_*x69/x6
+    x71 = x33 + x32
+    x72 = 2.0*(-(x_dot*x39/x6 + x70)) + x71
+    x73 = y_*x42
+    x74 = m*x*(2.0*(x_dot*x3 - x69) - x2*x72*x73)/(x6*x44)
+    x75 = y_dot*x37 - x26
+    x76 = 2.0*(-(y_dot*x34/x6 + x70)) + x71 + 2.0*y_*x75*x43/x7
+    x77 = m*x76/x44
     # outputs
     return (
         (0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 1.0),
-        (x59, -x70, x76, x79),
+        (x57, -x68, x74, x77),
         (
-            -m*(x58 - x59*x16/x2)/x43,
-            m*(x69 - x70*x16/x2)/x43,
-            -m*(x74 - x76*x16/x2)/x43,
-            (2.0*x77 + x*x2*x79)*x75/x45,
+            -(x56 - x57*x16/x2)*x42,
+            (x67 - x68*x16/x2)*x42,
+            -(x72 - x74*x16/x2)*x42,
+            (2.0*x75 + x*x2*x77)*x73/x6,
         ),
     )
 
@@ -458,48 +456,46 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
         + x_dot*x32 - x*x36/x6 - x8*x38/x6 - x5*x39/x6
     )
     x41 = x40 + g*y_/x12
-    x42 = m*x16
-    x43 = m*(1.0 - x1/x2)
-    x44 = x2*x43
-    x45 = x43*x6
-    x46 = m*(1.0 - x0/x2 - x16*x42/x45)
-    x47 = m*(x35 - g*x/x12 - x41*x42/x44)/x46
-    x48 = x47*x16
-    x49 = m*(x41 - x48/x2)/x43
-    x50 = x28 - g*(x0 + x13)/x19 + (2.0*x47*x29 - x49*x39)/x6
-    x51 = c1*x26
-    x52 = x1 + x13
-    x53 = c5*x*x52/x19
-    x54 = x_dot*y_dot
-    x55 = (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x54/x7 - x25*x36/x7
-    x56 = g*x16/x19
-    x57 = x15*x51/x20 + 0.5*x53 + 2.0*x55 - x21*x51/x20 + x56
-    x58 = x57 - y_*(x25*x47 + 2.0*x49*x16)/x6
-    x59 = m*(x50 - x58*x42/x44)/x46
-    x60 = x13*x52 + x0*(3.0*x1 + x13)
-    x61 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13
-    x62 = -2.0*x10
-    x63 = x1 - 0.25*x2
-    x64 = (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x62*x30/x7 - x0*(4.0*x63)*x54/x7
-    x65 = x56 + (0.5*x53 + x60*x17/x20 + x61*x17/x20 + 2.0*x64)
-    x66 = -4.0*x63
-    x67 = c1*x_dot
-    x68 = (
-        x0*x66*x5/x7 + x61*x67/x20 + x37*x66*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
-        + x60*x67/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
-        - 4.0*x62*x27/x7
+    x42 = m*(1.0/(m*(1.0 - x1/x2)))
+    x43 = x16*x42
+    x44 = m*(1.0 - x0/x2 - x16*x43/x6)
+    x45 = m*(x35 - g*x/x12 - x41*x43/x2)/x44
+    x46 = x45*x16
+    x47 = (x41 - x46/x2)*x42
+    x48 = x28 - g*(x0 + x13)/x19 + (2.0*x45*x29 - x47*x39)/x6
+    x49 = c1*x26
+    x50 = x1 + x13
+    x51 = c5*x*x50/x19
+    x52 = x_dot*y_dot
+    x53 = (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x52/x7 - x25*x36/x7
+    x54 = g*x16/x19
+    x55 = x15*x49/x20 + 0.5*x51 + 2.0*x53 - x21*x49/x20 + x54
+    x56 = x55 - y_*(x25*x45 + 2.0*x47*x16)/x6
+    x57 = m*(x48 - x56*x43/x2)/x44
+    x58 = x13*x50 + x0*(3.0*x1 + x13)
+    x59 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13
+    x60 = -2.0*x10
+    x61 = x1 - 0.25*x2
+    x62 = (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x60*x30/x7 - x0*(4.0*x61)*x52/x7
+    x63 = x54 + (0.5*x51 + x58*x17/x20 + x59*x17/x20 + 2.0*x62)
+    x64 = -4.0*x61
+    x65 = c1*x_dot
+    x66 = (
+        x0*x64*x5/x7 + x59*x65/x20 + x37*x64*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
+        + x58*x65/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
+        - 4.0*x60*x27/x7
     )
-    x69 = x68 - g*x52/x19 - (x47*x34 + 2.0*x49*x38)/x6
-    x70 = m*(x65 + x*(2.0*x48 - x11*x49)/x6 - x69*x42/x44)/x46
-    x71 = y_dot*x16
-    x72 = x*x26/x6 - y_*x71/x6
-    x73 = x33 + x32
-    x74 = 2.0*(-(x_dot*x39/x6 + x72)) + x73
-    x75 = m*y_
-    x76 = m*x*(2.0*(x_dot*x3 - x71) - x2*x74*x75/x43)/(x46*x6)
-    x77 = y_dot*x37 - x26
-    x78 = 2.0*(-(y_dot*x34/x6 + x72)) + x73 + 2.0*y_*x77*x42/(x6*x44)
-    x79 = m*x78/x46
+    x67 = x66 - g*x50/x19 - (x45*x34 + 2.0*x47*x38)/x6
+    x68 = m*(x63 + x*(2.0*x46 - x11*x47)/x6 - x67*x43/x2)/x44
+    x69 = y_dot*x16
+    x70 = x*x26/x6 - y_*x69/x6
+    x71 = x33 + x32
+    x72 = 2.0*(-(x_dot*x39/x6 + x70)) + x71
+    x73 = y_*x42
+    x74 = m*x*(2.0*(x_dot*x3 - x69) - x2*x72*x73)/(x6*x44)
+    x75 = y_dot*x37 - x26
+    x76 = 2.0*(-(y_dot*x34/x6 + x70)) + x71 + 2.0*y_*x75*x43/x7
+    x77 = m*x76/x44
     # outputs
     return _stacked(
         (4, 4),
@@ -512,14 +508,14 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         1.0,
-        x59,
-        -x70,
-        x76,
-        x79,
-        -m*(x58 - x59*x16/x2)/x43,
-        m*(x69 - x70*x16/x2)/x43,
-        -m*(x74 - x76*x16/x2)/x43,
-        (2.0*x77 + x*x2*x79)*x75/x45,
+        x57,
+        -x68,
+        x74,
+        x77,
+        -(x56 - x57*x16/x2)*x42,
+        (x67 - x68*x16/x2)*x42,
+        -(x72 - x74*x16/x2)*x42,
+        (2.0*x75 + x*x2*x77)*x73/x6,
     )
 
 
@@ -810,30 +806,31 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     x5 = cos_latitude*y_
     x6 = sin_latitude - x5/x3
     x7 = p_y - c0*x*x6
-    x8 = x*y_
-    x9 = m*x8
-    x10 = m*(1.0 - x1/x2)
-    x11 = x2*x2
-    x12 = (x4 + x7*x9/(x2*x10))/(m*(1.0 - x0/x2 - x8*x9/(x10*x11)))
-    x13 = (x7 + x12*x9/x2)/x10
-    x14 = x*x12
-    x15 = x12*x14
-    x16 = y_*x13
-    x17 = x3*x3
-    x18 = x3*x17
-    x19 = x13*x16
-    x20 = (
-        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y_/x3) + (x2 - x0)*x15/x11
-        + x12*(x2 - 2.0*x0)*x16/x11 - c5*(x17 - (x0 + 2.0*x17))*x14/x18 - x8*x19/x11
-        - Omega*x13*(x6 - cos_latitude*x*x8/x18)
-    )
+    x8 = 1.0/(m*(1.0 - x1/x2))
+    x9 = x*y_
+    x10 = m*x9
+    x11 = x8*x10
+    x12 = x2*x2
+    x13 = (x4 + x7*x11/x2)/(m*(1.0 - x0/x2 - x9*x11/x12))
+    x14 = x8*(x7 + x13*x10/x2)
+    x15 = x*x13
+    x16 = x13*x15
+    x17 = y_*x14
+    x18 = x3*x3
+    x19 = x3*x18
+    x20 = x14*x17
     x21 = (
+        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y_/x3) + (x2 - x0)*x16/x12
+        + x13*(x2 - 2.0*x0)*x17/x12 - c5*(x18 - (x0 + 2.0*x18))*x15/x19 - x9*x20/x12
+        - Omega*x14*(x6 - cos_latitude*x*x9/x19)
+    )
+    x22 = (
         g*y_/x3 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x3 - x1/x3))
-        + Omega*x12*(sin_latitude - x5*(x17 - x0)/x18) + (x2 - x1)*x19/x11
-        + c5*x*x13*(x1 + x17)/x18 - x8*x15/x11 - x13*(2.0*x1 - x2)*x14/x11
+        + Omega*x13*(sin_latitude - x5*(x18 - x0)/x19) + (x2 - x1)*x20/x12
+        + c5*x*x14*(x1 + x18)/x19 - x9*x16/x12 - x14*(2.0*x1 - x2)*x15/x12
     )
     # outputs
-    return (x12, x13, -m*x20, -m*x21)
+    return (x13, x14, -m*x21, -m*x22)
 
 
 def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
@@ -863,36 +860,37 @@ def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     x5 = cos_latitude*y_
     x6 = sin_latitude - x5/x3
     x7 = p_y - c0*x*x6
-    x8 = x*y_
-    x9 = m*x8
-    x10 = m*(1.0 - x1/x2)
-    x11 = x2*x2
-    x12 = (x4 + x7*x9/(x2*x10))/(m*(1.0 - x0/x2 - x8*x9/(x10*x11)))
-    x13 = (x7 + x12*x9/x2)/x10
-    x14 = x*x12
-    x15 = x12*x14
-    x16 = y_*x13
-    x17 = x3*x3
-    x18 = x3*x17
-    x19 = x13*x16
-    x20 = (
-        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y_/x3) + (x2 - x0)*x15/x11
-        + x12*(x2 - 2.0*x0)*x16/x11 - c5*(x17 - (x0 + 2.0*x17))*x14/x18 - x8*x19/x11
-        - Omega*x13*(x6 - cos_latitude*x*x8/x18)
-    )
+    x8 = 1.0/(m*(1.0 - x1/x2))
+    x9 = x*y_
+    x10 = m*x9
+    x11 = x8*x10
+    x12 = x2*x2
+    x13 = (x4 + x7*x11/x2)/(m*(1.0 - x0/x2 - x9*x11/x12))
+    x14 = x8*(x7 + x13*x10/x2)
+    x15 = x*x13
+    x16 = x13*x15
+    x17 = y_*x14
+    x18 = x3*x3
+    x19 = x3*x18
+    x20 = x14*x17
     x21 = (
+        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y_/x3) + (x2 - x0)*x16/x12
+        + x13*(x2 - 2.0*x0)*x17/x12 - c5*(x18 - (x0 + 2.0*x18))*x15/x19 - x9*x20/x12
+        - Omega*x14*(x6 - cos_latitude*x*x9/x19)
+    )
+    x22 = (
         g*y_/x3 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x3 - x1/x3))
-        + Omega*x12*(sin_latitude - x5*(x17 - x0)/x18) + (x2 - x1)*x19/x11
-        + c5*x*x13*(x1 + x17)/x18 - x8*x15/x11 - x13*(2.0*x1 - x2)*x14/x11
+        + Omega*x13*(sin_latitude - x5*(x18 - x0)/x19) + (x2 - x1)*x20/x12
+        + c5*x*x14*(x1 + x18)/x19 - x9*x16/x12 - x14*(2.0*x1 - x2)*x15/x12
     )
     # outputs
-    return _stacked((4,), y[0], x12, x13, -m*x20, -m*x21)
+    return _stacked((4,), y[0], x13, x14, -m*x21, -m*x22)
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    396 operations, 11 of them on parameters alone.
+    395 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -934,17 +932,17 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x7 = sin_latitude - x6/x4
     x8 = p_y - c1*x*x7
     x9 = x*y_
-    x10 = m*x9
-    x11 = m*(1.0 - x1/x2)
-    x12 = x2*x11
+    x10 = 1.0/(m*(1.0 - x1/x2))
+    x11 = m*x10
+    x12 = x9*x11
     x13 = x2*x2
-    x14 = m*(1.0 - x0/x2 - x10*x9/(x11*x13))
-    x15 = (x5 + x8*x10/x12)/x14
+    x14 = m*(1.0 - x0/x2 - x12*x9/x13)
+    x15 = (x5 + x8*x12/x2)/x14
     x16 = x*x15
     x17 = x3*x16
     x18 = x2 - 2.0*x0
     x19 = x15*x9
-    x20 = (x8 + m*x19/x2)/x11
+    x20 = x10*(x8 + m*x19/x2)
     x21 = y_*x20
     x22 = x18*x21
     x23 = x4*x4
@@ -957,7 +955,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x30 = x*x9
     x31 = Omega*(x7 - cos_latitude*x30/x27)
     x32 = y_*(x28 - 2.0*x29)/x13 - x31
-    x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x10/x12)/x14
+    x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x12/x2)/x14
     x34 = x1 - 0.5*x2
     x35 = 2.0*x34
     x36 = x20*x35
@@ -969,11 +967,11 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x42 = x1 + x23
     x43 = x42*x25
     x44 = (x39 - 2.0*x41)/x13 - x43/x27
-    x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x10/x12)/x14
+    x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x12/x2)/x14
     x46 = 1.0/x14
-    x47 = x10/(x14*x12)
-    x48 = m*(x32 + x33*x9/x2)/x11
-    x49 = m*(x44 + x45*x9/x2)/x11
+    x47 = x12/(x2*x14)
+    x48 = (x32 + x33*x9/x2)*x11
+    x49 = (x44 + x45*x9/x2)*x11
     x50 = sin_c4*y_
     x51 = x2 - 4.0*x0
     x52 = x15*x15
@@ -1021,7 +1019,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     # outputs
     return (
         (x33, -x45, x46, x47),
-        (x48, -x49, x46*x10/x12, (1.0 + x10*x47/x2)/x11),
+        (x48, -x49, x46*x12/x2, x10*(1.0 + m*x47*x9/x2)),
         (-m*x61, -m*x69, -x33, -x48),
         (-m*x72, -m*x76, x45, x49),
     )
@@ -1057,17 +1055,17 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     x7 = sin_latitude - x6/x4
     x8 = p_y - c1*x*x7
     x9 = x*y_
-    x10 = m*x9
-    x11 = m*(1.0 - x1/x2)
-    x12 = x2*x11
+    x10 = 1.0/(m*(1.0 - x1/x2))
+    x11 = m*x10
+    x12 = x9*x11
     x13 = x2*x2
-    x14 = m*(1.0 - x0/x2 - x10*x9/(x11*x13))
-    x15 = (x5 + x8*x10/x12)/x14
+    x14 = m*(1.0 - x0/x2 - x12*x9/x13)
+    x15 = (x5 + x8*x12/x2)/x14
     x16 = x*x15
     x17 = x3*x16
     x18 = x2 - 2.0*x0
     x19 = x15*x9
-    x20 = (x8 + m*x19/x2)/x11
+    x20 = x10*(x8 + m*x19/x2)
     x21 = y_*x20
     x22 = x18*x21
     x23 = x4*x4
@@ -1080,7 +1078,7 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     x30 = x*x9
     x31 = Omega*(x7 - cos_latitude*x30/x27)
     x32 = y_*(x28 - 2.0*x29)/x13 - x31
-    x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x10/x12)/x14
+    x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x12/x2)/x14
     x34 = x1 - 0.5*x2
     x35 = 2.0*x34
     x36 = x20*x35
@@ -1092,11 +1090,11 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     x42 = x1 + x23
     x43 = x42*x25
     x44 = (x39 - 2.0*x41)/x13 - x43/x27
-    x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x10/x12)/x14
+    x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x12/x2)/x14
     x46 = 1.0/x14
-    x47 = x10/(x14*x12)
-    x48 = m*(x32 + x33*x9/x2)/x11
-    x49 = m*(x44 + x45*x9/x2)/x11
+    x47 = x12/(x2*x14)
+    x48 = (x32 + x33*x9/x2)*x11
+    x49 = (x44 + x45*x9/x2)*x11
     x50 = sin_c4*y_
     x51 = x2 - 4.0*x0
     x52 = x15*x15
@@ -1151,8 +1149,8 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
         x47,
         x48,
         -x49,
-        x46*x10/x12,
-        (1.0 + x10*x47/x2)/x11,
+        x46*x12/x2,
+        x10*(1.0 + m*x47*x9/x2),
         -m*x61,
         -m*x69,
         -x33,
@@ -1167,7 +1165,7 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
 def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
-    68 operations, 8 of them on parameters alone.
+    69 operations, 8 of them on parameters alone.
 
     Parameters
     ----------
@@ -1201,12 +1199,12 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     x4 = sqrt(-x3)
     x5 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x4 + x1/x4))
     x6 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x4)
-    x7 = x*(m*y_)
-    x8 = m*(1.0 - x0/x3)
-    x9 = x3*x8
-    x10 = (x5 + x6*x7/x9)/(m*(1.0 - x1/x3 - y_*x*x7/(x3*x9)))
+    x7 = 1.0/(m*(1.0 - x0/x3))
+    x8 = x*(m*y_)
+    x9 = x7*x8
+    x10 = (x5 + x6*x9/x3)/(m*(1.0 - x1/x3 - y_*x*x9/(x3*x3)))
     x11 = sin_c3*y_*x4 + 0.5*(c1 + x1 - cos_c3*(2.0*x0 - x2))
-    x12 = 0.5*(x5*x10 + x6*((x6 + x10*x7/x3)/x8)) - m*(0.5*c2*x11 + g*x4)
+    x12 = 0.5*(x5*x10 + x6*(x7*(x6 + x10*x8/x3))) - m*(0.5*c2*x11 + g*x4)
     # outputs
     return x12
 
@@ -1235,12 +1233,12 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     x4 = sqrt(-x3)
     x5 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x4 + x1/x4))
     x6 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x4)
-    x7 = x*(m*y_)
-    x8 = m*(1.0 - x0/x3)
-    x9 = x3*x8
-    x10 = (x5 + x6*x7/x9)/(m*(1.0 - x1/x3 - y_*x*x7/(x3*x9)))
+    x7 = 1.0/(m*(1.0 - x0/x3))
+    x8 = x*(m*y_)
+    x9 = x7*x8
+    x10 = (x5 + x6*x9/x3)/(m*(1.0 - x1/x3 - y_*x*x9/(x3*x3)))
     x11 = sin_c3*y_*x4 + 0.5*(c1 + x1 - cos_c3*(2.0*x0 - x2))
-    x12 = 0.5*(x5*x10 + x6*((x6 + x10*x7/x3)/x8)) - m*(0.5*c2*x11 + g*x4)
+    x12 = 0.5*(x5*x10 + x6*(x7*(x6 + x10*x8/x3))) - m*(0.5*c2*x11 + g*x4)
     # outputs
     return x12
 
@@ -1248,7 +1246,7 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
 def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
-    44 operations, 4 of them on parameters alone.
+    45 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
@@ -1277,13 +1275,13 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     x3 = sqrt(-x2)
     x4 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x3 + x0/x3))
     x5 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x3)
-    x6 = x*y_
-    x7 = m*x6
-    x8 = m*(1.0 - x1/x2)
-    x9 = x2*x8
-    x10 = (x4 + x5*x7/x9)/(m*(1.0 - x0/x2 - x6*x7/(x2*x9)))
+    x6 = 1.0/(m*(1.0 - x1/x2))
+    x7 = x*y_
+    x8 = m*x7
+    x9 = x6*x8
+    x10 = (x4 + x5*x9/x2)/(m*(1.0 - x0/x2 - x7*x9/(x2*x2)))
     # outputs
-    return (x, y_, x10, (x5 + x10*x7/x2)/x8)
+    return (x, y_, x10, x6*(x5 + x10*x8/x2))
 
 
 def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
@@ -1305,19 +1303,19 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     x3 = sqrt(-x2)
     x4 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x3 + x0/x3))
     x5 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x3)
-    x6 = x*y_
-    x7 = m*x6
-    x8 = m*(1.0 - x1/x2)
-    x9 = x2*x8
-    x10 = (x4 + x5*x7/x9)/(m*(1.0 - x0/x2 - x6*x7/(x2*x9)))
+    x6 = 1.0/(m*(1.0 - x1/x2))
+    x7 = x*y_
+    x8 = m*x7
+    x9 = x6*x8
+    x10 = (x4 + x5*x9/x2)/(m*(1.0 - x0/x2 - x7*x9/(x2*x2)))
     # outputs
-    return _stacked((4,), y[0], x, y_, x10, (x5 + x10*x7/x2)/x8)
+    return _stacked((4,), y[0], x, y_, x10, x6*(x5 + x10*x8/x2))
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
 
-    371 operations, 10 of them on parameters alone.
+    370 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -1387,68 +1385,67 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
         + 2.0*y_*x12/x6 + x_dot*x21 - x*x29/x6
     )
     x31 = x30 + g*y_/x8
-    x32 = m*x10
-    x33 = m*(1.0 - x2/x3)
-    x34 = x3*x33
-    x35 = m*(1.0 - x1/x3 - x10*x32/(x33*x6))
-    x36 = m*(x24 + g*x/x8 + x31*x32/x34)/x35
-    x37 = x36*x10
-    x38 = m*(x31 + x37/x3)/x33
-    x39 = 4.0*x1 - x3
-    x40 = x3*x6
-    x41 = 4.0*x19 + 3.0*x22
-    x42 = c4*y_dot
-    x43 = x10*x42
-    x44 = x20*x19
-    x45 = x2*x39
-    x46 = x19 + (3.0*x1 + 2.0*x19)
-    x47 = (
-        x4*x39*x0/x40 + 4.0*x27*x12/x40 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x40
-        + x41*x43/x44 - x13*x45/x40 - x46*x43/x44 - 0.5*c1*(x9 + sin_c2*x18/x20)
+    x32 = m*(1.0/(m*(1.0 - x2/x3)))
+    x33 = x10*x32
+    x34 = m*(1.0 - x1/x3 - y_*x32*x18/x6)
+    x35 = m*(x24 + g*x/x8 + x31*x33/x3)/x34
+    x36 = x35*x10
+    x37 = (x31 + x36/x3)*x32
+    x38 = 4.0*x1 - x3
+    x39 = x3*x6
+    x40 = 4.0*x19 + 3.0*x22
+    x41 = c4*y_dot
+    x42 = x10*x41
+    x43 = x20*x19
+    x44 = x2*x38
+    x45 = x19 + (3.0*x1 + 2.0*x19)
+    x46 = (
+        x4*x38*x0/x39 + 4.0*x27*x12/x39 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x39
+        + x40*x42/x43 - x13*x44/x39 - x45*x42/x43 - 0.5*c1*(x9 + sin_c2*x18/x20)
     )
-    x48 = y_dot*x10
-    x49 = y_*x48/x6 - x*x11/x6
-    x50 = x21 + x23
-    x51 = x2 + x19
-    x52 = x19*x51 + x1*(3.0*x2 + x19)
-    x53 = c5*x*x51/x20
-    x54 = x_dot*y_dot
-    x55 = 4.0*x2 - x3
-    x56 = x1*x55
-    x57 = x14*x16/x40 + (x3 - 2.0*x14)*x16/x40 - (x3 + 2.0*x4)*x29/x40 - x54*x56/x40
-    x58 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
-    x59 = g*x10/x20
-    x60 = x52*x42/x44 + 0.5*x53 + 2.0*x57 - x58*x42/x44 + x59
-    x61 = (
-        delta_x*(x47 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x49 - y_dot*x15/x6) + x50)
-        + delta_x*(2.0*x36*x5 + x38*x28)/x6 + x*delta_y*(2.0*x37 + x14*x38)/x6 - delta_y*x60
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x48)/x6
+    x47 = y_dot*x10
+    x48 = y_*x47/x6 - x*x11/x6
+    x49 = x21 + x23
+    x50 = x2 + x19
+    x51 = x19*x50 + x1*(3.0*x2 + x19)
+    x52 = c5*x*x50/x20
+    x53 = x_dot*y_dot
+    x54 = 4.0*x2 - x3
+    x55 = x1*x54
+    x56 = x14*x16/x39 + (x3 - 2.0*x14)*x16/x39 - (x3 + 2.0*x4)*x29/x39 - x53*x55/x39
+    x57 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
+    x58 = g*x10/x20
+    x59 = x51*x41/x43 + 0.5*x52 + 2.0*x56 - x57*x41/x43 + x58
+    x60 = (
+        delta_x*(x46 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x48 - y_dot*x15/x6) + x49)
+        + delta_x*(2.0*x35*x5 + x37*x28)/x6 + x*delta_y*(2.0*x36 + x14*x37)/x6 - delta_y*x59
+        - 2.0*x*delta_x_dot*(x_dot*x4 + x47)/x6
     )
-    x62 = c4*x11
-    x63 = x27*x29/x40 + (x3 - 2.0*x27)*x29/x40 - (x3 + 2.0*x25)*x16/x40 - x54*x45/x40
-    x64 = x59 + (0.5*x53 + x41*x62/x44 + 2.0*x63 - x46*x62/x44)
-    x65 = c4*x_dot
-    x66 = (
-        x25*x55*x13/x40 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x40 + 4.0*x14*x12/x40
-        + x52*x65/x44 - x0*x56/x40 - x58*x65/x44
+    x61 = c4*x11
+    x62 = x27*x29/x39 + (x3 - 2.0*x27)*x29/x39 - (x3 + 2.0*x25)*x16/x39 - x53*x44/x39
+    x63 = x58 + (0.5*x52 + x40*x61/x43 + 2.0*x62 - x45*x61/x43)
+    x64 = c4*x_dot
+    x65 = (
+        x25*x54*x13/x39 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x39 + 4.0*x14*x12/x39
+        + x51*x64/x43 - x0*x55/x39 - x57*x64/x43
         - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20)
     )
-    x67 = (
-        delta_x*x64 + delta_x_dot*(2.0*(x_dot*x28/x6 + x49) + x50)
-        + 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x66 - g*x51/x20)
-        - y_*delta_x*(x27*x36 + 2.0*x38*x10)/x6 - delta_y*(x36*x15 + 2.0*x38*x26)/x6
+    x66 = (
+        delta_x*x63 + delta_x_dot*(2.0*(x_dot*x28/x6 + x48) + x49)
+        + 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x65 - g*x50/x20)
+        - y_*delta_x*(x27*x35 + 2.0*x37*x10)/x6 - delta_y*(x35*x15 + 2.0*x37*x26)/x6
     )
-    x68 = m*(x61 - x67*x32/x34)/x35
+    x67 = m*(x60 - x66*x33/x3)/x34
     # outputs
     return (
         x_dot,
         y_dot,
-        -x36,
-        -x38,
+        -x35,
+        -x37,
         delta_x_dot,
         delta_y_dot,
-        x68,
-        -m*(x67 - x68*x10/x3)/x33,
+        x67,
+        -(x66 - x67*x10/x3)*x32,
     )
 
 
@@ -1509,70 +1506,69 @@ def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
         + 2.0*y_*x12/x6 + x_dot*x21 - x*x29/x6
     )
     x31 = x30 + g*y_/x8
-    x32 = m*x10
-    x33 = m*(1.0 - x2/x3)
-    x34 = x3*x33
-    x35 = m*(1.0 - x1/x3 - x10*x32/(x33*x6))
-    x36 = m*(x24 + g*x/x8 + x31*x32/x34)/x35
-    x37 = x36*x10
-    x38 = m*(x31 + x37/x3)/x33
-    x39 = 4.0*x1 - x3
-    x40 = x3*x6
-    x41 = 4.0*x19 + 3.0*x22
-    x42 = c4*y_dot
-    x43 = x10*x42
-    x44 = x20*x19
-    x45 = x2*x39
-    x46 = x19 + (3.0*x1 + 2.0*x19)
-    x47 = (
-        x4*x39*x0/x40 + 4.0*x27*x12/x40 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x40
-        + x41*x43/x44 - x13*x45/x40 - x46*x43/x44 - 0.5*c1*(x9 + sin_c2*x18/x20)
+    x32 = m*(1.0/(m*(1.0 - x2/x3)))
+    x33 = x10*x32
+    x34 = m*(1.0 - x1/x3 - y_*x32*x18/x6)
+    x35 = m*(x24 + g*x/x8 + x31*x33/x3)/x34
+    x36 = x35*x10
+    x37 = (x31 + x36/x3)*x32
+    x38 = 4.0*x1 - x3
+    x39 = x3*x6
+    x40 = 4.0*x19 + 3.0*x22
+    x41 = c4*y_dot
+    x42 = x10*x41
+    x43 = x20*x19
+    x44 = x2*x38
+    x45 = x19 + (3.0*x1 + 2.0*x19)
+    x46 = (
+        x4*x38*x0/x39 + 4.0*x27*x12/x39 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x39
+        + x40*x42/x43 - x13*x44/x39 - x45*x42/x43 - 0.5*c1*(x9 + sin_c2*x18/x20)
     )
-    x48 = y_dot*x10
-    x49 = y_*x48/x6 - x*x11/x6
-    x50 = x21 + x23
-    x51 = x2 + x19
-    x52 = x19*x51 + x1*(3.0*x2 + x19)
-    x53 = c5*x*x51/x20
-    x54 = x_dot*y_dot
-    x55 = 4.0*x2 - x3
-    x56 = x1*x55
-    x57 = x14*x16/x40 + (x3 - 2.0*x14)*x16/x40 - (x3 + 2.0*x4)*x29/x40 - x54*x56/x40
-    x58 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
-    x59 = g*x10/x20
-    x60 = x52*x42/x44 + 0.5*x53 + 2.0*x57 - x58*x42/x44 + x59
-    x61 = (
-        delta_x*(x47 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x49 - y_dot*x15/x6) + x50)
-        + delta_x*(2.0*x36*x5 + x38*x28)/x6 + x*delta_y*(2.0*x37 + x14*x38)/x6 - delta_y*x60
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x48)/x6
+    x47 = y_dot*x10
+    x48 = y_*x47/x6 - x*x11/x6
+    x49 = x21 + x23
+    x50 = x2 + x19
+    x51 = x19*x50 + x1*(3.0*x2 + x19)
+    x52 = c5*x*x50/x20
+    x53 = x_dot*y_dot
+    x54 = 4.0*x2 - x3
+    x55 = x1*x54
+    x56 = x14*x16/x39 + (x3 - 2.0*x14)*x16/x39 - (x3 + 2.0*x4)*x29/x39 - x53*x55/x39
+    x57 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
+    x58 = g*x10/x20
+    x59 = x51*x41/x43 + 0.5*x52 + 2.0*x56 - x57*x41/x43 + x58
+    x60 = (
+        delta_x*(x46 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x48 - y_dot*x15/x6) + x49)
+        + delta_x*(2.0*x35*x5 + x37*x28)/x6 + x*delta_y*(2.0*x36 + x14*x37)/x6 - delta_y*x59
+        - 2.0*x*delta_x_dot*(x_dot*x4 + x47)/x6
     )
-    x62 = c4*x11
-    x63 = x27*x29/x40 + (x3 - 2.0*x27)*x29/x40 - (x3 + 2.0*x25)*x16/x40 - x54*x45/x40
-    x64 = x59 + (0.5*x53 + x41*x62/x44 + 2.0*x63 - x46*x62/x44)
-    x65 = c4*x_dot
-    x66 = (
-        x25*x55*x13/x40 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x40 + 4.0*x14*x12/x40
-        + x52*x65/x44 - x0*x56/x40 - x58*x65/x44
+    x61 = c4*x11
+    x62 = x27*x29/x39 + (x3 - 2.0*x27)*x29/x39 - (x3 + 2.0*x25)*x16/x39 - x53*x44/x39
+    x63 = x58 + (0.5*x52 + x40*x61/x43 + 2.0*x62 - x45*x61/x43)
+    x64 = c4*x_dot
+    x65 = (
+        x25*x54*x13/x39 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x39 + 4.0*x14*x12/x39
+        + x51*x64/x43 - x0*x55/x39 - x57*x64/x43
         - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20)
     )
-    x67 = (
-        delta_x*x64 + delta_x_dot*(2.0*(x_dot*x28/x6 + x49) + x50)
-        + 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x66 - g*x51/x20)
-        - y_*delta_x*(x27*x36 + 2.0*x38*x10)/x6 - delta_y*(x36*x15 + 2.0*x38*x26)/x6
+    x66 = (
+        delta_x*x63 + delta_x_dot*(2.0*(x_dot*x28/x6 + x48) + x49)
+        + 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x65 - g*x50/x20)
+        - y_*delta_x*(x27*x35 + 2.0*x37*x10)/x6 - delta_y*(x35*x15 + 2.0*x37*x26)/x6
     )
-    x68 = m*(x61 - x67*x32/x34)/x35
+    x67 = m*(x60 - x66*x33/x3)/x34
     # outputs
     return _stacked(
         (8,),
         y[0],
         x_dot,
         y_dot,
-        -x36,
-        -x38,
+        -x35,
+        -x37,
         delta_x_dot,
         delta_y_dot,
-        x68,
-        -m*(x67 - x68*x10/x3)/x33,
+        x67,
+        -(x66 - x67*x10/x3)*x32,
     )
 
 

@@ -343,8 +343,8 @@ def generator_text() -> str:
 def _bench(argv: Sequence[str]) -> int:
     import sympy
 
-    import generated.double_pendulum as module
     from derive import Derivation, load
+    from derive.timing import chain, lagranges_method
     from solvers.bench.table import main as bench
 
     def lambdified() -> Callable[..., Any]:
@@ -359,7 +359,7 @@ def _bench(argv: Sequence[str]) -> int:
             raise OSError("heyoka is not installed: pip install -e '.[bench]'")
         return found
 
-    return bench(argv, module, lambdified, heyoka)
+    return bench(argv, generated_module, lambdified, heyoka, chain, lagranges_method)
 
 
 COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {

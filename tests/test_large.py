@@ -10,6 +10,8 @@ from derive import Derivation, load
 from derive.factorisation import LARGE
 from derive.functions import contents
 from derive.python import module as text_of
+from derive.timing import chain as chain_in_c
+from solvers.bench import calls
 from solvers.cli import generated_module
 from solvers.ensemble import ensemble
 from solvers.forms import Form
@@ -82,9 +84,20 @@ def test_loops_are_compiled_for_one_motion_and_for_lanes(chain: ModuleType) -> N
 
 
 def test_texts_grow_no_faster_than_the_square() -> None:
-    sizes = {}
-    for n in (12, 24):
-        made = contents(Derivation(load(f"chain_{n}")))
-        assert {f.name for f in made.functions} >= {"rhs", "jacobian", "rhs_variational", "linear"}
+    names, sizes = ("rhs", "rhs_rational", "rhs_hamiltonian", "jacobian", "energy"), {}
+    for n in (LARGE, 2 * LARGE):
+        made = contents(Derivation(load(f"chain_{n}")), names)
+        assert {f.name for f in made.functions} == {*names}
         sizes[n] = len(text_of(made))
-    assert sizes[24] < 4 * sizes[12]
+    assert sizes[2 * LARGE] < 4 * sizes[LARGE]
+
+
+def test_a_textbook_s_chain_in_c_is_ours() -> None:
+    for n in (5, LARGE):
+        header = chain_in_c(n)[-1]
+        ours, theirs, lanes = calls.single(header, n), calls.textbook(n), calls.lanes(header, n)
+        for run in (ours, theirs, lanes):
+            run.turns = 1
+            run()
+        assert_allclose(ours.rates, theirs.rates, rtol=1e-11)
+        assert np.abs(lanes.rates).max() > 0.1

@@ -40,6 +40,24 @@ def double_pendulum(hy: Any) -> dict[str, list[tuple[Any, Any]]]:
     }
 
 
+def chain(hy: Any, n: int) -> tuple[list[Any], list[Any], list[tuple[Any, Any]]]:
+    """Angles, velocities and equations of n pendulums, from heyoka's own Lagrangian.
+
+    Parameters are masses, lengths and g, as in the generated chain.
+    """
+    q = hy.make_vars(*(f"theta{k}" for k in range(n)))
+    rates = hy.make_vars(*(f"omega{k}" for k in range(n)))
+    m, lengths, g = [hy.par[k] for k in range(n)], [hy.par[n + k] for k in range(n)], hy.par[2 * n]
+    vx = [length * hy.cos(a) * v for length, a, v in zip(lengths, q, rates, strict=True)]
+    vy = [length * hy.sin(a) * v for length, a, v in zip(lengths, q, rates, strict=True)]
+    down = [length * hy.cos(a) for length, a in zip(lengths, q, strict=True)]
+    kinetic = hy.sum([
+        0.5 * m[k] * (hy.sum(vx[: k + 1]) ** 2 + hy.sum(vy[: k + 1]) ** 2) for k in range(n)
+    ])  # fmt: skip
+    depth = hy.sum([m[k] * g * hy.sum(down[: k + 1]) for k in range(n)])
+    return list(q), list(rates), hy.lagrangian(kinetic + depth, list(q), list(rates))
+
+
 def generated(hy: Any, module: ModuleType) -> list[tuple[Any, Any]]:
     """A module's rational equations for heyoka: the generated function, called with symbols."""
     state = hy.make_vars(*module.STATE_RATIONAL)
@@ -48,9 +66,14 @@ def generated(hy: Any, module: ModuleType) -> list[tuple[Any, Any]]:
 
 
 def single(hy: Any, equations: Any, start: Sequence[float], params: Sequence[float], end: float,
-           tol: float) -> Callable[[], Array]:  # fmt: skip
-    """A function that integrates one motion from `start` and returns its state at `end`."""
-    integrator = hy.taylor_adaptive(equations, list(start), tol=tol, pars=list(params))
+           tol: float, *, compact: bool = False) -> Callable[[], Array]:  # fmt: skip
+    """A function that integrates one motion from `start` and returns its state at `end`.
+
+    In `compact` mode, which large systems need, since else they compile for minutes.
+    """
+    integrator = hy.taylor_adaptive(
+        equations, list(start), tol=tol, pars=list(params), compact_mode=compact
+    )
 
     def run() -> Array:
         integrator.time = 0.0

@@ -6,20 +6,27 @@ import argparse
 import json
 import platform
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from solvers.bench import curves, rates
+from solvers.bench import chains_told, curves, rates
+from solvers.bench.growth import Maker, drawn
+from solvers.pictures import save
 
+#: What can be timed.
+PARTS = ("pendulum", "chains")
 #: Global errors at which both sides are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 
 
 def main(
     argv: Sequence[str],
-    module: ModuleType,
+    module: Callable[[str], ModuleType],
     lambdify: Callable[[], Any],
     heyoka: Callable[[], ModuleType],
+    made: Maker,
+    rival: Callable[[int], float],
 ) -> int:
     """Measure and print.
 
@@ -27,22 +34,43 @@ def main(
     ----------
     argv : sequence of str
         Options.
-    module : module
-        The generated double pendulum.
+    module : callable
+        Gives the generated module of a system.
     lambdify, heyoka : callable
-        Give SymPy's function for the same right-hand side, and the peer's package.
+        Give SymPy's function for the double pendulum's right-hand side, and the peer's package.
+    made, rival : callable
+        Derive a chain of pendulums here, and with SymPy's own mechanics.
     """
     parser = argparse.ArgumentParser(
         prog="holonomic bench",
         description="Time compiled loops beside other programs, at equal global error. "
-        "Leave the machine alone meanwhile: it takes about two minutes.",
-        epilog="example:\n  holonomic bench --json > figures.json",
+        "Leave the machine alone meanwhile: it takes about five minutes.",
+        epilog="examples:\n  holonomic bench --json > figures.json\n  holonomic bench chains",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--json", action="store_true", help="print figures for programs")
-    as_json = parser.parse_args(argv).json
-    found = figures(module, lambdify(), heyoka())
-    print(json.dumps(found, indent=2) if as_json else text(found), end="\n" * as_json)
+    parser.add_argument(
+        "--output", type=Path, default=Path("out"), metavar="DIR",
+        help="folder for the picture of growth (default: out)",
+    )  # fmt: skip
+    parser.add_argument(
+        "parts", nargs="*", choices=[*PARTS, []], metavar="PART",
+        help=f"what to time, {' or '.join(PARTS)}; both",
+    )  # fmt: skip
+    arguments = parser.parse_args(argv)
+    hy, found = heyoka(), {}
+    if "pendulum" in (arguments.parts or PARTS):
+        found["pendulum"] = figures(module("double_pendulum"), lambdify(), hy)
+        if not arguments.json:
+            print(text(found["pendulum"]))
+    if "chains" in (arguments.parts or PARTS):
+        found["chains"] = chains_told.figures(made, rival, module, hy)
+        save(drawn(found["chains"]["growth"]), arguments.output / "growth.png")
+        if not arguments.json:
+            print(*chains_told.told(found["chains"]), sep="\n")
+            print(f"picture: {arguments.output / 'growth.png'}")
+    if arguments.json:
+        print(json.dumps(found, indent=2))
     return 0
 
 
