@@ -15,7 +15,7 @@ from derive.system import System
 MOMENTUM_UNIT = {"rad": "J s", "m": "kg m/s"}
 
 #: With more coordinates than this, equations fill pages.
-READABLE = 5
+READABLE = 4
 
 STATES: dict[Form, str] = {
     "lagrangian": "State y = (q, qdot)",

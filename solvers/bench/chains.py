@@ -40,10 +40,9 @@ def right_hand_sides(made: Maker, hy: Any) -> list[dict[str, float]]:
     """Seconds of a call, of one state and of many, beside a textbook's C and heyoka's function."""
     rows = []
     for n in CALLED:
-        header = made(n)[-1]
         runs: dict[str, Calls | Evaluations] = {
-            "one": single(header, n), "textbook": textbook(n),
-            "lanes": lanes(header, n), "heyoka": Evaluations(hy, n),
+            "one": single(made(n)[-1], n), "textbook": textbook(n),
+            "lanes": lanes(made(n, "_rational")[-1], n), "heyoka": Evaluations(hy, n),
         }  # fmt: skip
         found = timed(runs, 1.0)
         rows.append({"n": n} | {name: found[name] / runs[name].count for name in runs})

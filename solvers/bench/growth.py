@@ -14,8 +14,9 @@ from solvers.bench.curves import timed
 #: Numbers of pendulums.
 SIZES = (2, 3, 5, 8, 10, 15, 20, 30, 50)
 
-#: Takes n; gives seconds to derive and to emit a chain, its Python text and its C header.
-Maker = Callable[[int], tuple[float, float, str, str]]
+#: Takes n and, if it is not Lagrange's, the suffix of a form; gives seconds to derive and to
+#: emit a chain, its Python text and its C header.
+Maker = Callable[..., tuple[float, float, str, str]]
 
 #: What is drawn, and how it is called.
 CURVES = {"derive": "derivation", "emit": "emission", "compile": "compilation", "call": "one call"}
@@ -28,7 +29,7 @@ def growth(made: Maker) -> list[dict[str, float]]:
     for n in SIZES:
         derive, emit, _, header = made(n)
         begin = time.perf_counter()
-        run = single(header, n)
+        run = single(f"{header}/* {time.perf_counter_ns()} */", n)  # nothing from the cache
         compiled = time.perf_counter() - begin
         rows.append({
             "n": n, "derive": derive, "emit": emit, "compile": compiled,
@@ -54,11 +55,12 @@ def drawn(rows: Sequence[dict[str, float]]) -> Figure:
     sizes, powers = [row["n"] for row in rows], exponents(rows)
     for marker, (key, name) in zip("osD^", CURVES.items(), strict=True):
         seconds = [row[key] for row in rows]
-        panel.loglog(sizes, seconds, f"{marker}-", markersize=4, linewidth=1, label=name)
-        panel.annotate(f"  n^{powers[key]:.1f}", (sizes[-1], seconds[-1]), va="center")
+        panel.loglog(
+            sizes, seconds, f"{marker}-", markersize=4, linewidth=1,
+            label=f"{name}, $n^{{{powers[key]:.1f}}}$",
+        )  # fmt: skip
     panel.set(xlabel="pendulums in the chain", ylabel="time / s", title="Growth with size")
     panel.set_xticks(sizes, [f"{n:.0f}" for n in sizes])
     panel.set_xticks([], minor=True)
-    panel.margins(x=0.12)
     panel.legend(frameon=False)
     return figure
