@@ -283,12 +283,16 @@ class Derivation:
             When a force is left at that place, or their number is wrong; when time, drag or
             a rotation of the frame leaves more than masses and springs.
         """
-        return linearised(self, self._place(equilibrium))
+        return linearised(
+            self.system, self.mass_matrix, self.effective_potential, self.drift,
+            self._place(equilibrium),
+        )  # fmt: skip
 
     @cached_property
     def is_sprung(self) -> bool:
         """Whether small motions are those of masses and springs alone."""
-        return not any(beyond_springs(self).values())
+        parts = self.mass_matrix, self.effective_potential, self.drift
+        return not any(beyond_springs(self.system, *parts).values())
 
     @cached_property
     def rest(self) -> tuple[sp.Expr, ...] | None:
@@ -301,7 +305,7 @@ class Derivation:
         """
         place = self._place(None)
         try:
-            resting(self, place)
+            resting(self.system, self.effective_potential, self.drift, place)
         except SystemDefinitionError:
             if self.system.equilibrium is not None:
                 raise

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import sympy as sp
 
 from derive.parts import SystemDefinitionError
 from derive.symbols import TIME
-
-if TYPE_CHECKING:
-    from derive.derivation import Derivation
+from derive.system import System
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
 
@@ -33,7 +31,10 @@ class Linearisation:
     stiffness_matrix: Matrix
 
 
-def linearised(derivation: Derivation, equilibrium: tuple[sp.Expr, ...]) -> Linearisation:
+def linearised(
+    system: System, mass_matrix: Matrix, potential: sp.Expr, drift: Matrix,
+    equilibrium: tuple[sp.Expr, ...],
+) -> Linearisation:  # fmt: skip
     """Mass and stiffness matrix at `equilibrium`.
 
     Raises
@@ -42,20 +43,21 @@ def linearised(derivation: Derivation, equilibrium: tuple[sp.Expr, ...]) -> Line
         When a force is left there, or the number of coordinates is wrong; when small motions
         are more than masses and springs.
     """
-    at_rest = resting(derivation, equilibrium)
-    system = derivation.system
-    for what, holds in beyond_springs(derivation).items():
+    at_rest = resting(system, potential, drift, equilibrium)
+    for what, holds in beyond_springs(system, mass_matrix, potential, drift).items():
         if holds:
             raise SystemDefinitionError(
                 f"small motions of {system.name!r} {what}: they are more than masses and springs; "
                 "take eigenvalues of the generated jacobian instead"
             )
-    gradient = [derivation.effective_potential.diff(q) for q in system.q]
+    gradient = [potential.diff(q) for q in system.q]
     stiffness = Matrix([[slope.diff(q) for q in system.q] for slope in gradient])
-    return Linearisation(equilibrium, derivation.mass_matrix.subs(at_rest), stiffness.subs(at_rest))
+    return Linearisation(equilibrium, mass_matrix.subs(at_rest), stiffness.subs(at_rest))
 
 
-def resting(derivation: Derivation, equilibrium: tuple[sp.Expr, ...]) -> dict[sp.Symbol, sp.Expr]:
+def resting(
+    system: System, potential: sp.Expr, drift: Matrix, equilibrium: tuple[sp.Expr, ...]
+) -> dict[sp.Symbol, sp.Expr]:
     """Coordinates by symbol, after seeing that what is there stays there.
 
     Raises
@@ -63,7 +65,6 @@ def resting(derivation: Derivation, equilibrium: tuple[sp.Expr, ...]) -> dict[sp
     SystemDefinitionError
         When a force is left there, or the number of coordinates is wrong.
     """
-    system = derivation.system
     if len(equilibrium) != len(system.q):
         raise SystemDefinitionError(
             f"an equilibrium of {system.name!r} has {len(system.q)} coordinates "
@@ -72,7 +73,7 @@ def resting(derivation: Derivation, equilibrium: tuple[sp.Expr, ...]) -> dict[sp
     at_rest = dict(zip(system.q, equilibrium, strict=True))
     still = dict.fromkeys(system.qdot, 0)
     for i, q in enumerate(system.q):
-        slope = derivation.effective_potential.diff(q) + derivation.drift[i].diff(TIME)
+        slope = potential.diff(q) + drift[i].diff(TIME)
         force = sp.simplify((system.applied[i].subs(still) - slope).subs(at_rest))
         if force != 0:
             raise SystemDefinitionError(
@@ -82,11 +83,13 @@ def resting(derivation: Derivation, equilibrium: tuple[sp.Expr, ...]) -> dict[sp
     return at_rest
 
 
-def beyond_springs(derivation: Derivation) -> dict[str, bool]:
+def beyond_springs(
+    system: System, mass_matrix: Matrix, potential: sp.Expr, drift: Matrix
+) -> dict[str, bool]:
     """What small motions may have beside masses and springs, and whether they have it."""
-    turning = derivation.drift.jacobian(derivation.system.q)
+    turning = drift.jacobian(system.q)
     return {
-        "depend on time": derivation.lagrangian.has(TIME),
-        "have applied forces": any(derivation.system.applied),
+        "depend on time": any(part.has(TIME) for part in (mass_matrix, potential, drift)),
+        "have applied forces": any(system.applied),
         "are turned by a moving frame": not (turning - turning.T).is_zero_matrix,
     }

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from solvers.bench.calls import single
 from solvers.bench.curves import timed
+from solvers.pictures import COLOURS
 
 #: Numbers of pendulums.
 SIZES = (2, 3, 5, 8, 10, 15, 20, 30, 50)
@@ -53,10 +54,10 @@ def drawn(rows: Sequence[dict[str, float]]) -> Figure:
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     panel = figure.subplots()
     sizes, powers = [row["n"] for row in rows], exponents(rows)
-    for marker, (key, name) in zip("osD^", CURVES.items(), strict=True):
+    for marker, colour, (key, name) in zip("osD^", COLOURS, CURVES.items(), strict=False):
         seconds = [row[key] for row in rows]
         panel.loglog(
-            sizes, seconds, f"{marker}-", markersize=4, linewidth=1,
+            sizes, seconds, f"{marker}-", color=colour, markersize=4, linewidth=1,
             label=f"{name}, $n^{{{powers[key]:.1f}}}$",
         )  # fmt: skip
     panel.set(xlabel="pendulums in the chain", ylabel="time / s", title="Growth with size")
