@@ -6,7 +6,7 @@ The way of the data, one module a station::
     positions  SymPy values  one graph    operations  names, texts   module    files
 
 ``system`` holds positions and masses, ``derivation`` the textbook steps,
-``mechanics`` says how each function is computed, ``graph`` shares what is
+``mechanics`` and the two forms say how each function is computed, ``graph`` shares what is
 equal, ``lowering`` orders the operations, ``python`` lays out the module, and
 ``tree`` puts it in its place.
 """

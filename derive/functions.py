@@ -12,6 +12,8 @@ from derive.assignments import Assignments, assignments
 from derive.derivation import Derivation
 from derive.factorisation import LARGE
 from derive.graph import Node
+from derive.hamiltonian_form import HamiltonianForm
+from derive.lagrangian_form import LagrangianForm
 from derive.lowering import Lowering
 from derive.mechanics import Mechanics
 from derive.rational import opened
@@ -202,7 +204,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
                 form,
                 states.get(form, ()),
                 tuple(sizes[word] for word in shape.split()),
-                Lowering(_nodes(derivation, name), parameters),
+                Lowering(_nodes(derivation, name, form), parameters),
             )
             for name, form, shape, summary, returns in TABLE
             if (only is None or name in only)
@@ -212,10 +214,10 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     )
 
 
-def _nodes(derivation: Derivation, name: str) -> list[Node]:
+def _nodes(derivation: Derivation, name: str, form: Form) -> list[Node]:
     """The outputs of a function, with as few calls as may be."""
-    mechanics = Mechanics(derivation)
-    return opened(getattr(mechanics, name), [q.name for q in derivation.system.q])
+    of_form = HamiltonianForm if form == "hamiltonian" else LagrangianForm
+    return opened(getattr(of_form(derivation), name), [q.name for q in derivation.system.q])
 
 
 def _said(text: str, derivation: Derivation) -> str:

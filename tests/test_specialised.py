@@ -15,7 +15,7 @@ import generated.single_pendulum as sp
 from derive import Derivation, load
 from derive.assignments import number
 from derive.functions import body, contents
-from derive.mechanics import Mechanics
+from derive.lagrangian_form import LagrangianForm
 from derive.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.specialisation import specialised as folded
 from derive.system import System
@@ -90,7 +90,7 @@ def test_a_force_that_is_a_number_is_one_even_where_masses_have_a_common_factor(
         masses=[PointMass(m, (y * 0, y))],
     )
     special = folded(falling, {"m": 4.0, "g": 9.81})
-    (rate, acceleration) = Mechanics(Derivation(special)).rhs
+    (rate, acceleration) = LagrangianForm(Derivation(special)).rhs
     assert acceleration.is_number(Fraction(-981, 100))
     assert not rate.is_number(0)
 
