@@ -230,7 +230,9 @@ class Graph:
             rest.append((node, coefficient / content))
         rest.sort(key=lambda item: item[0].rank)
         primitive = self._intern("sum", tuple(rest))
-        return self._scale(self._monomial({**common, primitive: 1}), content)
+        # the sum that is left may be one of the common factors
+        powers = {**common, primitive: common.get(primitive, 0) + 1}
+        return self._scale(self._monomial(powers), content)
 
     def _pythagoras(self, terms: dict[Node, Fraction]) -> dict[Node, Fraction]:
         """Replace ``a - a*cos(x)**2`` by ``a*sin(x)**2``, and with sine and cosine exchanged."""

@@ -17,7 +17,12 @@ RESERVED = {
     *"auto char const default do double enum extern float goto inline int long register".split(),
     *"restrict short signed sizeof static struct switch typedef union unsigned void".split(),
     *"volatile NULL NAN INFINITY sin cos tan exp log sqrt pi".split(),
-    *"t params state result numpy math".split(),
+    *"t params state result numpy math hasattr".split(),
+    # words of C++, and macros that compilers may define
+    *"asm bool catch class delete dynamic_cast explicit export friend mutable namespace".split(),
+    *"new operator private protected public template this throw typeid typename using".split(),
+    *"virtual wchar_t constexpr nullptr decltype noexcept static_assert thread_local".split(),
+    *"alignas alignof true false linux unix HUGE_VAL HUGE_VALF HUGE_VALL M_PI M_E EOF".split(),
 }
 
 
@@ -29,7 +34,7 @@ def check_name(name: str, system: str) -> None:
     SystemDefinitionError
         With what is allowed.
     """
-    if not IDENTIFIER.match(name) or name in RESERVED:
+    if not IDENTIFIER.match(name) or name in (*RESERVED, f"{system}_real"):
         raise SystemDefinitionError(
             f"{name[:50]!r} cannot be a name in system {system[:50]!r}: use a letter "
             "and then up to 39 letters, digits or underscores, and no word that Python, "
@@ -50,5 +55,6 @@ def check_unique(names: Iterable[str], system: str) -> None:
     if twice:
         raise SystemDefinitionError(
             f"system {system!r} uses a name twice: {', '.join(twice)} (velocities are "
-            "named q_dot, accelerations q_ddot, momenta p_q, small changes delta_q)"
+            "named q_dot, accelerations q_ddot, momenta p_q, small changes delta_q, sines and "
+            "cosines sin_q and cos_q)"
         )

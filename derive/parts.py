@@ -64,6 +64,11 @@ class PointMass:
     def __post_init__(self) -> None:
         object.__setattr__(self, "mass", formula(self.mass))
         object.__setattr__(self, "position", tuple(map(formula, self.position)))
+        if self.mass.is_nonpositive:
+            raise SystemDefinitionError(
+                f"mass {self.mass} is not positive: give a number or a positive symbol, or leave "
+                "out what has no mass"
+            )
 
     @property
     def motions(self) -> tuple[tuple[sp.Expr, tuple[sp.Expr, ...]], ...]:
@@ -90,6 +95,8 @@ class RigidBody(PointMass):
         super().__post_init__()
         object.__setattr__(self, "inertia", formula(self.inertia))
         object.__setattr__(self, "angle", formula(self.angle))
+        if self.inertia.is_negative:
+            raise SystemDefinitionError(f"moment of inertia {self.inertia} is negative")
         if len(self.position) != 2:
             raise SystemDefinitionError(
                 f"the body of mass {self.mass} has a position of {len(self.position)} components: "

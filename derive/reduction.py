@@ -10,16 +10,19 @@ near a = 0.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import prod
 
 import sympy as sp
 
 Wave = tuple[bool, sp.Expr]  # (is a sine, argument)
 HALF = sp.Rational(1, 2)
+#: Terms of an expression that is expanded; beyond it shorter forms are not looked for.
+LARGEST = 5000
 
 
 def reduced(expression: sp.Expr) -> sp.Expr:
     """The form of `expression` with the fewest operations, of those described above."""
-    if not expression.has(sp.sin, sp.cos):
+    if not expression.has(sp.sin, sp.cos) or _expanded_size(expression, {}) > LARGEST:
         return expression
     waves = harmonics(expression)
     candidates = [waves, expression]
@@ -29,12 +32,33 @@ def reduced(expression: sp.Expr) -> sp.Expr:
 
 
 def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
-    """`expression` expanded, one term for each distinct part that depends on `variables`."""
+    """`expression` expanded, one term for each distinct part that depends on `variables`.
+
+    As it is, if that were too many terms.
+    """
+    if _expanded_size(expression, {}) > LARGEST:
+        return expression
     coefficients: dict[sp.Expr, sp.Expr] = {}
     for term in sp.Add.make_args(sp.expand(expression)):
         coefficient, dependent = term.as_independent(*variables, as_Add=False)
         coefficients[dependent] = coefficients.get(dependent, sp.S.Zero) + coefficient
     return sp.Add(*(sp.factor_terms(c) * dependent for dependent, c in coefficients.items()))
+
+
+def _expanded_size(expression: sp.Expr, known: dict[sp.Expr, int]) -> int:
+    """How many terms the expression has when it is expanded, a sine of many as one; bounded."""
+    if expression not in known:
+        sizes = [_expanded_size(part, known) for part in expression.args]
+        if expression.is_Add:
+            size = sum(sizes)
+        elif expression.is_Mul:
+            size = prod(sizes)
+        elif expression.is_Pow and expression.exp.is_Integer and expression.exp > 0:
+            size = min(sizes[0], LARGEST + 1) ** min(int(expression.exp), 100)
+        else:
+            size = max(sizes, default=1)
+        known[expression] = min(size, LARGEST + 1)
+    return known[expression]
 
 
 def harmonics(expression: sp.Expr) -> sp.Expr:

@@ -155,7 +155,8 @@ class System:
         for name in [self.name, *declared]:
             check_name(name, self.name)
         derived = self.qdot + self.qddot + self.p + self.variations
-        check_unique([*declared, *(s.name for s in derived)], self.name)
+        waves = (f"{wave}_{q.name}" for q in self.q for wave in ("sin", "cos"))
+        check_unique([*declared, *(s.name for s in derived), *waves], self.name)
 
     def _check_counts(self) -> None:
         if len({len(mass.position) for mass in self.masses}) > 1 or not 2 <= self.dimension <= 3:
@@ -192,6 +193,11 @@ class System:
                     f"{', '.join(sorted(s.name for s in known))}; declare them as coordinates or "
                     "parameters (a symbol of the same name with other assumptions is another one)"
                 )
+        if self.dissipation and not self.dissipation.free_symbols & {*self.qdot}:
+            raise SystemDefinitionError(
+                f"the dissipation of system {self.name!r} is {self.dissipation}, without a "
+                "velocity: it is Rayleigh's function, such as c*theta_dot**2/2"
+            )
         if self.reactions and any(self.applied):
             raise SystemDefinitionError(
                 f"system {self.name!r} asks for reactions beside forces that no potential gives: "

@@ -10,7 +10,7 @@ from typing import Any
 import sympy as sp
 
 from derive.expression import FUNCTIONS, ExpressionError, parsed
-from derive.naming import check_name
+from derive.naming import IDENTIFIER, check_name
 from derive.parts import Coordinate, Parameter, PointMass, RigidBody, SystemDefinitionError
 from derive.symbols import TIME, velocity
 from derive.system import System
@@ -43,6 +43,11 @@ def read_system(path: Path) -> System:
 
 def _system(stem: str, table: Table) -> System:
     name = table.text("name", stem)
+    if not IDENTIFIER.match(name):
+        raise TableError(f'{name[:50]!r} cannot be the system\'s name: give another, name = "…"')
+    for key in ("coordinates", "masses"):
+        if key not in table.values:
+            raise TableError(f"{key!r} is missing: a system needs coordinates and masses")
     coordinates = [
         Coordinate(
             _symbol(key, name, positive=row.flag("positive", default=False)),
@@ -61,7 +66,10 @@ def _system(stem: str, table: Table) -> System:
         check_name(key, name)
         if key in scope:
             raise TableError(f"definitions.{key}: that name is taken")
-        scope[key] = _value(f"definitions.{key}", text, scope)
+        try:
+            scope[key] = _value(f"definitions.{key}", text, scope)
+        except TableError as error:
+            raise TableError(f"{error}; a definition may use those above it") from error
 
     def optional(key: str) -> sp.Expr | None:
         return _value(key, table.formula(key), scope) if key in table.values else None
@@ -105,7 +113,10 @@ def _masses(table: Table, scope: Mapping[str, Any]) -> Iterator[PointMass]:
 
 def _parameter(key: str, system: str, row: Table) -> Parameter:
     unit = row.text("unit", "1")
-    value = float(_value(row.name, row.formula("value"), FUNCTIONS))
+    try:
+        value = float(_value(row.name, row.formula("value"), FUNCTIONS))
+    except TableError as error:
+        raise TableError(f"{error}; value is a number, its unit stands in unit = …") from error
     is_positive = row.flag("positive", default=unit in POSITIVE_UNITS)
     if not isfinite(value) or (is_positive and value <= 0):
         raise TableError(

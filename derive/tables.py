@@ -25,6 +25,8 @@ def read(path: Path) -> dict[str, Any]:
         When it cannot be read, is too large, or is no TOML.
     """
     try:
+        if path.exists() and not path.is_file():
+            raise TableError(f"{path} is no file")
         if path.stat().st_size > LARGEST:
             raise TableError(f"{path} has more than {LARGEST} bytes")
         return tomllib.loads(path.read_bytes().decode())

@@ -20,7 +20,7 @@ def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str
     return {f"{name}.py": module(generated), f"{name}.h": header(generated)}
 
 
-def write(system: System, folder: str | PathLike[str]) -> None:
+def write(system: System, folder: str | PathLike[str]) -> Path:
     """Write the module and the C header of a system; either is there whole or not at all.
 
     Parameters
@@ -31,9 +31,15 @@ def write(system: System, folder: str | PathLike[str]) -> None:
         Where to, made if it is missing; ``import`` finds the module where it is on Python's
         path.
 
+    Returns
+    -------
+    Path
+        The module.
+
     Raises
     ------
     SystemDefinitionError
         When a coordinate moves no mass, or moves the masses only as others do.
     """
     Tree(Path(folder), texts(Derivation(system)), complete=False).write()
+    return Path(folder) / f"{system.name}.py"

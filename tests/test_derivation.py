@@ -224,6 +224,12 @@ mass = sp.Symbol("mass", positive=True)
         ({"parameters": [Parameter(mass, "kg", 1.0, "mass")]}, "no parameter named 'g'"),
         ({"potential": "x**2"}, "'x\\*\\*2' is no formula"),
         ({"equilibrium": (True,)}, "'True' is no formula"),
+        (
+            {"coordinates": [Coordinate(x, "m", ""), Coordinate(sp.Symbol("sin_x"), "m", "")]},
+            "uses a name twice: sin_x",
+        ),
+        ({"name": "hasattr"}, "'hasattr' cannot be"),
+        ({"coordinates": [Coordinate(sp.Symbol("thing_real"), "m", "")]}, "cannot be a name"),
     ],
 )
 def test_a_system_that_cannot_be_derived_is_refused(

@@ -179,3 +179,16 @@ def test_equal_terms_and_factors_under_names_of_their_own_are_brought_together()
     ]
     found = evaluated(Lowering(outputs, ()), {"p": 2.0, "q": 3.0})
     assert found == [5.0, 0.0, 2.0, 3.0, 1.0]
+
+
+@pytest.mark.parametrize("expression", [
+    (a + b) * a + (a + b) * b,
+    (a - b) * a * c - (a - b) * b * c,
+    (a * x + b * c) ** 2 / 2 + (a * x + b * c) * a * x,
+    (a + b) ** 2 * a + (a + b) ** 2 * b,
+])  # fmt: skip
+def test_a_sum_that_is_its_own_common_factor_keeps_all_its_powers(expression: sp.Expr) -> None:
+    values = {"a": 1.3, "b": -0.7, "c": 2.1, "d": 0.4, "x": 1.9}
+    (found,) = evaluated(lowered(expression), values)
+    exact = expression.subs({sp.Symbol(k, positive=True): v for k, v in values.items()})
+    assert found == pytest.approx(float(exact), rel=1e-13)

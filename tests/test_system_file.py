@@ -164,6 +164,12 @@ def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
     (('["x", "height"]', '"x"'), "must be a list"),
     (("[[masses]]", "[masses]"), "must be tables: write .*masses"),
     (("title", "title = [[["), "is no TOML file"),
+    (('mass = "m"', 'mass = "-m"'), "mass -m is not positive"),
+    (("c*x_dot**2/2", "c*x**2"), "without a velocity"),
+    (('"1/2"', '"50 cm"'), "its unit stands in unit"),
+    (("height = ", "late = 'height'\nheight = "), "a definition may use those above it"),
+    (("[coordinates]", "[definitions.x]"), "is missing|must be"),
+    (("title", 'name = "my-bead"\ntitle'), "cannot be the system's name"),
 ])  # fmt: skip
 def test_what_is_no_system_is_refused_at_once(
     change: tuple[str, str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -176,6 +182,15 @@ def test_what_is_no_system_is_refused_at_once(
     assert str(refusal.value).startswith(str(path))
     assert perf_counter() - begun < 5
     assert [p.name for p in tmp_path.iterdir()] == ["mine.toml"]
+
+
+def test_deeply_nested_definitions_are_derived_as_they_are(tmp_path: Path) -> None:
+    nested = "d0 = 'theta'\n" + "".join(f"d{k} = 'd{k - 1} + sin(d{k - 1})'\n" for k in range(1, 9))
+    text = PENDULUM.replace("[[masses]]", f"[definitions]\n{nested}[[masses]]")
+    text = text.replace('["l*sin(theta)", "-l*cos(theta)"]', '["l*d8", "l*d8**2"]')
+    begun = perf_counter()
+    assert main([str(written(tmp_path, text)), "--output", str(tmp_path)]) == 0
+    assert perf_counter() - begun < 30
 
 
 def test_files_that_are_too_large_or_not_there_are_refused(

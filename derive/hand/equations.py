@@ -86,20 +86,16 @@ def _equations(table: Table, system: System) -> Iterator[tuple[str, str, str, st
         if kind in WHOLE:
             yield kind, kind, "", table.formula(kind)
         elif kind in EACH:
-            known = (
-                [*coordinates, *(p.name for p in system.p)] if kind == "hamilton" else coordinates
-            )
-            row = Table(kind, table.values[kind], known)
+            own = {q: q for q in coordinates}
+            own |= {name: text for name, text in table.entries("names").items() if text in own}
+            if kind == "hamilton":
+                own |= {f"p_{name}": f"p_{q}" for name, q in own.items()}
+            row = Table(kind, table.values[kind], [*own])
             for key in row.values:
-                yield f"{kind}.{key}", kind, key, row.formula(key)
+                yield f"{kind}.{key}", kind, own[key], row.formula(key)
         elif kind == "euler_lagrange":
-            texts = table.formulas(kind)
-            if len(texts) > len(coordinates):
-                raise TableError(
-                    f"euler_lagrange has {len(texts)} equations for {len(coordinates)} coordinates"
-                )
-            for k, text in enumerate(texts):
-                yield f"{kind} {k + 1}", kind, str(k), text
+            for k, text in enumerate(table.formulas(kind), 1):
+                yield f"{kind} {k}", kind, "", text
 
 
 assert {*WHOLE, *EACH} == {*VALUES}

@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.expression import ExpressionError, parsed
 from derive.hand.meaning import Meaning
-from derive.hand.terms import Slip, Written, scale, slip, written
+from derive.hand.terms import Slip, Written, mismatches, scale, slip, written
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def judged(place: str, text: str, meaning: Meaning, kind: str, key: str) -> Judg
     """The verdict on the equation `text`, which is of this `kind` and, for a coordinate, `key`."""
     try:
         if kind == "euler_lagrange":
-            return _residual(place, text, meaning, int(key))
+            return _residual(place, text, meaning)
         return _value(place, text, meaning, VALUES[kind](meaning, key), kind)
     except ExpressionError as error:
         return Judgement(place, "unreadable", text, note=str(error))
@@ -59,19 +59,35 @@ def _value(place: str, text: str, meaning: Meaning, right: sp.Expr, kind: str) -
     value = parsed(text, meaning.scope)
     if not isinstance(value, sp.Expr):
         raise ExpressionError(f"{text[:50]!r} is a column or matrix, not a number")
+    system = meaning.system
+    foreign = {*system.qddot, *(system.qdot if kind in CANONICAL else system.p)}
+    if strange := sorted(s.name for s in value.free_symbols & foreign):
+        raise ExpressionError(f"{', '.join(strange)} has no place in a formula of this kind")
     if meaning.is_zero(value - right):
         return Judgement(place, "equal", text)
     if kind == "lagrangian" and _moves_alike(value - right, meaning):
         return Judgement(
             place, "equivalent", text, note="it differs by what leaves the motion as it is"
         )
-    if kind == "potential_energy" and not (value - right).free_symbols & {*meaning.state}:
+    total = meaning.derivation.kinetic_energy + meaning.derivation.potential_energy
+    if kind == "energy" and meaning.is_zero(value - total):
+        return Judgement(
+            place, "equal", text, note="it is T + V; Jacobi's integral, which H is, is another"
+        )
+    if kind in UP_TO_A_CONSTANT and all(
+        meaning.is_zero((value - right).diff(s)) for s in meaning.state
+    ):
         return Judgement(place, "equivalent", text, note="it differs by a constant")
     found = _slip_of_quotient(text, meaning, right)
     return Judgement(
         place, "wrong", text, found.term if found else "", str(found.should_be) if found else "",
         _witness(value, right, meaning), str(right),
     )  # fmt: skip
+
+
+#: Formulas in momenta instead of velocities, and those in which a constant is free.
+CANONICAL = ("hamiltonian", "hamilton")
+UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")
 
 
 def _moves_alike(difference: sp.Expr, meaning: Meaning) -> bool:
@@ -103,26 +119,33 @@ def _slip_of_quotient(text: str, meaning: Meaning, right: sp.Expr) -> Slip | Non
     return slip(parts, right, meaning.state)
 
 
-def _residual(place: str, text: str, meaning: Meaning, k: int) -> Judgement:
+def _residual(place: str, text: str, meaning: Meaning) -> Judgement:
     """An equation of motion: with its accelerations it must hold, and say something of them."""
+    if text.count("=") > 1:
+        raise ExpressionError(f"an equation has one sign of equality, not {text.count('=')}")
     left, equals, other = text.partition("=")
     parts = written(left, meaning.scope)
     if equals:
         parts += [Written(p.text, -p.value, -1) for p in written(other, meaning.scope)]
-    value = sp.Add(*(part.value for part in parts))
-    if not value.free_symbols & {*meaning.system.qddot}:
+    value, accelerations = sp.Add(*(part.value for part in parts)), meaning.system.qddot
+    if not value.free_symbols & {*accelerations}:
         return Judgement(place, "wrong", text, note="no acceleration is in it")
-    right = meaning.derivation.euler_lagrange[k]
-    right *= scale(parts, right, meaning.state, meaning.system.qddot)
+    rights = [
+        right * scale(parts, right, meaning.state, meaning.system.qddot)
+        for right in meaning.derivation.euler_lagrange
+    ]
+    # whichever coordinate it belongs to
+    right = min(rights, key=lambda right: mismatches(parts, right, meaning.state))
     if meaning.is_zero(value - right):
         return Judgement(place, "equal", text)
+    if not all(value.diff(a, b).equals(0) for a in accelerations for b in accelerations):
+        return Judgement(place, "wrong", text, note="it is not linear in the accelerations")
     if meaning.holds(value):
         return Judgement(place, "equal", text, note="it follows from the others with it")
-    found = slip(parts, right, meaning.state)
-    assert found
+    found = slip(parts, right, meaning.state) or Slip("", sp.S.Zero)
     return Judgement(
-        place, "wrong", text, found.term, str(found.should_be), _witness(value, right, meaning),
-        f"{right} = 0",
+        place, "wrong", text, found.term, str(found.should_be or ""),
+        _witness(value, right, meaning), f"{right} = 0",
     )  # fmt: skip
 
 

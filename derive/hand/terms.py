@@ -82,6 +82,12 @@ def terms(expression: sp.Expr, state: Collection[sp.Symbol]) -> Terms:
     return {dependent: coefficient for dependent, coefficient in reduced.items() if coefficient}
 
 
+def mismatches(parts: Collection[Written], right: sp.Expr, state: Collection[sp.Symbol]) -> int:
+    """How many functions of the state have another coefficient than in `right`."""
+    have, wanted = terms(sp.Add(*(part.value for part in parts)), state), terms(right, state)
+    return sum(bool(sp.cancel(have.get(d, 0) - wanted.get(d, 0))) for d in {**have, **wanted})
+
+
 def slip(parts: Collection[Written], right: sp.Expr, state: Collection[sp.Symbol]) -> Slip | None:
     """The first of the terms written that differs from `right`; None where none does."""
     have, wanted = terms(sp.Add(*(part.value for part in parts)), state), terms(right, state)

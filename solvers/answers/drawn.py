@@ -116,7 +116,8 @@ def _draw(panel: Axes, picture: str, answers: Sequence[Answer]) -> None:
         across, upwards = ("to the side", "up, seen from above") if in_space else ("x", "y")
         panel.set(xlabel=f"{across} / m", ylabel=f"{upwards} / m")
         panel.set_aspect("equal", adjustable="datalim")
-        panel.plot(0, 0, "k+", markersize=8)
+        if "positions" not in answers[0].scene.module.TIMED:  # else the pivot may move
+            panel.plot(0, 0, "k+", markersize=8)
     elif picture == "energy":
         panel.set(xlabel=f"{symbol('t')} / s", ylabel="energy error / energy above rest")
 
