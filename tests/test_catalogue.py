@@ -9,15 +9,17 @@ import inspect
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
 from types import ModuleType
 
 import numpy as np
 import pytest
+import strange
 import sympy as sp
 from mpmath import diff, fdot, mp, mpf, workdps
 from numpy.testing import assert_allclose
 
-from derive import TIME, System, load, names
+from derive import TIME, System, load, names, write
 from derive.catalogue import drawing
 from solvers.forms import Form, has_form
 from solvers.timed import evaluated
@@ -25,19 +27,31 @@ from solvers.timed import evaluated
 Case = tuple[float, list[float], list[float]]
 
 
-@pytest.fixture(params=names())
+@pytest.fixture(params=[*names(), "strange"])
 def name(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
 
+@pytest.fixture(scope="module")
+def beside(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    """The module of a system that is not in the catalogue."""
+    path = write(strange.system, tmp_path_factory.mktemp("strange"))
+    spec = spec_from_file_location("made.strange", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 @pytest.fixture
-def module(name: str) -> ModuleType:
-    return import_module(f"generated.{name}")
+def module(name: str, beside: ModuleType) -> ModuleType:
+    return beside if name == "strange" else import_module(f"generated.{name}")
 
 
 @pytest.fixture
 def system(name: str) -> System:
-    return load(name)
+    return strange.system if name == "strange" else load(name)
 
 
 def cases(module: ModuleType) -> list[Case]:
@@ -70,7 +84,12 @@ class Alembert:
             for r in place
         ]
         self.potential = compiled(symbols, system.potential_energy)
-        self.applied = compiled((TIME, *system.q, *system.qdot, *system.params), system.applied)
+        # friction takes power: its force is against Rayleigh's function
+        applied = [
+            (system.forces[k] if system.forces else 0) - system.dissipation.diff(rate)
+            for k, rate in enumerate(system.qdot)
+        ]
+        self.applied = compiled((TIME, *system.q, *system.qdot, *system.params), applied)
         self.system = system
         self.free = free
 
@@ -224,6 +243,7 @@ def test_arrays_give_what_single_states_give(module: ModuleType) -> None:
             assert_allclose(together[..., 1], alone, rtol=1e-10, atol=1e-12)
 
 
+@pytest.mark.parametrize("name", names())
 def test_a_system_is_one_short_file_with_a_drawing_and_its_source(name: str) -> None:
     text = drawing(name)
     lines = text.splitlines()

@@ -5,7 +5,7 @@ import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, Lagrangian, Particle, Point, ReferenceFrame
 from sympy.physics.mechanics import dynamicsymbols as dynamic
 
-from derive import Coordinate, Derivation, Parameter, PointMass, System
+from derive import TIME, Coordinate, Derivation, Parameter, PointMass, System
 from derive.functions import contents
 from derive.parts import SystemDefinitionError
 from derive.reduction import collected, reduced
@@ -283,3 +283,22 @@ def test_without_a_known_equilibrium_there_is_no_linear_form() -> None:
     assert "linear" in {f.name for f in contents(Derivation(system(**spring))).functions}
     with pytest.raises(SystemDefinitionError, match="not at rest at x = 2"):
         contents(Derivation(system(**(spring | {"equilibrium": (2,)}))))
+
+
+def test_small_motions_on_a_turntable_are_more_than_masses_and_springs() -> None:
+    x, y, turn = sp.symbols("x y turn", real=True)
+    c, s = sp.cos(turn * TIME), sp.sin(turn * TIME)
+    table = Derivation(
+        System(
+            name="turntable", title="", potential=x**2 + y**2,
+            coordinates=[Coordinate(x, "m", ""), Coordinate(y, "m", "")],
+            parameters=[Parameter(turn, "rad/s", 1.0, "")],
+            masses=[PointMass(1, (x * c - y * s, x * s + y * c))],
+        )
+    )  # fmt: skip
+    assert table.rest == (0, 0)
+    names = {f.name for f in contents(table).functions}
+    assert "equilibrium" in names
+    assert "linear" not in names
+    with pytest.raises(SystemDefinitionError, match="are turned by a moving frame"):
+        table.linearisation()

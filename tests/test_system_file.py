@@ -11,6 +11,7 @@ from derive.command import main
 from derive.parts import SystemDefinitionError
 from derive.system_file import read_system
 from solvers.answers.answer import answer
+from solvers.answers.drawn import energy_errors
 from solvers.cli import generated_module, specialiser
 from solvers.scenes.shipped import find
 
@@ -182,6 +183,18 @@ def test_what_is_no_system_is_refused_at_once(
     assert str(refusal.value).startswith(str(path))
     assert perf_counter() - begun < 5
     assert [p.name for p in tmp_path.iterdir()] == ["mine.toml"]
+
+
+def test_friction_leaves_rest_and_the_full_equations_only(tmp_path: Path) -> None:
+    text = PENDULUM.replace("[coordinates]", 'dissipation = "theta_dot**2/20"\n[coordinates]', 1)
+    written(tmp_path, text, "damped")
+    scene = 'system = "damped.toml"\nduration = 20\naccuracy = 1e-7\ninitial = { theta = 1 }\n'
+    found = answer(find(str(written(tmp_path, scene, "scene")), generated_module))
+    assert found.choice.declined["pendulum"] == "energy is not kept"
+    assert found.is_met
+    energy = found.scene.module.energy_many(found.y, found.scene.params)
+    assert energy[-1] < energy[0] - 1
+    assert abs(energy_errors(found)).max() < 1e-5  # with what friction took given back
 
 
 def test_deeply_nested_definitions_are_derived_as_they_are(tmp_path: Path) -> None:
