@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 import generated.double_pendulum as dp
 from solvers.answers.answer import answer
-from solvers.answers.drawn import drawn, symbol, usual
+from solvers.answers.drawn import _labelled, drawn, symbol, usual
 from solvers.answers.told import special_code, table, told
 from solvers.cli import generated_module, main, specialiser
 from solvers.commands.run import track
@@ -215,3 +215,9 @@ def test_progress_is_told_on_a_terminal_only_and_wiped_out(tmp_path: Path) -> No
     os.close(theirs)
     assert "working, 1 s" in shown
     assert shown.endswith("\r" + " " * 78 + "\r")
+
+
+def test_units_stand_beside_the_names_that_have_them() -> None:
+    units = {"x": "m", "theta1": "rad", "theta2": "rad"}
+    assert _labelled(["theta1", "theta2"], units) == r"$\theta_{1}$, $\theta_{2}$ / rad"
+    assert _labelled(["x", "theta1"], units) == r"$x$ / m, $\theta_{1}$ / rad"

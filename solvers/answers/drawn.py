@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Mapping, Sequence
+from itertools import groupby, pairwise
 from math import ceil
 from textwrap import fill
 
@@ -135,7 +135,13 @@ def _curves(
     if over == "t":
         panel.set_xlim(0, answer.t[-1])
     panel.set(xlabel=f"{symbol(over)} / {_unit(units[over])}",
-              ylabel=f"{', '.join(map(symbol, names))} / {_unit(units[names[0]])}")  # fmt: skip
+              ylabel=_labelled(names, units))  # fmt: skip
+
+
+def _labelled(names: Sequence[str], units: Mapping[str, str]) -> str:
+    """Names with their units; one unit for those that share it."""
+    groups = groupby(names, units.__getitem__)
+    return ", ".join(f"{', '.join(map(symbol, group))} / {_unit(unit)}" for unit, group in groups)
 
 
 def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str, label: str) -> None:
