@@ -1,6 +1,6 @@
 r"""A point mass on a massless spring that can only stretch, turning in a vertical plane.
 
-    +             P. Lynch, Int. J. Non-Linear Mech. 37 (2002) 345, equations (2), (3)
+    +             P. Lynch, Int. J. Non-Linear Mech. 37 (2002) 345
     |\
     |θ\ r, k
         o m
