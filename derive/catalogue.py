@@ -7,11 +7,11 @@ A file whose name ends in ``_n`` holds a family: its ``system`` is a function of
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from importlib import import_module
 from pkgutil import iter_modules
 
 from derive import systems
+from derive.near import near
 from derive.parts import SystemDefinitionError
 from derive.system import System
 
@@ -69,10 +69,9 @@ def _file(name: str) -> tuple[str, int]:
     if family and f"{family[1]}_n" in stems and int(family[2]) <= LARGEST:
         return f"{family[1]}_n", int(family[2])
     if name not in stems or name.endswith("_n"):
-        close = get_close_matches(name, names(), n=1)
-        hint = f" (did you mean {close[0]!r}?)" if close else ""
         raise UnknownSystemError(
-            f"no system is called {name[:50]!r}{hint}; known are: {', '.join(names())}, "
+            f"no system is called {name[:50]!r}{near(name, names())}; "
+            f"known are: {', '.join(names())}, "
             f"and instead of {USUAL} any number up to {LARGEST}"
         )
     return name, 0

@@ -10,10 +10,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping
 from decimal import Decimal
-from difflib import get_close_matches
 from typing import Any, TypeAlias
 
 import sympy as sp
+
+from derive.near import near
 
 Value: TypeAlias = sp.Expr | sp.MatrixBase
 Scope = Mapping[str, Any]
@@ -129,10 +130,9 @@ class _Evaluation:
 
     def _named(self, name: str, *, function: bool) -> Any:
         if name not in self._scope:
-            close = get_close_matches(name, self._scope, n=1)
-            hint = f" (did you mean {close[0]!r}?)" if close else ""
             raise ExpressionError(
-                f"unknown name {name[:50]!r}{hint}; known are: {', '.join(sorted(self._scope))}"
+                f"unknown name {name[:50]!r}{near(name, self._scope)}; "
+                f"known are: {', '.join(sorted(self._scope))}"
             )
         value = self._scope[name]
         if isinstance(value, sp.Expr | sp.MatrixBase) == function:

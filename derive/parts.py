@@ -13,7 +13,7 @@ class SystemDefinitionError(ValueError):
 
 
 def formula(value: sp.Expr | float) -> sp.Expr:
-    """A SymPy expression as it is, a Python number as the fraction that its digits say.
+    """A SymPy expression or a Python number, decimals as the fractions that their digits say.
 
     Raises
     ------
@@ -21,7 +21,7 @@ def formula(value: sp.Expr | float) -> sp.Expr:
         For anything else, text above all: SymPy would execute it.
     """
     if isinstance(value, sp.Expr):
-        return value
+        return value.xreplace({n: sp.Rational(str(n)) for n in value.atoms(sp.Float)})
     if isinstance(value, int | float) and not isinstance(value, bool):
         try:
             return sp.Rational(str(value))
@@ -32,6 +32,21 @@ def formula(value: sp.Expr | float) -> sp.Expr:
     )
 
 
+def check_text(place: str, text: str) -> None:
+    """Refuse what would end a comment, a docstring or a text of a generated file.
+
+    Raises
+    ------
+    SystemDefinitionError
+        With what is allowed.
+    """
+    if not text.isprintable() or any(mark in text for mark in ('"', "\\", "*/", "/*")):
+        raise SystemDefinitionError(
+            f"{place} is {text[:50]!r}: it stands in generated files, so that it must be one line "
+            'without ", \\, /* and */'
+        )
+
+
 @dataclass(frozen=True)
 class Coordinate:
     """A generalized coordinate: its symbol, its unit and what it measures."""
@@ -39,6 +54,10 @@ class Coordinate:
     symbol: sp.Symbol
     unit: str
     meaning: str
+
+    def __post_init__(self) -> None:
+        check_text(f"the unit of {self.symbol}", self.unit)
+        check_text(f"the meaning of {self.symbol}", self.meaning)
 
 
 @dataclass(frozen=True)
@@ -52,6 +71,10 @@ class Parameter:
     unit: str
     default: float
     meaning: str
+
+    def __post_init__(self) -> None:
+        check_text(f"the unit of {self.symbol}", self.unit)
+        check_text(f"the meaning of {self.symbol}", self.meaning)
 
 
 @dataclass(frozen=True)
@@ -74,6 +97,11 @@ class PointMass:
     def motions(self) -> tuple[tuple[sp.Expr, tuple[sp.Expr, ...]], ...]:
         """What moves, each with its inertia: half the inertia times its rate² is energy."""
         return ((self.mass, self.position),)
+
+    @property
+    def words(self) -> str:
+        """What it is, and where."""
+        return f"{self.mass} at ({', '.join(map(str, self.position))})"
 
     def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> PointMass:
         """The same with every expression replaced by what `function` makes of it."""
@@ -107,6 +135,11 @@ class RigidBody(PointMass):
     def motions(self) -> tuple[tuple[sp.Expr, tuple[sp.Expr, ...]], ...]:
         """The centre of mass, and the orientation."""
         return ((self.mass, self.position), (self.inertia, (self.angle,)))
+
+    @property
+    def words(self) -> str:
+        """What it is, where, and how it is turned."""
+        return f"{super().words}, moment of inertia {self.inertia}, turned by {self.angle}"
 
     def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> RigidBody:
         """The same with every expression replaced by what `function` makes of it."""

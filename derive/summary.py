@@ -42,7 +42,6 @@ def summary(contents: Contents) -> str:
     """Coordinates, states, parameters, positions, Lagrangian and equations of motion."""
     system, derivation = contents.system, contents.derivation
     unit = units(system)
-    masses = (f"{mass.mass} at ({', '.join(map(str, mass.position))})" for mass in system.masses)
     return "\n\n".join(
         _section(title, lines)
         for title, lines in {
@@ -57,7 +56,7 @@ def summary(contents: Contents) -> str:
                 f"default {p.default}: {p.meaning}"
                 for p in system.parameters
             ),
-            "Masses and their positions": masses,
+            "Masses and their positions": (mass.words for mass in system.masses),
             **_equations(derivation),
         }.items()
     )

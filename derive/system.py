@@ -9,7 +9,14 @@ from functools import cached_property
 import sympy as sp
 
 from derive.naming import check_name, check_unique
-from derive.parts import Coordinate, Parameter, PointMass, SystemDefinitionError, formula
+from derive.parts import (
+    Coordinate,
+    Parameter,
+    PointMass,
+    SystemDefinitionError,
+    check_text,
+    formula,
+)
 from derive.symbols import TIME, acceleration, momentum, variation, velocity
 
 
@@ -80,6 +87,7 @@ class System:
                 f"system {self.name!r} needs at least one coordinate and one mass, "
                 f"got {len(self.coordinates)} and {len(self.masses)}"
             )
+        check_text(f"the title of system {self.name!r}", self.title)
         self._check_names()
         self._check_counts()
         self._check_symbols()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Collection, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
+
+from derive.near import near
 
 #: Bytes of the largest file, and letters of the longest text.
 LARGEST, LONGEST = 500_000, 20_000
@@ -51,10 +52,9 @@ class Table:
         self.name, self.values = name, values
         for key in values:
             if key not in known:
-                close = get_close_matches(key, known, n=1)
-                hint = f" (did you mean {close[0]!r}?)" if close else ""
                 raise TableError(
-                    f"unknown key {key[:50]!r} in {name}{hint}; known are {', '.join(known)}"
+                    f"unknown key {key[:50]!r} in {name}{near(key, known)}; "
+                    f"known are {', '.join(known)}"
                 )
 
     def text(self, key: str, default: str | None = None) -> str:

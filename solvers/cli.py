@@ -281,9 +281,8 @@ def generated_module(name: str) -> ModuleType:
         system = system_of(name)
     except UnknownSystemError as error:
         raise LookupError(str(error)) from error
-    module = made(
-        system.name, repr((repr(system), generator_text())), lambda: texts(Derivation(system))
-    )
+    own = Path(name).read_text(encoding="utf-8") if name.endswith(".toml") else name
+    module = made(system.name, own + generator_text(), lambda: texts(Derivation(system)))
     module.SYSTEM = name  # type: ignore[attr-defined]
     return module
 

@@ -10,20 +10,23 @@ from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 import strange
 import sympy as sp
-from mpmath import diff, fdot, mp, mpf, workdps
+from mpmath import diff, fdot, mpf, workdps
 from numpy.testing import assert_allclose
 
-from derive import TIME, System, load, names, write
+from derive import TIME, System, load, names, systems, write
 from derive.catalogue import drawing
+from derive.listing import main
 from solvers.forms import Form, has_form
 from solvers.timed import evaluated
 
+SYSTEMS = Path(systems.__path__[0])
 Case = tuple[float, list[float], list[float]]
 
 
@@ -243,10 +246,32 @@ def test_arrays_give_what_single_states_give(module: ModuleType) -> None:
             assert_allclose(together[..., 1], alone, rtol=1e-10, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", names())
-def test_a_system_is_one_short_file_with_a_drawing_and_its_source(name: str) -> None:
-    text = drawing(name)
-    lines = text.splitlines()
-    assert len(lines) >= 5
+@pytest.mark.parametrize("path", sorted(SYSTEMS.glob("[a-z]*.py")), ids=lambda path: path.stem)
+def test_a_system_is_one_short_file_with_a_drawing_and_its_source(path: Path) -> None:
+    lines = path.read_text().splitlines()
+    assert len(lines) <= 25
+    text = drawing(path.stem.replace("_n", "_3"))
+    assert len(text.splitlines()) >= 5
     assert any(character in text for character in "|/\\")
-    assert mp.dps == 15  # whatever precision a test took, it gave back
+
+
+def test_a_listing_says_what_a_user_has_to_write(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["chain_4", "spherical_pendulum"]) == 0
+    shown = capsys.readouterr().out
+    assert "theta1, theta2, theta3, theta4, theta1_dot" in shown
+    assert "parameters: m = 1 kg, l = 1 m, g = 9.81 m/s^2" in shown
+    assert max(map(len, shown.splitlines())) <= 100
+    assert main([]) == 0
+    whole = capsys.readouterr().out
+    assert all(f"{name}: {load(name).title}" in whole for name in names())
+
+
+@pytest.mark.parametrize(("asked", "words"), [
+    ("chian_4", "did you mean"), ("chain_n", "known are"), ("chain_1000", "any number up to 100"),
+    ("../systems", "no system is called"),
+])  # fmt: skip
+def test_a_system_that_is_not_there_is_refused(
+    asked: str, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([asked]) == 2
+    assert words in capsys.readouterr().err

@@ -15,6 +15,7 @@ import pytest
 import sympy as sp
 from mpmath import mpf, workdps
 from numpy.testing import assert_allclose, assert_array_equal
+from planted import Planted, is_constant
 from scipy.integrate import solve_ivp
 
 from derive import Derivation
@@ -288,37 +289,6 @@ def test_both_forms_give_the_report_s_motion() -> None:
     assert np.abs(coarse - expected).max() > 1e-10
 
 
-class Planted(ast.NodeTransformer):
-    """Plant one mistake, the `place`-th of those that are possible, into a function's body."""
-
-    def __init__(self, place: int) -> None:
-        self.place, self.seen = place, 0
-
-    def _here(self) -> bool:
-        self.seen += 1
-        return self.seen - 1 == self.place
-
-    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
-        self.generic_visit(node)
-        if _is_constant(node):
-            return node
-        other = {ast.Add: ast.Sub(), ast.Sub: ast.Add(), ast.Mult: ast.Add(), ast.Div: ast.Mult()}
-        return ast.BinOp(node.left, other[type(node.op)], node.right) if self._here() else node
-
-    def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.AST:
-        self.generic_visit(node)
-        if isinstance(node.operand, ast.Constant):
-            return node  # a negative number, no operation
-        return node.operand if self._here() else node
-
-    def visit_Call(self, node: ast.Call) -> ast.AST:
-        self.generic_visit(node)
-        if isinstance(node.func, ast.Name) and node.func.id in ("sin", "cos") and self._here():
-            return ast.Call(ast.Name("cos" if node.func.id == "sin" else "sin", ast.Load()),
-                            node.args, [])  # fmt: skip
-        return node
-
-
 @pytest.mark.parametrize("name", ["rhs", "rhs_hamiltonian", "energy", "energy_hamiltonian",
                                   "mass_matrix", "jacobian", "jacobian_hamiltonian",
                                   "equilibrium", "linear"])  # fmt: skip
@@ -343,15 +313,10 @@ def test_every_mistake_planted_in_a_function_changes_its_values(
     assert planted == operations(source)
 
 
-def _is_constant(node: ast.BinOp) -> bool:
-    """Whether it is a fraction, which Python and C compute when they read it."""
-    return isinstance(node.left, ast.Constant) and isinstance(node.right, ast.Constant)
-
-
 def operations(tree: ast.AST) -> int:
     """Operations in a function's text, counted by Python's own parser."""
     return sum(
-        (isinstance(node, ast.BinOp) and not _is_constant(node))
+        (isinstance(node, ast.BinOp) and not is_constant(node))
         or (isinstance(node, ast.UnaryOp) and not isinstance(node.operand, ast.Constant))
         or (
             isinstance(node, ast.Call)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from planted import Planted
 
 from derive import Derivation, load, names
 from derive.command import system_of
@@ -32,33 +33,10 @@ def test_published_equations_hold(path: Path) -> None:
         assert one.verdict in ("equal", "equivalent"), one
 
 
-class Slipped(ast.NodeTransformer):
-    """One slip of the pen: another sign, another operation, another function, another power."""
-
-    def __init__(self, place: int) -> None:
-        self.place, self.seen = place, 0
-
-    def _here(self) -> bool:
-        self.seen += 1
-        return self.seen - 1 == self.place
-
-    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
-        self.generic_visit(node)
-        if isinstance(node.op, ast.Pow):
-            return node.left if self._here() else node
-        other = {ast.Add: ast.Sub(), ast.Sub: ast.Add(), ast.Mult: ast.Div(), ast.Div: ast.Mult()}
-        return ast.BinOp(node.left, other[type(node.op)], node.right) if self._here() else node
-
-    def visit_Call(self, node: ast.Call) -> ast.AST:
-        self.generic_visit(node)
-        other = {"sin": "cos", "cos": "sin"}.get(getattr(node.func, "id", ""))
-        return ast.Call(ast.Name(other), node.args, []) if other and self._here() else node
-
-
 def slips(text: str) -> Iterator[str]:
     place = 0
     while True:
-        slipped = Slipped(place)
+        slipped = Planted(place)
         changed = slipped.visit(ast.parse(text, mode="eval"))
         if slipped.seen <= place:
             return

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 import generated.double_pendulum as dp
 from solvers.answers.answer import answer
 from solvers.answers.drawn import _labelled, drawn, symbol, usual
+from solvers.answers.seen import ABOVE, projected
 from solvers.answers.told import special_code, table, told
 from solvers.cli import generated_module, main, specialiser
 from solvers.commands.run import track
@@ -102,6 +103,31 @@ def test_rods_and_springs_are_told_apart_by_their_lengths() -> None:
     rods, spring = (track(answer(find(name, generated_module))) for name in ("report", "spring"))
     assert (rods.links, rods.springs) == (((-1, 0), (0, 1)), ())
     assert (spring.links, spring.springs) == ((), ((-1, 0),))
+
+
+@pytest.mark.parametrize(("system", "initial", "rods"), [
+    ("spherical_pendulum", "theta = 1\nphi = 0\nphi_dot = 2", [(-1, 0)]),
+    ("chain_3", "theta1 = 1\ntheta2 = 0\ntheta3 = 0", [(-1, 0), (0, 1), (1, 2)]),
+    # the cart itself hangs on nothing
+    ("cart_3", "x = 0\ntheta1 = 1\ntheta2 = 0\ntheta3 = 0", [(0, 1), (1, 2), (2, 3)]),
+])  # fmt: skip
+def test_what_keeps_its_distance_is_joined(
+    system: str, initial: str, rods: list[tuple[int, int]], tmp_path: Path
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(f'system = "{system}"\nduration = 2\naccuracy = 1e-6\n[initial]\n{initial}\n')
+    seen = track(answer(find(str(path), generated_module)))
+    assert list(seen.links) == rods
+    assert not seen.springs
+
+
+def test_space_is_seen_from_above_and_from_the_side() -> None:
+    # of three unit vectors the upright one stays upright, and areas of the ground shrink by
+    # the sine of the angle from which they are seen
+    east, north, up = projected(np.eye(3)[:, :, None])[:, :, 0]
+    assert up == pytest.approx([0, np.cos(ABOVE)])
+    assert abs(np.linalg.det([east, north])) == pytest.approx(np.sin(ABOVE))
+    assert np.hypot(east[0], north[0]) == pytest.approx(1)
 
 
 def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:

@@ -11,7 +11,7 @@ from derive.command import main
 from derive.parts import SystemDefinitionError
 from derive.system_file import read_system
 from solvers.answers.answer import answer
-from solvers.answers.drawn import energy_errors
+from solvers.answers.seen import energy_errors
 from solvers.cli import generated_module, specialiser
 from solvers.scenes.shipped import find
 
@@ -239,3 +239,51 @@ def test_forces_drives_and_reactions_are_refused_where_they_make_no_sense() -> N
             system(**changes)
     with pytest.raises(SystemDefinitionError, match="rigid bodies move in the plane"):
         RigidBody(m, (x, x, x), m, x)
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    (('title = "Bead on a parabola that is shaken"', "title = 'T\"\"\"; import os'"), "the title"),
+    (('"horizontal place of the bead"', '"a */ int hacked; /*"'), "the meaning"),
+    (('unit = "kg"', "unit = 'm\", \"z\": str(open(\"hacked\")), \"'"), "the unit of m"),
+    (('unit = "kg"', "unit = 'kg\\'"), "the unit of m"),
+    (('unit = "kg"', 'unit = "k\\ng"'), "the unit of m"),
+])  # fmt: skip
+def test_words_cannot_become_code(change: tuple[str, str], words: str, tmp_path: Path) -> None:
+    text = BEAD.replace(*change)
+    assert text != BEAD
+    with pytest.raises(SystemDefinitionError, match=f"{words}.*must be one line without"):
+        read_system(written(tmp_path, text))
+
+
+def test_what_a_file_says_of_signs_is_part_of_its_module(tmp_path: Path) -> None:
+    # two systems that print alike: roots of squares may be drawn where a sign is known
+    text = PENDULUM.replace('unit = "m"', 'unit = "m", positive = false')
+    modules = [
+        generated_module(str(written(tmp_path, t, "one"))) for t in (PENDULUM, text, PENDULUM)
+    ]
+    assert modules[0].__name__ == modules[2].__name__ != modules[1].__name__
+    assert modules[0].POSITIVE != modules[1].POSITIVE
+
+
+def test_decimals_are_the_fractions_that_their_digits_say() -> None:
+    x, m = sp.symbols("x m", positive=True)
+    found = System(
+        name="thing", title="", coordinates=[Coordinate(x, "m", "")],
+        parameters=[Parameter(m, "kg", 1.0, "")], masses=[PointMass(m, (0.1 * x, 0))],
+        potential=0.5 * m * x**2,
+    )  # fmt: skip
+    assert found.potential == m * x**2 / 2
+    assert Derivation(found).mass_matrix[0] == m / 100
+
+
+def test_a_thread_that_is_short_is_looked_at_within_its_reach(tmp_path: Path) -> None:
+    # at |x| > l the bead's height would be complex, and nothing could be told of its inertia
+    text = PENDULUM.replace("theta", "x").replace(
+        '["l*sin(x)", "-l*cos(x)"]', '["x", "-sqrt(l**2 - x**2)"]'
+    )
+    far = text.replace("sqrt(l**2 - x**2)", "sqrt(x**2 - l**2)")
+    for file, sign in ((text, 1), (far, -1)):
+        system = read_system(written(tmp_path, file))
+        (mass, length, _), (x,) = system.params, system.q
+        inertia = mass * (1 + x**2 / (length**2 - x**2) * sign)
+        assert Derivation(system).mass_matrix[0].equals(inertia)

@@ -14,10 +14,10 @@ from derive.specialisation import substituted
 from derive.system import System
 from derive.tables import Table, TableError, read
 
-#: Formulas of the whole system, and those that each coordinate has one of.
-WHOLE = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
+#: Of these formulas each coordinate has one; of the others the system has.
 EACH = ("momenta", "accelerations", "hamilton")
-KEYS = ("system", "source", "note", "equal", "names", *WHOLE, *EACH, "euler_lagrange")
+#: What there is to say of equations, and the equations.
+ABOUT, EQUATIONS = ("system", "source", "note", "equal", "names"), (*VALUES, "euler_lagrange")
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def judge(path: Path, system_of: Callable[[str], System]) -> HandDerivation:
     TableError
         When it is no such file, or names what a system has not.
     """
-    table = Table(str(path), read(path), KEYS)
+    table = Table(str(path), read(path), (*ABOUT, *EQUATIONS))
     name = table.text("system")
     system = system_of(str(path.parent / name) if name.endswith(".toml") else name)
     meaning = Meaning(Derivation(_equalled(table, system)), table.entries("names"))
@@ -64,7 +64,7 @@ def judge(path: Path, system_of: Callable[[str], System]) -> HandDerivation:
         for place, kind, key, text in _equations(table, system)
     ]
     if not found:
-        raise TableError(f"{path} has no equations: give some of {', '.join(KEYS[5:])}")
+        raise TableError(f"{path} has no equations: give some of {', '.join(EQUATIONS)}")
     return HandDerivation(name, table.text("source", ""), table.text("note", ""), tuple(found))
 
 
@@ -83,9 +83,7 @@ def _equations(table: Table, system: System) -> Iterator[tuple[str, str, str, st
     """Place, kind, key and text of every equation."""
     coordinates = [q.name for q in system.q]
     for kind in table.values:
-        if kind in WHOLE:
-            yield kind, kind, "", table.formula(kind)
-        elif kind in EACH:
+        if kind in EACH:
             own = {q: q for q in coordinates}
             own |= {name: text for name, text in table.entries("names").items() if text in own}
             if kind == "hamilton":
@@ -96,6 +94,5 @@ def _equations(table: Table, system: System) -> Iterator[tuple[str, str, str, st
         elif kind == "euler_lagrange":
             for k, text in enumerate(table.formulas(kind), 1):
                 yield f"{kind} {k}", kind, "", text
-
-
-assert {*WHOLE, *EACH} == {*VALUES}
+        elif kind in VALUES:
+            yield kind, kind, "", table.formula(kind)

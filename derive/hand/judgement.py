@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.expression import ExpressionError, parsed
 from derive.hand.meaning import Meaning
-from derive.hand.terms import Slip, Written, mismatches, scale, slip, written
+from derive.hand.terms import Slip, Written, scale, slip, written, wrong
 
 
 @dataclass(frozen=True)
@@ -79,10 +79,7 @@ def _value(place: str, text: str, meaning: Meaning, right: sp.Expr, kind: str) -
     ):
         return Judgement(place, "equivalent", text, note="it differs by a constant")
     found = _slip_of_quotient(text, meaning, right)
-    return Judgement(
-        place, "wrong", text, found.term if found else "", str(found.should_be) if found else "",
-        _witness(value, right, meaning), str(right),
-    )  # fmt: skip
+    return _differing(place, text, found, _witness(value, right, meaning), str(right))
 
 
 #: Formulas in momenta instead of velocities, and those in which a constant is free.
@@ -135,18 +132,23 @@ def _residual(place: str, text: str, meaning: Meaning) -> Judgement:
         for right in meaning.derivation.euler_lagrange
     ]
     # whichever coordinate it belongs to
-    right = min(rights, key=lambda right: mismatches(parts, right, meaning.state))
+    right = min(rights, key=lambda right: len(wrong(parts, right, meaning.state)))
     if meaning.is_zero(value - right):
         return Judgement(place, "equal", text)
     if not all(value.diff(a, b).equals(0) for a in accelerations for b in accelerations):
         return Judgement(place, "wrong", text, note="it is not linear in the accelerations")
     if meaning.holds(value):
         return Judgement(place, "equal", text, note="it follows from the others with it")
-    found = slip(parts, right, meaning.state) or Slip("", sp.S.Zero)
-    return Judgement(
-        place, "wrong", text, found.term, str(found.should_be or ""),
-        _witness(value, right, meaning), f"{right} = 0",
-    )  # fmt: skip
+    found = slip(parts, right, meaning.state)
+    return _differing(place, text, found, _witness(value, right, meaning), f"{right} = 0")
+
+
+def _differing(
+    place: str, text: str, found: Slip | None, witness: str, correction: str
+) -> Judgement:
+    """A wrong equation; which term is wrong is not always found, as in unusual quotients."""
+    term, should_be = (found.term, str(found.should_be)) if found else ("", "")
+    return Judgement(place, "wrong", text, term, should_be, witness, correction)
 
 
 def _witness(value: sp.Expr, right: sp.Expr, meaning: Meaning) -> str:

@@ -82,27 +82,31 @@ def terms(expression: sp.Expr, state: Collection[sp.Symbol]) -> Terms:
     return {dependent: coefficient for dependent, coefficient in reduced.items() if coefficient}
 
 
-def mismatches(parts: Collection[Written], right: sp.Expr, state: Collection[sp.Symbol]) -> int:
-    """How many functions of the state have another coefficient than in `right`."""
-    have, wanted = terms(sp.Add(*(part.value for part in parts)), state), terms(right, state)
-    return sum(bool(sp.cancel(have.get(d, 0) - wanted.get(d, 0))) for d in {**have, **wanted})
+def _compared(
+    parts: Collection[Written], right: sp.Expr, state: Collection[sp.Symbol]
+) -> tuple[Terms, Terms]:
+    """The terms of the sum that is written, and those of `right`."""
+    return terms(sp.Add(*(part.value for part in parts)), state), terms(right, state)
+
+
+def wrong(
+    parts: Collection[Written], right: sp.Expr, state: Collection[sp.Symbol]
+) -> list[sp.Expr]:
+    """Functions of the state that have another coefficient than in `right`."""
+    have, wanted = _compared(parts, right, state)
+    return [d for d in {**have, **wanted} if sp.cancel(have.get(d, 0) - wanted.get(d, 0))]
 
 
 def slip(parts: Collection[Written], right: sp.Expr, state: Collection[sp.Symbol]) -> Slip | None:
     """The first of the terms written that differs from `right`; None where none does."""
-    have, wanted = terms(sp.Add(*(part.value for part in parts)), state), terms(right, state)
-    wrong = [
-        dependent
-        for dependent in {**have, **wanted}
-        if sp.cancel(have.get(dependent, 0) - wanted.get(dependent, 0))
-    ]
-    if not wrong:
+    (have, wanted), differing = _compared(parts, right, state), wrong(parts, right, state)
+    if not differing:
         return None
     by_part = [(part, terms(part.value, state)) for part in parts]
     told = {dependent for _, own in by_part for dependent in own}
-    nowhere = [dependent for dependent in wrong if dependent not in told]
+    nowhere = [dependent for dependent in differing if dependent not in told]
     for part, own in by_part:
-        mistaken = [dependent for dependent in wrong if dependent in own]
+        mistaken = [dependent for dependent in differing if dependent in own]
         if mistaken:
             rest = {d: sp.cancel(have.get(d, 0) - own[d]) for d in mistaken}
             place = sp.Add(*(
@@ -120,7 +124,7 @@ def scale(
 
     Equations may have one. Where opinions are divided, terms with `trusted` symbols decide.
     """
-    have, wanted = terms(sp.Add(*(part.value for part in parts)), state), terms(right, state)
+    have, wanted = _compared(parts, right, state)
     shared = [dependent for dependent in have if dependent in wanted]
     shared.sort(key=lambda dependent: not dependent.free_symbols & {*trusted})
     ratios = [sp.cancel(have[dependent] / wanted[dependent]) for dependent in shared]

@@ -12,18 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from solvers.answers.answer import Answer, energies
-from solvers.energy import energy_error, supplied
+from solvers.answers.answer import Answer
+from solvers.answers.seen import energy_errors, links, places, projected
 from solvers.pictures import COLOURS, panels
 from solvers.scenes.checks import curves_of
-from solvers.timed import evaluated
 
 GREEK = ("theta", "phi", "psi", "alpha", "beta")
 STYLES = ("-", "--", ":", "-.")
-#: Lengths that differ by less are those of rods.
-RIGID = 1e-6
-#: How far around and from above motions in space are looked at, in rad.
-AROUND, ABOVE = 0.5, 0.45
 #: Energy errors below this are drawn there: a logarithm has no zero.
 LEAST = 1e-17
 #: So many pictures at most stand three in a row, more four.
@@ -145,69 +140,15 @@ def _labelled(names: Sequence[str], units: Mapping[str, str]) -> str:
 
 
 def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str, label: str) -> None:
-    seen = projected(places(answer))
+    positions = places(answer)
+    seen = projected(positions)
     for (x, y), colour in zip(seen, colours, strict=False):
         panel.plot(x, y, style, color=colour, linewidth=0.9, label=label)
         panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
         label = ""
-    for a, b in links(answer):
+    for a, b in links(answer, positions):
         ends = [np.zeros(2) if k < 0 else seen[k, :, -1] for k in (a, b)]
         panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)
-
-
-def places(answer: Answer) -> np.ndarray:
-    """Positions in m of the masses that there are, shape (masses, axes, samples)."""
-    found = np.asarray(
-        evaluated(answer.scene.module, "positions_many", answer.t, answer.y, answer.scene.params)
-    )
-    return found[np.isfinite(found).all(axis=(1, 2))]
-
-
-def projected(positions: np.ndarray) -> np.ndarray:
-    """Positions of shape (masses, axes, samples) as they are seen: in the plane as they are.
-
-    In space from above and from the side, without perspective.
-    """
-    if positions.shape[1] == 2:
-        return positions
-    x, y, z = np.moveaxis(positions, 1, 0)
-    depth = np.cos(AROUND) * y - np.sin(AROUND) * x
-    right = np.cos(AROUND) * x + np.sin(AROUND) * y
-    return np.stack([right, np.cos(ABOVE) * z + np.sin(ABOVE) * depth], axis=1)
-
-
-def links(answer: Answer) -> list[tuple[int, int]]:
-    """Which masses are joined, by their numbers; -1 is the origin.
-
-    Neighbours that keep their distance are, and a single mass whose distance from the origin
-    is a coordinate.
-    """
-    positions, joined = places(answer), []
-    before = np.zeros(positions.shape[1:])
-    for k, place in enumerate(positions):
-        if is_rigid(before, place):
-            joined.append((k - 1, k))
-        before = place
-    if len(positions) == 1 and not joined:
-        length = np.linalg.norm(positions[0], axis=0)
-        coordinates = answer.y[: len(answer.y) // 2]
-        if any(np.allclose(length, coordinate, rtol=RIGID) for coordinate in coordinates):
-            joined.append((-1, 0))
-    return joined
-
-
-def is_rigid(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two masses keep their distance; positions have the shape (axes, samples)."""
-    length = np.linalg.norm(other - one, axis=0)
-    return bool(np.ptp(length) <= RIGID * length.max())
-
-
-def energy_errors(answer: Answer) -> np.ndarray:
-    """Energy errors in parts of the energy above rest, shape (samples,)."""
-    scene = answer.scene
-    kept = energies(scene, answer.t, answer.y)
-    kept -= supplied(scene.module, answer.t, answer.y, scene.params)
-    return energy_error(scene.module, scene.params, kept)
 
 
 def symbol(name: str) -> str:

@@ -54,6 +54,7 @@ def main(
         help="folder for the picture of growth (default: out)",
     )  # fmt: skip
     parser.add_argument(
+        # argparse compares an empty list, too, with the choices
         "parts", nargs="*", choices=[*PARTS, []], metavar="PART",
         help=f"what to time, {' or '.join(PARTS)}; both",
     )  # fmt: skip

@@ -12,15 +12,8 @@ from typing import Any
 import numpy as np
 
 from solvers.answers.answer import Answer, Specialiser, answer
-from solvers.answers.drawn import (
-    drawn,
-    energy_errors,
-    is_rigid,
-    links,
-    places,
-    projected,
-    sureness,
-)
+from solvers.answers.drawn import drawn, sureness
+from solvers.answers.seen import energy_errors, is_rigid, links, places, projected
 from solvers.answers.told import figures, special_code, table, told
 from solvers.commands.options import options
 from solvers.jsonable import jsonable
@@ -97,7 +90,7 @@ def track(answer: Answer) -> Track:
     positions = places(answer)
     rods: list[tuple[int, int]] = []
     springs: list[tuple[int, int]] = []
-    for a, b in links(answer):
+    for a, b in links(answer, positions):
         start = positions[a] if a >= 0 else np.zeros_like(positions[b])
         (rods if is_rigid(start, positions[b]) else springs).append((a, b))
     return Track(

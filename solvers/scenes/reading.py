@@ -59,7 +59,7 @@ def read(path: Path, module: Callable[[str], ModuleType]) -> Scene:
         if path.stat().st_size > LARGEST:
             raise SceneError(f"it has more than {LARGEST} bytes")
         table = tomllib.loads(path.read_bytes().decode())
-        return scene(path.stem, table, lambda name: module(_beside_file(path, name)))
+        return scene(path.stem, table, lambda name: module(_from_here(path, name)))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise SceneError(
             f"{path} is no TOML file: {error}; a number with a unit stands in quotes, and a "
@@ -69,7 +69,7 @@ def read(path: Path, module: Callable[[str], ModuleType]) -> Scene:
         raise SceneError(f"{path}: {error}") from error
 
 
-def _beside_file(path: Path, name: str) -> str:
+def _from_here(path: Path, name: str) -> str:
     """A system's name; that of a file is meant from the folder of the scene."""
     return str(path.parent / name) if name.endswith(".toml") else name
 
