@@ -12,7 +12,7 @@ demo: .venv/ready  ## set up and run the main job: derive, verify, generate, int
 	$(BIN)/holonomic demo
 
 test: .venv/ready  ## set up and run the tests
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses auto --dist worksteal
 
 derive: .venv/ready  ## write the generated modules anew
 	$(BIN)/holonomic derive
