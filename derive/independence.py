@@ -47,7 +47,11 @@ def _at_a_place(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> list[li
     # what hangs on a thread stays within its reach, what rolls on a wheel keeps away from its axis
     for size in (sp.Rational(1, 8), sp.Integer(5), sp.Integer(1)):
         there = place | {q: place[q] * size for q in system.q}
-        rows = [list(row) for row in mass_matrix.evalf(50, subs=there).tolist()]
+        n = mass_matrix.rows
+        upper = {
+            (i, j): mass_matrix[i, j].evalf(50, subs=there) for i in range(n) for j in range(i, n)
+        }
+        rows = [[upper[min(i, j), max(i, j)] for j in range(n)] for i in range(n)]
         if all(entry.is_real for row in rows for entry in row):
             break
     return rows
