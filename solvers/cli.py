@@ -31,6 +31,7 @@ commands:
   verify     judge every equation, program and claim of the double-pendulum report
   demo       the whole way on one screen, in about ten seconds
   run        scenes, with the smallest model that is good enough
+  sweep      maps of very many motions: flips, exponents, sections
   chart      what each method, form and backend costs for an error
   stability  how long steps may be, exact and measured, and where methods fail
   bench      time compiled loops beside other programs, at equal error
@@ -312,6 +313,12 @@ def _run(argv: Sequence[str]) -> int:
     return run(argv, generated_module, specialiser)
 
 
+def _sweep(argv: Sequence[str]) -> int:
+    from solvers.commands.sweep import main as sweep
+
+    return sweep(argv, generated_module, _package)
+
+
 def specialiser(module: ModuleType, params: Sequence[float], way: Any) -> ModuleType:
     """A module with these parameters folded in, and what a way of integrating needs of it."""
     from solvers.specialised import needed, specialised
@@ -367,6 +374,7 @@ COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {
     "verify": _verify,
     "demo": _demo,
     "run": _run,
+    "sweep": _sweep,
     "chart": _chart,
     "stability": _stability,
     "bench": _bench,

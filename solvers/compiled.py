@@ -8,7 +8,7 @@ from warnings import warn
 import numpy as np
 
 from solvers.compiler import NoCompilerError
-from solvers.crossing import Crossing
+from solvers.crossing import Crossing, Extremum
 from solvers.forms import fastest_form
 from solvers.kernel import MOST_EVENTS, STATUSES, Batch, Kernel, kernel
 from solvers.native import header
@@ -39,8 +39,10 @@ def obstacle(problem: Problem) -> str:
     for event in problem.events:
         if not isinstance(event, Crossing):
             return "an event is a Python function; solvers.crossing.Crossing is known in C"
-        if problem.form.where(event.name) is None:
-            return f"the {problem.form.name} form does not hold {event.name}"
+        kept = [event.coordinate] if isinstance(event, Extremum) else []
+        for name in (event.name, *kept):
+            if problem.form.where(name) is None:
+                return f"the {problem.form.name} form does not hold {name}"
     return ""
 
 

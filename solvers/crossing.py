@@ -64,6 +64,40 @@ class Crossing:
         return float(y[self.module.STATE.index(self.name)]) - self.value
 
 
+@dataclass(frozen=True)
+class Extremum(Crossing):
+    """A velocity vanishes; of all these places those are kept where its coordinate is extreme.
+
+    Ensembles keep two occurrences, with the smallest and the largest value; an integration of
+    one motion keeps all.
+
+    Parameters
+    ----------
+    module : module
+        The generated module.
+    name : str
+        A velocity, such as ``theta1_dot``.
+
+    Raises
+    ------
+    ValueError
+        When it is no velocity.
+    """
+
+    value: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.coordinate not in self.module.COORDINATES or self.coordinate == self.name:
+            rates = ", ".join(self.module.STATE[len(self.module.COORDINATES) :])
+            raise ValueError(f"{self.name} has no extremes that are known: name one of {rates}")
+
+    @property
+    def coordinate(self) -> str:
+        """What has the extremes."""
+        return self.name.removesuffix("_dot")
+
+
 def _is_finite(value: object) -> bool:
     try:
         return isfinite(value)  # type: ignore[arg-type]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers import compiled, interpreted, request, scipy_runs
-from solvers.crossing import Crossing
+from solvers.crossing import Crossing, Extremum
 from solvers.forms import Form, ordinary_state
 from solvers.kernel import STATUSES, Batch
 from solvers.problem import Outcome, Problem
@@ -58,7 +58,9 @@ def ensemble(
     events : Crossing or sequence of Crossing
         What to watch.
     occurrences : int
-        How many occurrences of each event to keep, counted from the beginning.
+        How many occurrences of each event to keep, counted from the beginning; of an
+        `solvers.crossing.Extremum` the two with the smallest and the largest value, so that
+        it must be 2 or more.
     workers : int, optional
         Number of threads; by default one for each processor.
 
@@ -84,7 +86,9 @@ def ensemble(
         raise ValueError(
             f"params has {len(constants)} rows: give one, or one for each of {len(starts)} motions"
         )
-    occurrences = request.count("occurrences", occurrences, 1)
+    watched = [events] if isinstance(events, Crossing) else events
+    extremes = any(isinstance(event, Extremum) for event in watched)
+    occurrences = request.count("occurrences", occurrences, 2 if extremes else 1)
     threads = len(os.sched_getaffinity(0)) if workers is None else workers
     threads = request.count("workers", threads, 1)
     times = () if t_eval is None else t_eval
@@ -130,15 +134,32 @@ def ensemble(
 def _run(batch: Batch, workers: int) -> None:
     """Run all motions in threads; C works without Python's lock, this thread hears the user."""
     batch.restart()
-    with ThreadPoolExecutor(workers) as pool:
-        running = [pool.submit(batch.go) for _ in range(workers)]
-        try:
-            wait(running)
-        except KeyboardInterrupt:
-            batch.stop[0] = 1
-            raise
-    for future in running:
-        future.result()
+    _running.append(batch.stop)
+    try:
+        with ThreadPoolExecutor(workers) as pool:
+            threads = [pool.submit(batch.go) for _ in range(workers)]
+            try:
+                wait(threads)
+            except KeyboardInterrupt:
+                batch.stop[0] = 1
+                raise
+    finally:
+        _running[:] = [stop for stop in _running if stop is not batch.stop]
+    for thread in threads:
+        thread.result()
+
+
+#: The stops of all batches that are running, in whatever thread.
+_running: list[NDArray[np.int64]] = []
+
+
+def stop() -> None:
+    """Let every ensemble that runs in this process stop where it is.
+
+    Only the main thread hears an interruption: it passes it on to the others.
+    """
+    for running in _running[:]:
+        running[0] = 1
 
 
 def _run_one_by_one(
@@ -153,7 +174,7 @@ def _run_one_by_one(
         try:
             rung.run(one, outcome)
         finally:
-            _take(outcome, k, result)
+            _take(outcome, k, problem.events, result)
 
 
 def _collect(batch: Batch, result: Ensemble) -> None:
@@ -177,7 +198,7 @@ def _collect(batch: Batch, result: Ensemble) -> None:
         result.y_events[there, event, k] = outside(rows["t"], rows["z"], rows["turns"])[there]
 
 
-def _take(found: Outcome, k: int, result: Ensemble) -> None:
+def _take(found: Outcome, k: int, events: Sequence[object], result: Ensemble) -> None:
     """What one motion, integrated by itself, has found."""
     result.t[k], result.y[k] = found.end
     result.status[k], result.nfev[k] = found.status, found.nfev
@@ -187,5 +208,10 @@ def _take(found: Outcome, k: int, result: Ensemble) -> None:
     kept = result.t_events.shape[-1]
     for event, (times, states) in enumerate(zip(found.t_events, found.y_events, strict=True)):
         result.occurred[k, event] = len(times)
-        for which, (t, y) in enumerate(zip(times[:kept], states[:kept], strict=True)):
-            result.t_events[k, event, which], result.y_events[k, event, which] = t, y
+        places, watched = [*range(len(times))], events[event]
+        if isinstance(watched, Extremum) and times:
+            values = [y[watched.module.STATE.index(watched.coordinate)] for y in states]
+            places = [int(np.argmin(values)), int(np.argmax(values))]
+        for which, place in enumerate(places[:kept]):
+            result.t_events[k, event, which] = times[place]
+            result.y_events[k, event, which] = states[place]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from solvers.catalogue import load
 from solvers.compiler import build
-from solvers.crossing import Crossing
+from solvers.crossing import Crossing, Extremum
 from solvers.forms import Form
 from solvers.kernel_source import program
 from solvers.native import equations
@@ -39,6 +39,7 @@ MOST_EVENTS = 8
 EVENT = np.dtype([
     *((name, float) for name in ("value", "sine", "cosine")),
     *((name, np.int64) for name in ("is_angle", "index", "direction", "terminal")),
+    *((name, np.int64) for name in ("keeps_extremes", "kept_is_angle", "kept")),
 ])  # fmt: skip
 
 
@@ -172,7 +173,7 @@ class Batch:
         self.event_rows = np.zeros((n, len(events), occurrences), kernel.row)
         self.stop = np.zeros(1, np.int64)
         self._times = np.empty(0) if problem.samples is None else problem.samples
-        self._events = np.array([_event(form, crossing) for crossing in events], EVENT)
+        self._events = np.array([_event(form, crossing, pauses) for crossing in events], EVENT)
         self.task = _Task(
             count=n, trajectories=self.motions.ctypes.data,
             rtol=problem.rtol, atol=float(problem.atol), fixed=problem.h or 0.0,
@@ -204,9 +205,15 @@ class Batch:
         return self.motions["trials"].astype(np.int64) * (not self._kernel.is_explicit)
 
 
-def _event(form: Form, crossing: Crossing) -> tuple[float | int, ...]:
-    where = form.where(crossing.name)
-    assert where is not None
+def _event(form: Form, crossing: Crossing, pauses: bool) -> tuple[float | int, ...]:
+    # a motion that pauses has room for every occurrence
+    extremes = isinstance(crossing, Extremum) and not pauses
+    watched = form.where(crossing.name)
+    kept = form.where(crossing.coordinate) if isinstance(crossing, Extremum) else (False, 0)
+    assert watched is not None
+    assert kept is not None
     value = crossing.value
-    sine, cosine = np.sin(value), np.cos(value)
-    return value, sine, cosine, *map(int, where), crossing.direction, int(crossing.terminal)
+    return (
+        value, np.sin(value), np.cos(value), *map(int, watched), crossing.direction,
+        int(crossing.terminal), int(extremes), *map(int, kept),
+    )  # fmt: skip

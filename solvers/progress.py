@@ -53,3 +53,28 @@ class Progress:
                 sys.stderr.write(f"\r{'':<{WIDTH}}\r")
                 sys.stderr.flush()
                 return
+
+
+class Rate:
+    """How far something is that is done part by part, how fast it goes, and how long it will take.
+
+    Parameters
+    ----------
+    whole : int
+        How many parts there are.
+    left : int
+        How many of them are left.
+    """
+
+    def __init__(self, whole: int, left: int) -> None:
+        self._whole, self._left, self._done, self._since = whole, left, 0, time.monotonic()
+
+    def __call__(self, parts: int) -> str:
+        """So many more are done; what there is to say."""
+        self._done += parts
+        elapsed = max(time.monotonic() - self._since, 1e-9)
+        rate, left = self._done / elapsed, self._left - self._done
+        return (
+            f"{self._whole - left:,} of {self._whole:,}, {rate:,.0f} a second, "
+            f"{left / rate:.0f} s left"
+        )

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 
 def written(path: Path, text: str | bytes) -> Path:
@@ -14,14 +17,27 @@ def written(path: Path, text: str | bytes) -> Path:
     OSError
         When it cannot be written; then nothing has changed.
     """
+    with placed(path) as file:
+        file.write(text.encode() if isinstance(text, str) else text)
+    return path
+
+
+@contextmanager
+def placed(path: Path) -> Iterator[IO[bytes]]:
+    """A file to write to, which is moved into place when it is whole.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written; then nothing has changed.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     passage = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         with open(passage, "wb") as file:
-            file.write(text.encode() if isinstance(text, str) else text)
+            yield file
             file.flush()
             os.fsync(file.fileno())
         os.replace(passage, path)
     finally:
         passage.unlink(missing_ok=True)
-    return path

@@ -26,6 +26,8 @@ typedef struct {
     double value, sine, cosine;     /* where the event is; its sine and cosine if it is an angle */
     int64_t is_angle, index;        /* which angle, or else which number of the state */
     int64_t direction, terminal;
+    int64_t keeps_extremes;         /* whether only two rows are kept, of the smallest and largest */
+    int64_t kept_is_angle, kept;    /* value of what these say, named as the event's own */
 } Event;
 
 enum { ROW = 1 + STATE + ANGLES };  /* t, z, turns */
@@ -81,12 +83,36 @@ static void keep_row(const Task *task, Trajectory *trajectory, const double *pla
     trajectory->rows++;
 }
 
+/* What the extremes of an event are extremes of, where a row says. */
+static double kept_value(const Event *event, const double *row)
+{
+    const int64_t i = event->kept;
+    const double *z = row + 1, *turns = z + STATE;
+    return event->kept_is_angle ? atan2(z[SINE[i]], z[SINE[i] + 1]) + 2*PI*turns[i] : z[i];
+}
+
+static void keep_extremes(const Event *event, double *rows, int is_first, const double *place)
+{
+    double row[ROW];
+    write_row(row, place);
+    const double value = kept_value(event, row);
+    if (is_first || value < kept_value(event, rows)) {
+        memcpy(rows, row, sizeof row);
+    }
+    if (is_first || value > kept_value(event, rows + ROW)) {
+        memcpy(rows + ROW, row, sizeof row);
+    }
+}
+
 static void keep_event(const Task *task, Trajectory *trajectory, int event, const double *place)
 {
     const int64_t which = (trajectory - task->trajectories)*task->events + event;
+    double *rows = task->event_rows + which*task->occurrences*ROW;
     const int64_t row = trajectory->occurred[event]++;
-    if (row < task->occurrences) {
-        write_row(task->event_rows + (which*task->occurrences + row)*ROW, place);
+    if (task->event[event].keeps_extremes) {
+        keep_extremes(&task->event[event], rows, row == 0, place);
+    } else if (row < task->occurrences) {
+        write_row(rows + row*ROW, place);
     }
 }
 

@@ -1,0 +1,1 @@
+"""Maps of very many motions: what varies, what is kept of each, and how they are shared out."""

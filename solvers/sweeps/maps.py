@@ -1,0 +1,286 @@
+"""What is kept of each motion: a few numbers, of which the whole sweep makes a map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import ModuleType
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.crossing import Crossing, Extremum
+from solvers.solution import Ensemble
+from solvers.timed import evaluated
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Found:
+    """Motions that have been integrated.
+
+    Attributes
+    ----------
+    module : module
+        The generated module.
+    starts : ndarray of shape (n, state)
+        Where they began.
+    params : list of ndarray
+        Each parameter's value in each motion.
+    motions : Ensemble
+        What became of them.
+    events : slice
+        Which of the ensemble's events are those of the map in question.
+    """
+
+    module: ModuleType
+    starts: Array
+    params: list[Array]
+    motions: Ensemble
+    events: slice
+
+    def energies(self, t: Array | float, y: Array) -> Array:
+        """Energies in J of states in rows."""
+        return np.asarray(evaluated(self.module, "energy_many", t, y.T, self.params))
+
+
+class Map:
+    """What is kept of each motion; one number, of which nothing must be watched."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the numbers that are kept of one motion."""
+        return ()
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """What the numbers along each dimension are called; empty where they count."""
+        return ()
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Parts of the state that it names."""
+        return ()
+
+    @property
+    def occurrences(self) -> int:
+        """How many occurrences of each event it needs."""
+        return 1
+
+    def unit(self, module: ModuleType) -> str:
+        """Unit of the numbers; empty if they differ in it."""
+        found = {module.UNITS[name] for name in self.components}
+        return found.pop() if len(found) == 1 else ""
+
+    def events(self, module: ModuleType) -> list[Crossing]:
+        """What must be watched."""
+        return []
+
+    def values(self, found: Found) -> Array:
+        """The numbers, shape (n, *shape); NaN where there are none."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class First(Map):
+    """The time in s of the first of some events: a component of the state crosses a value.
+
+    Parameters
+    ----------
+    of : mapping of str to tuple of float
+        Values by component.
+    barrier : tuple of mapping of str to float
+        Places of which every motion must rise above the lowest before any of these events
+        can occur, by coordinate; those that have less energy are not integrated. What is
+        not named there is 0.
+    """
+
+    of: Mapping[str, tuple[float, ...]]
+    barrier: tuple[Mapping[str, float], ...] = ()
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """What is watched, and what places are told by."""
+        return (*self.of, *(name for place in self.barrier for name in place))
+
+    def unit(self, module: ModuleType) -> str:
+        """Unit of a time."""
+        return "s"
+
+    def events(self, module: ModuleType) -> list[Crossing]:
+        """A crossing for each value."""
+        return [
+            Crossing(module, name, value) for name, values in self.of.items() for value in values
+        ]
+
+    def values(self, found: Found) -> Array:
+        """The time of the first event, NaN where none occurred."""
+        times = found.motions.t_events[:, found.events, 0]
+        first = np.where(np.isnan(times), np.inf, times).min(axis=1, initial=np.inf)
+        return np.where(np.isinf(first), np.nan, first)
+
+
+@dataclass(frozen=True)
+class Final(Map):
+    """Where motions end: some components of the state."""
+
+    of: tuple[str, ...]
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """What is kept."""
+        return self.of
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """One number a component."""
+        return (len(self.of),)
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """The components."""
+        return (self.of,)
+
+    def values(self, found: Found) -> Array:
+        """States at the end."""
+        return found.motions.y[:, _places(found.module, self.of)]
+
+
+@dataclass(frozen=True)
+class Extremes(Final):
+    """The smallest and the largest value of some coordinates, between steps, too."""
+
+    @property
+    def occurrences(self) -> int:
+        """The smallest and the largest."""
+        return 2
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Two numbers a coordinate."""
+        return (len(self.of), 2)
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """The coordinates, and which is which."""
+        return (self.of, ("smallest", "largest"))
+
+    def events(self, module: ModuleType) -> list[Crossing]:
+        """The zeros of the velocities."""
+        return [Extremum(module, f"{name}_dot") for name in self.of]
+
+    def values(self, found: Found) -> Array:
+        """The extremes; beginning and end are candidates, too."""
+        places, motions = _places(found.module, self.of), found.motions
+        inner = motions.y_events[:, found.events, :2]
+        between = np.stack([inner[:, k, :, place] for k, place in enumerate(places)], axis=1)
+        ends = np.stack([found.starts[:, places], motions.y[:, places]], axis=2)
+        candidates = np.concatenate([between, ends], axis=2)
+        return np.stack([np.fmin.reduce(candidates, 2), np.fmax.reduce(candidates, 2)], axis=2)
+
+
+@dataclass(frozen=True)
+class Samples(Final):
+    """Some components of the state at `count` times, evenly from beginning to end."""
+
+    count: int
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """A row of numbers a component."""
+        return (len(self.of), self.count)
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """The components."""
+        return (self.of, ())
+
+    def values(self, found: Found) -> Array:
+        """The samples."""
+        return found.motions.samples[:, _places(found.module, self.of)]
+
+
+@dataclass(frozen=True)
+class Section(Samples):
+    """Poincaré's section: where motions are the first `count` times a component crosses a value.
+
+    Parameters
+    ----------
+    of : tuple of str
+        Which components of the state are kept there.
+    count : int
+        How many crossings, counted from the beginning.
+    where : str
+        Which component crosses.
+    value : float
+        In its unit.
+    direction : {0, 1, -1}
+        Both ways, only upwards, only downwards.
+    """
+
+    where: str
+    value: float = 0.0
+    direction: int = 0
+
+    @property
+    def occurrences(self) -> int:
+        """As many as are kept."""
+        return self.count
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """What is kept."""
+        return self.of
+
+    def events(self, module: ModuleType) -> list[Crossing]:
+        """The crossing."""
+        return [Crossing(module, self.where, self.value, self.direction)]
+
+    def values(self, found: Found) -> Array:
+        """The states at the crossings."""
+        states = found.motions.y_events[:, found.events.start, : self.count]
+        return np.swapaxes(states[..., _places(found.module, self.of)], 1, 2)
+
+
+@dataclass(frozen=True)
+class Lyapunov(Map):
+    """Lyapunov's exponent over the time of the motion, ln(|δ|/|δ₀|)/t.
+
+    The small change δ of the state follows the variational equations from δ₀, whose components
+    are all equal; it is measured in units of m, rad and s. The limit of long times is the
+    largest exponent, for almost every δ₀ (G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn,
+    Meccanica 15 (1980) 9-20).
+    """
+
+    def unit(self, module: ModuleType) -> str:
+        """Unit of a rate."""
+        return "1/s"
+
+    def values(self, found: Found) -> Array:
+        """The exponents."""
+        change = found.motions.y[:, len(found.module.STATE) :]
+        largest = np.abs(change).max(axis=1)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            length = np.log(largest) + np.log(np.linalg.norm(change.T / largest, axis=0))
+            return np.asarray(length / found.motions.t)
+
+
+@dataclass(frozen=True)
+class EnergyError(Map):
+    """By how much the energy at the end differs from that at the beginning, in J."""
+
+    def unit(self, module: ModuleType) -> str:
+        """Unit of an energy."""
+        return "J"
+
+    def values(self, found: Found) -> Array:
+        """Differences of the energy."""
+        n, motions = len(found.module.STATE), found.motions
+        before = found.energies(0.0, found.starts[:, :n])
+        return found.energies(motions.t, motions.y[:, :n]) - before
+
+
+def _places(module: ModuleType, names: tuple[str, ...]) -> list[int]:
+    return [module.STATE.index(name) for name in names]

@@ -1,0 +1,94 @@
+"""The maps of a sweep, opened: NumPy arrays with what stands along their axes, and units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.sweeps.axes import Grid
+from solvers.sweeps.sweep import ENERGY, Sweep
+from solvers.sweeps.work import STATUSES
+
+
+@dataclass(frozen=True)
+class Results:
+    """What a sweep has found, whole or so far.
+
+    Attributes
+    ----------
+    asked : Sweep
+        What was asked.
+    folder : Path
+        Where it is: a file ``<map>.npy`` for each map, ``status.npy``, and ``sweep.json``.
+    maps : dict of str to ndarray
+        The maps; of a grid their first axes are those of the grid, else the first counts
+        motions. Files are mapped into memory.
+    axes : dict of str to ndarray
+        What varies: the values along each axis of a grid, else of each motion.
+    status : ndarray of int
+        How each motion ended, as a place in `solvers.sweeps.work.STATUSES`.
+    """
+
+    asked: Sweep
+    folder: Path
+    maps: dict[str, NDArray[np.float64]]
+    axes: dict[str, NDArray[np.float64]]
+    status: NDArray[np.int8]
+
+    @classmethod
+    def of(cls, asked: Sweep, folder: Path) -> Results:
+        """Open the maps in a folder.
+
+        Raises
+        ------
+        OSError
+            When they are not there.
+        """
+
+        def opened(name: str) -> NDArray[Any]:
+            return np.load(folder / f"{name}.npy", mmap_mode="r")
+
+        varied = asked.axes.columns(0, 1)
+        return cls(
+            asked, folder, {name: opened(name) for name in asked.maps},
+            {name: opened(name) for name in varied}, opened("status"),
+        )  # fmt: skip
+
+    @property
+    def count(self) -> dict[str, int]:
+        """How many motions ended in each way."""
+        found = np.bincount(self.status.ravel(), minlength=len(STATUSES))
+        return {name: int(n) for name, n in zip(STATUSES, found, strict=True) if n}
+
+    def unit(self, name: str) -> str:
+        """Unit of what varies."""
+        return "J" if name == ENERGY else str(self.asked.module.UNITS[name])
+
+    def dataset(self) -> Any:
+        """All maps in one ``xarray.Dataset``, with named axes and units; ``to_zarr`` writes it.
+
+        Raises
+        ------
+        ImportError
+            When xarray is not installed: it comes with the extra ``xarray``.
+        """
+        xarray = import_module("xarray")  # an extra, for those who have it
+        is_grid = isinstance(self.asked.axes, Grid)
+        names = tuple(self.axes) if is_grid else ("motion",)
+        along: dict[str, Any] = {
+            name: ((name,) if is_grid else names, column, {"units": self.unit(name)})
+            for name, column in self.axes.items()
+        }
+        found: dict[str, Any] = {"status": (names, self.status, {"meanings": list(STATUSES)})}
+        for name, one in self.asked.maps.items():
+            inner = [f"{name}_{k}" for k in range(len(one.shape))]
+            along |= {d: ((d,), [*said]) for d, said in zip(inner, one.labels, strict=True) if said}
+            units = {"units": one.unit(self.asked.module)}
+            found[name] = ((*names, *inner), self.maps[name], units)
+        title = {"title": self.asked.title, "duration": f"{self.asked.duration} s"}
+        return xarray.Dataset(found, along, title)

@@ -1,0 +1,422 @@
+"""Sweeps that are killed, damaged, shared out or refused end in the same bytes, or say why not."""
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import generated.double_pendulum as dp
+from solvers.cli import generated_module, main
+from solvers.sweeps import running
+from solvers.sweeps.axes import Grid
+from solvers.sweeps.folder import Folder, FolderError
+from solvers.sweeps.maps import Final, First
+from solvers.sweeps.reading import SweepError, find
+from solvers.sweeps.running import Pool, sofar, sweep
+from solvers.sweeps.sweep import Sweep
+
+HOLONOMIC = str(Path(sys.executable).parent / "holonomic")
+ANGLES = np.linspace(-3, 3, 40)
+ASKED = Sweep(
+    dp, Grid({"theta1": ANGLES, "theta2": ANGLES}),
+    {"flip": First({"theta1": (-np.pi, np.pi)}), "end": Final(("theta1",))}, 3.0,
+)  # fmt: skip
+FILE = """
+system = "double_pendulum"
+duration = 30
+[axes]
+theta1 = { from = -3, to = 3, count = 120 }
+theta2 = { from = -3, to = 3, count = 120 }
+[maps.end]
+kind = "final"
+of = ["theta1", "theta2"]
+"""
+
+
+def held(folder: Path) -> dict[str, bytes]:
+    """All files but the picture and the lock, by name."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.suffix != ".png" and path.name != "lock"
+    }
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    folder = tmp_path_factory.mktemp("undisturbed")
+    sweep(ASKED, folder)
+    found = held(folder)
+    assert {"sweep.json", "flip.npy", "end.npy", "status.npy", "theta1.npy"} <= {*found}
+    assert sum(name.startswith("chunks") for name in found) >= 16
+    return found
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_the_number_of_threads_changes_nothing(
+    workers: int, tmp_path: Path, expected: dict[str, bytes]
+) -> None:
+    sweep(ASKED, tmp_path, pool=Pool(workers=workers))
+    assert held(tmp_path) == expected
+
+
+#: What a worker has loaded; it does not know this file.
+modules: Any = eval("lambda: list(__import__('sys').modules)")
+
+
+def loaded() -> list[str]:
+    return [name for name in ("sympy", "derive", "matplotlib") if name in sys.modules]
+
+
+def test_processes_do_the_same_and_never_load_sympy(
+    tmp_path: Path, expected: dict[str, bytes]
+) -> None:
+    with ProcessPoolExecutor(2, get_context("spawn")) as executor:
+        sweep(ASKED, tmp_path, pool=Pool(executor, 2))
+        assert {tuple(executor.submit(loaded).result()) for _ in range(8)} == {()}
+    assert held(tmp_path) == expected
+
+
+@pytest.fixture
+def cluster() -> Iterator[tuple[str, list["subprocess.Popen[bytes]"]]]:
+    """A Dask scheduler and two workers, each a process of its own, on the loopback."""
+    distributed = pytest.importorskip("distributed")
+    options = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    with distributed.LocalCluster(
+        n_workers=0, host="127.0.0.1", dashboard_address=None, protocol="tcp://"
+    ) as scheduler:
+        address = scheduler.scheduler_address
+        workers = [
+            subprocess.Popen(
+                [sys.executable, "-m", "distributed.cli.dask_worker", address, "--nthreads", "1",
+                 "--no-nanny", "--no-dashboard", "--host", "127.0.0.1", "--death-timeout", "60"],
+                **options,
+            )
+            for _ in range(2)
+        ]  # fmt: skip
+        try:
+            scheduler.wait_for_workers(2, timeout=60)
+            yield address, workers
+        finally:
+            for worker in workers:
+                worker.kill()
+                worker.wait()
+
+
+@pytest.mark.filterwarnings("default")  # of Dask's own
+def test_a_cluster_that_loses_a_worker_does_the_same(
+    cluster: tuple[str, list["subprocess.Popen[bytes]"]], tmp_path: Path,
+    expected: dict[str, bytes],
+) -> None:  # fmt: skip
+    address, workers = cluster
+    from distributed import Client
+
+    done = 0
+
+    def tell(_: str) -> None:
+        nonlocal done
+        done += 1
+        if done == 4:
+            workers[0].kill()
+
+    with Client(address) as client:
+        sweep(ASKED, tmp_path, pool=Pool(client.get_executor(), 2), tell=tell)
+        (left,) = client.run(modules).values()  # the other worker is gone
+        assert "solvers.sweeps.work" in left
+        assert not {"sympy", "derive", "matplotlib"} & {*left}
+    assert held(tmp_path) == expected
+
+
+@pytest.mark.filterwarnings("default")
+def test_the_command_finds_a_cluster_by_its_address(
+    cluster: tuple[str, list["subprocess.Popen[bytes]"]], tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    path = written(tmp_path)
+    argv = ["sweep", str(path), "--json", "--output"]
+    assert main([*argv, str(tmp_path / "here")]) == 0
+    here = json.loads(capsys.readouterr().out)
+    assert main([*argv, str(tmp_path / "there"), "--scheduler", cluster[0]]) == 0
+    there = json.loads(capsys.readouterr().out)
+    assert held(tmp_path / "here") == held(tmp_path / "there")
+    assert here["ended"] == there["ended"] == {"finished": 14400}
+
+
+def test_a_scheduler_that_is_not_there_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("solvers.commands.sweep.PATIENCE", 0.5)
+    argv = ["sweep", str(written(tmp_path)), "--output", str(tmp_path / "out"), "--scheduler"]
+    assert main([*argv, "tcp://127.0.0.1:9"]) == 4
+    assert "no scheduler answers at tcp://127.0.0.1:9" in capsys.readouterr().err
+    monkeypatch.setattr("solvers.cli._package", lambda _: None)
+    assert main([*argv, "tcp://127.0.0.1:9"]) == 4
+    assert "pip install 'holonomic[cluster]'" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def written(folder: Path, text: str = FILE) -> Path:
+    path = folder / "mine.toml"
+    path.write_text(text)
+    return path
+
+
+def test_killed_at_any_moment_it_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+    path = written(tmp_path)
+    command = [HOLONOMIC, "sweep", str(path), "--output"]
+    subprocess.run([*command, str(tmp_path / "whole")], check=True, stdout=subprocess.DEVNULL)
+    expected, torn = held(tmp_path / "whole"), tmp_path / "torn"
+    random, unfinished = np.random.default_rng(1), 0
+    for _ in range(6):
+        run = subprocess.Popen([*command, str(torn)], stdout=subprocess.DEVNULL)
+        # at a random moment from the first file on
+        while run.poll() is None and not (torn / "sweep.json").exists():
+            time.sleep(0.001)
+        time.sleep(random.uniform(0, 0.3))
+        run.kill()
+        run.wait()
+        unfinished += not (torn / "end.npy").exists()
+    subprocess.run([*command, str(torn)], check=True, stdout=subprocess.DEVNULL)
+    assert held(torn) == expected
+    assert len(expected) > 16
+    assert unfinished > 1
+
+
+@pytest.mark.parametrize("harm", ["truncated", "flipped", "empty", "missing"])
+def test_a_damaged_chunk_is_done_again(
+    harm: str, tmp_path: Path, expected: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sweep(ASKED, tmp_path)
+    chunk = sorted((tmp_path / "chunks").glob("*.npy"))[5]
+    whole = chunk.read_bytes()
+    chunk.unlink()
+    if harm != "missing":
+        flipped = whole[:200] + bytes([whole[200] ^ 1]) + whole[201:]
+        chunk.write_bytes({"truncated": whole[:-9], "flipped": flipped, "empty": b""}[harm])
+    done = []
+    real = running.work
+    monkeypatch.setattr(running, "work", lambda *given: done.append(1) or real(*given))
+    sweep(ASKED, tmp_path)
+    assert held(tmp_path) == expected
+    assert len(done) == 1
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    ({"duration": 4.0}, "duration is 3.0 there, 4.0 asked"),
+    ({"rtol": 1e-8}, "rtol is 1e-09 there"),
+    ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES[1:]})}, "axes.grid.theta2.count is 40"),
+    ({"maps": {"end": Final(("theta1",))}}, "maps.flip is here only"),
+    ({"values": {"l1": 2.0}}, "values.l1 is asked only"),
+])  # fmt: skip
+def test_a_folder_of_another_sweep_is_refused(
+    change: dict[str, Any], words: str, tmp_path: Path, expected: dict[str, bytes]
+) -> None:
+    for name, content in expected.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+    asked: dict[str, Any] = {"axes": ASKED.axes, "maps": ASKED.maps, "duration": 3.0} | change
+    with pytest.raises(FolderError, match=words):
+        sweep(Sweep(dp, **asked), tmp_path)
+    assert held(tmp_path) == expected
+    (tmp_path / "sweep.json").write_text("{}")
+    with pytest.raises(FolderError, match="is no manifest of a sweep"):
+        sweep(ASKED, tmp_path)
+
+
+def test_two_at_once_in_one_folder_are_refused(tmp_path: Path) -> None:
+    dtype = np.dtype([("status", "i1")])
+    with Folder(tmp_path, {}, 10, lambda: 5, dtype):
+        with pytest.raises(FolderError, match="another process is at work"):
+            sweep(ASKED, tmp_path)
+        with (
+            pytest.raises(FolderError, match="another process is at work"),
+            Folder(tmp_path, {}, 10, lambda: 5, dtype),
+        ):
+            pass
+
+
+class Failing(Executor):
+    """An executor that breaks after a few chunks."""
+
+    def __init__(self, after: int, error: BaseException) -> None:
+        self.left, self.error = after, error
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
+        from concurrent.futures import Future
+
+        future: Future[Any] = Future()
+        self.left -= 1
+        if self.left < 0:
+            future.set_exception(self.error)
+        else:
+            future.set_result(fn(*args, **kwargs))
+        return future
+
+
+def test_what_was_done_before_a_failure_is_kept(
+    tmp_path: Path, expected: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for after, error in ((5, RuntimeError("lost")), (4, KeyboardInterrupt())):
+        with pytest.raises(type(error)):
+            sweep(ASKED, tmp_path, pool=Pool(Failing(after, error), 1))
+    chunks = [name for name in held(tmp_path) if name.startswith("chunks")]
+    assert 6 <= len(chunks) <= 9
+    partial = sofar(ASKED, tmp_path)
+    assert 0 < partial.count["not done yet"] < ASKED.motions
+    assert np.isnan(partial.maps["end"][partial.status == 0]).all()
+    assert np.isfinite(partial.maps["end"][partial.status != 0]).all()
+    sweep(ASKED, tmp_path)
+    assert held(tmp_path) == expected
+
+
+def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path) -> None:
+    path = written(tmp_path)
+    command = [HOLONOMIC, "sweep", str(path), "--output"]
+    subprocess.run([*command, str(tmp_path / "whole")], check=True, stdout=subprocess.DEVNULL)
+    # files may not grow beyond a few chunks' size: the maps do not fit
+    limited = f"import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (40000, 40000)); \
+import sys; from solvers.cli import main; sys.exit(main(['sweep', {str(path)!r}, '--output', \
+{str(tmp_path / 'full')!r}]))"
+    run = subprocess.run(
+        [sys.executable, "-c", limited], capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 4
+    assert "File too large" in run.stderr
+    assert "Traceback" not in run.stderr
+    assert not (tmp_path / "full" / "end.npy").exists()
+    subprocess.run([*command, str(tmp_path / "full")], check=True, stdout=subprocess.DEVNULL)
+    assert held(tmp_path / "full") == held(tmp_path / "whole")
+
+
+LONG = FILE.replace("duration = 30", "duration = 3000")
+
+
+def test_interrupted_it_ends_at_once_and_goes_on_later(tmp_path: Path) -> None:
+    path = written(tmp_path, LONG)
+    command = [
+        sys.executable,
+        "-c",
+        "import signal, sys; from solvers.cli import main; "
+        "signal.signal(signal.SIGINT, signal.default_int_handler); "
+        f"sys.exit(main(['sweep', {str(path)!r}, '--output', {str(tmp_path / 'out')!r}]))",
+    ]
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
+    while not list((tmp_path / "out" / "chunks").glob("*.npy")):
+        time.sleep(0.02)
+    run.send_signal(signal.SIGINT)
+    began = time.monotonic()
+    _, errors = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert b"Traceback" not in errors
+    assert b"the same command goes on" in errors
+    assert time.monotonic() - began < 5
+    assert not [*(tmp_path / "out").rglob(".*")]
+    assert list((tmp_path / "out" / "chunks").glob("*.npy"))
+
+
+def test_a_half_done_sweep_can_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, out = written(tmp_path), tmp_path / "out"
+    asked = find(str(path), generated_module)
+    with pytest.raises(RuntimeError):
+        sweep(asked, out, pool=Pool(Failing(5, RuntimeError()), 1))
+    before = held(out)
+    assert main(["sweep", str(path), "--output", str(out), "--draw"]) == 0
+    shown = capsys.readouterr().out
+    assert "not done yet" in shown
+    assert (out / "mine.png").read_bytes().startswith(b"\x89PNG")
+    assert held(out) == before
+    with pytest.raises(SystemExit, match="2"):
+        main(["sweep", str(path), "--output", str(tmp_path / "none"), "--draw"])
+    assert "is no manifest" in capsys.readouterr().err
+
+
+def test_a_terminal_is_told_how_far_it_is_and_how_long_it_takes(tmp_path: Path) -> None:
+    path = written(tmp_path, LONG)
+    master, slave = pty.openpty()
+    run = subprocess.Popen(
+        [HOLONOMIC, "sweep", str(path), "--output", str(tmp_path / "o")],
+        stdout=subprocess.PIPE, stderr=slave,
+    )  # fmt: skip
+    os.close(slave)
+    shown = b""
+    while b"s left" not in shown and run.poll() is None:
+        shown += os.read(master, 1000)
+    run.kill()
+    run.communicate()
+    os.close(master)
+    assert b"of 14,400, " in shown
+    assert b" a second, " in shown
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    (('"double_pendulum"', '"double_pendlum"'), "no system is called|did you mean"),
+    (("duration", "duratoin"), "no key 'duratoin' .did you mean 'duration'"),
+    (("duration = 30", ""), "'duration' is missing"),
+    (("duration = 30", 'duration = "30 kg"'), "duration: '30 kg' has another unit"),
+    (("duration = 30", "duration = -1"), "duration = -1.0 must be positive"),
+    (("[axes]", "[axis]"), "no key 'axis' .did you mean 'axes'"),
+    (("theta1 = {", "theta3 = {"), "'theta3' .did you mean"),
+    (("from = -3, to = 3, count = 120", "from = -3, to = 3"), "count = None must be a whole"),
+    (("from = -3, to = 3, count = 120", "from = -3, count = 120"), "needs from and to"),
+    (("count = 120", "count = 1.5"), "count = 1.5 must be a whole number"),
+    (("count = 120", "count = 0"), "count = 0 must be a whole number, 1 or more"),
+    (("count = 120", "cuont = 120"), "no key 'cuont'"),
+    (('kind = "final"', 'kind = "finl"'), "maps.end.kind = 'finl' must be one of .*did you mean"),
+    (('kind = "final"', 'kind = "first"'), "maps.end.of = .* must be a table"),
+    (('kind = "final"', 'kind = "section"\ncount = 3'), "where = '' must be one of theta1"),
+    (('kind = "final"', 'kind = "samples"'), "maps.end.count = None must be a whole number"),
+    (('kind = "final"', 'kind = "final"\nbarrier = []'), "no key 'barrier'"),
+    (('of = ["theta1", "theta2"]', 'of = ["theta1", "thta2"]'), "'thta2' .did you mean 'theta2'"),
+    (('of = ["theta1", "theta2"]', ""), "maps.end.of names ''"),
+    (("[maps.end]", "rtol = true\n[maps.end]"), "no key 'rtol'|rtol"),
+    (("[axes]", 'method = "rk44"\n[axes]'), "no method is called 'rk44'"),
+    (("[axes]", "random = { count = 5 }\n[axes]"), "axes.theta1 has no key 'count'"),
+    (("[axes]", "[initial]\ntheta1 = 1\n[axes]"), "theta1 varies, and is given"),
+    (("[axes]", "[parameters]\nl9 = 1\n[axes]"), "no key 'l9'; known are m1"),
+    (("system", "system = [[["), "is no TOML file"),
+])  # fmt: skip
+def test_a_file_that_is_no_sweep_is_refused(
+    change: tuple[str, str], words: str, tmp_path: Path
+) -> None:
+    text = FILE.replace(*change, 1)
+    assert text != FILE
+    path = written(tmp_path, text)
+    with pytest.raises(SweepError, match=words) as refusal:
+        find(str(path), generated_module)
+    assert str(path) in str(refusal.value)
+
+
+@pytest.mark.parametrize(("table", "words"), [
+    ("", "must have names in its first line"),
+    ("theta1,theta2\n", "must have names in its first line"),
+    ("theta1,theta2\n1,2\n1\n", "as many numbers"),
+    ("theta1,theta2\n1,two\n", "theta2: unit 'two' is not known"),
+    ("theta1,tehta2\n1,2\n", "'tehta2' .did you mean 'theta2'"),
+])  # fmt: skip
+def test_a_table_that_is_none_is_refused(table: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "starts.csv").write_text(table)
+    begin, end = FILE.index("[axes]"), FILE.index("[maps")
+    path = written(tmp_path, FILE[:begin] + 'axes = "starts.csv"\n' + FILE[end:])
+    with pytest.raises(SweepError, match=words):
+        find(str(path), generated_module)
+
+
+def test_the_command_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["sweep", "filps"])
+    assert "did you mean 'flips'" in capsys.readouterr().err
+    assert main(["sweep", "none.toml"]) == 4
+    assert "none.toml" in capsys.readouterr().err
+    assert main(["sweep", "flips", "--workers", "0"]) == 2
+    assert "workers = 0 must be from 1" in capsys.readouterr().err
