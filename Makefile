@@ -17,7 +17,7 @@ test: .venv/ready  ## set up and run the tests
 derive: .venv/ready  ## write the generated modules anew
 	$(BIN)/holonomic derive
 
-bench: .venv/bench  ## time compiled loops beside other programs (five minutes, idle machine)
+bench: .venv/bench  ## time compiled loops beside other programs (ten minutes, idle machine)
 	$(BIN)/holonomic bench
 
 lint: .venv/ready  ## style and common mistakes

@@ -359,13 +359,13 @@ def _bench(argv: Sequence[str]) -> int:
         rates = [*system.qdot, *derivation.accelerations]
         return sympy.lambdify([[*system.q, *system.qdot], system.params], rates, "numpy")
 
-    def heyoka() -> ModuleType:
-        found = _package("heyoka")
+    def peer(name: str) -> ModuleType:
+        found = _package(name)
         if found is None:
-            raise OSError("heyoka is not installed: pip install -e '.[bench]'")
+            raise OSError(f"{name} is not installed: pip install -e '.[bench]'")
         return found
 
-    return bench(argv, generated_module, lambdified, heyoka, chain, lagranges_method)
+    return bench(argv, generated_module, lambdified, peer, chain, lagranges_method)
 
 
 COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {

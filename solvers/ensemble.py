@@ -187,15 +187,22 @@ def _collect(batch: Batch, result: Ensemble) -> None:
         getattr(result, name)[:] = motions[name]
     result.nfev[:] = batch.nfev
     for k in range(result.samples.shape[-1]):
-        there = motions["rows"] > k
-        rows = batch.rows[:, k]
-        states = outside(rows["t"], rows["z"], rows["turns"])
-        result.samples[there, :, k] = states[there]
+        there = np.flatnonzero(motions["rows"] > k)
+        _, result.samples[there, :, k] = _passed(batch, there, batch.rows[there, k])
     result.occurred[:] = motions["occurred"][:, : result.occurred.shape[1]]
     for event, k in np.ndindex(result.t_events.shape[1:]):
-        rows, there = batch.event_rows[:, event, k], result.occurred[:, event] > k
-        result.t_events[there, event, k] = rows["t"][there]
-        result.y_events[there, event, k] = outside(rows["t"], rows["z"], rows["turns"])[there]
+        there = np.flatnonzero(result.occurred[:, event] > k)
+        times, states = _passed(batch, there, batch.event_rows[there, event, k])
+        result.t_events[there, event, k], result.y_events[there, event, k] = times, states
+
+
+def _passed(batch: Batch, there: NDArray[np.intp], rows: NDArray[np.void]) -> tuple[Array, Array]:
+    """Times and ordinary states of rows that some motions have written."""
+    form = batch.form
+    if any(np.size(parameter) > 1 for parameter in form.params):
+        own = [np.broadcast_to(p, len(batch.motions))[there] for p in form.params]
+        form = Form(form.module, form.name, own)
+    return rows["t"], form.outside_many(rows["t"], rows["z"], rows["turns"])
 
 
 def _take(found: Outcome, k: int, events: Sequence[object], result: Ensemble) -> None:

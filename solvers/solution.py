@@ -135,7 +135,7 @@ class Ensemble:
     @property
     def success(self) -> NDArray[np.bool_]:
         """Which motions reached the end, or an event that was to end them."""
-        return np.array([s in (Status.FINISHED, Status.EVENT) for s in self.status], bool)
+        return np.asarray((self.status == Status.FINISHED) | (self.status == Status.EVENT))
 
 
 class Interrupted(KeyboardInterrupt):

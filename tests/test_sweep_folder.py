@@ -44,6 +44,14 @@ of = ["theta1", "theta2"]
 """
 
 
+@pytest.fixture(autouse=True, scope="module")
+def many_chunks() -> Iterator[None]:
+    """So small a sweep is cut into very few chunks, if they are held to be dear."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(running, "COST", 1e-5)
+        yield
+
+
 def held(folder: Path) -> dict[str, bytes]:
     """All files but the picture and the lock, by name."""
     return {
@@ -189,7 +197,7 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_bytes(tmp_path: Path) -> No
         unfinished += not (torn / "end.npy").exists()
     subprocess.run([*command, str(torn)], check=True, stdout=subprocess.DEVNULL)
     assert held(torn) == expected
-    assert len(expected) > 16
+    assert len(expected) > 10
     assert unfinished > 1
 
 

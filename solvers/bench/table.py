@@ -10,12 +10,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from solvers.bench import chains_told, curves, rates
+from solvers.bench import chains_told, curves, maps, rates
 from solvers.bench.growth import Maker, drawn
 from solvers.pictures import save
 
 #: What can be timed.
-PARTS = ("pendulum", "chains")
+PARTS = ("pendulum", "chains", "maps")
 #: Global errors at which both sides are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 
@@ -24,7 +24,7 @@ def main(
     argv: Sequence[str],
     module: Callable[[str], ModuleType],
     lambdify: Callable[[], Any],
-    heyoka: Callable[[], ModuleType],
+    peer: Callable[[str], ModuleType],
     made: Maker,
     rival: Callable[[int], float],
 ) -> int:
@@ -36,15 +36,17 @@ def main(
         Options.
     module : callable
         Gives the generated module of a system.
-    lambdify, heyoka : callable
-        Give SymPy's function for the double pendulum's right-hand side, and the peer's package.
+    lambdify : callable
+        Gives SymPy's function for the double pendulum's right-hand side.
+    peer : callable
+        Gives another program's package.
     made, rival : callable
         Derive a chain of pendulums here, and with SymPy's own mechanics.
     """
     parser = argparse.ArgumentParser(
         prog="holonomic bench",
         description="Time compiled loops beside other programs, at equal global error. "
-        "Leave the machine alone meanwhile: it takes about five minutes.",
+        "Leave the machine alone meanwhile: it takes about ten minutes.",
         epilog="examples:\n  holonomic bench --json > figures.json\n  holonomic bench chains",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -56,10 +58,10 @@ def main(
     parser.add_argument(
         # argparse compares an empty list, too, with the choices
         "parts", nargs="*", choices=[*PARTS, []], metavar="PART",
-        help=f"what to time, {' or '.join(PARTS)}; both",
+        help=f"what to time, of {', '.join(PARTS)}; default: all",
     )  # fmt: skip
     arguments = parser.parse_args(argv)
-    hy, found = heyoka(), {}
+    hy, found = peer("heyoka"), {}
     if "pendulum" in (arguments.parts or PARTS):
         found["pendulum"] = figures(module("double_pendulum"), lambdify(), hy)
         if not arguments.json:
@@ -70,6 +72,10 @@ def main(
         if not arguments.json:
             print(*chains_told.told(found["chains"]), sep="\n")
             print(f"picture: {arguments.output / 'growth.png'}")
+    if "maps" in (arguments.parts or PARTS):
+        found["maps"] = maps.figures(module("double_pendulum"), hy, peer("numba"))
+        if not arguments.json:
+            print(*maps.told(found["maps"]), sep="\n")
     if arguments.json:
         print(json.dumps(found, indent=2))
     return 0

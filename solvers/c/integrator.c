@@ -11,9 +11,9 @@ typedef struct {
     Motion motion;
     Place end;
     real trial;                             /* length of the step that is made */
-    real before[MOST_EVENTS], after[MOST_EVENTS];
+    real before[MOST_EVENTS], after[MOST_EVENTS];   /* values of the events, here and at the end */
     real due;                               /* time of the next sample, NaN if there is none */
-    mask advancing, fresh;
+    mask advancing, fresh, taken;           /* fresh motions begin; those taken were put down before */
     Errand errands[LANES];
 } Lanes;
 
@@ -33,6 +33,7 @@ static void take_next(Lanes *lanes, int lane)
             errand->resolution = 0.4*NUMBER(lanes->motion.shortest, lane);
             errand->stopping = -1;
             WORD(lanes->fresh, lane) = trajectory->status == WAITING ? -1 : 0;
+            WORD(lanes->taken, lane) = -1;
             return;
         }
     }
@@ -46,6 +47,17 @@ static void note(Lanes *lanes, int lane)
     const int is_due = errand->mode == ADVANCE && errand->trajectory->rows < task->samples;
     NUMBER(lanes->due, lane) = is_due ? task->times[errand->trajectory->rows] : NAN;
     WORD(lanes->advancing, lane) = errand->mode == ADVANCE ? -1 : 0;
+}
+
+/* Values of the events where motions are that lanes have just taken. */
+static void watch(Lanes *lanes)
+{
+    const Task *task = lanes->task;
+    for (int e = 0; e < task->events; e++) {
+        const real value = event_value(&task->event[e], &lanes->motion.place);
+        lanes->before[e] = chosen(lanes->taken, value, lanes->before[e]);
+    }
+    lanes->taken = (mask){0};
 }
 
 /* Slopes and first steps of motions that have just begun. */
@@ -131,6 +143,9 @@ static int attend(Lanes *lanes, int lane, int kept, int broken)
     }
     errand->mode = ADVANCE;
     to_lane(&lanes->end, PLACE, lane, errand->end);
+    for (int e = 0; e < task->events; e++) {
+        NUMBER(lanes->after[e], lane) = errand->after[e];
+    }
     return 1;
 }
 
@@ -228,7 +243,6 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *kept, mask *br
     motion->cuts = chosen(*kept, every(0.0), motion->cuts);
     mask attention = *broken | last | ~advancing | below(size(motion->h), motion->shortest);
     for (int e = 0; e < task->events; e++) {
-        lanes->before[e] = event_value(&task->event[e], place);
         lanes->after[e] = event_value(&task->event[e], end);
         attention |= *kept & has_passed(&task->event[e], lanes->before[e], lanes->after[e]);
     }
@@ -249,6 +263,9 @@ static void move(Lanes *lanes, mask kept)
     const real *from = (const real *)&lanes->end;
     for (int k = 0; k < PLACE; k++) {
         to[k] = chosen(kept, from[k], to[k]);
+    }
+    for (int e = 0; e < lanes->task->events; e++) {
+        lanes->before[e] = chosen(kept, lanes->after[e], lanes->before[e]);
     }
     lanes->motion.steps += chosen(kept, every(1.0), every(0.0));
 }
@@ -282,6 +299,9 @@ void run(Task *task)
                     busy -= conclude(&lanes, lane, leaving);
                 }
             }
+        }
+        if (any(lanes.taken)) {
+            watch(&lanes);
         }
         if (turn % TURNS_BETWEEN_LOOKS == 0) {
             leaving |= must_leave(task, started);

@@ -25,8 +25,8 @@ from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.work import Job, begun, integrated, work
 from solvers.written import written
 
-#: Seconds that a chunk takes, about; and into how many parts a short sweep is cut, at least.
-CHUNK, PARTS = 1.0, 16
+#: Seconds that a chunk takes at most, about, and what it costs beside its motions.
+CHUNK, COST = 1.0, 0.004
 #: Motions that are tried to see how long they take.
 TRIED = 64
 #: Seconds for each evaluation of a right-hand side with n numbers: this times n^1.5.
@@ -181,9 +181,11 @@ def _completed(
 
 
 def chunk_length(asked: Sweep, job: Job) -> int:
-    """How many motions take about a second, from how often some evaluate their right-hand side.
+    """How many motions a chunk is to hold: what takes about a second, in short sweeps less.
 
-    It does not depend on how fast they happen to be, so that a sweep is always cut alike.
+    There, so much that chunks cost no more than it costs to wait for the last of them. How
+    long motions take follows from how often some evaluate their right-hand side, not from
+    how fast they happen to be, so that a sweep is always cut alike.
     """
     most = asked.motions
     places = np.unique(np.linspace(0, most - 1, min(TRIED, most)).astype(int))
@@ -200,4 +202,5 @@ def chunk_length(asked: Sweep, job: Job) -> int:
     room = ROOM / (8 * len(asked.start) * (1 + job.samples + sum(
         one.occurrences * len(one.events(asked.module)) for one in job.maps.values()
     )))  # fmt: skip
-    return max(1, int(min(CHUNK / each, -(-most // PARTS), room)))
+    seconds = min(CHUNK, (COST * each * most) ** 0.5)
+    return max(1, int(min(seconds / each, room)))

@@ -118,7 +118,8 @@ def work(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
         motions = integrated(job, module, starts[there], own)
         for name, one, events in watched(job, module):
             kept[name][there] = one.values(Found(module, starts[there], own, motions, events))
-        kept["status"][there] = [CODES[ended] for ended in motions.status]
+        for ended, code in CODES.items():
+            kept["status"][there[motions.status == ended]] = code
         failed = there[~motions.success]
         for name in job.maps:
             kept[name][failed] = np.nan
