@@ -25,12 +25,22 @@ from solvers.scenes.reading import KEYS, scene
 from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
 from solvers.stability.critical import CriticalStep
+from solvers.sweeps.reading import KINDS
+from solvers.sweeps.reading import find as find_sweep
+from solvers.sweeps.reading import names as sweeps
+from solvers.sweeps.running import sweep
 from solvers.verdict.evidence import Evidence, Setting
 from solvers.verdict.objectives import objectives
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 TABLES = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
+
+
+def table(name: str) -> str:
+    """The file of this name, which its first line says."""
+    (found,) = [text for text in TABLES if text.startswith(f"# {name}\n")]
+    return str(found)
 
 
 @pytest.mark.parametrize("snippet", SNIPPETS, ids=range(len(SNIPPETS)))
@@ -135,7 +145,7 @@ def test_systems_have_the_coordinates_that_are_said() -> None:
 
 
 def test_the_system_that_is_shown_is_derived_and_runs(tmp_path: Path) -> None:
-    (tmp_path / "bead.toml").write_text(TABLES[2])
+    (tmp_path / "bead.toml").write_text(table("bead.toml"))
     text = 'system = "bead.toml"\nduration = 3\ninitial = { x = "10 cm" }\n'
     (tmp_path / "scene.toml").write_text(text)
     found = answer(find(str(tmp_path / "scene.toml"), generated_module))
@@ -146,7 +156,7 @@ def test_the_system_that_is_shown_is_derived_and_runs(tmp_path: Path) -> None:
 def test_the_equations_that_are_shown_are_judged_as_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "page.toml").write_text(TABLES[3])
+    (tmp_path / "page.toml").write_text(table("page.toml"))
     assert main(["verify", str(tmp_path / "page.toml")]) == 1
     printed = capsys.readouterr().out.splitlines()
     shown = README.partition("$ holonomic verify page.toml\n")[2].partition("```")[0]
@@ -159,3 +169,15 @@ def test_keys_and_models_that_are_listed_are_all_that_there_are() -> None:
     shown = {"system", "duration", "accuracy", "parameters", "initial", "label"}
     assert named | shown == {*KEYS}
     assert all(f'"{model}"' in keys for model in MODELS)
+
+
+def test_the_sweep_that_is_shown_runs_and_every_kind_is_listed(tmp_path: Path) -> None:
+    (tmp_path / "my_sweep.toml").write_text(table("my_sweep.toml"))
+    asked = find_sweep(str(tmp_path / "my_sweep.toml"), generated_module)
+    found = sweep(asked, tmp_path / "out")
+    assert found.maps["highest"].shape == (50, 40, 1, 2)
+    assert found.count == {"finished": 2000}
+    listed = README.split("what is kept of a motion")[1].split("\n\n")[0]
+    assert tuple(re.findall(r"\n\| `([a-z ]+)`", listed)) == tuple(KINDS)
+    shipped = README.split("sweeps ship: ")[1].split(".")[0]
+    assert set(re.findall(r"`(\w+)`", shipped)) == {*sweeps()}

@@ -300,7 +300,7 @@ import sys; from solvers.cli import main; sys.exit(main(['sweep', {str(path)!r},
         [sys.executable, "-c", limited], capture_output=True, text=True, check=False
     )
     assert run.returncode == 4
-    assert "File too large" in run.stderr
+    assert f"File too large: '{tmp_path / 'full'}" in run.stderr
     assert "Traceback" not in run.stderr
     assert not (tmp_path / "full" / "end.npy").exists()
     subprocess.run([*command, str(tmp_path / "full")], check=True, stdout=subprocess.DEVNULL)

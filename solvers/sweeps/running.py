@@ -31,8 +31,9 @@ CHUNK, COST = 1.0, 0.004
 TRIED = 64
 #: Seconds for each evaluation of a right-hand side with n numbers: this times n^1.5.
 EVALUATION = 0.25e-9
-#: Largest number of bytes that a chunk may keep of its motions while they run.
-ROOM = 64e6
+#: Largest number of bytes that a chunk's states may take; all that it keeps of its motions while
+#: they run takes about ten times as much.
+ROOM = 8e6
 
 
 @dataclass(frozen=True)
