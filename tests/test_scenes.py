@@ -10,9 +10,10 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.cli import generated_module
+from solvers.said import InputError
 from solvers.scenes.checks import MassMatrixWarning
 from solvers.scenes.quantity import QuantityError, quantity
-from solvers.scenes.reading import SceneError, read, scene
+from solvers.scenes.reading import read, scene
 from solvers.scenes.scene import Scene
 from solvers.scenes.shipped import UnknownSceneError, find, names
 
@@ -121,7 +122,7 @@ def test_what_is_no_number_is_refused_at_once(text: object, words: str) -> None:
     ({"beside": [{"label": "x", "initial": 5}]}, "must be a table"),
     ({"title": "\x1b[31m red"}, "printable characters"),
     ({"title": "x" * 3000}, "up to 2000"),
-    ({"pictures": ["path"] * 99}, "up to 24 can be shown"),
+    ({"pictures": ["path"] * 99}, "up to 24 are allowed"),
     ({"beside": [{"label": "x"}] * 99}, "up to 24"),
     ({"samples": 10**5000}, "whole number"),
     ({"duration": 10**5000}, "not finite"),
@@ -133,13 +134,13 @@ def test_what_is_no_number_is_refused_at_once(text: object, words: str) -> None:
 def test_what_makes_no_sense_is_refused_with_the_way_out(
     changes: dict[str, object], words: str
 ) -> None:
-    with pytest.raises((SceneError, ValueError), match=words):
+    with pytest.raises((InputError, ValueError), match=words):
         made(**changes)
 
 
 @pytest.mark.parametrize("key", ["system", "duration", "initial"])
 def test_what_is_missing_is_named(key: str) -> None:
-    with pytest.raises(SceneError, match=f"'{key}' is missing"):
+    with pytest.raises(InputError, match=f"'{key}' is missing"):
         scene("made", {k: v for k, v in PLAIN.items() if k != key}, generated_module)
 
 
@@ -155,7 +156,7 @@ def test_a_file_that_is_no_scene_is_refused_within_a_second(tmp_path: Path) -> N
     for content, words in cases.items():
         path.write_bytes(content)
         before = time.perf_counter()
-        with pytest.raises(SceneError, match=words):
+        with pytest.raises(InputError, match=words):
             read(path, generated_module)
         assert time.perf_counter() - before < 1
     with pytest.raises(FileNotFoundError):

@@ -18,12 +18,14 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.cli import generated_module, main
-from solvers.sweeps import running
+from solvers.said import InputError
+from solvers.sweeps import chunk, pool
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.folder import Folder, FolderError
 from solvers.sweeps.maps import Final, First
-from solvers.sweeps.reading import SweepError, find
-from solvers.sweeps.running import Pool, sofar, sweep
+from solvers.sweeps.pool import Pool
+from solvers.sweeps.reading import find
+from solvers.sweeps.running import sofar, sweep
 from solvers.sweeps.sweep import Sweep
 
 HOLONOMIC = str(Path(sys.executable).parent / "holonomic")
@@ -48,7 +50,7 @@ of = ["theta1", "theta2"]
 def many_chunks() -> Iterator[None]:
     """So small a sweep is cut into very few chunks, if they are held to be dear."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(running, "COST", 1e-5)
+        patch.setattr(chunk, "COST", 1e-5)
         yield
 
 
@@ -213,8 +215,8 @@ def test_a_damaged_chunk_is_done_again(
         flipped = whole[:200] + bytes([whole[200] ^ 1]) + whole[201:]
         chunk.write_bytes({"truncated": whole[:-9], "flipped": flipped, "empty": b""}[harm])
     done = []
-    real = running.work
-    monkeypatch.setattr(running, "work", lambda *given: done.append(1) or real(*given))
+    real = pool.work
+    monkeypatch.setattr(pool, "work", lambda *given: done.append(1) or real(*given))
     sweep(ASKED, tmp_path)
     assert held(tmp_path) == expected
     assert len(done) == 1
@@ -375,18 +377,18 @@ def test_a_terminal_is_told_how_far_it_is_and_how_long_it_takes(tmp_path: Path) 
     (("duration = 30", "duration = -1"), "duration = -1.0 must be positive"),
     (("[axes]", "[axis]"), "no key 'axis' .did you mean 'axes'"),
     (("theta1 = {", "theta3 = {"), "'theta3' .did you mean"),
-    (("from = -3, to = 3, count = 120", "from = -3, to = 3"), "count = None must be a whole"),
-    (("from = -3, to = 3, count = 120", "from = -3, count = 120"), "needs from and to"),
+    (("from = -3, to = 3, count = 120", "from = -3, to = 3"), "axes.theta1.count is missing"),
+    (("from = -3, to = 3, count = 120", "from = -3, count = 120"), "axes.theta1.to is missing"),
     (("count = 120", "count = 1.5"), "count = 1.5 must be a whole number"),
-    (("count = 120", "count = 0"), "count = 0 must be a whole number, 1 or more"),
+    (("count = 120", "count = 0"), "count = 0 must be a whole number from 1"),
     (("count = 120", "cuont = 120"), "no key 'cuont'"),
-    (('kind = "final"', 'kind = "finl"'), "maps.end.kind = 'finl' must be one of .*did you mean"),
+    (('kind = "final"', 'kind = "finl"'), "kind = 'finl' .did you mean 'final'.. must be"),
     (('kind = "final"', 'kind = "first"'), "maps.end.of = .* must be a table"),
-    (('kind = "final"', 'kind = "section"\ncount = 3'), "where = '' must be one of theta1"),
+    (('kind = "final"', 'kind = "section"\ncount = 3'), "where = None must be one of theta1"),
     (('kind = "final"', 'kind = "samples"'), "maps.end.count = None must be a whole number"),
     (('kind = "final"', 'kind = "final"\nbarrier = []'), "no key 'barrier'"),
     (('of = ["theta1", "theta2"]', 'of = ["theta1", "thta2"]'), "'thta2' .did you mean 'theta2'"),
-    (('of = ["theta1", "theta2"]', ""), "maps.end.of names ''"),
+    (('of = ["theta1", "theta2"]', ""), "maps.end.of = .. must name components"),
     (("[maps.end]", "rtol = true\n[maps.end]"), "no key 'rtol'|rtol"),
     (("[axes]", 'method = "rk44"\n[axes]'), "no method is called 'rk44'"),
     (("[axes]", "random = { count = 5 }\n[axes]"), "axes.theta1 has no key 'count'"),
@@ -400,7 +402,7 @@ def test_a_file_that_is_no_sweep_is_refused(
     text = FILE.replace(*change, 1)
     assert text != FILE
     path = written(tmp_path, text)
-    with pytest.raises(SweepError, match=words) as refusal:
+    with pytest.raises(InputError, match=words) as refusal:
         find(str(path), generated_module)
     assert str(path) in str(refusal.value)
 
@@ -416,7 +418,7 @@ def test_a_table_that_is_none_is_refused(table: str, words: str, tmp_path: Path)
     (tmp_path / "starts.csv").write_text(table)
     begin, end = FILE.index("[axes]"), FILE.index("[maps")
     path = written(tmp_path, FILE[:begin] + 'axes = "starts.csv"\n' + FILE[end:])
-    with pytest.raises(SweepError, match=words):
+    with pytest.raises(InputError, match=words):
         find(str(path), generated_module)
 
 

@@ -18,19 +18,20 @@ import generated.single_pendulum as single
 from solvers.cli import generated_module
 from solvers.integration import integrate
 from solvers.sweeps.axes import BLOCK, Grid, Random, Table
+from solvers.sweeps.map import Map
 from solvers.sweeps.maps import (
     EnergyError,
     Extremes,
     Final,
     First,
     Lyapunov,
-    Map,
     Samples,
     Section,
 )
+from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import Results
-from solvers.sweeps.running import Pool, sweep
+from solvers.sweeps.running import sweep
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.work import STATUSES
 

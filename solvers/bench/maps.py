@@ -28,7 +28,8 @@ from solvers.kernel import Batch, kernel
 from solvers.sweeps.axes import Random
 from solvers.sweeps.barrier import is_below
 from solvers.sweeps.maps import First
-from solvers.sweeps.running import Pool, sweep
+from solvers.sweeps.pool import Pool
+from solvers.sweeps.running import sweep
 from solvers.sweeps.sweep import Sweep
 
 Array = NDArray[np.float64]

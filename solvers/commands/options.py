@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
 
-from solvers.scenes.reading import SceneError
+from solvers.said import InputError
 from solvers.scenes.scene import Scene
 from solvers.scenes.shipped import UnknownSceneError, find, names
 
@@ -48,7 +48,7 @@ def options(
     arguments = parser.parse_args(argv)
     try:
         chosen = [find(one, module) for one in dict.fromkeys(arguments.scenes or usual)]
-    except (UnknownSceneError, SceneError) as error:
+    except (UnknownSceneError, InputError) as error:
         parser.error(str(error))
     arguments.output.mkdir(parents=True, exist_ok=True)
     return chosen, arguments

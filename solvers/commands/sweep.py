@@ -18,11 +18,13 @@ from solvers.catalogue import load
 from solvers.jsonable import jsonable
 from solvers.pictures import save
 from solvers.progress import Progress
+from solvers.said import InputError
 from solvers.sweeps.drawn import drawn
 from solvers.sweeps.folder import FolderError
-from solvers.sweeps.reading import SweepError, find, names
+from solvers.sweeps.pool import Pool
+from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import Results
-from solvers.sweeps.running import Pool, sofar, sweep
+from solvers.sweeps.running import sofar, sweep
 from solvers.sweeps.sweep import Sweep
 
 #: Seconds to wait for a scheduler.
@@ -82,7 +84,7 @@ def main(
             tell("the picture")
             picture = folder / f"{asked.name}.png"
             save(drawn(results), picture)
-    except (SweepError, FolderError) as error:
+    except (InputError, FolderError) as error:
         parser.error(str(error))
     except KeyboardInterrupt:
         print("interrupted: the same command goes on from here", file=sys.stderr)

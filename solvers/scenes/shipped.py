@@ -36,7 +36,7 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Scene:
     ------
     UnknownSceneError
         When there is none.
-    solvers.scenes.reading.SceneError
+    solvers.said.InputError
         When it makes no sense.
     OSError
         When the file cannot be read.

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.sweeps.axes import Grid
-from solvers.sweeps.sweep import ENERGY, Sweep
+from solvers.sweeps.checks import ENERGY
+from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.work import STATUSES
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from math import isfinite
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -13,15 +12,11 @@ from typing import Any
 from solvers import request
 from solvers.catalogue import load
 from solvers.native import header
-from solvers.scenes.checks import check_positive, near
+from solvers.scenes.checks import check_positive
+from solvers.sweeps import checks
 from solvers.sweeps.axes import Axes, motions
-from solvers.sweeps.barrier import lower_place
-from solvers.sweeps.maps import EnergyError, First, Lyapunov, Map, Samples
-
-#: What may vary or be given beside coordinates, velocities and parameters.
-ENERGY = "energy"
-#: Instead of a velocity's value: so much as the energy leaves for it.
-FROM_ENERGY = "energy"
+from solvers.sweeps.map import Map
+from solvers.sweeps.maps import Lyapunov, Samples
 
 
 @dataclass(frozen=True)
@@ -74,93 +69,13 @@ class Sweep:
     def __post_init__(self) -> None:
         check_positive(duration=self.duration)
         load(self.method)
-        self._check_names()
-        self._check_energy()
-        self._check_maps()
-        samples = {one.count for one in self.maps.values() if type(one) is Samples}
-        if len(samples) > 1:
-            raise ValueError(f"maps sample at {sorted(samples)} times: all must have as many")
+        checks.check_names(self.module, self.axes, self.values)
+        checks.check_energy(self.module, self.given, self.values)
+        checks.check_maps(self.module, self.axes, self.maps, self.values)
         request.problem(
             self.module, (0.0, self.duration), (0.0,) * len(self.start), self.module.DEFAULTS,
             self.method, self.form, self.rtol, self.atol, None, None, (), self.max_steps,
         )  # fmt: skip
-
-    def _check_names(self) -> None:
-        module = self.module
-        known = (*module.STATE, *module.PARAMETERS, ENERGY)
-        varied = tuple(self.axes.columns(0, 1))
-        for name in (*varied, *self.values):
-            if name not in known:
-                raise ValueError(
-                    f"{name[:50]!r}{near(name, known)} cannot vary or be given: known are "
-                    f"{', '.join(known)}"
-                )
-        for name in varied:
-            if name in self.values:
-                raise ValueError(f"{name} varies, and is given as {self.values[name]}: leave one")
-        for name in module.COORDINATES:
-            if name not in (*varied, *self.values):
-                raise ValueError(f"{name} is missing: give its value, or let it vary")
-        for name, value in self.values.items():
-            if value != FROM_ENERGY and (isinstance(value, str) or not isfinite(value)):
-                raise ValueError(f"{name} = {value!r} must be a finite number")
-        for name, low in {**self.values, **self.axes.smallest}.items():
-            if name in module.POSITIVE and not isinstance(low, str) and low <= 0:
-                raise ValueError(f"{name} = {low} must be positive, in {module.UNITS[name]}")
-
-    def _check_energy(self) -> None:
-        free = [name for name, value in self.values.items() if value == FROM_ENERGY]
-        rates = self.module.STATE[len(self.module.COORDINATES) :]
-        if len(free) > 1 or not {*free} <= {*rates}:
-            raise ValueError(
-                f'{", ".join(free)} = "{FROM_ENERGY}": the energy sets one velocity, one of '
-                f"{', '.join(rates)}"
-            )
-        if bool(free) != (ENERGY in self.given):
-            raise ValueError(
-                f'an energy and a velocity that it sets belong together: give energy, and "'
-                f'{FROM_ENERGY}" as the value of one of {", ".join(rates)}'
-            )
-
-    def _check_maps(self) -> None:
-        if not self.maps:
-            raise ValueError("no maps: say what is to be kept of each motion")
-        for name, one in self.maps.items():
-            if not name.isidentifier() or name in ("status", *self.axes.columns(0, 1)):
-                raise ValueError(
-                    f"{name[:50]!r} cannot be a map's name: use letters, digits and _, and "
-                    "neither 'status' nor what varies"
-                )
-            for component in one.components:
-                if component not in self.module.STATE:
-                    raise ValueError(
-                        f"map {name} names {component[:50]!r}{near(component, self.module.STATE)}: "
-                        f"known are {', '.join(self.module.STATE)}"
-                    )
-            one.events(self.module)
-            keeps = isinstance(one, EnergyError) or (isinstance(one, First) and one.barrier)
-            if keeps and hasattr(self.module, "power"):
-                raise ValueError(f"map {name}: of this system the energy is not kept")
-            if isinstance(one, First) and one.barrier:
-                self._check_barrier(name, one)
-
-    def _check_barrier(self, name: str, one: First) -> None:
-        for watched in one.of:
-            if watched not in self.module.COORDINATES:
-                raise ValueError(f"map {name} has a barrier: then {watched} cannot be watched, for "
-                                 "its value says nothing of the energy")  # fmt: skip
-        columns, known = self.axes.columns(0, 1), zip(
-            self.module.PARAMETERS, self.module.DEFAULTS, strict=True
-        )  # fmt: skip
-        values = {**dict(known), **self.values, **{k: v[0] for k, v in columns.items()}}
-        params = [float(values[parameter]) for parameter in self.module.PARAMETERS]
-        lower = lower_place(self.module, one.of, one.barrier, params)
-        if lower:
-            place = ", ".join(f"{q} = {value:.6g}" for q, value in lower.items())
-            raise ValueError(
-                f"map {name}: its barrier is too high, there is less energy at {place}; name that "
-                "place, too"
-            )
 
     @property
     def given(self) -> tuple[str, ...]:
@@ -205,10 +120,7 @@ class Sweep:
             "max_steps": self.max_steps,
             "axes": self.axes.asked,
             "maps": {
-                name: {"kind": type(one).__name__, **_parts(one)} for name, one in self.maps.items()
+                name: {"kind": type(one).__name__} | asdict(one)  # type: ignore[call-overload]
+                for name, one in self.maps.items()
             },
         }
-
-
-def _parts(one: Any) -> dict[str, Any]:
-    return asdict(one)

@@ -24,8 +24,10 @@ from solvers.native import header
 from solvers.solution import Ensemble, Status
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.barrier import energies, is_below
-from solvers.sweeps.maps import First, Found, Map
-from solvers.sweeps.sweep import ENERGY, FROM_ENERGY, Sweep
+from solvers.sweeps.checks import ENERGY, FROM_ENERGY
+from solvers.sweeps.map import Found, Map
+from solvers.sweeps.maps import First
+from solvers.sweeps.sweep import Sweep
 
 Array: TypeAlias = NDArray[np.float64]
 

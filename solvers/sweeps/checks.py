@@ -1,0 +1,131 @@
+"""What the parts of a sweep can and cannot be together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from types import ModuleType
+
+import numpy as np
+
+from solvers.scenes.checks import near
+from solvers.sweeps.axes import Axes, motions
+from solvers.sweeps.barrier import lower_place
+from solvers.sweeps.map import Map
+from solvers.sweeps.maps import EnergyError, First, Samples
+
+#: What may vary or be given beside coordinates, velocities and parameters.
+ENERGY = "energy"
+#: Instead of a velocity's value: so much as the energy leaves for it.
+FROM_ENERGY = "energy"
+#: Where parameters vary, a barrier is looked at with those of so many motions.
+LOOKS = 4
+
+Values = Mapping[str, float | str]
+
+
+def check_names(module: ModuleType, axes: Axes, values: Values) -> None:
+    """Refuse names that are not there, are there twice or are missing, and wrong numbers.
+
+    Raises
+    ------
+    ValueError
+        With what is allowed.
+    """
+    known, varied = (*module.STATE, *module.PARAMETERS, ENERGY), tuple(axes.columns(0, 1))
+    for name in (*varied, *values):
+        if name not in known:
+            raise ValueError(
+                f"{name[:50]!r}{near(name, known)} cannot vary or be given: known are "
+                f"{', '.join(known)}"
+            )
+    for name in varied:
+        if name in values:
+            raise ValueError(f"{name} varies, and is given as {values[name]}: leave one")
+    for name in module.COORDINATES:
+        if name not in (*varied, *values):
+            raise ValueError(f"{name} is missing: give its value, or let it vary")
+    for name, value in values.items():
+        if value != FROM_ENERGY and (isinstance(value, str) or not isfinite(value)):
+            raise ValueError(f"{name} = {value!r} must be a finite number")
+    for name, low in {**values, **axes.smallest}.items():
+        if name in module.POSITIVE and not isinstance(low, str) and low <= 0:
+            raise ValueError(f"{name} = {low} must be positive, in {module.UNITS[name]}")
+
+
+def check_energy(module: ModuleType, given: Sequence[str], values: Values) -> None:
+    """Refuse an energy that sets nothing, and velocities that are set by none.
+
+    Raises
+    ------
+    ValueError
+        With what is allowed.
+    """
+    free = [name for name, value in values.items() if value == FROM_ENERGY]
+    rates = module.STATE[len(module.COORDINATES) :]
+    if len(free) > 1 or not {*free} <= {*rates}:
+        raise ValueError(
+            f'{", ".join(free)} = "{FROM_ENERGY}": the energy sets one velocity, one of '
+            f"{', '.join(rates)}"
+        )
+    if bool(free) != (ENERGY in given):
+        raise ValueError(
+            "an energy and a velocity that it sets belong together: give energy, and "
+            f'"{FROM_ENERGY}" as the value of one of {", ".join(rates)}'
+        )
+
+
+def check_maps(module: ModuleType, axes: Axes, maps: Mapping[str, Map], values: Values) -> None:
+    """Refuse maps without a proper name, and what they ask of the system in vain.
+
+    Raises
+    ------
+    ValueError
+        With what is allowed.
+    """
+    if not maps:
+        raise ValueError("no maps: say what is to be kept of each motion")
+    samples = {one.count for one in maps.values() if type(one) is Samples}
+    if len(samples) > 1:
+        raise ValueError(f"maps sample at {sorted(samples)} times: all must have as many")
+    for name, one in maps.items():
+        if not name.isidentifier() or name in ("status", *axes.columns(0, 1)):
+            raise ValueError(
+                f"{name[:50]!r} cannot be a map's name: use letters, digits and _, and neither "
+                "'status' nor what varies"
+            )
+        for component in one.components:
+            if component not in module.STATE:
+                raise ValueError(
+                    f"map {name} names {component[:50]!r}{near(component, module.STATE)}: known "
+                    f"are {', '.join(module.STATE)}"
+                )
+        one.events(module)
+        climbs = isinstance(one, First) and bool(one.barrier)
+        if (climbs or isinstance(one, EnergyError)) and hasattr(module, "power"):
+            raise ValueError(f"map {name}: of this system the energy is not kept")
+        if isinstance(one, First) and one.barrier:
+            _check_barrier(module, axes, name, one, values)
+
+
+def _check_barrier(
+    module: ModuleType, axes: Axes, name: str, one: First, values: Values
+) -> None:  # fmt: skip
+    for watched in one.of:
+        if watched not in module.COORDINATES:
+            raise ValueError(
+                f"map {name} has a barrier: then {watched} cannot be watched, for its value says "
+                "nothing of the energy"
+            )
+    varies = {*axes.columns(0, 1)} & {*module.PARAMETERS}
+    for motion in np.linspace(0, motions(axes) - 1, LOOKS if varies else 1).astype(int):
+        row = {key: float(column[0]) for key, column in axes.columns(motion, motion + 1).items()}
+        known = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
+        whole = {**known, **values, **row}
+        params = [float(whole[parameter]) for parameter in module.PARAMETERS]
+        if lower := lower_place(module, one.of, one.barrier, params):
+            place = ", ".join(f"{q} = {value:.6g}" for q, value in lower.items())
+            raise ValueError(
+                f"map {name}: its barrier is too high, there is less energy at {place}; name "
+                "that place, too"
+            )

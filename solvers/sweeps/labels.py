@@ -1,0 +1,48 @@
+"""Labels of pictures: names as mathematics writes them, units, and angles as parts of π."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, MultipleLocator
+
+from solvers.answers.drawn import symbol
+from solvers.sweeps.checks import ENERGY
+from solvers.sweeps.map import Map
+from solvers.sweeps.maps import EnergyError, First, Lyapunov
+from solvers.sweeps.results import Results
+
+WORDS = {First: "time", Lyapunov: "Lyapunov's exponent", EnergyError: "energy error"}
+
+
+def letter(name: str) -> str:
+    """What stands for something in a formula."""
+    return "$E$" if name == ENERGY else symbol(name)
+
+
+def quantity(words: str, unit: str) -> str:
+    """Words with a unit, divided by it."""
+    return f"{words} / {f'({unit})' if '/' in unit else unit}"
+
+
+def what(one: Map, name: str, part: str, unit: str) -> str:
+    """What the numbers of a map are; `part` is the component they are of, if any."""
+    return quantity(WORDS.get(type(one), symbol(part) if part else name), unit)
+
+
+def label(panel: Axes, axis: str, results: Results, name: str) -> None:
+    """Label an axis of a panel along which something varies."""
+    unit = results.unit(name)
+    panel.set(**{f"{axis}label": quantity(letter(name), unit)})
+    if unit == "rad" and np.ptp(results.axes[name]) > np.pi:
+        ticks = getattr(panel, f"{axis}axis")
+        ticks.set_major_locator(MultipleLocator(np.pi / 2))
+        ticks.set_major_formatter(FuncFormatter(_halves_of_pi))
+
+
+def _halves_of_pi(value: float, _: int) -> str:
+    n = round(value / (np.pi / 2))
+    whole, sign = abs(n) // 2, "−" if n < 0 else ""
+    if n % 2 == 0:
+        return "0" if n == 0 else f"{sign}{whole if whole > 1 else ''}π"
+    return f"{sign}{abs(n) if abs(n) > 1 else ''}π/2"
