@@ -87,6 +87,11 @@ class Extremum(Crossing):
     value: float = 0.0
 
     def __post_init__(self) -> None:
+        if self.name.endswith("_dot_dot"):
+            raise ValueError(
+                f"the extremes of {self.name.removesuffix('_dot')} are not known: extremes are "
+                f"those of coordinates, {', '.join(self.module.COORDINATES)}"
+            )
         super().__post_init__()
         if self.coordinate not in self.module.COORDINATES or self.coordinate == self.name:
             rates = ", ".join(self.module.STATE[len(self.module.COORDINATES) :])

@@ -110,6 +110,9 @@ def ensemble(
         len(starts), len(names), len(problem.samples), len(problem.events), occurrences,
         f"{problem.description}, {rung}",
     )  # fmt: skip
+    is_variational = problem.form.name == "variational"
+    if is_variational:
+        result.growth[:] = _logarithm(starts[:, len(module.STATE) :])
     try:
         if program:
             batch = Batch(
@@ -126,6 +129,8 @@ def ensemble(
                     result.samples[:, :, 0] = starts
             return result
         _run_one_by_one(problem, starts, constants, result)
+        if is_variational:
+            result.growth[:] = _logarithm(result.y[:, len(module.STATE) :]) - result.growth
     except KeyboardInterrupt as interruption:
         raise Interrupted(result) from interruption
     return result
@@ -179,8 +184,11 @@ def _run_one_by_one(
 
 def _collect(batch: Batch, result: Ensemble) -> None:
     """What the motions of a batch have found."""
-    motions, outside = batch.motions, batch.form.outside_many
-    result.t[:], result.y[:] = motions["t"], outside(motions["t"], motions["z"], motions["turns"])
+    motions = batch.motions
+    result.t[:], result.y[:] = _passed(batch, np.arange(len(motions)), motions)
+    if motions["scale"].size:
+        changes = motions["z"][:, -(result.y.shape[1] // 2) :], motions["scale"][:, 0]
+        result.growth[:] = _logarithm(*changes) - result.growth
     result.status[:] = np.array(STATUSES, object)[motions["status"]]
     result.status[motions["status"] < STATUSES.index(Status.FINISHED)] = Status.INTERRUPTED
     for name in ("steps", "rejected"):
@@ -202,7 +210,20 @@ def _passed(batch: Batch, there: NDArray[np.intp], rows: NDArray[np.void]) -> tu
     if any(np.size(parameter) > 1 for parameter in form.params):
         own = [np.broadcast_to(p, len(batch.motions))[there] for p in form.params]
         form = Form(form.module, form.name, own)
-    return rows["t"], form.outside_many(rows["t"], rows["z"], rows["turns"])
+    states = form.outside_many(rows["t"], rows["z"], rows["turns"])
+    if rows["scale"].size:
+        n = states.shape[1] // 2
+        with np.errstate(over="ignore"):
+            states[:, n:] = np.ldexp(states[:, n:], rows["scale"].astype(int))
+    return rows["t"], states
+
+
+def _logarithm(change: Array, scale: ArrayLike = 0.0) -> Array:
+    """Natural logarithms of the lengths of small changes in rows, times powers of two."""
+    largest = np.abs(change).max(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        length = np.log(largest) + np.log(np.linalg.norm(change.T / largest, axis=0))
+    return np.asarray(length + np.log(2) * np.asarray(scale))
 
 
 def _take(found: Outcome, k: int, events: Sequence[object], result: Ensemble) -> None:

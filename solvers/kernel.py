@@ -80,7 +80,8 @@ class Kernel:
     once : ctypes function or None
         Takes a task of one motion, its span, start and room for its end; not with lanes.
     trajectory, row : numpy.dtype
-        Layout of a motion in memory, and of a place that it passes.
+        Layout of a motion in memory, and of a place that it passes; their ``scale`` is the
+        power of two that was taken out of a small change, of many motions' variational form.
     library : Library
         What was built, and by what.
 
@@ -96,7 +97,12 @@ class Kernel:
     ) -> None:  # fmt: skip
         tableau, source = load(method), equations(module, form)
         vectors = lanes and source.vectorises and tableau.is_explicit
-        text = program(source, tableau, lanes=vectors, compensated=compensated)
+        # of many motions there is nobody who could make a change small again
+        changes = source.ordinary // 2 if lanes and form == "variational" else 0
+        self.scales = int(changes > 0)
+        text = program(
+            source, tableau, lanes=vectors, compensated=compensated, changes=changes
+        )  # fmt: skip
         self.library = build(text, reproducible=reproducible)
         library = ctypes.CDLL(str(self.library.path))
         self.run = library.run
@@ -106,7 +112,7 @@ class Kernel:
         fields: list[tuple[str, type, tuple[int, ...]]] = [
             ("t", float, ()), ("t_low", float, ()), ("z", float, state),
             ("low", float, (compensated * source.state,)), ("turns", float, angles),
-            ("first", float, (tableau.is_fsal * source.state,)),
+            ("first", float, (tableau.is_fsal * source.state,)), ("scale", float, (self.scales,)),
             *((name, float, ()) for name in ("h", "previous", "steps", "rejected")),
             *((name, float, ()) for name in ("trials", "rounds", "cuts", "t_end", "shortest")),
             ("params", float, (source.parameters,)),
@@ -114,7 +120,10 @@ class Kernel:
             ("occurred", np.int64, (MOST_EVENTS,)),
         ]  # fmt: skip
         self.trajectory = np.dtype(fields)
-        self.row = np.dtype([("t", float), ("z", float, state), ("turns", float, angles)])
+        self.row = np.dtype([
+            ("t", float), ("z", float, state), ("turns", float, angles),
+            ("scale", float, (self.scales,)),
+        ])  # fmt: skip
         self.slopes = tableau.stages - tableau.is_fsal
         self.is_explicit = tableau.is_explicit
         if library.trajectory_size() != self.trajectory.itemsize:

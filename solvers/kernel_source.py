@@ -26,7 +26,7 @@ PROGRAM = """\
 {header}
 #define RHS {rhs}
 #define JACOBIAN {jacobian}
-enum {{ STATE = {state}, PARAMETERS = {parameters}, ANGLES = {angles} }};
+enum {{ STATE = {state}, PARAMETERS = {parameters}, ANGLES = {angles}, CHANGES = {changes} }};
 static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 #define COMPENSATED {compensated}
 {method}
@@ -143,7 +143,9 @@ class Equations:
         return before.rfind("#ifndef HOLONOMIC_VECTOR") <= before.rfind("#endif")
 
 
-def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated: bool) -> str:
+def program(
+    equations: Equations, tableau: Tableau, *, lanes: bool, compensated: bool, changes: int = 0
+) -> str:
     """The text of the program.
 
     Its functions are ``run``, ``trajectory_size`` and, without lanes, ``once``.
@@ -159,6 +161,9 @@ def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated:
         explicit methods only.
     compensated : bool
         Whether rounding errors of the state are carried along, as those of time are.
+    changes : int
+        How many numbers at the end of the state are a small change, out of which powers of
+        two are taken where it is large.
     """
     sines, rates = ([pair[part] for pair in equations.angles] or [0] for part in (0, 1))
     texts = {
@@ -180,6 +185,7 @@ def program(equations: Equations, tableau: Tableau, *, lanes: bool, compensated:
         state=equations.state,
         parameters=equations.parameters,
         angles=len(equations.angles),
+        changes=changes,
         sine=", ".join(map(str, sines)),
         rate=", ".join(map(str, rates)),
         compensated=int(compensated),

@@ -26,7 +26,7 @@ def read(path: Path, meaning: Callable[[Mapping[str, Any]], Said]) -> Said:
     Raises
     ------
     InputError
-        When it makes no sense; the message begins with the path.
+        When it is not there or makes no sense; the message begins with the path.
     OSError
         When the file cannot be read.
     """
@@ -41,6 +41,8 @@ def read(path: Path, meaning: Callable[[Mapping[str, Any]], Said]) -> Said:
         ) from error
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
+    except FileNotFoundError as error:
+        raise InputError(f"{error.filename}: there is no such file") from error
 
 
 def check_keys(

@@ -85,6 +85,9 @@ class Ensemble:
         When each motion ended.
     y : ndarray of shape (n, state)
         Where: coordinates and velocities.
+    growth : ndarray of shape (n,)
+        Of the variational form, natural logarithms of how many times as long the small change
+        is at the end as it was at the beginning, however large; else NaN.
     samples : ndarray of shape (n, state, times)
         States at the times asked for; NaN after a motion's end.
     t_events : ndarray of shape (n, events, occurrences)
@@ -103,6 +106,7 @@ class Ensemble:
 
     t: Array
     y: Array
+    growth: Array
     samples: Array
     t_events: Array
     y_events: Array
@@ -121,6 +125,7 @@ class Ensemble:
         return cls(
             np.full(n, np.nan),
             np.full((n, state), np.nan),
+            np.full(n, np.nan),
             np.full((n, state, times), np.nan),
             np.full((n, events, occurrences), np.nan),
             np.full((n, events, occurrences, state), np.nan),

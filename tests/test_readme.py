@@ -29,6 +29,7 @@ from solvers.sweeps.reading import find as find_sweep
 from solvers.sweeps.reading import names as sweeps
 from solvers.sweeps.reading_maps import KINDS
 from solvers.sweeps.running import sweep
+from solvers.sweeps.work import STATUSES
 from solvers.verdict.evidence import Evidence, Setting
 from solvers.verdict.objectives import objectives
 
@@ -179,5 +180,11 @@ def test_the_sweep_that_is_shown_runs_and_every_kind_is_listed(tmp_path: Path) -
     assert found.count == {"finished": 2000}
     listed = README.split("what is kept of a motion")[1].split("\n\n")[0]
     assert tuple(re.findall(r"\n\| `([a-z ]+)`", listed)) == tuple(KINDS)
-    shipped = README.split("sweeps ship: ")[1].split(".")[0]
+    codes = README.split("says how each motion ended: ")[1].split(". In the end")[0]
+    said = {int(n) for n in re.findall(r"\b(\d+) ", codes.replace("\n", " "))}
+    assert said < {*range(len(STATUSES))}
+    assert [STATUSES[n] for n in (1, 2, 3, 9, 10)] == [
+        "finished", "event", "step limit", "proved", "no such energy",
+    ]  # fmt: skip
+    shipped = README.split("sweeps ship:")[1].split("In Python")[0]
     assert set(re.findall(r"`(\w+)`", shipped)) == {*sweeps()}

@@ -346,8 +346,7 @@ def test_a_half_done_sweep_can_be_drawn(tmp_path: Path, capsys: pytest.CaptureFi
     assert "not done yet" in shown
     assert (out / "mine.png").read_bytes().startswith(b"\x89PNG")
     assert held(out) == before
-    with pytest.raises(SystemExit, match="2"):
-        main(["sweep", str(path), "--output", str(tmp_path / "none"), "--draw"])
+    assert main(["sweep", str(path), "--output", str(tmp_path / "none"), "--draw"]) == 2
     assert "is no manifest" in capsys.readouterr().err
 
 
@@ -423,10 +422,9 @@ def test_a_table_that_is_none_is_refused(table: str, words: str, tmp_path: Path)
 
 
 def test_the_command_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit, match="2"):
-        main(["sweep", "filps"])
+    assert main(["sweep", "filps"]) == 2
     assert "did you mean 'flips'" in capsys.readouterr().err
-    assert main(["sweep", "none.toml"]) == 4
-    assert "none.toml" in capsys.readouterr().err
+    assert main(["sweep", "none.toml"]) == 2
+    assert "none.toml: there is no such file" in capsys.readouterr().err
     assert main(["sweep", "flips", "--workers", "0"]) == 2
     assert "workers = 0 must be from 1" in capsys.readouterr().err

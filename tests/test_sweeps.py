@@ -1,6 +1,7 @@
 """Sweeps: every map holds what motions, run one by one by other methods, or formulas say."""
 
 import csv
+import json
 from itertools import product
 from pathlib import Path
 from types import ModuleType
@@ -16,6 +17,8 @@ import generated.driven_pendulum as driven
 import generated.henon_heiles as hh
 import generated.single_pendulum as single
 from solvers.cli import generated_module
+from solvers.crossing import Crossing
+from solvers.ensemble import ensemble
 from solvers.integration import integrate
 from solvers.sweeps.axes import BLOCK, Grid, Random, Table
 from solvers.sweeps.map import Map
@@ -166,6 +169,20 @@ def test_lyapunov_s_exponent_is_how_neighbours_part(tmp_path: Path) -> None:
         assert exponent == pytest.approx(np.log(apart) / t, abs=1e-4)
 
 
+def test_changes_may_grow_beyond_all_numbers(tmp_path: Path) -> None:
+    # at rest on a pass, x = 0, y = 1, where V'' is -1 along y and 3 along x: of δ₀ = (½, ½, ½, ½)
+    # the part along y becomes ½ (1, 1) e^t, the other one turns
+    start = [[0, 1, 0, 0, *[0.5] * 4]]
+    for backend, t in (("python", 100.0), ("compiled", 100.0), ("compiled", 2000.0)):
+        one = ensemble(hh, (0, t), start, (), form="variational", backend=backend,
+                       t_eval=[50.0], events=Crossing(hh, "y", 2.0))  # fmt: skip
+        assert one.growth[0] == pytest.approx(t - np.log(2) / 2, abs=1e-6)
+        assert np.log(one.samples[0, 5, 0] * 2) == pytest.approx(50, abs=1e-6)
+    found = swept(tmp_path, hh, Grid({"y": [1.0]}), t, {"exponent": Lyapunov()}, values={"x": 0.0})
+    assert found.count == {"finished": 1}
+    assert found.maps["exponent"][0] * t == pytest.approx(t - np.log(2) / 2, abs=1e-6)
+
+
 def test_henon_and_heiles_motions_are_regular_below_and_chaotic_above(tmp_path: Path) -> None:
     # M. Hénon, C. Heiles (1964), figure 7: curves fill the section at 1/12, next to nothing of
     # it at 1/6. In regular motion changes grow in proportion to time, at a rate of ln t/t.
@@ -306,12 +323,15 @@ def test_maps_open_as_one_dataset_with_names_and_units(tmp_path: Path) -> None:
         "end": Final(("theta1", "theta2_dot")), "reach": Extremes(("theta1",)),
         "flip": First(FLIP),
     }, values={"theta2": 0.0})  # fmt: skip
-    found.dataset().to_zarr(tmp_path / "maps.zarr", zarr_format=2)
-    whole = xarray.open_zarr(tmp_path / "maps.zarr")
-    assert dict(whole.sizes) == {"theta1": 3, "l1": 2, "end_0": 2, "reach_0": 1, "reach_1": 2}
+    found.dataset().to_zarr(tmp_path / "maps.zarr", consolidated=False)
+    whole = xarray.open_zarr(tmp_path / "maps.zarr", consolidated=False)
+    assert dict(whole.sizes) == {
+        "theta1": 3, "l1": 2, "end_component": 2, "reach_component": 1, "reach_extreme": 2,
+    }  # fmt: skip
+    assert json.loads(whole.asked)["duration"] == 1.0
     assert (whole.theta1.units, whole.l1.units, whole.flip.units) == ("rad", "m", "s")
-    assert whole.end_0.values.tolist() == ["theta1", "theta2_dot"]
-    chosen = whole.end.sel(theta1=0.2, l1=2.0, end_0="theta1")
+    assert whole.end_component.values.tolist() == ["theta1", "theta2_dot"]
+    chosen = whole.end.sel(theta1=0.2, l1=2.0, end_component="theta1")
     assert float(chosen) == found.maps["end"][1, 1, 0]
     rows = swept(tmp_path / "b", dp, STARTS, 0.1, {"end": Final(("theta1",))}).dataset()
     assert rows.theta1.dims == ("motion",)

@@ -234,6 +234,7 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *kept, mask *br
         motion->h = chosen(advancing & ~*broken, h, motion->h);
     }
     settle(end);
+    rescale(place, end);
     nothing = count_turns(place, lanes->trial, end);
     *broken |= ~below(size(nothing), every(1.0));
     *kept &= ~*broken;

@@ -30,7 +30,7 @@ typedef struct {
     int64_t kept_is_angle, kept;    /* value of what these say, named as the event's own */
 } Event;
 
-enum { ROW = 1 + STATE + ANGLES };  /* t, z, turns */
+enum { ROW = 1 + STATE + ANGLES + SCALES };     /* t, z, turns, scale */
 
 typedef struct {
     int64_t count;                  /* of trajectories */
@@ -71,7 +71,9 @@ static void write_row(double *row, const double *place)
 {
     row[0] = place[0];
     memcpy(row + 1, place + offsetof(Place, z)/sizeof(real), STATE*sizeof(double));
-    memcpy(row + 1 + STATE, place + offsetof(Place, turns)/sizeof(real), ANGLES*sizeof(double));
+    row += 1 + STATE;
+    memcpy(row, place + offsetof(Place, turns)/sizeof(real), ANGLES*sizeof(double));
+    memcpy(row + ANGLES, place + offsetof(Place, scale)/sizeof(real), SCALES*sizeof(double));
 }
 
 static void keep_row(const Task *task, Trajectory *trajectory, const double *place)

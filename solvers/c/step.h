@@ -1,6 +1,7 @@
 /* One step in every lane, and how long the next one is.
 
-   Before this file stand the right-hand side RHS, the sizes STATE, PARAMETERS and ANGLES, where in
+   Before this file stand the right-hand side RHS, the sizes STATE, PARAMETERS and ANGLES, how many
+   numbers at the end of the state are a small change whose size may be taken out (CHANGES), where in
    the state the sine of each angle (its cosine follows) and its velocity are (SINE, RATE), and the
    method: STAGES, IS_FSAL, IS_EXPLICIT, ERROR_ORDER, ESTIMATES, stages(), increment(), estimate() and,
    where there are two, second_estimate(). */
@@ -9,11 +10,14 @@ static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
 static const double PI = 3.14159265358979324;
 
 /* Where a motion is. Nothing but numbers, so that it can be copied number by number. */
+enum { SCALES = CHANGES > 0 };
+
 typedef struct {
     real t, t_low;                          /* time, and what it was rounded by */
     real z[STATE], low[COMPENSATED*STATE];  /* state, and what it was rounded by */
     real turns[ANGLES];                     /* whole turns of angles known by sine and cosine */
     real first[IS_FSAL*STATE];              /* the slope here, left by the last step */
+    real scale[SCALES];                     /* power of two that was taken out of the change */
 } Place;
 
 enum { PLACE = sizeof(Place)/sizeof(real) };
@@ -54,6 +58,30 @@ static inline void settle(Place *place)
         const real d = 1.0 - square, excess = d*(0.5 + d*(0.375 + d*0.3125));
         add(place, SINE[a], s*excess);
         add(place, SINE[a] + 1, c*excess);
+    }
+}
+
+/* A small change may grow without end, but not the numbers for it: where it is large, take a power of
+   two out of it. That is exact. */
+static inline void rescale(const Place *start, Place *end)
+{
+    for (int k = 0; k < SCALES; k++) {
+        real largest = every(0.0);
+        for (int n = STATE - CHANGES; n < STATE; n++) {
+            largest = larger(largest, size(end->z[n]));
+        }
+        const mask large = below(every(0x1p64), largest);
+        const real part = chosen(large, every(0x1p-64), every(1.0));
+        for (int n = STATE - CHANGES; n < STATE; n++) {
+            end->z[n] *= part;
+#if COMPENSATED
+            end->low[n] *= part;
+#endif
+        }
+        for (int n = STATE - CHANGES; n < STATE && IS_FSAL; n++) {
+            end->first[n] *= part;
+        }
+        end->scale[k] = start->scale[k] + chosen(large, every(64.0), every(0.0));
     }
 }
 

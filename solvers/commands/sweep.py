@@ -6,7 +6,7 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
@@ -18,17 +18,21 @@ from solvers.catalogue import load
 from solvers.jsonable import jsonable
 from solvers.pictures import save
 from solvers.progress import Progress
-from solvers.said import InputError
 from solvers.sweeps.drawn import drawn
-from solvers.sweeps.folder import FolderError
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import Results
 from solvers.sweeps.running import sofar, sweep
 from solvers.sweeps.sweep import Sweep
+from solvers.sweeps.trust import Trust, tighter, trust
 
 #: Seconds to wait for a scheduler.
 PATIENCE = 20
+#: How motions end that have something in the maps.
+GOOD = ("finished", "event", "proved")
+#: What to do about others.
+HINTS = {"step limit": "raise max_steps", "step too small": "a singularity, most likely",
+         "not done yet": "the same command without --draw goes on"}  # fmt: skip
 
 
 def main(
@@ -69,31 +73,33 @@ def main(
                         help="draw what is there so far, and do nothing else")  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print figures for programs")
     arguments = parser.parse_args(argv)
-    try:
-        asked = find(arguments.sweep, module)
-        folder = arguments.output or Path("out") / asked.name
-        begun = time.perf_counter()
-        with Progress() as tell:
-            tell("the first motions")
-            if arguments.draw:
-                results = sofar(asked, folder)
-            else:
+    asked = find(arguments.sweep, module)
+    folder = arguments.output or Path("out") / asked.name
+    begun, doubts = time.perf_counter(), {}
+    with Progress() as tell:
+        tell("the first motions")
+        if arguments.draw:
+            results = sofar(asked, folder)
+        else:
+            try:
                 with _pool(arguments.scheduler, arguments.workers, package) as pool:
                     results = sweep(asked, folder, pool=pool, tell=tell)
-            seconds = time.perf_counter() - begun
-            tell("the picture")
-            picture = folder / f"{asked.name}.png"
-            save(drawn(results), picture)
-    except (InputError, FolderError) as error:
-        parser.error(str(error))
-    except KeyboardInterrupt:
-        print("interrupted: the same command goes on from here", file=sys.stderr)
-        raise
+            except KeyboardInterrupt:
+                print("interrupted: the same command goes on from here", file=sys.stderr)
+                raise
+        seconds = time.perf_counter() - begun
+        if not arguments.draw:
+            tell("some motions once more, with tighter tolerances")
+            doubts = trust(asked)
+        tell("the picture")
+        picture = folder / f"{asked.name}.png"
+        save(drawn(results), picture)
     if arguments.json:
-        print(json.dumps(jsonable(figures(results, seconds)), indent=2))
+        print(json.dumps(jsonable(figures(results, seconds, doubts)), indent=2))
     else:
-        print(*told(results, seconds), f"files: {picture} and {folder}/*.npy", sep="\n")
-    return 0
+        print(*told(results, None if arguments.draw else seconds, doubts), sep="\n")
+        print(f"files: {picture}" + ("" if arguments.draw else f" and {folder}/*.npy"))
+    return 0 if any(status in GOOD for status in results.count) else 3
 
 
 @contextmanager
@@ -116,21 +122,39 @@ def _pool(
         yield Pool(client.get_executor(), workers or max(threads, 1))
 
 
-def told(results: Results, seconds: float) -> Iterator[str]:
-    """What was done, how the motions ended, and what the maps hold."""
+def told(
+    results: Results, seconds: float | None, doubts: Mapping[str, Trust]
+) -> Iterator[str]:  # fmt: skip
+    """What was done, how the motions ended, what the maps hold, and how sure that is."""
     asked = results.asked
     yield asked.title
+    took = "" if seconds is None else f": {seconds:.3g} s this time"
     yield (
         f"{asked.motions:,} motions of {asked.duration:g} s, {load(asked.method).title}, "
-        f"{asked.form} form, rtol = {asked.rtol:g}: {seconds:.3g} s"
+        f"{asked.form} form, rtol = {asked.rtol:g}{took}"
     )
-    yield "ended: " + ", ".join(f"{name} {n:,}" for name, n in results.count.items())
+    yield "ended: " + ", ".join(
+        f"{name} {n:,}{f' ({HINTS[name]})' if name in HINTS else ''}"
+        for name, n in results.count.items()
+    )
     for name, values in ranges(results).items():
         low, middle, high = values["smallest"], values["median"], values["largest"]
         unit = values["unit"] and f" {values['unit']}"
+        if not values["known"]:
+            yield f"{name}: nothing"
+            continue
         yield (
-            f"{name}: {low:.6g} to {high:.6g}{unit}, median {middle:.6g}{unit}, "
-            f"{values['known']:.1%} known"
+            f"{name}: {low:.6g} to {high:.6g}{unit}, median {middle:.6g}{unit}; "
+            f"{values['known']:.1%} of the map is known"
+        )
+    for name, doubt in doubts.items():
+        unit = asked.maps[name].unit(asked.module)
+        lost = f", and {doubt.lost:.0%} are lost or found" if doubt.lost else ""
+        yield (
+            f"of {doubt.motions} motions once more with rtol = {tighter(asked):g}, half of {name} "
+            f"changes by less than {doubt.median:.1g} {unit}".rstrip()
+            + f", nine tenths by less than {doubt.most:.1g} {unit}".rstrip()
+            + lost
         )
 
 
@@ -154,11 +178,13 @@ def ranges(results: Results) -> dict[str, dict[str, Any]]:
     return found
 
 
-def figures(results: Results, seconds: float) -> dict[str, Any]:
+def figures(
+    results: Results, seconds: float, doubts: Mapping[str, Trust]
+) -> dict[str, Any]:  # fmt: skip
     """The same for programs."""
     asked: Sweep = results.asked
     return {
         "sweep": asked.name, "folder": str(results.folder), "asked": asked.asked,
         "motions": asked.motions, "seconds": seconds, "ended": results.count,
-        "maps": ranges(results),
+        "maps": ranges(results), "under tighter tolerances": doubts,
     }  # fmt: skip

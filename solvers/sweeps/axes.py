@@ -170,6 +170,13 @@ def motions(axes: Axes) -> int:
     return prod(axes.shape)
 
 
+def some(axes: Axes, count: int) -> dict[str, Array]:
+    """The values of about so many motions from all over a sweep, always the same."""
+    places = np.unique(np.random.default_rng(0).integers(0, motions(axes), count))
+    rows = [axes.columns(place, place + 1) for place in places]
+    return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
+
+
 def _columns(values: Mapping[str, Any]) -> dict[str, Array]:
     if not values:
         raise ValueError("nothing varies: name at least one coordinate, velocity or parameter")

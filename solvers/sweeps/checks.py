@@ -6,10 +6,8 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 from types import ModuleType
 
-import numpy as np
-
 from solvers.scenes.checks import near
-from solvers.sweeps.axes import Axes, motions
+from solvers.sweeps.axes import Axes, some
 from solvers.sweeps.barrier import lower_place
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import EnergyError, First, Samples
@@ -32,7 +30,7 @@ def check_names(module: ModuleType, axes: Axes, values: Values) -> None:
     ValueError
         With what is allowed.
     """
-    known, varied = (*module.STATE, *module.PARAMETERS, ENERGY), tuple(axes.columns(0, 1))
+    known, varied = (*module.STATE, *module.PARAMETERS, ENERGY), tuple(axes.smallest)
     for name in (*varied, *values):
         if name not in known:
             raise ValueError(
@@ -89,7 +87,7 @@ def check_maps(module: ModuleType, axes: Axes, maps: Mapping[str, Map], values: 
     if len(samples) > 1:
         raise ValueError(f"maps sample at {sorted(samples)} times: all must have as many")
     for name, one in maps.items():
-        if not name.isidentifier() or name in ("status", *axes.columns(0, 1)):
+        if not name.isidentifier() or name in ("status", *axes.smallest):
             raise ValueError(
                 f"{name[:50]!r} cannot be a map's name: use letters, digits and _, and neither "
                 "'status' nor what varies"
@@ -117,11 +115,10 @@ def _check_barrier(
                 f"map {name} has a barrier: then {watched} cannot be watched, for its value says "
                 "nothing of the energy"
             )
-    varies = {*axes.columns(0, 1)} & {*module.PARAMETERS}
-    for motion in np.linspace(0, motions(axes) - 1, LOOKS if varies else 1).astype(int):
-        row = {key: float(column[0]) for key, column in axes.columns(motion, motion + 1).items()}
+    columns = some(axes, LOOKS if {*axes.smallest} & {*module.PARAMETERS} else 1)
+    for row in zip(*columns.values(), strict=True):
         known = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
-        whole = {**known, **values, **row}
+        whole = {**known, **values, **dict(zip(columns, map(float, row), strict=True))}
         params = [float(whole[parameter]) for parameter in module.PARAMETERS]
         if lower := lower_place(module, one.of, one.barrier, params):
             place = ", ".join(f"{q} = {value:.6g}" for q, value in lower.items())

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from solvers.sweeps.axes import some
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.work import Job, begun, integrated
 
@@ -26,16 +25,13 @@ def chunk_length(asked: Sweep, job: Job) -> int:
     how fast they happen to be, so that a sweep is always cut alike.
     """
     most, maps = asked.motions, asked.maps.values()
-    places = np.unique(np.linspace(0, most - 1, min(TRIED, most)).astype(int))
-    rows = [asked.axes.columns(place, place + 1) for place in places]
-    columns = {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
-    starts, params, status = begun(job, asked.module, columns)
+    starts, params, status = begun(job, asked.module, some(asked.axes, TRIED))
     there = status == 0
     evaluations = 1
     if there.any():
         tried = integrated(job, asked.module, starts[there], [p[there] for p in params])
         evaluations += int(tried.nfev.sum())
-    each = evaluations / len(places) * EVALUATION * len(asked.start) ** 1.5
+    each = evaluations / len(status) * EVALUATION * len(asked.start) ** 1.5
     events = sum(one.occurrences * len(one.events(asked.module)) for one in maps)
     room = ROOM / (8 * len(asked.start) * (1 + job.samples + events))
     seconds = min(CHUNK, (COST * each * most) ** 0.5)

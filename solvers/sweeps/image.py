@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.barrier import barrier, energies
 from solvers.sweeps.colours import NEVER, NOTHING, colours, shown
-from solvers.sweeps.labels import label, letter, what
+from solvers.sweeps.labels import bar, label, letter, what
 from solvers.sweeps.maps import First
 from solvers.sweeps.results import Results
 from solvers.sweeps.work import PROVED, Job, begun
@@ -46,7 +46,7 @@ def image(panel: Axes, *, results: Results, name: str, place: tuple[int, ...]) -
     fixed = {q: float(axis[len(axis) // 2]) for q, axis in rest}
     if isinstance(one, First) and one.barrier:
         _boundary(panel, results, one, {x: xs, y: ys}, fixed)
-    panel.figure.colorbar(drawn, ax=panel, label=what(one, name, part, unit))
+    bar(panel, drawn, what(one, name, part, unit))
     label(panel, "x", results, x)
     label(panel, "y", results, y)
     if fixed:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, MultipleLocator
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
+from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 
 from solvers.answers.drawn import symbol
 from solvers.sweeps.checks import ENERGY
@@ -38,6 +40,17 @@ def label(panel: Axes, axis: str, results: Results, name: str) -> None:
         ticks = getattr(panel, f"{axis}axis")
         ticks.set_major_locator(MultipleLocator(np.pi / 2))
         ticks.set_major_formatter(FuncFormatter(_halves_of_pi))
+
+
+def bar(panel: Axes, drawn: ScalarMappable, words: str) -> None:
+    """The scale of the colours, beside a panel; numbers are written out."""
+    colourbar = panel.figure.colorbar(drawn, ax=panel, label=words)
+    if isinstance(drawn.norm, LogNorm):
+        low, high = drawn.norm.vmin or 1.0, drawn.norm.vmax or 1.0
+        parts = (1.0,) if high > 1e3 * low else (1.0, 2.0, 5.0)
+        colourbar.ax.yaxis.set_major_locator(LogLocator(subs=parts, numticks=12))
+        colourbar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        colourbar.ax.yaxis.set_minor_formatter(NullFormatter())
 
 
 def _halves_of_pi(value: float, _: int) -> str:

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from solvers.answers.drawn import symbol
 from solvers.pictures import COLOURS
 from solvers.sweeps.axes import Grid
-from solvers.sweeps.colours import colours, is_direction, shown
-from solvers.sweeps.labels import label, quantity, what
+from solvers.sweeps.colours import NOTHING, colours, is_direction, shown
+from solvers.sweeps.labels import bar, label, quantity, what
 from solvers.sweeps.maps import Final, Samples, Section
 from solvers.sweeps.results import Results
 
@@ -32,8 +32,10 @@ def line(panel: Axes, *, results: Results, name: str, place: tuple[int, ...]) ->
     if len(others) == 1:
         ((y, ys),) = others
         palette, norm = colours(one, values, unit)
+        unknown = np.isnan(values)
+        panel.scatter(xs[unknown], ys[unknown], color=NOTHING, s=4)
         points = panel.scatter(xs, ys, c=values, s=4, cmap=palette, norm=norm)
-        panel.figure.colorbar(points, ax=panel, label=what(one, name, part, unit))
+        bar(panel, points, what(one, name, part, unit))
         label(panel, "y", results, y)
         return
     joined = isinstance(results.asked.axes, Grid) and not is_direction(one, unit)
@@ -63,13 +65,15 @@ def section(panel: Axes, *, results: Results, name: str, chosen: Any) -> None:
     motions = motions[np.isfinite(motions).any(axis=(1, 2))]
     x, y = one.of[0], one.of[min(1, len(one.of) - 1)]
     each = max(1, -(-len(motions) * one.count // POINTS))
-    shades = mpl.colormaps["turbo"](np.linspace(0.05, 0.95, len(motions)))
+    # few points are large ones
+    size = float(np.clip(150 / np.sqrt(1 + np.isfinite(motions[:, 0]).sum()), 0.9, 4))
+    shades = mpl.colormaps["nipy_spectral"](np.linspace(0.02, 0.95, len(motions)))
     for motion, colour in zip(motions[..., ::each], shades, strict=True):
         across, upwards = (
             shown(Final(()), motion[one.of.index(part)], results.asked.module.UNITS[part])
             for part in (x, y)
         )
-        panel.plot(across, upwards, ".", color=colour, markersize=0.9, markeredgewidth=0)
+        panel.plot(across, upwards, ".", color=colour, markersize=size, markeredgewidth=0)
     panel.set(xlabel=_component(results, x), ylabel=_component(results, y))
 
 

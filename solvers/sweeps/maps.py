@@ -193,11 +193,7 @@ class Lyapunov(Map):
 
     def values(self, found: Found) -> Array:
         """The exponents."""
-        change = found.motions.y[:, len(found.module.STATE) :]
-        largest = np.abs(change).max(axis=1)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            length = np.log(largest) + np.log(np.linalg.norm(change.T / largest, axis=0))
-            return np.asarray(length / found.motions.t)
+        return found.motions.growth / found.motions.t
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -14,6 +15,9 @@ from solvers.sweeps.axes import Grid
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.work import STATUSES
+
+#: What the dimensions of a motion's numbers are called.
+PARTS = ("component", "number")
 
 
 @dataclass(frozen=True)
@@ -54,7 +58,7 @@ class Results:
         def opened(name: str) -> NDArray[Any]:
             return np.load(folder / f"{name}.npy", mmap_mode="r")
 
-        varied = asked.axes.columns(0, 1)
+        varied = asked.axes.smallest
         return cls(
             asked, folder, {name: opened(name) for name in asked.maps},
             {name: opened(name) for name in varied}, opened("status"),
@@ -87,9 +91,12 @@ class Results:
         }
         found: dict[str, Any] = {"status": (names, self.status, {"meanings": list(STATUSES)})}
         for name, one in self.asked.maps.items():
-            inner = [f"{name}_{k}" for k in range(len(one.shape))]
-            along |= {d: ((d,), [*said]) for d, said in zip(inner, one.labels, strict=True) if said}
+            kinds = ("component", "extreme") if one.labels[1:] and one.labels[1] else PARTS
+            inner = [f"{name}_{kind}" for kind in kinds[: len(one.shape)]]
+            for dimension, labels in zip(inner, one.labels, strict=True):
+                if labels:
+                    along[dimension] = ((dimension,), np.array(labels, object))
             units = {"units": one.unit(self.asked.module)}
             found[name] = ((*names, *inner), self.maps[name], units)
-        title = {"title": self.asked.title, "duration": f"{self.asked.duration} s"}
+        title = {"title": self.asked.title, "asked": json.dumps(self.asked.asked)}
         return xarray.Dataset(found, along, title)

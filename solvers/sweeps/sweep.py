@@ -80,7 +80,7 @@ class Sweep:
     @property
     def given(self) -> tuple[str, ...]:
         """Names of what varies and what is given."""
-        return (*self.axes.columns(0, 1), *self.values)
+        return (*self.axes.smallest, *self.values)
 
     @property
     def form(self) -> str:

@@ -86,7 +86,7 @@ class Job:
         return cls(
             Source.of(sweep.module), dict(sweep.values), sweep.duration, sweep.method, sweep.form,
             sweep.rtol, sweep.atol, sweep.max_steps, sweep.samples, dict(sweep.maps),
-            () if isinstance(sweep.axes, Grid) else tuple(sweep.axes.columns(0, 1)),
+            () if isinstance(sweep.axes, Grid) else tuple(sweep.axes.smallest),
         )  # fmt: skip
 
     @property
