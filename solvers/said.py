@@ -100,6 +100,8 @@ def positive(key: str, value: object, unit: str, way: str = "") -> float:
 
 def whole(key: str, value: object, least: int, most: int) -> int:
     """A whole number."""
+    if value is None:
+        raise InputError(f"{key} is missing: give a whole number from {least} to {most}")
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
         raise InputError(f"{key} = {shown(value)} must be a whole number from {least} to {most}")
     return value

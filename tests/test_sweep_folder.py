@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import re
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from shutil import disk_usage
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,7 @@ import generated.double_pendulum as dp
 from solvers.cli import generated_module, main
 from solvers.said import InputError
 from solvers.sweeps import chunk, pool
-from solvers.sweeps.axes import Grid
+from solvers.sweeps.axes import Grid, Random
 from solvers.sweeps.folder import Folder, FolderError
 from solvers.sweeps.maps import Final, First
 from solvers.sweeps.pool import Pool
@@ -225,7 +227,10 @@ def test_a_damaged_chunk_is_done_again(
 @pytest.mark.parametrize(("change", "words"), [
     ({"duration": 4.0}, "duration is 3.0 there, 4.0 asked"),
     ({"rtol": 1e-8}, "rtol is 1e-09 there"),
-    ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES[1:]})}, "axes.grid.theta2.count is 40"),
+    ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES + 1})}, "axes.axes.1.first is -3.0"),
+    ({"axes": Grid({"theta2": ANGLES, "theta1": ANGLES})}, "axes.axes.0.name is 'theta1' there"),
+    ({"axes": Random({"theta1": (0, 1), "theta2": (0, 1)}, 1600, 1)}, "axes.kind is 'grid'"),
+    ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES[1:]})}, "motions is 1600 there"),
     ({"maps": {"end": Final(("theta1",))}}, "maps.flip is here only"),
     ({"values": {"l1": 2.0}}, "values.l1 is asked only"),
 ])  # fmt: skip
@@ -239,9 +244,55 @@ def test_a_folder_of_another_sweep_is_refused(
     with pytest.raises(FolderError, match=words):
         sweep(Sweep(dp, **asked), tmp_path)
     assert held(tmp_path) == expected
-    (tmp_path / "sweep.json").write_text("{}")
-    with pytest.raises(FolderError, match="is no manifest of a sweep"):
+
+
+@pytest.mark.parametrize("change", [
+    "{}", "[]", "\0", '"chunk": 7.5', '"chunk": true', '"chunk": 0', '"chunk": 1e400',
+    '"format": 2', '"motions": 5',
+])  # fmt: skip
+def test_a_manifest_that_was_changed_is_noticed(
+    change: str, tmp_path: Path, expected: dict[str, bytes]
+) -> None:
+    sweep(ASKED, tmp_path)
+    manifest = (tmp_path / "sweep.json").read_text()
+    key = change.partition(":")[0]
+    changed = re.sub(rf"{key}: \d+", change, manifest, count=1) if ":" in change else change
+    (tmp_path / "sweep.json").write_text(changed)
+    with pytest.raises(FolderError, match=r"is no manifest of a sweep|holds another sweep"):
         sweep(ASKED, tmp_path)
+    assert held(tmp_path) == expected | {"sweep.json": changed.encode()}
+    # chunks of another length are not mistaken for ours
+    (tmp_path / "sweep.json").write_text(re.sub(r'"chunk": \d+', '"chunk": 90', manifest))
+    sweep(ASKED, tmp_path)
+    assert held(tmp_path)["flip.npy"] == expected["flip.npy"]
+
+
+def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / ".profile").write_text("mine")
+    with pytest.raises(FolderError, match=r"holds .profile, and no sweep"):
+        sweep(ASKED, tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == [".profile"]
+    out = tmp_path / "out"
+    sweep(ASKED, out)
+    mine = [out / ".hidden", out / "chunks" / "notes.npy", out / "chunks" / ".git"]
+    for path in mine:
+        path.write_text("mine")
+    left = [out / ".flip.npy.12", out / "chunks" / ".07-0123456789abcdef.npy.12"]
+    for path in left:
+        path.write_text("left by a process that was killed")
+    sweep(ASKED, out)
+    assert all(path.read_text() == "mine" for path in mine)
+    assert not any(path.exists() for path in left)
+
+
+def test_maps_that_do_not_fit_are_refused_before_the_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("solvers.sweeps.folder.disk_usage", lambda _: disk_usage(tmp_path)._replace(
+        free=1000))  # fmt: skip
+    with pytest.raises(OSError, match=r"the maps take .* GB, and 1e-06 GB are free"):
+        sweep(ASKED, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
 
 
 def test_two_at_once_in_one_folder_are_refused(tmp_path: Path) -> None:
@@ -347,7 +398,7 @@ def test_a_half_done_sweep_can_be_drawn(tmp_path: Path, capsys: pytest.CaptureFi
     assert (out / "mine.png").read_bytes().startswith(b"\x89PNG")
     assert held(out) == before
     assert main(["sweep", str(path), "--output", str(tmp_path / "none"), "--draw"]) == 2
-    assert "is no manifest" in capsys.readouterr().err
+    assert "sweep.json is not there" in capsys.readouterr().err
 
 
 def test_a_terminal_is_told_how_far_it_is_and_how_long_it_takes(tmp_path: Path) -> None:
@@ -384,11 +435,26 @@ def test_a_terminal_is_told_how_far_it_is_and_how_long_it_takes(tmp_path: Path) 
     (('kind = "final"', 'kind = "finl"'), "kind = 'finl' .did you mean 'final'.. must be"),
     (('kind = "final"', 'kind = "first"'), "maps.end.of = .* must be a table"),
     (('kind = "final"', 'kind = "section"\ncount = 3'), "where = None must be one of theta1"),
-    (('kind = "final"', 'kind = "samples"'), "maps.end.count = None must be a whole number"),
+    (('kind = "final"', 'kind = "samples"'), "maps.end.count is missing"),
     (('kind = "final"', 'kind = "final"\nbarrier = []'), "no key 'barrier'"),
     (('of = ["theta1", "theta2"]', 'of = ["theta1", "thta2"]'), "'thta2' .did you mean 'theta2'"),
     (('of = ["theta1", "theta2"]', ""), "maps.end.of = .. must name components"),
     (("[maps.end]", "rtol = true\n[maps.end]"), "no key 'rtol'|rtol"),
+    (("[axes]", "method = 5\n[axes]"), "method = 5 must be text in quotes"),
+    (("[axes]", 'method = "rk4"\n[axes]'), "does not estimate its error: use one of bs32"),
+    (("[axes]", "max_steps = 0\n[axes]"), "max_steps = 0 must be a whole number from 1"),
+    (('kind = "final"', 'kind = ["final"]'), "kind = .'final'. must be one of"),
+    (('kind = "final"', ""), "maps.end.kind is missing"),
+    (('kind = "final"\nof = ["theta1", "theta2"]', 'kind = "first"\nof = {}'), "watches nothing"),
+    (('of = ["theta1", "theta2"]', 'of = ["theta1", "theta1"]'), "each of them once"),
+    (('"final"\nof = ["theta1", "theta2"]', '"extremes"\nof = ["theta1_dot"]'),
+     "extremes of theta1_dot are not known"),
+    (("[maps.end]", '[maps.x]\nkind = "section"\ncount = 1\nwhere = "theta1"\n'
+      'direction = ["up"]\n[maps.end]'), "direction = .'up'. must be one of both"),
+    (("[maps.end]", f'[maps.{"x" * 60}]\nkind = "lyapunov"\n[maps.end]'), "up to 50 letters"),
+    (("[maps.end]", '[maps.theta2]\nkind = "lyapunov"\n[maps.end]'), "cannot be a map's name"),
+    (("count = 120", "count = 1000000000000"), "must be a whole number from 1 to 10000000"),
+    (('kind = "final"', 'kind = "samples"\ncount = 1000000000'), "from 1 to 1000000"),
     (("[axes]", 'method = "rk44"\n[axes]'), "no method is called 'rk44'"),
     (("[axes]", "random = { count = 5 }\n[axes]"), "axes.theta1 has no key 'count'"),
     (("[axes]", "[initial]\ntheta1 = 1\n[axes]"), "theta1 varies, and is given"),
@@ -412,6 +478,8 @@ def test_a_file_that_is_no_sweep_is_refused(
     ("theta1,theta2\n1,2\n1\n", "as many numbers"),
     ("theta1,theta2\n1,two\n", "theta2: unit 'two' is not known"),
     ("theta1,tehta2\n1,2\n", "'tehta2' .did you mean 'theta2'"),
+    ("theta1,theta1\n1,2\n", "has a name twice"),
+    ('theta1,theta2\n1,"' + "2" * 200_000, "is no table in UTF-8"),
 ])  # fmt: skip
 def test_a_table_that_is_none_is_refused(table: str, words: str, tmp_path: Path) -> None:
     (tmp_path / "starts.csv").write_text(table)

@@ -111,6 +111,23 @@ def test_a_barrier_that_is_none_is_refused(first: First, words: str) -> None:
         Sweep(dp, STARTS, {"flip": first}, 1.0)
 
 
+def test_a_barrier_proves_nothing_where_parameters_vary() -> None:
+    axes = Grid({"theta1": [0.1], "theta2": [0.1], "g": [9.81, -9.81]})
+    with pytest.raises(ValueError, match="g varies: which place is lowest depends on it"):
+        Sweep(dp, axes, {"flip": First(FLIP, TOPS)}, 1.0)
+
+
+@pytest.mark.parametrize("name", ["status", "energy"])
+def test_a_system_cannot_use_the_words_of_sweeps(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        f"[coordinates]\nx = {{}}\n[parameters]\n{name} = {{ value = 1 }}\n"
+        f'[[masses]]\nmass = "{name}"\nposition = ["x", "0"]\n'
+    )
+    with pytest.raises(ValueError, match=f"something called '{name}'"):
+        Sweep(generated_module(str(path)), Grid({"x": [1.0]}), {"end": Final(("x",))}, 1.0)
+
+
 def test_ends_samples_and_extremes_are_those_of_single_motions(tmp_path: Path) -> None:
     n, of = 12, ("theta1", "theta2_dot")
     axes = Random({"theta1": (-1, 1), "theta2": (-1, 1), "m2": (0.5, 2)}, n, seed=1)
@@ -284,7 +301,7 @@ def test_a_map_of_a_system_of_one_s_own_needs_its_texts_only(tmp_path: Path) -> 
     ({"duration": -1.0}, "duration = -1.0 must be positive"),
     ({"method": "rk5"}, "no method is called 'rk5'"),
     ({"method": "DOP853"}, "no method is called 'DOP853'"),
-    ({"method": "gauss2"}, "does not estimate its error"),
+    ({"method": "gauss2"}, "does not estimate its error: use one of"),
     ({"rtol": 0.0, "atol": 0.0}, "no step is short enough"),
 ])  # fmt: skip
 def test_a_sweep_that_makes_no_sense_is_refused(changes: dict[str, Any], words: str) -> None:

@@ -39,6 +39,7 @@ class Grid:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _columns(self.values))
+        request.count("the number of motions", prod(self.shape), 1)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -60,7 +61,7 @@ class Grid:
     @property
     def asked(self) -> dict[str, Any]:
         """What it is, for a manifest."""
-        return {"grid": {name: _described(values) for name, values in self.values.items()}}
+        return {"kind": "grid", "axes": [_described(*axis) for axis in self.values.items()]}
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ class Table:
     @property
     def asked(self) -> dict[str, Any]:
         """What it is, for a manifest."""
-        return {"table": {name: _described(values) for name, values in self.values.items()}}
+        return {"kind": "table", "axes": [_described(*axis) for axis in self.values.items()]}
 
 
 @dataclass(frozen=True)
@@ -159,7 +160,10 @@ class Random:
     @property
     def asked(self) -> dict[str, Any]:
         """What it is, for a manifest."""
-        return {"random": dict(self.limits), "count": self.count, "seed": self.seed}
+        axes = [
+            {"name": name, "from": low, "to": high} for name, (low, high) in self.limits.items()
+        ]
+        return {"kind": "random", "axes": axes, "count": self.count, "seed": self.seed}
 
 
 Axes: TypeAlias = Grid | Table | Random
@@ -187,9 +191,9 @@ def _columns(values: Mapping[str, Any]) -> dict[str, Array]:
     return columns
 
 
-def _described(values: Array) -> dict[str, Any]:
+def _described(name: str, values: Array) -> dict[str, Any]:
     digest = hashlib.sha256(np.ascontiguousarray(values, "<f8").tobytes()).hexdigest()
     return {
-        "count": len(values), "first": float(values[0]), "last": float(values[-1]),
+        "name": name, "count": len(values), "first": float(values[0]), "last": float(values[-1]),
         "sha256": digest,
     }  # fmt: skip

@@ -7,7 +7,7 @@ from math import isfinite
 from types import ModuleType
 
 from solvers.scenes.checks import near
-from solvers.sweeps.axes import Axes, some
+from solvers.sweeps.axes import Axes
 from solvers.sweeps.barrier import lower_place
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import EnergyError, First, Samples
@@ -16,8 +16,10 @@ from solvers.sweeps.maps import EnergyError, First, Samples
 ENERGY = "energy"
 #: Instead of a velocity's value: so much as the energy leaves for it.
 FROM_ENERGY = "energy"
-#: Where parameters vary, a barrier is looked at with those of so many motions.
-LOOKS = 4
+#: The map that says how motions ended.
+STATUS = "status"
+#: Characters of a map's name.
+LONGEST = 50
 
 Values = Mapping[str, float | str]
 
@@ -31,6 +33,12 @@ def check_names(module: ModuleType, axes: Axes, values: Values) -> None:
         With what is allowed.
     """
     known, varied = (*module.STATE, *module.PARAMETERS, ENERGY), tuple(axes.smallest)
+    for name in (*module.STATE, *module.PARAMETERS):
+        if name in (ENERGY, STATUS):
+            raise ValueError(
+                f"the system has something called {name!r}, which has a meaning in a sweep: give "
+                "it another name"
+            )
     for name in (*varied, *values):
         if name not in known:
             raise ValueError(
@@ -87,10 +95,11 @@ def check_maps(module: ModuleType, axes: Axes, maps: Mapping[str, Map], values: 
     if len(samples) > 1:
         raise ValueError(f"maps sample at {sorted(samples)} times: all must have as many")
     for name, one in maps.items():
-        if not name.isidentifier() or name in ("status", *axes.smallest):
+        taken = (STATUS, ENERGY, *module.STATE, *module.PARAMETERS)
+        if not name.isidentifier() or len(name) > LONGEST or name in taken:
             raise ValueError(
-                f"{name[:50]!r} cannot be a map's name: use letters, digits and _, and neither "
-                "'status' nor what varies"
+                f"{name[:LONGEST]!r} cannot be a map's name: use up to {LONGEST} letters, digits "
+                f"and _, and none of {', '.join(taken)}"
             )
         for component in one.components:
             if component not in module.STATE:
@@ -98,6 +107,8 @@ def check_maps(module: ModuleType, axes: Axes, maps: Mapping[str, Map], values: 
                     f"map {name} names {component[:50]!r}{near(component, module.STATE)}: known "
                     f"are {', '.join(module.STATE)}"
                 )
+        if isinstance(one, First) and not one.events(module):
+            raise ValueError(f"map {name} watches nothing: name values by component")
         one.events(module)
         climbs = isinstance(one, First) and bool(one.barrier)
         if (climbs or isinstance(one, EnergyError)) and hasattr(module, "power"):
@@ -115,14 +126,17 @@ def _check_barrier(
                 f"map {name} has a barrier: then {watched} cannot be watched, for its value says "
                 "nothing of the energy"
             )
-    columns = some(axes, LOOKS if {*axes.smallest} & {*module.PARAMETERS} else 1)
-    for row in zip(*columns.values(), strict=True):
-        known = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
-        whole = {**known, **values, **dict(zip(columns, map(float, row), strict=True))}
-        params = [float(whole[parameter]) for parameter in module.PARAMETERS]
-        if lower := lower_place(module, one.of, one.barrier, params):
-            place = ", ".join(f"{q} = {value:.6g}" for q, value in lower.items())
-            raise ValueError(
-                f"map {name}: its barrier is too high, there is less energy at {place}; name "
-                "that place, too"
-            )
+    varied = [name for name in axes.smallest if name in module.PARAMETERS]
+    if varied:
+        raise ValueError(
+            f"map {name} has a barrier, and {varied[0]} varies: which place is lowest depends on "
+            "it, so that nothing is proved; leave one of them out"
+        )
+    known = {**dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True)), **values}
+    params = [float(known[parameter]) for parameter in module.PARAMETERS]
+    if lower := lower_place(module, one.of, one.barrier, params):
+        place = ", ".join(f"{q} = {value:.6g}" for q, value in lower.items())
+        raise ValueError(
+            f"map {name}: its barrier is too high, there is less energy at {place}; name that "
+            "place, too"
+        )

@@ -17,7 +17,7 @@ from solvers.sweeps.axes import Grid
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.image import image
 from solvers.sweeps.labels import letter
-from solvers.sweeps.lines import curves, line, section
+from solvers.sweeps.lines import CURVES, curves, line, section
 from solvers.sweeps.maps import First, Samples, Section
 from solvers.sweeps.results import Results
 
@@ -27,11 +27,12 @@ MOST = 12
 
 def drawn(results: Results) -> Figure:
     """All maps of a sweep, a panel or more each."""
-    found = list(_panels(results))[:MOST]
+    every = list(_panels(results))
+    found = every[:MOST]
     columns = min(3, len(found))
     rows = ceil(len(found) / columns)
     figure, axes = panels(
-        results.asked.title, rows=rows, columns=columns,
+        results.asked.title.replace("$", r"\$"), rows=rows, columns=columns,
         size=(max(6.4, 5.4 * columns), 4.9 * rows + 0.5),
     )  # fmt: skip
     for panel, (title, draw) in zip(axes, found, strict=False):
@@ -40,20 +41,24 @@ def drawn(results: Results) -> Figure:
             panel.set_title(title, fontsize="medium")
     for panel in axes[len(found) :]:
         panel.set_axis_off()
-    figure.supxlabel(_note(results), x=0.01, ha="left", fontsize="small", color="#444444")
+    hidden = f"{len(every) - MOST} more panels are not drawn" if len(every) > MOST else ""
+    note = "; ".join(filter(None, [*_notes(results), hidden]))
+    figure.supxlabel(note, x=0.01, ha="left", fontsize="small", color="#444444")
     return figure
 
 
-def _note(results: Results) -> str:
+def _notes(results: Results) -> Iterator[str]:
     """What the colours do not say."""
     asked, count = results.asked, results.count
-    words = []
     if any(isinstance(one, First) for one in asked.maps.values()):
-        words += ["white: too little energy for it"] if "proved" in count else []
-        words += [f"grey: not within {asked.duration:g} s"] if "finished" in count else []
+        if "proved" in count:
+            yield "white, inside the line: too little energy for it"
+        if "finished" in count:
+            yield f"grey or nothing: not within {asked.duration:g} s"
+    if any(type(one) is Samples for one in asked.maps.values()) and asked.motions > CURVES:
+        yield f"about {CURVES} of {asked.motions:,} motions over time"
     usual = ("finished", "event", "proved")
-    words += [f"{name}: {n:,} motions" for name, n in count.items() if name not in usual]
-    return "; ".join(words)
+    yield from (f"{name}: {n:,} motions" for name, n in count.items() if name not in usual)
 
 
 def _panels(results: Results) -> Iterator[tuple[str, Callable[[Axes], None]]]:

@@ -11,10 +11,13 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import json
+import re
 from collections.abc import Callable, Iterator, Mapping
+from errno import ENOSPC
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
+from shutil import disk_usage
 from types import TracebackType
 from typing import IO, Any
 
@@ -27,6 +30,9 @@ from solvers.written import placed, written
 MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 1
 #: Hexadecimal digits of a digest in a file's name.
 DIGITS = 16
+#: Names of chunks, and of files that are being written.
+CHUNK = re.compile(rf"\d+-[0-9a-f]{{{DIGITS}}}\.npy")
+PASSAGE = re.compile(r"\.\w[\w-]*\.(npy|json|png)\.\d+")
 
 
 class FolderError(ValueError):
@@ -67,6 +73,7 @@ class Folder:
         self._lock: IO[bytes] | None = None
 
     def __enter__(self) -> Folder:
+        self._check_room()
         (self.path / CHUNKS).mkdir(parents=True, exist_ok=True)
         self._lock = open(self.path / CHUNKS / "lock", "wb")
         try:
@@ -102,11 +109,26 @@ class Folder:
                 "asked": self._asked,
             }  # fmt: skip
             written(place, json.dumps(manifest, indent=2, ensure_ascii=False) + "\n")
-        for passage in [*self.path.glob(".*"), *(self.path / CHUNKS).glob(".*")]:
-            passage.unlink()
-        for chunk in (self.path / CHUNKS).glob("*.npy"):
-            if chunk not in self.done.values():
-                chunk.unlink()
+        for place in [*self.path.iterdir(), *(self.path / CHUNKS).iterdir()]:
+            is_damaged = CHUNK.fullmatch(place.name) and place not in self.done.values()
+            if is_damaged or PASSAGE.fullmatch(place.name):
+                place.unlink()
+
+    def _check_room(self) -> None:
+        """Refuse a folder that is somebody else's, and maps that do not fit."""
+        if self.path.is_dir() and not (self.path / MANIFEST).exists():
+            for place in self.path.iterdir():
+                if place.name != CHUNKS and not PASSAGE.fullmatch(place.name):
+                    raise FolderError(
+                        f"{self.path} holds {place.name}, and no sweep: give another --output"
+                    )
+        above = next(p for p in (self.path, *self.path.absolute().parents) if p.exists())
+        needed, free = 2 * self._motions * self._dtype.itemsize, disk_usage(above).free
+        if not (self.path / MANIFEST).exists() and needed > free:
+            raise OSError(
+                ENOSPC, f"the maps take {needed / 1e9:.3g} GB, and {free / 1e9:.3g} GB are free",
+                str(self.path),
+            )  # fmt: skip
 
     def look(self) -> None:
         """See what is there, and change nothing.
@@ -117,7 +139,9 @@ class Folder:
             When another sweep is there, or none.
         """
         found = _read(self.path / MANIFEST)
-        if different := difference(found["asked"], self._asked):
+        asked = {"format": FORMAT, "motions": self._motions, **self._asked}
+        there = {"format": found["format"], "motions": found["motions"], **found["asked"]}
+        if different := difference(there, asked):
             raise FolderError(
                 f"{self.path} holds another sweep: {different}; give another --output, or remove it"
             )
@@ -137,9 +161,11 @@ class Folder:
         """The chunks that are there, and whole."""
         found = {}
         for place in sorted((self.path / CHUNKS).glob("*.npy")):
-            number = place.stem.partition("-")[0]
-            if number.isdecimal() and int(number) < self.chunks and is_whole(place):
-                found[int(number)] = place
+            if CHUNK.fullmatch(place.name) and is_whole(place):
+                chunk = int(place.stem.partition("-")[0])
+                begin, end = self.span(chunk)
+                if np.load(place, mmap_mode="r").shape == (end - begin,):
+                    found[chunk] = place
         return found
 
     def keep(self, chunk: int, motions: NDArray[np.void]) -> None:
@@ -182,13 +208,13 @@ def _read(place: Path) -> dict[str, Any]:
     """The manifest in a file."""
     try:
         found = json.loads(place.read_bytes())
-        if found["format"] == FORMAT and found["chunk"] > 0 and isinstance(found["asked"], dict):
+        counts = [found[key] for key in ("format", "chunk", "motions")]
+        if all(type(n) is int and n > 0 for n in counts) and isinstance(found["asked"], dict):
             return dict(found)
     except (OSError, ValueError, KeyError, TypeError):
         pass
-    raise FolderError(
-        f"{place} is no manifest of a sweep of format {FORMAT}: give another --output, or remove it"
-    )
+    what = "is no manifest of a sweep" if place.exists() else "is not there"
+    raise FolderError(f"{place} {what}: give the --output of a sweep, or of none")
 
 
 def is_whole(place: Path) -> bool:
@@ -199,6 +225,8 @@ def is_whole(place: Path) -> bool:
 
 def difference(found: Any, asked: Any, where: str = "") -> str:
     """The first key at which two manifests differ, and what stands there; empty if none does."""
+    if isinstance(found, list) and isinstance(asked, list) and len(found) == len(asked):
+        found, asked = dict(enumerate(found)), dict(enumerate(asked))
     if isinstance(found, dict) and isinstance(asked, dict):
         for key in {**asked, **found}:
             if key not in found or key not in asked:

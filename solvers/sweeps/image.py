@@ -25,13 +25,16 @@ PIXELS, BOUNDARY = 2048, 400
 
 
 def image(panel: Axes, *, results: Results, name: str, place: tuple[int, ...]) -> None:
-    """One number of each motion over the first two axes, in the middle of all others."""
+    """One number of each motion over the two longest axes, in the middle of all others."""
     one, module = results.asked.maps[name], results.asked.module
     part = one.labels[0][place[0]] if place else ""
     unit = module.UNITS[part] if part else one.unit(module)
-    (x, xs), (y, ys), *rest = results.axes.items()
-    middle = tuple(len(axis) // 2 for _, axis in rest)
-    where: Any = (*(slice(None, None, -(-len(axis) // PIXELS)) for axis in (xs, ys)), *middle)
+    x, y = longest(results.axes)
+    xs, ys = results.axes[x], results.axes[y]
+    where: Any = tuple(
+        slice(None, None, -(-len(axis) // PIXELS)) if q in (x, y) else len(axis) // 2
+        for q, axis in results.axes.items()
+    )
     within: Any = (*where, *place)
     values = shown(one, results.maps[name][within], unit)
     palette, norm = colours(one, values, unit)
@@ -43,7 +46,7 @@ def image(panel: Axes, *, results: Results, name: str, place: tuple[int, ...]) -
     drawn = panel.imshow(np.ma.masked_invalid(values.T), cmap=palette, norm=norm, **seen)
     never = np.ma.masked_equal(results.status[where].T == PROVED, False)
     panel.imshow(never, cmap=ListedColormap([NEVER]), **seen)
-    fixed = {q: float(axis[len(axis) // 2]) for q, axis in rest}
+    fixed = {q: float(axis[len(axis) // 2]) for q, axis in results.axes.items() if q not in (x, y)}
     if isinstance(one, First) and one.barrier:
         _boundary(panel, results, one, {x: xs, y: ys}, fixed)
     bar(panel, drawn, what(one, name, part, unit))
@@ -52,6 +55,13 @@ def image(panel: Axes, *, results: Results, name: str, place: tuple[int, ...]) -
     if fixed:
         words = ", ".join(f"{letter(q)} = {v:.4g} {results.unit(q)}" for q, v in fixed.items())
         panel.set_xlabel(f"{panel.get_xlabel()}, at {words}")
+
+
+def longest(axes: Mapping[str, Array]) -> tuple[str, str]:
+    """The two axes with most values, in their order."""
+    two = sorted(axes, key=lambda name: -len(axes[name]))[:2]
+    first, second = (name for name in axes if name in two)
+    return first, second
 
 
 def _boundary(

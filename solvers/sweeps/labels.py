@@ -36,7 +36,7 @@ def label(panel: Axes, axis: str, results: Results, name: str) -> None:
     """Label an axis of a panel along which something varies."""
     unit = results.unit(name)
     panel.set(**{f"{axis}label": quantity(letter(name), unit)})
-    if unit == "rad" and np.ptp(results.axes[name]) > np.pi:
+    if unit == "rad" and np.pi < np.ptp(results.axes[name]) < 5 * np.pi:
         ticks = getattr(panel, f"{axis}axis")
         ticks.set_major_locator(MultipleLocator(np.pi / 2))
         ticks.set_major_formatter(FuncFormatter(_halves_of_pi))

@@ -39,9 +39,12 @@ def line(panel: Axes, *, results: Results, name: str, place: tuple[int, ...]) ->
         label(panel, "y", results, y)
         return
     joined = isinstance(results.asked.axes, Grid) and not is_direction(one, unit)
-    style = ("." if len(values) <= MARKED or not joined else "") + ("-" if joined else "")
+    is_marked = not joined or len(values) <= MARKED or np.isnan(values).any()
+    style = ("." if is_marked else "") + ("-" if joined else "")
     panel.plot(xs, values, style, color=COLOURS[0], linewidth=0.9, markersize=3)
     panel.set_ylabel(what(one, name, part, unit))
+    if not np.isfinite(values).any():
+        panel.text(0.5, 0.5, "nothing", transform=panel.transAxes, ha="center")
 
 
 def curves(panel: Axes, *, results: Results, name: str, k: int) -> None:

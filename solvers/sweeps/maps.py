@@ -20,6 +20,8 @@ Array: TypeAlias = NDArray[np.float64]
 class First(Map):
     """The time in s of the first of some events: a component of the state crosses a value.
 
+    A motion that crosses a value and comes back within one step is not seen to do so.
+
     Parameters
     ----------
     of : mapping of str to tuple of float

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Mapping
+from math import prod
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -23,8 +24,8 @@ NEEDED = ("system", "duration", "axes", "maps")
 KEYS = (
     *NEEDED, "title", "method", "rtol", "atol", "max_steps", "initial", "parameters", "random",
 )  # fmt: skip
-#: Values along an axis, motions and steps: no more than so many of each.
-MOST = 10**12
+#: Values along an axis; motions and steps: no more than so many.
+LONGEST, MOST = 10**7, 10**11
 
 
 def names() -> tuple[str, ...]:
@@ -108,6 +109,8 @@ def _values(module: ModuleType, table: Mapping[str, Any]) -> dict[str, float | s
 
 def _axes(path: Path, module: ModuleType, table: Mapping[str, Any]) -> Axes:
     if isinstance(table["axes"], str):
+        if "random" in table:
+            raise InputError("axes are a table, and random is given: leave one of them out")
         return _from_file(path.parent / table["axes"], module)
     axes = said.table("axes", table["axes"])
     said.check_keys("[axes]", axes, (*module.STATE, *module.PARAMETERS, ENERGY), KEYS)
@@ -124,7 +127,10 @@ def _axes(path: Path, module: ModuleType, table: Mapping[str, Any]) -> Axes:
             said.number(f"{key}.{end}", given[end], unit(module, name)) for end in ("from", "to")
         )
         ends[name] = low, high
-        counts[name] = said.whole(f"{key}.count", given["count"], 1, 10**7) if is_grid else 0
+        counts[name] = said.whole(f"{key}.count", given["count"], 1, LONGEST) if is_grid else 0
+    if is_grid and prod(counts.values()) > MOST:
+        raise InputError(f"[axes] have {prod(counts.values()):,} motions: up to {MOST:,} are "
+                         "possible")  # fmt: skip
     if is_grid:
         return Grid({name: np.linspace(*ends[name], counts[name]) for name in axes})
     drawn = said.table("random", table["random"])
@@ -138,8 +144,11 @@ def _from_file(path: Path, module: ModuleType) -> Table:
     if path.suffix != ".csv":
         raise InputError(f"axes = {path.name!r} must be a table that ends in .csv, or be written "
                          "as [axes]")  # fmt: skip
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.reader(file) if row]
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as file:  # as spreadsheets write it
+            rows = [row for row in csv.reader(file) if row]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path.name} is no table in UTF-8: {error}") from error
     if len(rows) < 2 or any(len(row) != len(rows[0]) for row in rows):
         raise InputError(f"{path.name} must have names in its first line, and as many numbers in "
                          "each of the others")  # fmt: skip

@@ -35,7 +35,9 @@ def kept(key: str, module: ModuleType, given: Given) -> Map:
     solvers.said.InputError
         When it makes no sense.
     """
-    kind = given.get("kind")
+    if "kind" not in given:
+        raise InputError(f"{key}.kind is missing: give one of {', '.join(map(repr, KINDS))}")
+    kind = given["kind"]
     if not isinstance(kind, str) or kind not in KINDS:
         hint = near(kind, tuple(KINDS)) if isinstance(kind, str) else ""
         raise InputError(
@@ -47,7 +49,7 @@ def kept(key: str, module: ModuleType, given: Given) -> Map:
 
 
 def _first(key: str, module: ModuleType, given: Given) -> First:
-    watched = said.table(f"{key}.of", given.get("of"))
+    watched = said.table(f"{key}.of", given.get("of", {}))
     said.check_keys(f"{key}.of", watched, module.STATE)
     values = {
         name: tuple(

@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from solvers import request
-from solvers.catalogue import load
+from solvers.catalogue import load, names
 from solvers.native import header
 from solvers.scenes.checks import check_positive
 from solvers.sweeps import checks
@@ -68,7 +68,11 @@ class Sweep:
 
     def __post_init__(self) -> None:
         check_positive(duration=self.duration)
-        load(self.method)
+        if not load(self.method).b_hat:
+            able = ", ".join(name for name in names() if load(name).b_hat)
+            raise ValueError(
+                f"method = {self.method!r} does not estimate its error: use one of {able}"
+            )
         checks.check_names(self.module, self.axes, self.values)
         checks.check_energy(self.module, self.given, self.values)
         checks.check_maps(self.module, self.axes, self.maps, self.values)
