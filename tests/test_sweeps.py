@@ -121,7 +121,7 @@ def test_a_barrier_proves_nothing_where_parameters_vary() -> None:
 def test_a_system_cannot_use_the_words_of_sweeps(name: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(
-        f"[coordinates]\nx = {{}}\n[parameters]\n{name} = {{ value = 1 }}\n"
+        f'gravity = ["0", "0"]\n[coordinates]\nx = {{}}\n[parameters]\n{name} = {{ value = 1 }}\n'
         f'[[masses]]\nmass = "{name}"\nposition = ["x", "0"]\n'
     )
     with pytest.raises(ValueError, match=f"something called '{name}'"):
