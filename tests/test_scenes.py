@@ -159,7 +159,7 @@ def test_a_file_that_is_no_scene_is_refused_within_a_second(tmp_path: Path) -> N
         with pytest.raises(InputError, match=words):
             read(path, generated_module)
         assert time.perf_counter() - before < 1
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(InputError, match=r"none.toml: there is no such file"):
         read(tmp_path / "none.toml", generated_module)
 
 
