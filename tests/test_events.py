@@ -81,3 +81,18 @@ def test_crossings_say_what_they_cannot_be() -> None:
     ):
         with pytest.raises(ValueError, match=message):
             Crossing(dp, *arguments)
+
+
+def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
+    # momenta become velocities with the masses of the motion in question
+    starts = np.array([[0.1, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0], [1.5, 1.0, 0.0, 0.0]])
+    params = np.array([[1.0, m, 1.0, 1.0, 9.81] for m in (0.3, 1.0, 3.0)])
+    found = [
+        ensemble(dp, (0, 2), starts, params, form=form, rtol=1e-11,
+                 events=Crossing(dp, "theta1", -0.5), t_eval=[1.0])
+        for form in ("hamiltonian", "lagrangian")
+    ]  # fmt: skip
+    assert found[0].occurred[:, 0].tolist()[0] == 0
+    assert (found[0].occurred[1:, 0] > 0).all()
+    for name in ("y_events", "t_events", "samples", "y"):
+        assert_allclose(getattr(found[0], name), getattr(found[1], name), atol=1e-8)
