@@ -6,11 +6,13 @@ from math import sin, sqrt
 import numpy as np
 import pytest
 from made_up import made_up
+from numpy.testing import assert_allclose
 from scipy.special import ellipk
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.crossing import Crossing
+from solvers.ensemble import ensemble
 from solvers.integration import integrate
 from solvers.solution import Status
 
