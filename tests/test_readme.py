@@ -25,11 +25,11 @@ from solvers.scenes.reading import KEYS, scene
 from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
 from solvers.stability.critical import CriticalStep
+from solvers.sweeps.job import STATUSES
 from solvers.sweeps.reading import find as find_sweep
 from solvers.sweeps.reading import names as sweeps
 from solvers.sweeps.reading_maps import KINDS
 from solvers.sweeps.running import sweep
-from solvers.sweeps.work import STATUSES
 from solvers.verdict.evidence import Evidence, Setting
 from solvers.verdict.objectives import objectives
 

@@ -21,6 +21,7 @@ from solvers.crossing import Crossing
 from solvers.ensemble import ensemble
 from solvers.integration import integrate
 from solvers.sweeps.axes import BLOCK, Grid, Random, Table
+from solvers.sweeps.job import STATUSES
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import (
     EnergyError,
@@ -36,7 +37,6 @@ from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import Results
 from solvers.sweeps.running import sweep
 from solvers.sweeps.sweep import Sweep
-from solvers.sweeps.work import STATUSES
 
 PI = np.pi
 FLIP = {"theta1": (-PI, PI), "theta2": (-PI, PI)}

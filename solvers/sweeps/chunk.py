@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from solvers.sweeps.axes import some
+from solvers.sweeps.begin import begun
+from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
-from solvers.sweeps.work import Job, begun, integrated
+from solvers.sweeps.work import integrated
 
 #: Seconds that a chunk takes at most, about, and what it costs beside its motions.
 CHUNK, COST = 1.0, 0.004

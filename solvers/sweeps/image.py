@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.barrier import barrier, energies
+from solvers.sweeps.begin import begun
 from solvers.sweeps.colours import NEVER, NOTHING, colours, shown
+from solvers.sweeps.job import PROVED, Job
 from solvers.sweeps.labels import bar, label, letter, what
 from solvers.sweeps.maps import First
 from solvers.sweeps.results import Results
-from solvers.sweeps.work import PROVED, Job, begun
 
 Array: TypeAlias = NDArray[np.float64]
 

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from solvers import request
 from solvers.ensemble import stop
 from solvers.sweeps.axes import Axes
-from solvers.sweeps.work import Job, work
+from solvers.sweeps.job import Job
+from solvers.sweeps.work import work
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.checks import ENERGY
+from solvers.sweeps.job import STATUSES
 from solvers.sweeps.sweep import Sweep
-from solvers.sweeps.work import STATUSES
 
 #: What the dimensions of a motion's numbers are called.
 PARTS = ("component", "number")

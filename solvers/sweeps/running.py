@@ -15,10 +15,10 @@ from solvers.progress import Rate
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.chunk import chunk_length
 from solvers.sweeps.folder import Folder
+from solvers.sweeps.job import Job
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.results import Results
 from solvers.sweeps.sweep import Sweep
-from solvers.sweeps.work import Job
 from solvers.written import written
 
 THREADS = Pool()

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solvers.sweeps.axes import some
+from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
-from solvers.sweeps.work import Job, work
+from solvers.sweeps.work import work
 
 #: Motions that are done again, and by how much tighter their tolerances are.
 AGAIN, TIGHTER = 64, 100.0

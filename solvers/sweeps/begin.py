@@ -1,0 +1,64 @@
+"""Where motions begin, and which of them need not be run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import ModuleType
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.sweeps.barrier import energies, is_below
+from solvers.sweeps.checks import ENERGY, FROM_ENERGY
+from solvers.sweeps.job import NO_SUCH_ENERGY, PROVED, Job
+from solvers.sweeps.maps import First
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+def begun(
+    job: Job, module: ModuleType, columns: Mapping[str, Array]
+) -> tuple[Array, list[Array], NDArray[np.int8]]:
+    """Starts in rows, parameters, and the status of motions that need not be integrated, or 0."""
+    n = len(next(iter(columns.values())))
+    whole = {**job.values, **columns}
+    free = next((name for name, value in job.values.items() if value == FROM_ENERGY), None)
+    defaults = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
+
+    def column(name: str, usual: float) -> Array:
+        value = 0.0 if name == free else whole.get(name, usual)
+        return np.broadcast_to(np.asarray(value, float), n).copy()
+
+    params = [column(name, defaults[name]) for name in module.PARAMETERS]
+    state = np.stack([column(name, 0.0) for name in module.STATE], axis=1)
+    status = np.zeros(n, np.int8)
+    if free is not None:
+        place = module.STATE.index(free)
+        state[:, place] = rate(module, state, params, place, column(ENERGY, 0.0))
+        status[np.isnan(state[:, place])] = NO_SUCH_ENERGY
+        state[status != 0, place] = 0.0
+    for one in job.maps.values():
+        if isinstance(one, First) and one.barrier and len(job.maps) == 1:
+            status[(status == 0) & is_below(module, one.barrier, state, params)] = PROVED
+    if job.form == "variational":
+        size = len(module.STATE)
+        state = np.hstack([state, np.full((n, size), size**-0.5)])
+    return state, params, status
+
+
+def rate(module: ModuleType, state: Array, params: list[Array], place: int, energy: Array) -> Array:
+    """The positive velocity at `place` with which states have an energy; NaN where none has.
+
+    The energy is a polynomial of the second degree in the velocity.
+    """
+    at = {}
+    for value in (-1.0, 0.0, 1.0):
+        there = state.copy()
+        there[:, place] = value
+        at[value] = energies(module, there, params)
+    a, b = (at[1.0] + at[-1.0]) / 2 - at[0.0], (at[1.0] - at[-1.0]) / 2
+    with np.errstate(invalid="ignore"):
+        root = np.sqrt(b * b - 4 * a * (at[0.0] - energy))
+    found = (root - b) / (2 * a)
+    return np.where(found >= 0, found, np.nan)
