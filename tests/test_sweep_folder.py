@@ -185,13 +185,16 @@ def written(folder: Path, text: str = FILE) -> Path:
 
 
 def test_killed_at_any_moment_it_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
-    path = written(tmp_path)
+    # some seconds of work for one thread
+    path = written(tmp_path, FILE.replace("duration = 30", "duration = 120"))
     command = [HOLONOMIC, "sweep", str(path), "--output"]
     subprocess.run([*command, str(tmp_path / "whole")], check=True, stdout=subprocess.DEVNULL)
     expected, torn = held(tmp_path / "whole"), tmp_path / "torn"
     random, unfinished = np.random.default_rng(1), 0
     for _ in range(6):
-        run = subprocess.Popen([*command, str(torn)], stdout=subprocess.DEVNULL)
+        run = subprocess.Popen(
+            [*command, str(torn), "--workers", "1"], stdout=subprocess.DEVNULL
+        )  # fmt: skip
         # at a random moment from the first file on
         while run.poll() is None and not (torn / "sweep.json").exists():
             time.sleep(0.001)
