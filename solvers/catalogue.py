@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 
 from solvers import methods
+from solvers.near import near
 from solvers.tableau import Tableau
 
 
@@ -30,10 +30,9 @@ def load(name: str) -> Tableau:
         When no file is called so.
     """
     if name not in names():
-        close = get_close_matches(name, names(), n=1)
-        hint = f" (did you mean {close[0]!r}?)" if close else ""
         raise UnknownMethodError(
-            f"no method is called {name[:50]!r}{hint}; known are: {', '.join(names())}"
+            f"no method is called {name[:50]!r}{near(name, names())}; known are: "
+            f"{', '.join(names())}"
         )
     tableau: Tableau = import_module(f"solvers.methods.{name}").tableau
     return tableau

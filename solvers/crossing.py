@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import isfinite
 from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
+
+from solvers.near import near
 
 
 @dataclass(frozen=True)
@@ -50,9 +51,7 @@ class Crossing:
 
     def __post_init__(self) -> None:
         if self.name not in self.module.STATE:
-            close = get_close_matches(str(self.name), self.module.STATE, n=1)
-            hint = f" (did you mean {close[0]!r}?)" if close else ""
-            known = ", ".join(self.module.STATE)
+            hint, known = near(str(self.name), self.module.STATE), ", ".join(self.module.STATE)
             raise ValueError(f"no component is called {self.name!r}{hint}; known are: {known}")
         if isinstance(self.value, bool) or not _is_finite(self.value):
             raise ValueError(f"value = {self.value!r} of {self.name} must be a finite number")

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from solvers.scenes.checks import near
-from solvers.scenes.quantity import QuantityError, quantity, shown
+from solvers.near import near
+from solvers.quantity import QuantityError, quantity, shown
 
 #: Bytes of the largest file, and characters of the longest text.
 LARGEST, LONGEST = 100_000, 2000

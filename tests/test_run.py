@@ -16,11 +16,12 @@ from matplotlib.figure import Figure
 
 import generated.double_pendulum as dp
 from solvers.answers.answer import answer
-from solvers.answers.drawn import _labelled, drawn, symbol, usual
+from solvers.answers.drawn import _labelled, drawn, usual
 from solvers.answers.seen import ABOVE, projected
 from solvers.answers.told import special_code, table, told
 from solvers.cli import generated_module, main, specialiser
 from solvers.commands.run import track
+from solvers.notation import symbol
 from solvers.references.taylor import taylor
 from solvers.scenes.shipped import find
 

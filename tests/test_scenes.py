@@ -10,9 +10,9 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.cli import generated_module
+from solvers.quantity import QuantityError, quantity
 from solvers.said import InputError
 from solvers.scenes.checks import MassMatrixWarning
-from solvers.scenes.quantity import QuantityError, quantity
 from solvers.scenes.reading import read, scene
 from solvers.scenes.scene import Scene
 from solvers.scenes.shipped import UnknownSceneError, find, names

@@ -14,10 +14,10 @@ from matplotlib.ticker import MaxNLocator
 
 from solvers.answers.answer import Answer
 from solvers.answers.seen import energy_errors, links, places, projected
+from solvers.notation import divided, symbol
 from solvers.pictures import COLOURS, panels
 from solvers.scenes.checks import curves_of
 
-GREEK = ("theta", "phi", "psi", "alpha", "beta")
 STYLES = ("-", "--", ":", "-.")
 #: Energy errors below this are drawn there: a logarithm has no zero.
 LEAST = 1e-17
@@ -129,14 +129,14 @@ def _curves(
                    label=", ".join(filter(None, words)))  # fmt: skip
     if over == "t":
         panel.set_xlim(0, answer.t[-1])
-    panel.set(xlabel=f"{symbol(over)} / {_unit(units[over])}",
+    panel.set(xlabel=divided(symbol(over), units[over]),
               ylabel=_labelled(names, units))  # fmt: skip
 
 
 def _labelled(names: Sequence[str], units: Mapping[str, str]) -> str:
     """Names with their units; one unit for those that share it."""
     groups = groupby(names, units.__getitem__)
-    return ", ".join(f"{', '.join(map(symbol, group))} / {_unit(unit)}" for unit, group in groups)
+    return ", ".join(divided(", ".join(map(symbol, group)), unit) for unit, group in groups)
 
 
 def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str, label: str) -> None:
@@ -149,17 +149,3 @@ def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str, label
     for a, b in links(answer, positions):
         ends = [np.zeros(2) if k < 0 else seen[k, :, -1] for k in (a, b)]
         panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)
-
-
-def symbol(name: str) -> str:
-    """A name as mathematics writes it."""
-    base, dot, _ = name.partition("_dot")
-    letters = base.rstrip("0123456789")
-    index = base[len(letters) :]
-    word = rf"\{letters}" if letters in GREEK else letters
-    word = rf"\dot{{{word}}}" if dot else word
-    return f"${word}_{{{index}}}$" if index else f"${word}$"
-
-
-def _unit(unit: str) -> str:
-    return f"({unit})" if "/" in unit else unit

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Sequence
-from difflib import get_close_matches
 from math import isfinite
 from types import ModuleType
 
@@ -13,8 +12,9 @@ import numpy as np
 
 from solvers.catalogue import UnknownMethodError, load
 from solvers.forms import FORMS, has_form
+from solvers.near import near
+from solvers.quantity import shown
 from solvers.request import SCIPY
-from solvers.scenes.quantity import shown
 from solvers.timed import evaluated
 
 #: Samples that fit into memory, and the finest accuracy.
@@ -135,13 +135,6 @@ def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[
         raise ValueError(
             f"outputs = {list(outputs)} names no part of the state: add one of {', '.join(state)}"
         )
-
-
-def near(name: str, known: Sequence[str]) -> str:
-    """The known name that was meant, perhaps, in brackets; empty if none is near."""
-    small = {one.lower(): one for one in known}
-    found = [small[one] for one in get_close_matches(name.lower(), small, n=1)]
-    return f" (did you mean {found[0]!r}?)" if found else ""
 
 
 def check_samples(value: object) -> None:

@@ -10,9 +10,9 @@ from types import ModuleType
 from typing import Any
 
 from solvers import said
+from solvers.quantity import shown
 from solvers.said import InputError
 from solvers.scenes.checks import check_samples
-from solvers.scenes.quantity import shown
 from solvers.scenes.scene import Scene
 
 #: How many pictures, outputs and runs there may be.

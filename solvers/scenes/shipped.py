@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
-from solvers.scenes.checks import near
+from solvers.near import near
 from solvers.scenes.reading import read
 from solvers.scenes.scene import Scene
 

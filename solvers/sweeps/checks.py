@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 from types import ModuleType
 
-from solvers.scenes.checks import near
+from solvers.near import near
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.barrier import lower_place
 from solvers.sweeps.map import Map

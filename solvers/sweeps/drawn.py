@@ -11,7 +11,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from solvers.answers.drawn import symbol
+from solvers.notation import symbol
 from solvers.pictures import panels
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.checks import ENERGY

@@ -8,7 +8,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 
-from solvers.answers.drawn import symbol
+from solvers.notation import divided, symbol
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import EnergyError, First, Lyapunov
@@ -22,20 +22,15 @@ def letter(name: str) -> str:
     return "$E$" if name == ENERGY else symbol(name)
 
 
-def quantity(words: str, unit: str) -> str:
-    """Words with a unit, divided by it."""
-    return f"{words} / {f'({unit})' if '/' in unit else unit}"
-
-
 def what(one: Map, name: str, part: str, unit: str) -> str:
     """What the numbers of a map are; `part` is the component they are of, if any."""
-    return quantity(WORDS.get(type(one), symbol(part) if part else name), unit)
+    return divided(WORDS.get(type(one), symbol(part) if part else name), unit)
 
 
 def label(panel: Axes, axis: str, results: Results, name: str) -> None:
     """Label an axis of a panel along which something varies."""
     unit = results.unit(name)
-    panel.set(**{f"{axis}label": quantity(letter(name), unit)})
+    panel.set(**{f"{axis}label": divided(letter(name), unit)})
     if unit == "rad" and np.pi < np.ptp(results.axes[name]) < 5 * np.pi:
         ticks = getattr(panel, f"{axis}axis")
         ticks.set_major_locator(MultipleLocator(np.pi / 2))

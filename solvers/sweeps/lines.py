@@ -8,11 +8,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 
-from solvers.answers.drawn import symbol
+from solvers.notation import divided, symbol
 from solvers.pictures import COLOURS
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.colours import NOTHING, colours, is_direction, shown
-from solvers.sweeps.labels import bar, label, quantity, what
+from solvers.sweeps.labels import bar, label, what
 from solvers.sweeps.maps import Final, Samples, Section
 from solvers.sweeps.results import Results
 
@@ -81,4 +81,4 @@ def section(panel: Axes, *, results: Results, name: str, chosen: Any) -> None:
 
 
 def _component(results: Results, name: str) -> str:
-    return quantity(symbol(name), results.asked.module.UNITS[name])
+    return divided(symbol(name), results.asked.module.UNITS[name])

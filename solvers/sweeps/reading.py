@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from solvers import said
+from solvers.near import near
 from solvers.said import InputError
-from solvers.scenes.checks import near
 from solvers.sweeps.axes import Axes, Grid, Random, Table
 from solvers.sweeps.checks import ENERGY, FROM_ENERGY
 from solvers.sweeps.reading_maps import kept

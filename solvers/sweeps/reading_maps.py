@@ -7,9 +7,9 @@ from types import ModuleType
 from typing import Any
 
 from solvers import said
+from solvers.near import near
+from solvers.quantity import shown
 from solvers.said import InputError
-from solvers.scenes.checks import near
-from solvers.scenes.quantity import shown
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import (
     EnergyError,
