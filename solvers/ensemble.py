@@ -128,9 +128,11 @@ def ensemble(
                 if len(problem.samples) and problem.samples[0] == problem.span[0]:
                     result.samples[:, :, 0] = starts
             return result
-        _run_one_by_one(problem, starts, constants, result)
-        if is_variational:
-            result.growth[:] = _logarithm(result.y[:, len(module.STATE) :]) - result.growth
+        try:
+            _run_one_by_one(problem, starts, constants, result)
+        finally:
+            if is_variational:
+                result.growth[:] = _logarithm(result.y[:, len(module.STATE) :]) - result.growth
     except KeyboardInterrupt as interruption:
         raise Interrupted(result) from interruption
     return result
@@ -198,8 +200,9 @@ def _collect(batch: Batch, result: Ensemble) -> None:
         there = np.flatnonzero(motions["rows"] > k)
         _, result.samples[there, :, k] = _passed(batch, there, batch.rows[there, k])
     result.occurred[:] = motions["occurred"][:, : result.occurred.shape[1]]
+    kept = np.where(batch.keeps_extremes, np.minimum(result.occurred, 2), result.occurred)
     for event, k in np.ndindex(result.t_events.shape[1:]):
-        there = np.flatnonzero(result.occurred[:, event] > k)
+        there = np.flatnonzero(kept[:, event] > k)
         times, states = _passed(batch, there, batch.event_rows[there, event, k])
         result.t_events[there, event, k], result.y_events[there, event, k] = times, states
 

@@ -99,7 +99,7 @@ class Kernel:
         vectors = lanes and source.vectorises and tableau.is_explicit
         # of many motions there is nobody who could make a change small again
         changes = source.ordinary // 2 if lanes and form == "variational" else 0
-        self.scales = int(changes > 0)
+        scale = (int(changes > 0),)
         text = program(
             source, tableau, lanes=vectors, compensated=compensated, changes=changes
         )  # fmt: skip
@@ -112,7 +112,7 @@ class Kernel:
         fields: list[tuple[str, type, tuple[int, ...]]] = [
             ("t", float, ()), ("t_low", float, ()), ("z", float, state),
             ("low", float, (compensated * source.state,)), ("turns", float, angles),
-            ("first", float, (tableau.is_fsal * source.state,)), ("scale", float, (self.scales,)),
+            ("first", float, (tableau.is_fsal * source.state,)), ("scale", float, scale),
             *((name, float, ()) for name in ("h", "previous", "steps", "rejected")),
             *((name, float, ()) for name in ("trials", "rounds", "cuts", "t_end", "shortest")),
             ("params", float, (source.parameters,)),
@@ -122,7 +122,7 @@ class Kernel:
         self.trajectory = np.dtype(fields)
         self.row = np.dtype([
             ("t", float), ("z", float, state), ("turns", float, angles),
-            ("scale", float, (self.scales,)),
+            ("scale", float, scale),
         ])  # fmt: skip
         self.slopes = tableau.stages - tableau.is_fsal
         self.is_explicit = tableau.is_explicit
@@ -200,6 +200,11 @@ class Batch:
     def go(self) -> None:
         """Go on with motions that are not done; several threads may do so at once."""
         self._kernel.run(self.task)
+
+    @property
+    def keeps_extremes(self) -> NDArray[np.bool_]:
+        """Of which events only two rows are kept, of the smallest and the largest value."""
+        return self._events["keeps_extremes"] != 0
 
     @property
     def nfev(self) -> NDArray[np.int64]:

@@ -20,6 +20,31 @@ class InputError(ValueError):
     """A file that makes no sense; the message says which key, its value and what is allowed."""
 
 
+def names(folder: Path) -> tuple[str, ...]:
+    """Names of the files in a folder, in alphabetical order."""
+    return tuple(sorted(path.stem for path in folder.glob("*.toml")))
+
+
+def path(kind: str, name: str, folder: Path) -> Path:
+    """The file that is meant by a name: one of a folder, or somebody's own, which ends in .toml.
+
+    Raises
+    ------
+    InputError
+        When there is none.
+    """
+    known = names(folder)
+    if name in known:
+        return folder / f"{name}.toml"
+    if name.endswith(".toml"):
+        return Path(name)
+    own = Path(f"{name}.toml")
+    hint = f" (did you mean '{own}'?)" if own.is_file() else near(name, known)
+    raise InputError(
+        f"{kind} {name[:80]!r} is not one of {', '.join(known)}{hint}; your own end in .toml"
+    )
+
+
 def read(path: Path, meaning: Callable[[Mapping[str, Any]], Said]) -> Said:
     """What a file means.
 

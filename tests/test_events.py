@@ -11,7 +11,7 @@ from scipy.special import ellipk
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
-from solvers.crossing import Crossing
+from solvers.crossing import Crossing, Extremum
 from solvers.ensemble import ensemble
 from solvers.integration import integrate
 from solvers.solution import Status
@@ -98,3 +98,19 @@ def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
     assert (found[0].occurred[1:, 0] > 0).all()
     for name in ("y_events", "t_events", "samples", "y"):
         assert_allclose(getattr(found[0], name), getattr(found[1], name), atol=1e-8)
+
+
+def test_extremes_have_two_rows_however_many_other_events_have() -> None:
+    events = [Extremum(dp, "theta1_dot"), Crossing(dp, "theta1", 0.0)]
+    found = [
+        ensemble(dp, (0, 12), [[1.0, 0.5, 0.0, 0.0]], dp.DEFAULTS, events=events, occurrences=5,
+                 rtol=1e-11, backend=backend)
+        for backend in ("compiled", "python")
+    ]  # fmt: skip
+    assert (found[0].occurred > 4).all()
+    for one in found:
+        assert np.isnan(one.t_events[0, 0]).tolist() == [False, False, True, True, True]
+        assert np.isfinite(one.t_events[0, 1]).all()
+    assert_allclose(found[0].y_events, found[1].y_events, atol=1e-8)
+    low, high = found[0].y_events[0, 0, :2, 0]
+    assert low < -0.5 < 0.5 < high

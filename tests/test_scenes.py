@@ -15,7 +15,7 @@ from solvers.said import InputError
 from solvers.scenes.checks import MassMatrixWarning
 from solvers.scenes.reading import read, scene
 from solvers.scenes.scene import Scene
-from solvers.scenes.shipped import UnknownSceneError, find, names
+from solvers.scenes.shipped import find, names
 
 PLAIN = {"system": "double_pendulum", "duration": 5, "initial": {"theta1": 1, "theta2": 2}}
 
@@ -247,7 +247,7 @@ def test_shipped_scenes_are_found_and_all_make_sense() -> None:
     assert len(modules) == 3
     assert find("light_above", generated_module).params == (1.0, 3.0, 2.0, 2.0, 9.81)
     assert {f"figure_{n}_{k}" for n in (3, 4) for k in range(1, 7)} <= set(names())
-    with pytest.raises(UnknownSceneError, match=r"'reprot' is not one of .*did you mean 'report'"):
+    with pytest.raises(InputError, match=r"'reprot' is not one of .*did you mean 'report'"):
         find("reprot", generated_module)
 
 

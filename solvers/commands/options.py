@@ -9,7 +9,7 @@ from types import ModuleType
 
 from solvers.said import InputError
 from solvers.scenes.scene import Scene
-from solvers.scenes.shipped import UnknownSceneError, find, names
+from solvers.scenes.shipped import find, names
 
 
 def options(
@@ -48,7 +48,7 @@ def options(
     arguments = parser.parse_args(argv)
     try:
         chosen = [find(one, module) for one in dict.fromkeys(arguments.scenes or usual)]
-    except (UnknownSceneError, InputError) as error:
+    except InputError as error:
         parser.error(str(error))
     arguments.output.mkdir(parents=True, exist_ok=True)
     return chosen, arguments

@@ -20,7 +20,28 @@ BLOCK = 4096
 
 
 @dataclass(frozen=True)
-class Grid:
+class _Listed:
+    """Values that are listed by name."""
+
+    values: Mapping[str, Array]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", _columns(self.values))
+
+    @property
+    def smallest(self) -> dict[str, float]:
+        """The smallest value of each."""
+        return {name: float(values.min()) for name, values in self.values.items()}
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """What it is, for a manifest."""
+        axes = [_described(name, values) for name, values in self.values.items()]
+        return {"kind": type(self).__name__.lower(), "axes": axes}
+
+
+@dataclass(frozen=True)
+class Grid(_Listed):
     """Every combination of the values on some axes; the last one varies fastest.
 
     Parameters
@@ -35,10 +56,8 @@ class Grid:
         When an axis has no values, or some that are not finite.
     """
 
-    values: Mapping[str, Array]
-
     def __post_init__(self) -> None:
-        object.__setattr__(self, "values", _columns(self.values))
+        super().__post_init__()
         request.count("the number of motions", prod(self.shape), 1)
 
     @property
@@ -53,19 +72,9 @@ class Grid:
             name: values[k] for (name, values), k in zip(self.values.items(), places, strict=True)
         }
 
-    @property
-    def smallest(self) -> dict[str, float]:
-        """The smallest value of each."""
-        return {name: float(values.min()) for name, values in self.values.items()}
-
-    @property
-    def asked(self) -> dict[str, Any]:
-        """What it is, for a manifest."""
-        return {"kind": "grid", "axes": [_described(*axis) for axis in self.values.items()]}
-
 
 @dataclass(frozen=True)
-class Table:
+class Table(_Listed):
     """One motion for each row of a table.
 
     Parameters
@@ -79,10 +88,8 @@ class Table:
         When columns differ in length, or have values that are not finite.
     """
 
-    values: Mapping[str, Array]
-
     def __post_init__(self) -> None:
-        object.__setattr__(self, "values", _columns(self.values))
+        super().__post_init__()
         lengths = {name: len(column) for name, column in self.values.items()}
         if len({*lengths.values()}) > 1:
             raise ValueError(f"columns of a table have different lengths: {lengths}")
@@ -95,16 +102,6 @@ class Table:
     def columns(self, begin: int, end: int) -> dict[str, Array]:
         """The values of the motions from `begin` on, before `end`, by name."""
         return {name: column[begin:end] for name, column in self.values.items()}
-
-    @property
-    def smallest(self) -> dict[str, float]:
-        """The smallest value of each."""
-        return {name: float(values.min()) for name, values in self.values.items()}
-
-    @property
-    def asked(self) -> dict[str, Any]:
-        """What it is, for a manifest."""
-        return {"kind": "table", "axes": [_described(*axis) for axis in self.values.items()]}
 
 
 @dataclass(frozen=True)

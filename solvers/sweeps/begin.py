@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from solvers.sweeps.barrier import energies, is_below
 from solvers.sweeps.checks import ENERGY, FROM_ENERGY
 from solvers.sweeps.job import NO_SUCH_ENERGY, PROVED, Job
-from solvers.sweeps.maps import First
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -38,9 +37,9 @@ def begun(
         state[:, place] = rate(module, state, params, place, column(ENERGY, 0.0))
         status[np.isnan(state[:, place])] = NO_SUCH_ENERGY
         state[status != 0, place] = 0.0
-    for one in job.maps.values():
-        if isinstance(one, First) and one.barrier and len(job.maps) == 1:
-            status[(status == 0) & is_below(module, one.barrier, state, params)] = PROVED
+    if job.only_first and job.only_first.barrier:
+        low = is_below(module, job.only_first.barrier, state, params)
+        status[(status == 0) & low] = PROVED
     if job.form == "variational":
         size = len(module.STATE)
         state = np.hstack([state, np.full((n, size), size**-0.5)])

@@ -19,6 +19,7 @@ from solvers.native import header
 from solvers.solution import Status
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.map import Map
+from solvers.sweeps.maps import First
 from solvers.sweeps.sweep import Sweep
 
 #: How a motion ended, by the number that stands in a map; the first is not done yet.
@@ -26,8 +27,8 @@ STATUSES = (
     "not done yet", *(status.name.lower().replace("_", " ") for status in Status), "proved",
     "no such energy",
 )  # fmt: skip
+CODES = {status: code for code, status in enumerate(Status, 1)}
 PROVED, NO_SUCH_ENERGY = STATUSES.index("proved"), STATUSES.index("no such energy")
-CODES = {status: STATUSES.index(status.name.lower().replace("_", " ")) for status in Status}
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,12 @@ class Job:
             sweep.rtol, sweep.atol, sweep.max_steps, sweep.samples, dict(sweep.maps),
             () if isinstance(sweep.axes, Grid) else tuple(sweep.axes.smallest),
         )  # fmt: skip
+
+    @property
+    def only_first(self) -> First | None:
+        """The only map, if it is of a first event: then nothing is asked of a motion after it."""
+        one, *others = self.maps.values()
+        return one if isinstance(one, First) and not others else None
 
     @property
     def dtype(self) -> np.dtype[np.void]:

@@ -28,8 +28,8 @@ class First(Map):
         Values by component.
     barrier : tuple of mapping of str to float
         Places of which every motion must rise above the lowest before any of these events
-        can occur, by coordinate; those that have less energy are not integrated. What is
-        not named there is 0.
+        can occur, by coordinate; those that have less energy are not integrated, unless
+        other maps ask for them. What is not named there is 0.
     """
 
     of: Mapping[str, tuple[float, ...]]

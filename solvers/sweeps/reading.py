@@ -30,7 +30,7 @@ LONGEST, MOST = 10**7, 10**11
 
 def names() -> tuple[str, ...]:
     """Names of all sweeps that ship, in alphabetical order."""
-    return tuple(sorted(path.stem for path in FILES.glob("*.toml")))
+    return said.names(FILES)
 
 
 def find(name: str, module: Callable[[str], ModuleType]) -> Sweep:
@@ -50,12 +50,7 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Sweep:
     OSError
         When the file cannot be read.
     """
-    if name not in names() and not name.endswith(".toml"):
-        raise InputError(
-            f"sweep {name[:80]!r} is not one of {', '.join(names())}{near(name, names())}; your "
-            "own end in .toml"
-        )
-    path = FILES / f"{name}.toml" if name in names() else Path(name)
+    path = said.path("sweep", name, FILES)
     return said.read(path, lambda table: _sweep(path, table, module))
 
 
@@ -72,10 +67,10 @@ def _sweep(path: Path, table: Mapping[str, Any], module: Callable[[str], ModuleT
     way: dict[str, Any] = {
         key: said.number(key, table[key], "1") for key in ("rtol", "atol") if key in table
     }
-    way |= {key: said.text(key, table[key]) for key in ("method",) if key in table}
-    way |= {
-        key: said.whole(key, table[key], 1, MOST) for key in ("max_steps",) if key in table
-    }  # fmt: skip
+    if "method" in table:
+        way["method"] = said.text("method", table["method"])
+    if "max_steps" in table:
+        way["max_steps"] = said.whole("max_steps", table["max_steps"], 1, MOST)
     title = str(equations.__doc__).partition(":")[0].partition(".")[0]
     return Sweep(
         equations,

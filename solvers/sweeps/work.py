@@ -16,7 +16,6 @@ from solvers.solution import Ensemble, Status
 from solvers.sweeps.begin import begun
 from solvers.sweeps.job import CODES, Job, loaded
 from solvers.sweeps.map import Found, Map
-from solvers.sweeps.maps import First
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -64,8 +63,7 @@ def watched(job: Job, module: ModuleType) -> list[tuple[str, Map, slice]]:
 def integrated(job: Job, module: ModuleType, starts: Array, params: list[Array]) -> Ensemble:
     """The motions, in one thread."""
     maps = job.maps.values()
-    # where only the first event is asked for, nothing is asked of a motion after it
-    is_over = all(isinstance(one, First) for one in maps) and len(maps) == 1
+    is_over = job.only_first is not None
     events = [replace(event, terminal=is_over) for one in maps for event in one.events(module)]
     with beyond_horizon():
         motions = ensemble(

@@ -1,0 +1,89 @@
+"""Files that are no sweeps are refused, each with the key, its value and what is allowed."""
+
+from pathlib import Path
+
+import pytest
+from sweep_file import FILE, written
+
+from solvers.cli import generated_module, main
+from solvers.said import InputError
+from solvers.sweeps.reading import find
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    (('"double_pendulum"', '"double_pendlum"'), "no system is called|did you mean"),
+    (("duration", "duratoin"), "no key 'duratoin' .did you mean 'duration'"),
+    (("duration = 30", ""), "'duration' is missing"),
+    (("duration = 30", 'duration = "30 kg"'), "duration: '30 kg' has another unit"),
+    (("duration = 30", "duration = -1"), "duration = -1.0 must be positive"),
+    (("[axes]", "[axis]"), "no key 'axis' .did you mean 'axes'"),
+    (("theta1 = {", "theta3 = {"), "'theta3' .did you mean"),
+    (("from = -3, to = 3, count = 120", "from = -3, to = 3"), "axes.theta1.count is missing"),
+    (("from = -3, to = 3, count = 120", "from = -3, count = 120"), "axes.theta1.to is missing"),
+    (("count = 120", "count = 1.5"), "count = 1.5 must be a whole number"),
+    (("count = 120", "count = 0"), "count = 0 must be a whole number from 1"),
+    (("count = 120", "cuont = 120"), "no key 'cuont'"),
+    (('kind = "final"', 'kind = "finl"'), "kind = 'finl' .did you mean 'final'.. must be"),
+    (('kind = "final"', 'kind = "first"'), "maps.end.of = .* must be a table"),
+    (('kind = "final"', 'kind = "section"\ncount = 3'), "where = None must be one of theta1"),
+    (('kind = "final"', 'kind = "samples"'), "maps.end.count is missing"),
+    (('kind = "final"', 'kind = "final"\nbarrier = []'), "no key 'barrier'"),
+    (('of = ["theta1", "theta2"]', 'of = ["theta1", "thta2"]'), "'thta2' .did you mean 'theta2'"),
+    (('of = ["theta1", "theta2"]', ""), "maps.end.of = .. must name components"),
+    (("[maps.end]", "rtol = true\n[maps.end]"), "no key 'rtol'|rtol"),
+    (("[axes]", "method = 5\n[axes]"), "method = 5 must be text in quotes"),
+    (("[axes]", 'method = "rk4"\n[axes]'), "does not estimate its error: use one of bs32"),
+    (("[axes]", "max_steps = 0\n[axes]"), "max_steps = 0 must be a whole number from 1"),
+    (('kind = "final"', 'kind = ["final"]'), "kind = .'final'. must be one of"),
+    (('kind = "final"', ""), "maps.end.kind is missing"),
+    (('kind = "final"\nof = ["theta1", "theta2"]', 'kind = "first"\nof = {}'), "watches nothing"),
+    (('of = ["theta1", "theta2"]', 'of = ["theta1", "theta1"]'), "each of them once"),
+    (('"final"\nof = ["theta1", "theta2"]', '"extremes"\nof = ["theta1_dot"]'),
+     "extremes of theta1_dot are not known"),
+    (("[maps.end]", '[maps.x]\nkind = "section"\ncount = 1\nwhere = "theta1"\n'
+      'direction = ["up"]\n[maps.end]'), "direction = .'up'. must be one of both"),
+    (("[maps.end]", f'[maps.{"x" * 60}]\nkind = "lyapunov"\n[maps.end]'), "up to 50 letters"),
+    (("[maps.end]", '[maps.theta2]\nkind = "lyapunov"\n[maps.end]'), "cannot be a map's name"),
+    (("count = 120", "count = 1000000000000"), "must be a whole number from 1 to 10000000"),
+    (('kind = "final"', 'kind = "samples"\ncount = 1000000000'), "from 1 to 1000000"),
+    (("[axes]", 'method = "rk44"\n[axes]'), "no method is called 'rk44'"),
+    (("[axes]", "random = { count = 5 }\n[axes]"), "axes.theta1 has no key 'count'"),
+    (("[axes]", "[initial]\ntheta1 = 1\n[axes]"), "theta1 varies, and is given"),
+    (("[axes]", "[parameters]\nl9 = 1\n[axes]"), "no key 'l9'; known are m1"),
+    (("system", "system = [[["), "is no TOML file"),
+])  # fmt: skip
+def test_a_file_that_is_no_sweep_is_refused(
+    change: tuple[str, str], words: str, tmp_path: Path
+) -> None:
+    text = FILE.replace(*change, 1)
+    assert text != FILE
+    path = written(tmp_path, text)
+    with pytest.raises(InputError, match=words) as refusal:
+        find(str(path), generated_module)
+    assert str(path) in str(refusal.value)
+
+
+@pytest.mark.parametrize(("table", "words"), [
+    ("", "must have names in its first line"),
+    ("theta1,theta2\n", "must have names in its first line"),
+    ("theta1,theta2\n1,2\n1\n", "as many numbers"),
+    ("theta1,theta2\n1,two\n", "theta2: unit 'two' is not known"),
+    ("theta1,tehta2\n1,2\n", "'tehta2' .did you mean 'theta2'"),
+    ("theta1,theta1\n1,2\n", "has a name twice"),
+    ('theta1,theta2\n1,"' + "2" * 200_000, "is no table in UTF-8"),
+])  # fmt: skip
+def test_a_table_that_is_none_is_refused(table: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "starts.csv").write_text(table)
+    begin, end = FILE.index("[axes]"), FILE.index("[maps")
+    path = written(tmp_path, FILE[:begin] + 'axes = "starts.csv"\n' + FILE[end:])
+    with pytest.raises(InputError, match=words):
+        find(str(path), generated_module)
+
+
+def test_the_command_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", "filps"]) == 2
+    assert "did you mean 'flips'" in capsys.readouterr().err
+    assert main(["sweep", "none.toml"]) == 2
+    assert "none.toml: there is no such file" in capsys.readouterr().err
+    assert main(["sweep", "flips", "--workers", "0"]) == 2
+    assert "workers = 0 must be from 1" in capsys.readouterr().err
