@@ -92,7 +92,7 @@ class Context:
                 if not is_positive(residual, strictly="=" not in comparison.relation):
                     return Finding(False, place, "not seen to be positive")
                 continue
-            number = residual.evalf(DIGITS, subs=dict(self.state))
+            number = self._number(residual)
             differ = abs(number) > TINY or not comparison.possible
             if differ or not vanishes(self._reduced(residual)):
                 return Finding(False, place, sp.sstr(number.n(6)))
@@ -118,6 +118,11 @@ class Context:
                         for r in _differences(larger, smaller)
                     ]
         return found
+
+    def _number(self, residual: sp.Expr) -> sp.Expr:
+        # numbers first: `evalf` with symbols tries ever more digits where a residual is 0
+        numbers = {symbol: sp.Float(value, DIGITS) for symbol, value in self.state.items()}
+        return sp.sympify(residual.xreplace(numbers)).evalf(DIGITS)
 
     def _reduced(self, expression: sp.Expr) -> sp.Expr:
         for substitution in self.substitutions:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import time
 import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -15,9 +14,12 @@ from importlib.metadata import version
 from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import generated
+
+if TYPE_CHECKING:
+    from solvers.demo.station import Station
 
 USAGE = """\
 usage: holonomic COMMAND [OPTION ...]
@@ -29,7 +31,7 @@ commands:
   systems    list the systems that ship, with drawings
   derive     write the generated modules from the systems' positions, or check them
   verify     judge every equation, program and claim of the double-pendulum report
-  demo       the whole way on one screen, in about ten seconds
+  demo       the whole way, on one screen and on one page
   run        scenes, with the smallest model that is good enough
   sweep      maps of very many motions: flips, exponents, sections
   chart      what each method, form and backend costs for an error
@@ -155,109 +157,89 @@ def judgement() -> dict[str, Any]:
 
 
 def _demo(argv: Sequence[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="holonomic demo",
-        description="Derive, verify, generate and integrate the double pendulum; show each step.",
-        epilog="example:\n  holonomic demo --output out",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument(
-        "--output", type=Path, default=Path("out"), metavar="DIR",
-        help="folder for the picture (default: out)",
-    )  # fmt: skip
-    output = parser.parse_args(argv).output
-    output.mkdir(parents=True, exist_ok=True)  # before the work, not after it
-    print("Double pendulum: from the positions of two bobs to their motion.\n")
-    stations: dict[str, Callable[[], list[str]]] = {
-        "1 derive": _derived,
-        "2 verify": _verified,
-        "3 generate": _generated,
-        "4 integrate": lambda: _integrated(output / "double_pendulum.png"),
-    }
-    for name, station in stations.items():
-        start = time.perf_counter()
-        first, *lines = station()
-        print(f"{name:<13}{first}", *lines, sep="\n" + " " * 13, end="")
-        print(f"  [{time.perf_counter() - start:.1f} s]", flush=True)
-    return 0
+    from derive.report.beside import STYLE
+    from solvers.commands.demo import main as demo
+
+    stations = {"derive": _derived, "verify": _verified, "generate": _generated}
+    return demo(argv, generated_module, stations, STYLE)
 
 
-def _derived() -> list[str]:
+def _derived() -> Station:
     from derive import Derivation, load
+    from derive.report.beside import beside
+    from derive.report.judgement import named, verdict
     from derive.summary import broken_sum
+    from solvers.demo.station import Station
+    from solvers.order_conditions import order
 
     derivation = Derivation(load("double_pendulum"))
     first, second = derivation.forcing
-    return [
-        *broken_sum(f"L = {derivation.lagrangian}", 80).splitlines(),
-        f"M = {derivation.mass_matrix.tolist()[0]}",
-        f"    {derivation.mass_matrix.tolist()[1]}, and M qddot = f with",
-        f"f = ({first},",
-        f"     {second})",
-    ]
+    every = beside(derivation, lambda name: verdict(named(name), order))
+    return Station(
+        (
+            *broken_sum(f"L = {derivation.lagrangian}", 80).splitlines(),
+            f"M = {derivation.mass_matrix.tolist()[0]}",
+            f"    {derivation.mass_matrix.tolist()[1]}, and M qddot = f with",
+            f"f = ({first},",
+            f"     {second})",
+        ),
+        "".join(one.section for one in every),
+    )
 
 
-def _verified() -> list[str]:
+def _verified() -> Station:
+    from derive.report.beside import line
+    from derive.report.equation import Verdict
+    from solvers.demo.station import Figure, Station
+    from solvers.demo.verdicts import verdicts
     from solvers.tables import counted
 
     judged = judgement()
-    return [
-        f"equations of the report: {counted(judged['equations'])}",
-        f"objectives, claims and recommendations: {counted(judged['claims'])}",
-        f"programs: {len(judged['programs'])}, of them "
-        f"{sum(bool(program['stops']) for program in judged['programs'])} would not run as printed",
-        "which and why, and the corrections: holonomic verify",
+    misprints = [
+        line(Verdict(**row)) for row in judged["equations"] if row["verdict"] == "misprint"
     ]
+    equations, claims = counted(judged["equations"]), counted(judged["claims"])
+    return Station(
+        (
+            f"equations of the report: {equations}",
+            f"objectives, claims and recommendations: {claims}",
+            f"programs: {len(judged['programs'])}, of them "
+            f"{sum(bool(program['stops']) for program in judged['programs'])} would not run as "
+            "printed",
+            "which and why, and the corrections: holonomic verify",
+        ),
+        verdicts(judged, misprints),
+        (
+            Figure("equations of the report", equations,
+                   "proved or refuted symbolically, and in numbers with 40 digits",
+                   "holonomic verify"),
+            Figure("claims of the report", claims, "computed", "holonomic verify"),
+        ),
+    )  # fmt: skip
 
 
-def _generated() -> list[str]:
+def _generated() -> Station:
     import generated.double_pendulum as dp
     from derive.command import planned
+    from solvers.demo.code import listing, operations
+    from solvers.demo.station import Figure, Station
 
     tree = planned(["double_pendulum"], None)
     state = "differs: run holonomic derive" if tree.differences() else "up to date"
-    counts = (
-        f"{name} {(getattr(dp, name).__doc__ or '').split(' operations')[0].split()[-1]}"
-        for name in ("rhs", "rhs_hamiltonian", "jacobian", "energy")
-    )
-    return [
-        f"generated/double_pendulum.py: {state}",
-        f"operations a call: {', '.join(counts)}",
-    ]
-
-
-def _integrated(picture: Path) -> list[str]:
-    from math import pi
-
-    import numpy as np
-    from scipy.integrate import solve_ivp
-
-    import generated.double_pendulum as dp
-    from solvers.integration import integrate
-    from solvers.pictures import overview
-
-    t, start, tolerance = np.linspace(0.0, 5.0, 1001), (pi / 2, pi, 0.0, 0.0), 1e-12
-    motion = integrate(
-        dp, (0.0, 5.0), start, dp.DEFAULTS, method="verner98", rtol=tolerance, atol=tolerance,
-        t_eval=t, energy=True,
+    counts = {
+        name: operations(dp, name) for name in ("rhs", "rhs_hamiltonian", "jacobian", "energy")
+    }
+    return Station(
+        (
+            f"generated/double_pendulum.py: {state}",
+            f"operations a call: {', '.join(f'{name} {n}' for name, n in counts.items())}",
+        ),
+        listing(dp),
+        (
+            Figure("operations of a right-hand side", str(counts["rhs"]),
+                   "counted in the generated function", "holonomic derive"),
+        ),
     )  # fmt: skip
-    other = solve_ivp(
-        dp.rhs, (0.0, 5.0), start, method="DOP853", rtol=tolerance, atol=tolerance,
-        args=(dp.DEFAULTS,),
-    )  # fmt: skip
-    assert motion.energy is not None
-    overview(
-        picture, t, motion.y[:2], dp.COORDINATES, dp.positions_many(motion.y, dp.DEFAULTS),
-        motion.energy, "Double pendulum from rest at (π/2, π), m = 1 kg, l = 2 m",
-    )  # fmt: skip
-    (theta1, theta2), check = motion.y[:2, -1], other.y[:2, -1]
-    return [
-        f"the report's scene, 5 s: theta1 = {theta1:.9f}, theta2 = {theta2:.9f} rad",
-        f"{motion.run}",
-        f"SciPy's DOP853 differs by {np.abs(motion.y[:2, -1] - check).max():.1g} rad; "
-        f"energy is kept to {np.ptp(motion.energy):.1g} J",
-        f"picture: {picture}",
-    ]
 
 
 def generated_module(name: str) -> ModuleType:

@@ -105,24 +105,6 @@ def test_verify_fails_where_an_equation_is_neither_right_nor_mended(
     assert "wrong" in capsys.readouterr().out
 
 
-def test_demo_shows_the_whole_way_on_one_screen(
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    judged: dict[str, list[dict[str, str]]],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(cli, "judgement", lambda: judged)
-    assert main(["demo", "--output", str(tmp_path / "out")]) == 0
-    shown = capsys.readouterr().out
-    assert "119 verified" in shown
-    assert "up to date" in shown
-    assert "theta1 = 2.22806424" in shown
-    assert len(shown.splitlines()) <= 24
-    picture = tmp_path / "out" / "double_pendulum.png"
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    assert [path.name for path in picture.parent.iterdir()] == ["double_pendulum.png"]
-
-
 def test_a_place_that_cannot_be_written_to_is_named_before_the_work(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

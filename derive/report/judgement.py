@@ -40,6 +40,11 @@ def verdicts(order_of: OrderOf) -> list[Verdict]:
     return [verdict(equation, order_of) for equation in EQUATIONS]
 
 
+def named(name: str) -> Equation | Stated:
+    """The equation of the report whose id this is, such as ``eq33``."""
+    return next(equation for equation in EQUATIONS if equation.id == name)
+
+
 def verdict(equation: Equation | Stated, order_of: OrderOf) -> Verdict:
     """The verdict on one equation.
 

@@ -9,16 +9,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import numpy as np
-
 from solvers.answers.answer import Answer, Specialiser, answer
 from solvers.answers.drawn import drawn, sureness
-from solvers.answers.seen import energy_errors, is_rigid, links, places, projected
+from solvers.answers.played import track
 from solvers.answers.told import figures, special_code, table, told
 from solvers.commands.options import options
 from solvers.jsonable import jsonable
 from solvers.page.page import write_page
-from solvers.page.track import Track
 from solvers.pictures import save
 from solvers.progress import Progress
 from solvers.scenes.scene import Scene
@@ -83,17 +80,3 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
     words = [*scene.note.split(), *(sureness(one, named=len(answers) > 1) for one in answers)]
     write_page(paths["page"], scene.title, " ".join(words), list(map(track, answers)))
     return paths
-
-
-def track(answer: Answer) -> Track:
-    """What the page plays: masses, joined by rods or, where lengths change, springs."""
-    positions = places(answer)
-    rods: list[tuple[int, int]] = []
-    springs: list[tuple[int, int]] = []
-    for a, b in links(answer, positions):
-        start = positions[a] if a >= 0 else np.zeros_like(positions[b])
-        (rods if is_rigid(start, positions[b]) else springs).append((a, b))
-    return Track(
-        answer.scene.label, answer.t, projected(positions), tuple(rods), tuple(springs),
-        energy_errors(answer),
-    )  # fmt: skip

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from string import Template
 
+from solvers.page.document import document
 from solvers.page.track import Track
 from solvers.written import written
 
@@ -38,25 +37,35 @@ def write_page(path: Path, title: str, note: str, tracks: Sequence[Track]) -> No
     OSError
         When the file cannot be written.
     """
+    head = f'<header>\n<h1>{escape(title)}</h1>\n<p id="note">{escape(note)}</p>\n</header>'
+    body = f"{head}\n<main>\n{player(tracks)}</main>"
+    written(path, document(title, body, style=style(), script=script()))
+
+
+def player(tracks: Sequence[Track]) -> str:
+    """The part of a page that plays `tracks`; it needs `style` and `script`.
+
+    Raises
+    ------
+    ValueError
+        When there is no track, or one cannot be played: the message says why.
+    """
     if not tracks:
         raise ValueError("tracks is empty, but a page plays at least one: give it a Track")
     for track in tracks:
         track.check()
-    written(path, _page(title, note, tracks))
+    motions = json.dumps([track.plain() for track in tracks], separators=(",", ":"))
+    return Template(_source("player.html")).substitute(motions=_inert(motions))
 
 
-def _page(title: str, note: str, tracks: Sequence[Track]) -> str:
-    style = _source("player.css")
-    script = "\n".join(_source(name) for name in SCRIPTS)
-    # Template fills in once, so that no text of the user's is itself filled in
-    return Template(_source("player.html")).substitute(
-        policy=_policy(script, style),
-        title=escape(title),
-        note=escape(note),
-        style=style,
-        script=script,
-        motions=_inert(json.dumps([track.plain() for track in tracks], separators=(",", ":"))),
-    )
+def style() -> str:
+    """How a page looks, and the player in it."""
+    return _source("player.css")
+
+
+def script() -> str:
+    """What the player does."""
+    return "\n".join(map(_source, SCRIPTS))
 
 
 def _source(name: str) -> str:
@@ -66,15 +75,3 @@ def _source(name: str) -> str:
 def _inert(data: str) -> str:
     """JSON in which no tag or comment can end or begin."""
     return data.replace("&", r"\u0026").replace("<", r"\u003c").replace(">", r"\u003e")
-
-
-def _policy(script: str, style: str) -> str:
-    """What the browser may do: run exactly this script and style, and fetch nothing."""
-    return (
-        f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; "
-        "img-src data:; base-uri 'none'; form-action 'none'"
-    )
-
-
-def _hash(text: str) -> str:
-    return f"'sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -86,6 +86,11 @@ function seek(time) {
   setPlaying(false);
 }
 
+function isInSight(element) {
+  const { top, bottom } = element.getBoundingClientRect();
+  return top < window.innerHeight && bottom > 0;
+}
+
 function listen() {
   play.addEventListener("click", togglePlaying);
   scrub.addEventListener("input", () => seek(Number(scrub.value)));
@@ -101,6 +106,7 @@ function listen() {
   document.addEventListener("keydown", (event) => {
     // a list of choices has its own keys, and so have the browser's shortcuts
     if (event.target.matches("select") || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!isInSight(part("player"))) return; // on a long page the keys scroll
     // a button that has the focus is clicked by the space bar anyway
     if (event.key === " " && !event.target.matches("button")) togglePlaying();
     else if (event.key === "ArrowLeft") seek(clock.time - STEP);

@@ -1,0 +1,102 @@
+"""``holonomic demo``: the whole way, on one screen and on one page."""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import time
+from collections.abc import Callable, Mapping, Sequence
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
+from types import ModuleType
+
+from solvers.compiler import NoCompilerError
+from solvers.demo.cost import cost
+from solvers.demo.flips import flips
+from solvers.demo.limits import limits
+from solvers.demo.motion import motion
+from solvers.demo.page import write_demo
+from solvers.demo.station import Station
+from solvers.prepared import prepare
+from solvers.progress import Progress
+from solvers.scenes import shipped
+from solvers.sweeps import reading
+
+#: What the page is made with.
+PACKAGES = ("holonomic", "sympy", "numpy", "scipy", "matplotlib")
+
+
+def main(
+    argv: Sequence[str], module: Callable[[str], ModuleType],
+    derived: Mapping[str, Callable[[], Station]], style: str,
+) -> int:  # fmt: skip
+    """Do everything once, print what comes of it and write the page.
+
+    Parameters
+    ----------
+    argv : sequence of str
+        Options.
+    module : callable
+        Gives a generated module by its name.
+    derived : mapping of str to callables
+        The stations before there is code.
+    style : str
+        How their part of the page looks.
+    """
+    parser = argparse.ArgumentParser(
+        prog="holonomic demo",
+        description="Derive, verify, generate, integrate and measure the double pendulum; show "
+        "each step, and all of them on one page.",
+        epilog="example:\n  holonomic demo --output out",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--output", type=Path, default=Path("out"), metavar="DIR",
+        help="folder for the page (default: out)",
+    )  # fmt: skip
+    output = parser.parse_args(argv).output
+    output.mkdir(parents=True, exist_ok=True)  # before the work, not after it
+    print("Double pendulum: from the positions of two bobs to their motion.\n")
+    scene = shipped.find("report", module)
+    stations: dict[str, Callable[[], Station]] = {
+        **derived,
+        "integrate": lambda: motion(scene),
+        "chart": lambda: cost(scene),
+        "stability": lambda: limits(scene),
+        "map": lambda: flips(reading.find("flips", module), output / "flips"),
+    }
+    found = {}
+    for number, (name, station) in enumerate(stations.items(), 1):
+        start = time.perf_counter()
+        with Progress() as tell:
+            tell(name)
+            if name == "map" and not _has_compiler(scene.module):
+                print(f"{number} {name:<11}left out: it needs a C compiler")
+                continue
+            found[name] = station()
+        first, *lines = found[name].lines
+        print(f"{number} {name:<11}{first}", *lines, sep="\n" + " " * 13, end="")
+        print(f"  [{time.perf_counter() - start:.1f} s]", flush=True)
+    page = output / "demo.html"
+    write_demo(page, found, made(), style)
+    print(f"\nall of it on one page: {page}")
+    return 0
+
+
+def made() -> dict[str, str]:
+    """When, where and with what."""
+    return {
+        "date": date.today().isoformat(),
+        "machine": f"{platform.system()} {platform.machine()}",
+        "Python": platform.python_version(),
+        **{name: version(name) for name in PACKAGES},
+    }
+
+
+def _has_compiler(module: ModuleType) -> bool:
+    try:
+        prepare(module, module.DEFAULTS)
+    except NoCompilerError:
+        return False
+    return True

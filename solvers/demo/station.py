@@ -1,0 +1,44 @@
+"""What a station of the demonstration has found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A number that is shown, and where it comes from.
+
+    Attributes
+    ----------
+    what, value : str
+        What it is, and how large.
+    how : str
+        How it was obtained: proved, computed against what, or measured.
+    command : str
+        What anybody types to obtain it again.
+    """
+
+    what: str
+    value: str
+    how: str
+    command: str
+
+
+@dataclass(frozen=True)
+class Station:
+    """A station on the way from positions to motion.
+
+    Attributes
+    ----------
+    lines : tuple of str
+        For the terminal.
+    html : str
+        For the page.
+    figures : tuple of Figure
+        Its numbers.
+    """
+
+    lines: tuple[str, ...]
+    html: str
+    figures: tuple[Figure, ...] = ()

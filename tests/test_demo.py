@@ -1,0 +1,160 @@
+"""The demonstration: one screen, and one page that reads well anywhere and loads nothing."""
+
+import json
+import re
+from collections.abc import Iterator
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import generated.double_pendulum as dp
+from derive.report.judgement import EQUATIONS
+from solvers.cli import generated_module, main
+from solvers.commands import demo as command
+from solvers.demo.code import FUNCTIONS, operations
+from solvers.demo.html import table
+from solvers.demo.page import write_demo
+from solvers.demo.station import Station
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """What it prints, and where the page is."""
+    folder = tmp_path_factory.mktemp("demo")
+    with redirect_stdout(StringIO()) as screen:
+        assert main(["demo", "--output", str(folder)]) == 0
+    return screen.getvalue(), folder / "demo.html"
+
+
+@pytest.fixture(params=[1280, 390])
+def opened(driver: Any, made: tuple[str, Path], request: pytest.FixtureRequest) -> Iterator[Any]:
+    driver.get("about:blank")
+    driver.get_log("browser")
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+        "width": request.param, "height": 800, "deviceScaleFactor": 1, "mobile": False,
+    })  # fmt: skip
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
+        {"name": "prefers-reduced-motion", "value": "reduce"},
+    ]})  # fmt: skip
+    driver.get(made[1].as_uri())
+    yield driver
+    assert driver.get_log("browser") == []
+
+
+def test_it_shows_the_whole_way_on_one_screen(made: tuple[str, Path]) -> None:
+    shown, page = made
+    assert "119 verified" in shown
+    assert "up to date" in shown
+    assert "theta1 = 2.22806424" in shown
+    assert str(page) in shown
+    assert len(shown.splitlines()) <= 30
+    assert {path.name for path in page.parent.iterdir()} == {"demo.html", "flips"}
+
+
+def test_the_page_fits_every_screen_and_says_nothing_to_the_console(opened: Any) -> None:
+    wide, room = opened.execute_script(
+        "for (const one of document.querySelectorAll('details')) one.open = true;"
+        "return [document.documentElement.scrollWidth, innerWidth]"
+    )
+    assert wide <= room
+    # whatever reaches beyond the screen can be moved there
+    hidden = opened.execute_script("""
+        const reach = (one) => one.getBoundingClientRect().right > innerWidth + 1;
+        const moves = (one) => one && (getComputedStyle(one).overflowX === 'auto'
+          || moves(one.parentElement));
+        return [...document.querySelectorAll('main *')]
+          .filter((one) => reach(one) && !moves(one)).map((one) => one.outerHTML.slice(0, 80))""")
+    assert hidden == []
+
+
+def test_formulas_charts_and_motion_are_drawn(opened: Any) -> None:
+    sizes = opened.execute_script(
+        "for (const one of document.querySelectorAll('details')) one.open = true;"
+        "return [...document.querySelectorAll('math')].map("
+        "(one) => Math.min(one.getBoundingClientRect().width, one.getBoundingClientRect().height))"
+    )
+    assert len(sizes) > 200
+    assert min(sizes) > 4
+    charts = opened.execute_script(
+        "return [...document.querySelectorAll('img')].map((one) => one.naturalWidth)"
+    )
+    assert len(charts) == 3
+    assert min(charts) > 300
+    assert opened.execute_script("return document.querySelectorAll('#panels canvas').length") == 2
+
+
+def test_keys_play_in_sight_of_the_motion_and_scroll_elsewhere(opened: Any) -> None:
+    from selenium.webdriver import ActionChains
+
+    def space() -> tuple[bool, float]:
+        ActionChains(opened).send_keys(" ").perform()
+        opened.execute_async_script("setTimeout(arguments[0], 400)")
+        return opened.execute_script("return document.documentElement.dataset.playing"), float(
+            opened.execute_script("return scrollY")
+        )
+
+    opened.execute_script("document.querySelector('#play').blur(); scrollTo(0, 0)")
+    opened.execute_script("document.querySelector('#player').scrollIntoView()")
+    before = opened.execute_script("return scrollY")
+    assert space() == ("true", before)
+    assert space() == ("false", before)
+    opened.execute_script("document.querySelector('#verify').scrollIntoView()")
+    before = opened.execute_script("return scrollY")
+    playing, after = space()
+    assert playing == "false"
+    assert after > before
+
+
+def test_every_misprint_stands_beside_its_correction(made: tuple[str, Path]) -> None:
+    page = made[1].read_text(encoding="utf-8")
+    verdict = page.partition("Every misprint")[2].partition("</details>")[0]
+    lines = re.findall(r'<div class="line misprint">', verdict)
+    assert len(lines) == verdict.count("<p>should be</p>") == 23
+    assert len(EQUATIONS) == 150
+    assert "<strong>119</strong> hold as printed" in page
+
+
+def test_every_figure_says_how_it_was_obtained(made: tuple[str, Path]) -> None:
+    page = made[1].read_text(encoding="utf-8")
+    rows = re.findall(r"<tr>(.*?)</tr>", page.partition('id="figures"')[2])[1:]
+    figures = [re.findall(r"<td>(.*?)</td>", row) for row in rows]
+    figures = [cells for cells in figures if len(cells) == 4]
+    assert len(figures) >= 8
+    assert all(map(all, figures))
+    assert all(cells[3].startswith("holonomic ") for cells in figures)
+
+
+def test_operations_are_those_that_the_functions_state() -> None:
+    assert {name: operations(dp, name) for name in FUNCTIONS} == {
+        "rhs": 32, "rhs_hamiltonian": 35, "rhs_rational": 39, "rhs_variational": 77,
+        "jacobian": 85, "energy": 26,
+    }  # fmt: skip
+    with pytest.raises(ValueError, match=r"module.*states no operations: generate it anew"):
+        operations(type("module", (), {"rhs": test_operations_are_those_that_the_functions_state,
+                                       "__name__": "module"}), "rhs")  # fmt: skip
+
+
+def test_without_a_compiler_the_map_is_left_out_and_said_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(command, "_has_compiler", lambda _: False)
+    quick = {"derive": lambda: Station(("a line",), "<p>something</p>")}
+    monkeypatch.setattr(command, "cost", lambda _: Station(("cost",), ""))
+    assert command.main(["--output", str(tmp_path)], generated_module, quick, "") == 0
+    assert "it needs a C compiler" in capsys.readouterr().out
+    assert 'id="map"' not in (tmp_path / "demo.html").read_text(encoding="utf-8")
+
+
+def test_words_in_tables_are_no_markup() -> None:
+    assert "<b>" not in table(("<b>",), [("<b>",)])
+
+
+def test_the_page_is_written_whole_or_not_at_all(made: tuple[str, Path], tmp_path: Path) -> None:
+    (tmp_path / "demo.html").mkdir()
+    with pytest.raises(OSError, match=r"demo\.html"):
+        write_demo(tmp_path / "demo.html", {}, {}, "")
+    assert [path.name for path in tmp_path.iterdir()] == ["demo.html"]
+    json.loads(re.findall(r'id="motions">(.*?)</script>', made[1].read_text(encoding="utf-8"))[0])

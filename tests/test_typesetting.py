@@ -1,0 +1,141 @@
+"""A formula that is set as mathematics says what it said before."""
+
+import re
+from collections.abc import Callable
+from math import cos, isclose, sin
+from random import Random
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+import sympy as sp
+
+from derive import Derivation, typesetting
+from derive.report.judgement import EQUATIONS
+from derive.typesetting import Formula
+
+#: Names of the report, and how they are written by hand: letter, dots, indices.
+LETTERS = {
+    "theta1": "θ1", "theta2": "θ2", "theta1_dot": "θ.1", "theta2_dot": "θ.2",
+    "theta1_ddot": "θ..1", "theta2_ddot": "θ..2", "phi1": "φ1", "phi2": "φ2", "phi1_dot": "φ.1",
+    "phi2_dot": "φ.2", "phi1_ddot": "φ..1", "phi2_ddot": "φ..2", "alpha1": "α1", "alpha2": "α2",
+    "p_theta1": "pθ1", "p_theta2": "pθ2", "P_theta1": "Pθ1", "P_theta2": "Pθ2",
+    "Pdot_theta1": "P.θ1", "Pdot_theta2": "P.θ2", "pdot_theta1": "p.θ1", "pdot_theta2": "p.θ2",
+    "omega_x": "ωx", "omega_y": "ωy", "omega_z": "ωz", "omega_x_dot": "ω.x", "omega_y_dot": "ω.y",
+    "omega_z_dot": "ω.z", "tau_x": "τx", "tau_y": "τy", "tau_z": "τz", "theta_ddot": "θ..",
+    "theta": "θ", "theta0": "θ0", "omega": "ω", "psi": "ψ", "w_i": "wi", "w_next": "wi+1",
+    "x1_dot": "x.1", "y1_dot": "y.1", "x2_dot": "x.2", "y2_dot": "y.2",
+    **{f"m_{k}": f"m{k}" for k in range(1, 5)},
+    **{name: name for name in "x1 y1 x2 y2 m1 m2 l1 l2 g l t h h1 h2 f1 f2 g1 g2 K P L H v z "
+                              "Ixx Iyy Izz".split()},
+}  # fmt: skip
+
+
+class Power:
+    """What sin² is: a function that is called, and then a power."""
+
+    def __init__(self, function: Callable[[float], float], exponent: float) -> None:
+        self.function, self.exponent = function, exponent
+
+    def __call__(self, x: float) -> float:
+        return self.function(x) ** self.exponent
+
+
+def said(element: ElementTree.Element) -> str:
+    """MathML as Python, read as people read it: from left to right, without knowing its source."""
+    parts = [said(child) for child in element]
+    match element.tag:
+        case "mi" if element.text in ("sin", "cos"):
+            return str(element.text)
+        case "mi" | "msub" | "mover":
+            return f"name[{''.join(element.itertext())!r}]"
+        case "mpadded":
+            return parts[0]
+        case "mn":
+            return str(element.text)
+        case "mo":
+            return {"\u2062": "*", "\u2061": "", "−": "-"}.get(
+                element.text or "", element.text or ""
+            )
+        case "mfrac":
+            return f"(({parts[0]})/({parts[1]}))"
+        case "msup" if parts[0] in ("sin", "cos"):
+            return f"Power({parts[0]}, {parts[1]})"
+        case "msup":
+            return f"(({parts[0]})**({parts[1]}))"
+        case "msubsup":
+            letters = "".join([*element[0].itertext(), *element[1].itertext()])
+            return f"(name[{letters!r}]**({parts[2]}))"
+        case "mspace":
+            return ""
+    return "".join(parts)
+
+
+def sides(html: str) -> list[str]:
+    """The sides of an equation, as Python."""
+    whole = ElementTree.fromstring(html)
+    return "".join(map(said, whole)).split("=")
+
+
+ARITHMETIC = [
+    part
+    for equation in EQUATIONS
+    for text in (equation.printed, getattr(equation, "corrected", ""))
+    for part in filter(None, text.split(";"))
+    if {*re.findall(r"[A-Za-z]\w*", part)} <= {*LETTERS, "sin", "cos"} and "=" in part
+    and not re.search(r"[<>\[]|\([^()]*,", part)
+]  # fmt: skip
+
+
+def apart(text: str) -> list[tuple[float, float]]:
+    """The value of each side: of the text, and of what is set."""
+    random = Random(7)
+    written = {letter: random.uniform(0.2, 1.9) for letter in LETTERS.values()}
+    functions: dict[str, Any] = {"sin": sin, "cos": cos, "Power": Power}
+    typed = {name: written[letter] for name, letter in LETTERS.items()}
+    return [
+        (eval(plain, functions | typed), eval(shown, functions | {"name": written}))
+        for plain, shown in zip(text.split("="), sides(Formula(text).html), strict=True)
+    ]
+
+
+def test_there_is_enough_to_be_read() -> None:
+    assert len(ARITHMETIC) > 70
+
+
+@pytest.mark.parametrize("text", [*dict.fromkeys(ARITHMETIC)])
+def test_a_formula_of_the_report_keeps_its_value(text: str) -> None:
+    assert all(isclose(plain, shown, rel_tol=1e-12) for plain, shown in apart(text))
+
+
+def test_what_is_derived_keeps_its_value(double: Derivation) -> None:
+    for value in (double.lagrangian, double.hamiltonian, *double.hamilton_equations[1],
+                  *double.euler_lagrange):  # fmt: skip
+        assert all(isclose(*pair, rel_tol=1e-12) for pair in apart(f"{sp.sstr(value)} = 0"))
+
+
+def test_brackets_that_are_left_out_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(typesetting, "_within", lambda node, _: typesetting._set(node)[0])
+    wrong = [text for text in ARITHMETIC if any(not isclose(*pair) for pair in apart(text))]
+    assert len(wrong) > 20
+
+
+def test_what_is_no_formula_is_shown_as_it_stands() -> None:
+    assert Formula("y' = f(t) <b>").html == (
+        '<code class="formula">y&#x27; = f(t) &lt;b&gt;</code>'
+    )
+
+
+@pytest.mark.parametrize("text", ["x<script>", "a = '</math><script>'", "__import__('os')"])
+def test_no_formula_brings_markup_of_its_own(text: str) -> None:
+    assert "<script" not in Formula(text).html
+    assert Formula(text).html.count("<code") <= 1
+
+
+def test_derivatives_matrices_and_indices_are_set() -> None:
+    assert sides(Formula("d(L, q_i) = 0").html)[0] == "((∂name['L'])/(∂name['qi']))"
+    matrix = ElementTree.fromstring(Formula("M = [[a, b], [c, d]]").html)
+    rows = [["".join(cell.itertext()) for cell in row] for row in matrix.iter("mtr")]
+    assert rows == [["a", "b"], ["c", "d"]]
+    column = ElementTree.fromstring(Formula("r = l*(sin(theta), 0)").html)
+    assert len([*column.iter("mtr")]) == 2
