@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test derive bench lint types check clean
+.PHONY: help demo test notebooks derive bench lint types check clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -13,6 +13,13 @@ demo: .venv/ready  ## set up and run the main job: derive, verify, generate, int
 
 test: .venv/ready  ## set up and run the tests
 	$(BIN)/pytest --numprocesses auto --dist worksteal
+
+# pages that load nothing: formulas are MathML, so that no script has to set them
+notebooks: .venv/ready  ## run the notebooks and render them as pages, into out/notebooks
+	$(BIN)/jupyter nbconvert --execute --to html --output-dir out/notebooks --log-level ERROR \
+		--HTMLExporter.mathjax_url= --HTMLExporter.require_js_url= --HTMLExporter.jquery_url= \
+		notebooks/*.ipynb
+	@ls out/notebooks/*.html
 
 derive: .venv/ready  ## write the generated modules anew
 	$(BIN)/holonomic derive

@@ -7,10 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
-
-mpl.use("Agg")  # files only: no window, no display needed
-
-from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -24,23 +20,25 @@ def panels(
     title: str, *, rows: int = 1, columns: int = 1, size: tuple[float, float] = (10, 5)
 ) -> tuple[Figure, list[Axes]]:  # fmt: skip
     """A figure with a title and axes, row by row."""
-    figure, axes = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+    # without pyplot, which would look for a screen and keep every figure
+    figure = Figure(size, layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
     figure.suptitle(title)
     return figure, list(axes.flat)
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure as a PNG file, beside its name first, and close it."""
+    """Write a figure as a PNG file, beside its name first."""
     written(path, png(figure))
 
 
 def png(figure: Figure) -> bytes:
-    """A figure as the content of a PNG file; it is closed."""
+    """A figure as the content of a PNG file."""
     return _drawn(figure, format="png", dpi=120, metadata={"Software": None})
 
 
 def svg(figure: Figure) -> str:
-    """A figure as SVG, whose letters are the reader's; it is closed."""
+    """A figure as SVG, whose letters are the reader's."""
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "holonomic"}):
         return _drawn(figure, format="svg", metadata={"Date": None, "Creator": None}).decode()
 
@@ -50,5 +48,4 @@ def _drawn(figure: Figure, **options: Any) -> bytes:
         axes.spines[["top", "right"]].set_visible(False)
     drawn = BytesIO()
     figure.savefig(drawn, **options)
-    plt.close(figure)
     return drawn.getvalue()

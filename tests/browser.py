@@ -12,7 +12,7 @@ from PIL import Image
 
 import generated.double_pendulum as dp
 from solvers.integration import integrate
-from solvers.page.page import write_page
+from solvers.page.page import Page
 from solvers.page.track import Track
 
 
@@ -39,7 +39,7 @@ class Player:
 
     def open(self, tracks: Sequence[Track], *, text: str = "", size: tuple[int, int] = (1280, 800),
              density: int = 1, playing: bool = False, scheme: str = "light") -> None:  # fmt: skip
-        write_page(self.path, text, text, tracks)
+        Page(text, text, tracks).write(self.path)
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
             "width": size[0], "height": size[1], "deviceScaleFactor": density, "mobile": False,
         })  # fmt: skip

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from browser import at_rest, played
 
-from solvers.page.page import write_page
+from solvers.page.page import Page
 from solvers.page.track import MOST_SAMPLES, Track
 
 
@@ -28,7 +28,7 @@ def motions(path: Path) -> list[dict[str, Any]]:
 
 def test_a_page_is_small_and_as_exact_as_can_be_seen(tracks: list[Track], tmp_path: Path) -> None:
     path = tmp_path / "new" / "page.html"
-    write_page(path, "", "", tracks)
+    Page("", "", tracks).write(path)
     assert path.stat().st_size < 50_000
     (played,) = motions(path)
     for name, tolerance in (("t", 1e-6), ("positions", 1e-5), ("energy_error", 1e-9)):
@@ -40,7 +40,7 @@ def test_very_many_samples_are_thinned_out_evenly(tmp_path: Path) -> None:
     n = 3 * MOST_SAMPLES
     t = np.linspace(1e4, 1e4 + 6, n)
     track = Track("many", t, np.array([[t, t]]), (), (), t)
-    write_page(tmp_path / "page.html", "", "", [track])
+    Page("", "", [track]).write(tmp_path / "page.html")
     (played,) = motions(tmp_path / "page.html")
     assert len(played["t"]) == len(played["positions"][0][0]) == MOST_SAMPLES
     assert (played["t"][0], played["t"][-1]) == (t[0], t[-1])
@@ -72,13 +72,13 @@ def test_what_cannot_be_played_is_refused(
     wrong: dict[str, Any], words: str, tmp_path: Path
 ) -> None:
     with pytest.raises(ValueError, match="track 'at rest': " + words):
-        write_page(tmp_path / "page.html", "", "", [REST, replace(REST, **wrong)])
+        Page("", "", [REST, replace(REST, **wrong)]).write(tmp_path / "page.html")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_page_without_runs_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"tracks is empty, but .* at least one"):
-        write_page(tmp_path / "page.html", "", "", [])
+        Page("", "", []).write(tmp_path / "page.html")
 
 
 @pytest.mark.parametrize("step", ["fsync", "replace"])
@@ -86,7 +86,7 @@ def test_a_failed_write_leaves_the_old_page_and_nothing_else(
     step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "page.html"
-    write_page(path, "old", "", [REST])
+    Page("old", "", [REST]).write(path)
     old = path.read_bytes()
 
     def full(*_: object) -> None:
@@ -96,5 +96,5 @@ def test_a_failed_write_leaves_the_old_page_and_nothing_else(
 
     monkeypatch.setattr(os, step, full)
     with pytest.raises(OSError, match="No space"):
-        write_page(path, "new", "", [REST])
+        Page("new", "", [REST]).write(path)
     assert [(found.name, found.read_bytes()) for found in tmp_path.iterdir()] == [(path.name, old)]

@@ -15,7 +15,7 @@ from solvers.answers.played import track
 from solvers.answers.told import figures, special_code, table, told
 from solvers.commands.options import options
 from solvers.jsonable import jsonable
-from solvers.page.page import write_page
+from solvers.page.page import Page
 from solvers.pictures import save
 from solvers.progress import Progress
 from solvers.scenes.scene import Scene
@@ -78,5 +78,5 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
     if code := special_code(answers[0]):
         paths["code"] = code
     words = [*scene.note.split(), *(sureness(one, named=len(answers) > 1) for one in answers)]
-    write_page(paths["page"], scene.title, " ".join(words), list(map(track, answers)))
+    Page(scene.title, " ".join(words), list(map(track, answers))).write(paths["page"])
     return paths

@@ -1,9 +1,10 @@
-"""Write the page: the player and the motions in one file, which loads nothing from anywhere."""
+"""A page: the player and the motions in one file, which loads nothing from anywhere."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from string import Template
@@ -17,14 +18,12 @@ SOURCES = Path(__file__).parent
 SCRIPTS = ("motion.js", "sheet.js", "panel.js", "strip.js", "player.js")
 
 
-def write_page(path: Path, title: str, note: str, tracks: Sequence[Track]) -> None:
-    """Write a page that plays `tracks` side by side.
+@dataclass(frozen=True)
+class Page:
+    """A page that plays motions side by side; notebooks show it as it is.
 
     Parameters
     ----------
-    path : Path
-        The HTML file; it is written beside its name and moved into place. Missing
-        folders are made.
     title, note : str
         What the page shows, and what to look at; plain text.
     tracks : sequence of Track
@@ -34,12 +33,34 @@ def write_page(path: Path, title: str, note: str, tracks: Sequence[Track]) -> No
     ------
     ValueError
         When there is no track, or one cannot be played: the message says why.
-    OSError
-        When the file cannot be written.
     """
-    head = f'<header>\n<h1>{escape(title)}</h1>\n<p id="note">{escape(note)}</p>\n</header>'
-    body = f"{head}\n<main>\n{player(tracks)}</main>"
-    written(path, document(title, body, style=style(), script=script()))
+
+    title: str
+    note: str
+    tracks: Sequence[Track]
+
+    def __post_init__(self) -> None:
+        player(self.tracks)
+
+    @property
+    def html(self) -> str:
+        """The whole file as text."""
+        head = f'<h1>{escape(self.title)}</h1>\n<p id="note">{escape(self.note)}</p>'
+        body = f"<header>\n{head}\n</header>\n<main>\n{player(self.tracks)}</main>"
+        return document(self.title, body, style=style(), script=script())
+
+    def write(self, path: Path) -> None:
+        """Write the file beside its name, and move it into place; missing folders are made.
+
+        Raises
+        ------
+        OSError
+            When it cannot be written.
+        """
+        written(path, self.html)
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{escape(self.html)}" width="100%" height="760"></iframe>'
 
 
 def player(tracks: Sequence[Track]) -> str:
