@@ -17,6 +17,7 @@ test: .venv/ready  ## set up and run the tests
 # pages that load nothing: formulas are MathML, so that no script has to set them
 notebooks: .venv/ready  ## run the notebooks and render them as pages, into out/notebooks
 	$(BIN)/jupyter nbconvert --execute --to html --output-dir out/notebooks --log-level ERROR \
+		--ExecutePreprocessor.extra_arguments=--log-level=ERROR \
 		--HTMLExporter.mathjax_url= --HTMLExporter.require_js_url= --HTMLExporter.jquery_url= \
 		notebooks/*.ipynb
 	@ls out/notebooks/*.html
