@@ -332,7 +332,7 @@ def _bench(argv: Sequence[str]) -> int:
     import sympy
 
     from derive import Derivation, load
-    from derive.timing import chain, lagranges_method
+    from derive.timing import chain, lagranges_method, mechanics
     from solvers.bench.table import main as bench
 
     def lambdified() -> Callable[..., Any]:
@@ -347,7 +347,7 @@ def _bench(argv: Sequence[str]) -> int:
             raise OSError(f"{name} is not installed: pip install -e '.[bench]'")
         return found
 
-    return bench(argv, generated_module, lambdified, peer, chain, lagranges_method)
+    return bench(argv, generated_module, lambdified, peer, chain, lagranges_method, mechanics)
 
 
 COMMANDS: dict[str, Callable[[Sequence[str]], int]] = {

@@ -27,9 +27,9 @@ def panels(
     return figure, list(axes.flat)
 
 
-def save(figure: Figure, path: Path) -> None:
+def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as a PNG file, beside its name first."""
-    written(path, png(figure))
+    written(Path(path), png(figure))
 
 
 def png(figure: Figure) -> bytes:

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+import generated.double_pendulum as dp
 from derive import Derivation, load
 from derive.factorisation import LARGE
 from derive.functions import contents
 from derive.python import module as text_of
 from derive.timing import chain as chain_in_c
+from derive.timing import mechanics
 from solvers.bench import calls
 from solvers.cli import generated_module
 from solvers.ensemble import ensemble
@@ -101,3 +103,13 @@ def test_a_textbook_s_chain_in_c_is_ours() -> None:
             run()
         assert_allclose(ours.rates, theirs.rates, rtol=1e-11)
         assert np.abs(lanes.rates).max() > 0.1
+
+
+def test_what_sympys_mechanics_derives_is_what_is_generated() -> None:
+    # the benchmark's rivals get the right equations
+    found = mechanics(2)
+    y, params = (0.3, -1.2, 0.7, 2.1), (1.3, 0.4, 1.1, 0.6, 9.81)
+    values = dict(zip((*found.coordinates, *found.speeds, *found.constants), (*y, *params),
+                      strict=True))  # fmt: skip
+    rates = [float(rate.subs(values)) for rate in found.rates]
+    assert rates == pytest.approx(dp.rhs(0.0, y, params), rel=1e-12)

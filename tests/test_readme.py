@@ -1,12 +1,15 @@
 """README's snippets run, and its numbers are those of the code."""
 
 import re
+import sys
 import tomllib
+from io import BytesIO
 from math import log
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
@@ -21,10 +24,12 @@ from solvers.failures.chaos import lyapunov
 from solvers.failures.separatrix import upright
 from solvers.failures.stiffness import crossover, study
 from solvers.failures.studies import CHAOTIC
+from solvers.pictures import png
 from solvers.scenes.reading import KEYS, scene
 from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
 from solvers.stability.critical import CriticalStep
+from solvers.sweeps.drawn import drawn
 from solvers.sweeps.job import STATUSES
 from solvers.sweeps.reading import find as find_sweep
 from solvers.sweeps.reading import names as sweeps
@@ -33,7 +38,8 @@ from solvers.sweeps.running import sweep
 from solvers.verdict.evidence import Evidence, Setting
 from solvers.verdict.objectives import objectives
 
-README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+README_FOLDER = Path(__file__).parent.parent
+README = (README_FOLDER / "README.md").read_text(encoding="utf-8")
 SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 TABLES = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
 
@@ -47,7 +53,33 @@ def table(name: str) -> str:
 @pytest.mark.parametrize("snippet", SNIPPETS, ids=range(len(SNIPPETS)))
 def test_snippets_run(snippet: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
     exec(compile(snippet, "README.md", "exec"), {})
+
+
+def test_the_picture_is_what_the_sweep_draws(tmp_path: Path) -> None:
+    asked = find_sweep("flips", generated_module)
+    again = Image.open(BytesIO(png(drawn(sweep(asked, tmp_path)))))
+    shown = Image.open(README_FOLDER / re.findall(r"!\[.*?\]\((.*?)\)", README)[0])
+    assert shown.size == again.size
+    apart = np.abs(np.asarray(shown.convert("RGB"), int) - np.asarray(again.convert("RGB"), int))
+    assert apart.mean() < 1  # fonts may differ
+
+
+def test_every_link_leads_somewhere() -> None:
+    heads = re.findall(
+        r"^#+ (.*)$", re.sub(r"```.*?```", "", README, flags=re.DOTALL), re.MULTILINE
+    )
+    anchors = {re.sub(r"[^\w -]", "", head).lower().replace(" ", "-") for head in heads}
+    for link in re.findall(r"\]\((?!https?:)(.*?)\)", README):
+        assert link[1:] in anchors if link.startswith("#") else (README_FOLDER / link).exists(), (
+            link
+        )
+
+
+def test_every_notebook_is_listed() -> None:
+    listed = re.findall(r"^\| `(\d\d_\w+)` \|", README, re.MULTILINE)
+    assert listed == sorted(path.stem for path in (README_FOLDER / "notebooks").glob("*.ipynb"))
 
 
 def test_the_table_of_operations_is_true(double) -> None:  # type: ignore[no-untyped-def]

@@ -10,12 +10,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from solvers.bench import chains_told, curves, maps, rates
+from solvers.bench import chains_told, curves, maps, rates, way
 from solvers.bench.growth import Maker, drawn
+from solvers.jsonable import jsonable
 from solvers.pictures import save
 
 #: What can be timed.
-PARTS = ("pendulum", "chains", "maps")
+PARTS = ("pendulum", "way", "chains", "maps")
 #: Global errors at which both sides are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 
@@ -27,6 +28,7 @@ def main(
     peer: Callable[[str], ModuleType],
     made: Maker,
     rival: Callable[[int], float],
+    mechanics: Callable[[int], Any],
 ) -> int:
     """Measure and print.
 
@@ -42,6 +44,8 @@ def main(
         Gives another program's package.
     made, rival : callable
         Derive a chain of pendulums here, and with SymPy's own mechanics.
+    mechanics : callable
+        Gives its equations.
     """
     parser = argparse.ArgumentParser(
         prog="holonomic bench",
@@ -66,6 +70,11 @@ def main(
         found["pendulum"] = figures(module("double_pendulum"), lambdify(), hy)
         if not arguments.json:
             print(text(found["pendulum"]))
+    if "way" in (arguments.parts or PARTS):
+        ways = way.ways(module("double_pendulum"), peer, made, mechanics)
+        found["way"] = jsonable(ways)
+        if not arguments.json:
+            print(*way.told(ways), "", sep="\n")
     if "chains" in (arguments.parts or PARTS):
         found["chains"] = chains_told.figures(made, rival, module, hy)
         save(drawn(found["chains"]["growth"]), arguments.output / "growth.png")
