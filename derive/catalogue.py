@@ -32,12 +32,29 @@ def names() -> tuple[str, ...]:
 def load(name: str) -> System:
     """The system called `name`.
 
+    Parameters
+    ----------
+    name : str
+        Such as ``double_pendulum``; of a family any member, such as ``chain_5``, up to `LARGEST`.
+
+    Returns
+    -------
+    System
+
     Raises
     ------
     UnknownSystemError
         When no file is called so.
     SystemDefinitionError
         When its file is wrong: what it says, or that its name and the system's differ.
+
+    Examples
+    --------
+    >>> from derive import load
+    >>> load("double_pendulum").title
+    'Double pendulum: two point masses on rigid massless rods in a vertical plane'
+    >>> len(load("chain_7").coordinates)
+    7
     """
     stem, count = _file(name)
     try:

@@ -41,12 +41,22 @@ class Derivation:
     Raises
     ------
     SystemDefinitionError
-        When a coordinate moves no mass, or moves the masses only as others do.
+        When a coordinate moves no mass, or moves the masses only as others do, or has no
+        inertia that is a positive number.
 
     Notes
     -----
     Velocities, accelerations and momenta are symbols of their own
     (``system.qdot``, ``system.qddot``, ``system.p``), not functions of time.
+
+    Examples
+    --------
+    >>> from derive import load
+    >>> single = Derivation(load("single_pendulum"))
+    >>> single.lagrangian
+    g*l*m*cos(theta) + l**2*m*theta_dot**2/2
+    >>> single.accelerations[0]
+    -g*sin(theta)/l
     """
 
     system: System
@@ -163,7 +173,7 @@ class Derivation:
 
     @cached_property
     def momenta(self) -> Matrix:
-        """P = ∂L/∂q̇ = M q̇ + b, a column; b is there where positions depend on time."""
+        """Momenta p = ∂L/∂q̇ = M q̇ + b, a column; b is there where positions depend on time."""
         return self.mass_matrix * Matrix(self.system.qdot) + self.drift
 
     @cached_property
@@ -277,11 +287,16 @@ class Derivation:
         equilibrium : sequence of sympy.Expr, optional
             Coordinates at rest; by default the system's own equilibrium, or zeros.
 
+        Returns
+        -------
+        Linearisation
+            With M₀ and K, n × n.
+
         Raises
         ------
         SystemDefinitionError
-            When a force is left at that place, or their number is wrong; when time, drag or
-            a rotation of the frame leaves more than masses and springs.
+            When a force is left at that place, or their number is wrong; when time, applied
+            forces or a rotation of the frame leave more than masses and springs.
         """
         return linearised(
             self.system, self.mass_matrix, self.effective_potential, self.drift,

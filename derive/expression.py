@@ -39,6 +39,17 @@ def parsed(text: str, scope: Scope) -> Value:
     Numbers are exact (``1/2`` is one half, ``9.81`` is 981/100), ``(a, b)`` is a
     column and ``[[a, b], [c, d]]`` a matrix.
 
+    Parameters
+    ----------
+    text : str
+        The formula, of at most `LONGEST` characters.
+    scope : mapping of str to SymPy values and functions
+        All names that it may use, functions such as those in `FUNCTIONS` among them.
+
+    Returns
+    -------
+    sympy.Expr or sympy.ImmutableDenseMatrix
+
     Raises
     ------
     ExpressionError

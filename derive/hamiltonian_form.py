@@ -20,7 +20,7 @@ class HamiltonianForm(Mechanics):
 
     @cached_property
     def _moving(self) -> list[Node]:
-        """P - b, the momenta of what the coordinates move; then M w is this."""
+        """Momenta p - b of what the coordinates move; then M w is this."""
         drift = self._nodes(self._derivation.drift)
         return [p - b for p, b in zip(self._p, drift, strict=True)]
 
@@ -37,7 +37,7 @@ class HamiltonianForm(Mechanics):
 
     @property
     def lagrangian_state(self) -> list[Node]:
-        """Q and q̇ of M q̇ = p - b."""
+        """Coordinates q, and q̇ of M q̇ = p - b."""
         return [*self._q, *self._velocities]
 
     @cached_property
@@ -48,7 +48,7 @@ class HamiltonianForm(Mechanics):
 
     @property
     def rhs_hamiltonian(self) -> list[Node]:
-        """Q̇ = w and ṗ = ½ vᵀ (∂M̄/∂q) v - ∂V/∂q + Q."""
+        """Rates q̇ = w and ṗ = ½ vᵀ (∂M̄/∂q) v - ∂V/∂q + Q."""
         v, rates = self._rates(self._velocities), []
         for q, applied in zip(self._system.q, self._system.applied, strict=True):
             potential = self._derivative(self._potential, q.name)

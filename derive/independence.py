@@ -15,10 +15,18 @@ TINY = sp.Float("1e-30")
 def check_independence(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> None:
     """Eliminate the mass matrix at a generic place: a pivot of zero names its coordinate.
 
+    Parameters
+    ----------
+    system : System
+        Whose coordinates are judged.
+    mass_matrix : sympy.Matrix
+        M(q, t), n × n.
+
     Raises
     ------
     SystemDefinitionError
-        When a coordinate moves no mass, or moves the masses only as others do.
+        When a coordinate moves no mass, or moves the masses only as others do, or has no
+        inertia that is a positive number.
     """
     rows = _at_a_place(system, mass_matrix)
     diagonal = [row[k] for k, row in enumerate(rows)]

@@ -37,6 +37,24 @@ def linearised(
 ) -> Linearisation:  # fmt: skip
     """Mass and stiffness matrix at `equilibrium`.
 
+    Parameters
+    ----------
+    system : System
+        With n coordinates.
+    mass_matrix : sympy.Matrix
+        M(q, t), n × n.
+    potential : sympy.Expr
+        The effective potential U(q, t).
+    drift : sympy.Matrix
+        Momenta b that are there though q̇ is 0, a column.
+    equilibrium : tuple of sympy.Expr
+        The place q₀, in the order of ``system.q``.
+
+    Returns
+    -------
+    Linearisation
+        With M₀ and K, n × n.
+
     Raises
     ------
     SystemDefinitionError
@@ -59,6 +77,22 @@ def resting(
     system: System, potential: sp.Expr, drift: Matrix, equilibrium: tuple[sp.Expr, ...]
 ) -> dict[sp.Symbol, sp.Expr]:
     """Coordinates by symbol, after seeing that what is there stays there.
+
+    Parameters
+    ----------
+    system : System
+        With n coordinates.
+    potential : sympy.Expr
+        The effective potential U(q, t).
+    drift : sympy.Matrix
+        Momenta b that are there though q̇ is 0, a column.
+    equilibrium : tuple of sympy.Expr
+        The place, in the order of ``system.q``.
+
+    Returns
+    -------
+    dict of sympy.Symbol to sympy.Expr
+        What to substitute for each coordinate.
 
     Raises
     ------

@@ -24,6 +24,11 @@ class Mechanics:
 
     Each method returns its outputs flat, in C order of the shape that
     `derive.functions` gives them.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        Whose values become nodes.
     """
 
     def __init__(self, derivation: Derivation) -> None:
@@ -68,7 +73,7 @@ class Mechanics:
 
     @property
     def positions(self) -> list[Node]:
-        """R of every mass, one after the other."""
+        """Positions r of all masses, one after the other."""
         return self._nodes([r for mass in self._system.masses for r in mass.position])
 
     @property
@@ -83,7 +88,7 @@ class Mechanics:
 
     @property
     def hamiltonian_state(self) -> list[Node]:
-        """Q and p = M q̇ + b."""
+        """Coordinates q and momenta p = M q̇ + b."""
         return [*self._q, *self._nodes(self._derivation.momenta)]
 
     @cached_property
@@ -131,7 +136,7 @@ class Mechanics:
 
     @property
     def equilibrium(self) -> list[Node]:
-        """Q₀."""
+        """Coordinates q₀ at rest; none if no rest is known."""
         return self._nodes(self._derivation.rest or ())
 
     @property

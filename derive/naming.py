@@ -29,6 +29,13 @@ RESERVED = {
 def check_name(name: str, system: str) -> None:
     """Refuse what is no identifier, or a word that Python, C or generated functions reserve.
 
+    Parameters
+    ----------
+    name : str
+        Of a system, a coordinate, a parameter or a definition.
+    system : str
+        The system's name, for the message; with ``_real`` it is reserved, too.
+
     Raises
     ------
     SystemDefinitionError
@@ -44,6 +51,13 @@ def check_name(name: str, system: str) -> None:
 
 def check_unique(names: Iterable[str], system: str) -> None:
     """Refuse a name that stands for two things.
+
+    Parameters
+    ----------
+    names : iterable of str
+        All names of a system, derived ones among them.
+    system : str
+        The system's name, for the message.
 
     Raises
     ------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Real
 
 import sympy as sp
 
@@ -15,6 +16,16 @@ class SystemDefinitionError(ValueError):
 def formula(value: sp.Expr | float) -> sp.Expr:
     """A SymPy expression or a Python number, decimals as the fractions that their digits say.
 
+    Parameters
+    ----------
+    value : sympy.Expr, int or float
+        A number must be finite.
+
+    Returns
+    -------
+    sympy.Expr
+        Without floating-point numbers.
+
     Raises
     ------
     SystemDefinitionError
@@ -22,7 +33,7 @@ def formula(value: sp.Expr | float) -> sp.Expr:
     """
     if isinstance(value, sp.Expr):
         return value.xreplace({n: sp.Rational(str(n)) for n in value.atoms(sp.Float)})
-    if isinstance(value, int | float) and not isinstance(value, bool):
+    if isinstance(value, Real) and not isinstance(value, bool):
         try:
             return sp.Rational(str(value))
         except (TypeError, ValueError):
@@ -34,6 +45,13 @@ def formula(value: sp.Expr | float) -> sp.Expr:
 
 def check_text(place: str, text: str) -> None:
     """Refuse what would end a comment, a docstring or a text of a generated file.
+
+    Parameters
+    ----------
+    place : str
+        What the text is, for the message.
+    text : str
+        One line for people.
 
     Raises
     ------
@@ -49,7 +67,28 @@ def check_text(place: str, text: str) -> None:
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A generalized coordinate: its symbol, its unit and what it measures."""
+    """A generalized coordinate: its symbol, its unit and what it measures.
+
+    Parameters
+    ----------
+    symbol : sympy.Symbol
+        Real, or positive where it cannot change its sign; its name is that in generated code.
+    unit : str
+        Such as ``rad`` or ``m``; a coordinate in ``rad`` is taken for an angle.
+    meaning : str
+        One line for people.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When `unit` or `meaning` is not one line that can stand in generated files.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> Coordinate(Symbol("theta", real=True), "rad", "from the downward vertical").unit
+    'rad'
+    """
 
     symbol: sp.Symbol
     unit: str
@@ -64,7 +103,28 @@ class Coordinate:
 class Parameter:
     """A constant of the system: its symbol, unit, default value and meaning.
 
-    A symbol declared positive (``Symbol("l", positive=True)``) takes positive values only.
+    Parameters
+    ----------
+    symbol : sympy.Symbol
+        Its name is that in generated code. One declared positive
+        (``Symbol("l", positive=True)``) takes positive values only.
+    unit : str
+        Such as ``kg`` or ``m/s^2``.
+    default : float
+        Its value in `unit` where nobody gives another.
+    meaning : str
+        One line for people.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When `unit` or `meaning` is not one line that can stand in generated files.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> Parameter(Symbol("g", real=True), "m/s^2", 9.81, "gravity").default
+    9.81
     """
 
     symbol: sp.Symbol
@@ -79,7 +139,27 @@ class Parameter:
 
 @dataclass(frozen=True)
 class PointMass:
-    """A mass and its position, two or three Cartesian components (the last one points up)."""
+    """A mass and its position, two or three Cartesian components (the last one points up).
+
+    Parameters
+    ----------
+    mass : sympy.Expr or number
+        In kg, made of parameters.
+    position : sequence of sympy.Expr or numbers
+        (x, up) or (x, y, up) in m, as functions of coordinates, parameters and ``derive.TIME``.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When the mass cannot be positive, or something is neither an expression nor a number.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, k, m = symbols("x k m", real=True)
+    >>> PointMass(m, (x, k * x**2)).position
+    (x, k*x**2)
+    """
 
     mass: sp.Expr
     position: tuple[sp.Expr, ...]
@@ -112,8 +192,22 @@ class PointMass:
 class RigidBody(PointMass):
     """A rigid body in the plane: mass, centre of mass (x, up), moment of inertia, orientation.
 
-    The moment of inertia is about the centre of mass, m l²/12 for a uniform bar; the angle
-    is any one that turns with the body.
+    Parameters
+    ----------
+    mass : sympy.Expr or number
+        In kg, made of parameters.
+    position : sequence of sympy.Expr or numbers
+        The centre of mass, (x, up) in m.
+    inertia : sympy.Expr or number
+        Moment of inertia about the centre of mass in kg m²: m l²/12 for a uniform bar.
+    angle : sympy.Expr or number
+        Any angle in rad that turns with the body.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When the mass cannot be positive, or the moment of inertia is negative; when the
+        position has not two components, or something is neither an expression nor a number.
     """
 
     inertia: sp.Expr

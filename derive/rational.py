@@ -29,6 +29,18 @@ def rationalised(nodes: Sequence[Node], names: Collection[str]) -> list[Node]:
     """`nodes` in a new graph, with leaves ``sin_q`` and ``cos_q`` for each q of `names`.
 
     These are the state of the rational form.
+
+    Parameters
+    ----------
+    nodes : sequence of Node
+        What knows the coordinates in `names` through sines and cosines of their sums only.
+    names : collection of str
+        Names of such coordinates, as `angles` finds them.
+
+    Returns
+    -------
+    list of Node
+        One for each of `nodes`.
     """
     rewriting = _Rewriting(Graph(), names)
     return [rewriting(node) for node in nodes]
@@ -39,6 +51,18 @@ def opened(nodes: Sequence[Node], names: Collection[str]) -> list[Node]:
 
     A long chain knows all differences of its angles; their sines and cosines follow from
     those of the angles themselves by sums and products, which are quicker.
+
+    Parameters
+    ----------
+    nodes : sequence of Node
+        Of one graph.
+    names : collection of str
+        Names of the coordinates that are angles.
+
+    Returns
+    -------
+    list of Node
+        One for each of `nodes`; those that are opened are in a new graph.
     """
     rewriting = _Rewriting(Graph(), names, called=True)
     rewritten = [rewriting(node) for node in nodes]

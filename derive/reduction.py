@@ -35,6 +35,18 @@ def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
     """`expression` expanded, one term for each distinct part that depends on `variables`.
 
     As it is, if that were too many terms.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        What is expanded.
+    *variables : sympy.Symbol
+        Of what parts are told apart.
+
+    Returns
+    -------
+    sympy.Expr
+        Equal to `expression`; the coefficient of each part is factored.
     """
     if _expanded_size(expression, {}) > LARGEST:
         return expression

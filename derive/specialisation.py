@@ -21,10 +21,16 @@ def specialised(system: System, values: Mapping[str, float]) -> System:
     values : mapping of str to float
         By name; parameters that are not named stay.
 
+    Returns
+    -------
+    System
+        Of the same name, with the other parameters only.
+
     Raises
     ------
     SystemDefinitionError
-        When no parameter is called so, or a value is no number.
+        When no parameter is called so, or a value is no number; when what is left is no
+        system, since a mass is 0 for instance.
     """
     symbols = {symbol.name: symbol for symbol in system.params}
     for name in values:

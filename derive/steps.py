@@ -36,17 +36,12 @@ def steps(derivation: Derivation) -> Iterator[Step]:
     Parameters
     ----------
     derivation : Derivation
-        Of any system that has a Hamiltonian.
+        Of any system.
 
     Yields
     ------
     Step
         From the positions to Hamilton's equations.
-
-    Raises
-    ------
-    SystemDefinitionError
-        When there is no Hamiltonian.
 
     Examples
     --------

@@ -35,17 +35,18 @@ class System:
     parameters : sequence of Parameter
         Constants, in the order of ``params``.
     masses : sequence of PointMass and RigidBody
-        What has inertia, with its positions r(q, t); time is ``derive.TIME``.
+        What has inertia, with its positions r(q, t) in m; time is ``derive.TIME``.
     potential : sympy.Expr, optional
-        All potential energy V(q, t) but that of `gravity`. Without either, there is uniform
-        gravity along the last axis, downwards, with the parameter named ``g``.
+        All potential energy V(q, t) in J but that of `gravity`. Without either, there is
+        uniform gravity along the last axis, downwards, with the parameter named ``g``.
     gravity : sequence of sympy.Expr, optional
         Acceleration of free fall, one component for each of a position's, in m/s².
     dissipation : sympy.Expr, optional
-        Rayleigh's function R(q, q̇, t), half the power that friction takes where it is
+        Rayleigh's function R(q, q̇, t) in W, half the power that friction takes where it is
         quadratic in the velocities (``derive.velocity(theta)``): the force is -∂R/∂q̇.
     forces : sequence of sympy.Expr, optional
-        Further generalized forces Q(q, q̇, t), one for each coordinate.
+        Further generalized forces Q(q, q̇, t), one for each coordinate: in N along a length,
+        in N m about an angle.
     equilibrium : sequence of sympy.Expr, optional
         Coordinates about which ``linear`` describes small motions. By default
         zeros if the system is at rest there; else there is no ``linear``.
@@ -56,9 +57,27 @@ class System:
     Raises
     ------
     SystemDefinitionError
-        When a name is no identifier, or is used twice or reserved; when an
-        expression names an unknown symbol; when a position has not two or three
-        components, or differs in their number from the others.
+        When there is no coordinate or no mass; when `title` is not one line that can stand
+        in generated files; when a name is no identifier, or is used twice or reserved; when
+        something is neither an expression nor a number, or names an unknown symbol; when a
+        position has not two or three components, or differs in their number from the
+        others; when `gravity` or `forces` has another number of them than it needs, or
+        no parameter is named ``g`` where its weight is wanted; when `dissipation` depends
+        on no velocity; when there are `reactions` beside forces that no potential gives.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> from derive import Coordinate, Derivation, Parameter, PointMass
+    >>> x, g = symbols("x g", real=True)
+    >>> m = symbols("m", positive=True)
+    >>> ball = System(
+    ...     "ball", "A ball on a ramp of 45 degrees", [Coordinate(x, "m", "along the ground")],
+    ...     [Parameter(m, "kg", 1.0, "mass"), Parameter(g, "m/s^2", 9.81, "gravity")],
+    ...     [PointMass(m, (x, -x))],
+    ... )
+    >>> Derivation(ball).accelerations[0]
+    g/2
     """
 
     name: str

@@ -27,6 +27,15 @@ POSITIVE_UNITS = ("kg", "m")
 def read_system(path: Path) -> System:
     """The system that a TOML file describes.
 
+    Parameters
+    ----------
+    path : Path
+        Its name without ``.toml`` is the system's, unless the file gives another.
+
+    Returns
+    -------
+    System
+
     Raises
     ------
     SystemDefinitionError

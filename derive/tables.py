@@ -20,6 +20,16 @@ class TableError(ValueError):
 def read(path: Path) -> dict[str, Any]:
     """The table of a TOML file.
 
+    Parameters
+    ----------
+    path : Path
+        A file of at most `LARGEST` bytes.
+
+    Returns
+    -------
+    dict of str
+        Values by key, as `tomllib` reads them.
+
     Raises
     ------
     TableError
@@ -31,14 +41,25 @@ def read(path: Path) -> dict[str, Any]:
         if path.stat().st_size > LARGEST:
             raise TableError(f"{path} has more than {LARGEST} bytes")
         return tomllib.loads(path.read_bytes().decode())
+    except TableError:
+        raise
     except OSError as error:
         raise TableError(f"{path} cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # also a number of thousands of digits
         raise TableError(f"{path} is no TOML file: {error}; formulas stand in quotes") from error
 
 
 class Table:
     """A table with a name, whose keys are among those that are `known`.
+
+    Parameters
+    ----------
+    name : str
+        What messages call it.
+    values : object
+        What was read; a mapping, if it is right.
+    known : collection of str
+        Keys that it may have.
 
     Raises
     ------

@@ -20,7 +20,7 @@ FUNCTIONS: dict[type[sp.Expr], str] = {
 }
 
 
-class UnsupportedFunctionError(NotImplementedError):
+class UnsupportedFunctionError(ValueError):
     """An expression that generated code has no counterpart of; the message says what it has."""
 
 
@@ -41,6 +41,16 @@ class Translation:
 
     def __call__(self, expression: sp.Expr) -> Node:
         """The node of `expression`.
+
+        Parameters
+        ----------
+        expression : sympy.Expr
+            Made of symbols, exact numbers and what `FUNCTIONS` has.
+
+        Returns
+        -------
+        Node
+            In the graph of this translation; the same one for the same expression.
 
         Raises
         ------

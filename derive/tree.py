@@ -79,6 +79,11 @@ class Tree:
         All files are complete before the first one moves. What an interrupted run
         left behind is removed.
 
+        Returns
+        -------
+        list of Path
+            Of the files that were written, by name; empty if all were up to date.
+
         Raises
         ------
         OSError

@@ -39,7 +39,18 @@ def write(system: System, folder: str | PathLike[str]) -> Path:
     Raises
     ------
     SystemDefinitionError
-        When a coordinate moves no mass, or moves the masses only as others do.
+        When a coordinate moves no mass, or moves the masses only as others do; when a force
+        is left at the equilibrium that the system gives.
+    UnsupportedFunctionError
+        When an expression has no counterpart in generated code.
+    OSError
+        When the folder cannot be written to.
+
+    Examples
+    --------
+    >>> from derive import load
+    >>> print(write(load("chain_2"), "build"))
+    build/chain_2.py
     """
     Tree(Path(folder), texts(Derivation(system)), complete=False).write()
     return Path(folder) / f"{system.name}.py"

@@ -24,10 +24,21 @@ MOST = 100
 def vanishes(expression: sp.Expr) -> bool:
     """Whether `expression` is identically zero.
 
+    Parameters
+    ----------
+    expression : sympy.Expr
+        Rational in symbols, and in sines and cosines of sums of them.
+
+    Returns
+    -------
+    bool
+
     Raises
     ------
     NotImplementedError
-        When it is not rational in symbols, sines and cosines.
+        When it is not, or has a power or a multiple of an angle above `MOST`.
+    ZeroDivisionError
+        When it divides by what is identically zero.
     """
     whole = _with_whole_angles(expression)
     opened = whole.xreplace({wave: _opened(wave) for wave in _waves(whole)})

@@ -24,6 +24,15 @@ def names() -> tuple[str, ...]:
 def load(name: str) -> Tableau:
     """The method called `name`.
 
+    Parameters
+    ----------
+    name : str
+        One of `names`, such as ``verner87``; SciPy's methods are none of them.
+
+    Returns
+    -------
+    Tableau
+
     Raises
     ------
     UnknownMethodError

@@ -245,12 +245,27 @@ def _generated() -> Station:
 def generated_module(name: str) -> ModuleType:
     """The generated module of a system that ships, or one that is generated now.
 
+    Parameters
+    ----------
+    name : str
+        Of a system, such as ``double_pendulum``, or of a member of a family, such as ``chain_5``;
+        or the path of a file that ends in ``.toml``.
+
+    Returns
+    -------
+    module
+        As ``generated.double_pendulum``; what does not ship is kept in the user's cache.
+
     Raises
     ------
     LookupError
-        When no system is called so; a name that ends in ``.toml`` is a file.
+        When no system is called so.
     ValueError
-        When that file makes no sense.
+        When the file is not there, or makes no sense.
+    derive.translation.UnsupportedFunctionError
+        When its equations hold a power that generated code does not have, such as ``x**(5/4)``.
+    OSError
+        When the module cannot be kept.
     """
     if name in {module.name for module in iter_modules(generated.__path__)}:
         return import_module(f"generated.{name}")

@@ -63,12 +63,25 @@ def choice(
     method, lanes, compensated
         As in `solvers.kernel.Kernel`.
 
+    Returns
+    -------
+    problem : Problem
+        In the form that is wanted; or else in the fastest one where a loop of an explicit method is
+        compiled, and in Lagrange's elsewhere.
+    program : Kernel or None
+        The compiled loop.
+
     Raises
     ------
     ValueError
         When it must be compiled and cannot.
     solvers.compiler.NoCompilerError
         When it must be compiled and no compiler could.
+
+    Warns
+    -----
+    UserWarning
+        When no compiler could, and it runs in Python.
     """
     plain = asked(form or "lagrangian")
     reason = "" if where == "python" else obstacle(plain)

@@ -67,6 +67,11 @@ def build(source: str, *, reproducible: bool = False) -> Library:
         Whether products and sums must not be fused: then every compiler gives the
         same bits, and some speed is lost.
 
+    Returns
+    -------
+    Library
+        By the first of `compilers` that could build it.
+
     Raises
     ------
     NoCompilerError

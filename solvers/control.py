@@ -37,9 +37,20 @@ class Controller:
     def norm(self, error: Array, y: Array, end: Array) -> float:
         """Root mean square of the error in parts of what is allowed.
 
-        Of two estimates, shape (2, state), the first a and the second b combine to
-        a²/√(a² + b²/100) (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary
-        Differential Equations I, section II.10).
+        Of two estimates the first a and the second b combine to a²/√(a² + b²/100) (E. Hairer,
+        S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, section II.10).
+
+        Parameters
+        ----------
+        error : ndarray of shape (state,) or (estimates, state)
+            Of the step, in the units of the state.
+        y, end : ndarray of shape (state,)
+            The state before and after it.
+
+        Returns
+        -------
+        float
+            A step with more than 1 is not kept.
         """
         allowed = self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end))
         a, *others = (_rms(estimate, allowed) for estimate in np.atleast_2d(error))
@@ -50,6 +61,16 @@ class Controller:
 
         PI control (K. Gustafsson, ACM Transactions on Mathematical Software 17
         (1991) 533-554) after a step that is kept, the plain rule after one that is not.
+
+        Parameters
+        ----------
+        norm : float
+            As `norm` gives it.
+
+        Returns
+        -------
+        float
+            From `SHRINK` to `GROW`, and below 1 after a step that is not kept.
         """
         k = self.order + 1
         if norm > 1:
@@ -70,9 +91,14 @@ class Controller:
         rhs : callable
             ``rhs(t, y)``.
         t, y, slope : float and ndarray
-            Time, state and slope at the beginning.
+            Time in s, state and slope at the beginning.
         duration : float
-            Of the whole run, negative backwards.
+            Of the whole run in s, negative backwards.
+
+        Returns
+        -------
+        float
+            In s, positive in both directions.
         """
         allowed = self.atol + self.rtol * np.abs(y)
         size, speed = _rms(y, allowed), _rms(slope, allowed)

@@ -24,16 +24,16 @@ class Crossing:
     name : str
         One of ``module.STATE``.
     value : float
-        In the unit of that component.
-    direction : {0, 1, -1}
+        In the unit of that component, ``module.UNITS[name]``.
+    direction : {0, 1, -1}, optional
         Both ways, only upwards, only downwards.
-    terminal : bool
+    terminal : bool, optional
         Whether the motion ends there.
 
     Raises
     ------
     ValueError
-        When there is no such component, or a value makes no sense.
+        When there is no such component, or a value or direction makes no sense.
 
     Examples
     --------
@@ -76,6 +76,8 @@ class Extremum(Crossing):
         The generated module.
     name : str
         A velocity, such as ``theta1_dot``.
+    value, direction, terminal
+        As in `Crossing`; a velocity vanishes at 0.
 
     Raises
     ------

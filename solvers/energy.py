@@ -26,6 +26,20 @@ def energy_error(
     """How far energies in J are from the first of them, in parts of that one above rest.
 
     At rest there is nothing to be a part of, nor where no rest is known: then in J.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    params : sequence of float
+        In the order of ``module.PARAMETERS``.
+    energy : array_like of shape (n,)
+        Energies along a motion in J, at least one.
+
+    Returns
+    -------
+    ndarray of shape (n,)
+        Positive where energy was gained; the first is 0.
     """
     found, rest = np.asarray(energy, dtype=float), energy_at_rest(module, params)
     return (found - found[0]) / ((found[0] - rest if rest is not None else 0.0) or 1.0)
@@ -37,6 +51,27 @@ def supplied(
     """Energy in J that forces, friction and what moves by itself have supplied so far.
 
     By Simpson's rule over the samples; zeros where nothing does.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    t : array_like of shape (n,)
+        Times in s, increasing.
+    y : array_like of shape (state, n)
+        Coordinates and velocities at these times, in the order of ``module.STATE``.
+    params : sequence of float
+        In the order of ``module.PARAMETERS``.
+
+    Returns
+    -------
+    ndarray of shape (n,)
+        The first is 0.
+
+    Raises
+    ------
+    ValueError
+        When something is supplied, and three times or more do not increase.
     """
     times = np.asarray(t, dtype=float)
     if not hasattr(module, "power"):

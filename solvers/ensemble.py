@@ -47,26 +47,45 @@ def ensemble(
 
     Parameters
     ----------
-    module, t_span, method, form, rtol, atol, h, max_steps, backend, compensated
-        As in `solvers.integration.integrate`.
+    module : module
+        A generated module, such as ``generated.double_pendulum``.
+    t_span : pair of float
+        Beginning and end in s; the end may come first.
     Y0 : array_like of shape (n, state)
-        Coordinates and velocities at the beginning of each motion.
+        Coordinates and velocities at the beginning of each motion, in the order of
+        ``module.STATE``; in the variational form each is followed by a small change.
     params : array_like of shape (parameters,) or (n, parameters)
         In the order of ``module.PARAMETERS``; the same for all motions or a row for each.
+    method : str, optional
+        One of ``solvers.catalogue.names()``, or a method of SciPy's ``solve_ivp``.
+    form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
+        The equations that are integrated, as in `solvers.integration.integrate`.
+    rtol, atol : float, optional
+        A step's error in a component may be atol + rtol |y|; without effect on fixed steps.
+    h : float, optional
+        A fixed step in s; methods without error estimate need one.
     t_eval : array_like of shape (times,), optional
-        Times at which states are wanted, none by default.
-    events : Crossing or sequence of Crossing
+        Times in s at which states are wanted, none by default.
+    events : Crossing or sequence of Crossing, optional
         What to watch.
-    occurrences : int
+    occurrences : int, optional
         How many occurrences of each event to keep, counted from the beginning; of an
         `solvers.crossing.Extremum` the two with the smallest and the largest value, so that
         it must be 2 or more.
+    max_steps : int, optional
+        After so many steps a motion stops with what it has.
+    backend : {"compiled", "python"}, optional
+        Where the loop runs; by default compiled if that is possible.
+    compensated : bool, optional
+        Whether a compiled loop carries the states' rounding errors along.
     workers : int, optional
         Number of threads; by default one for each processor.
 
     Returns
     -------
     Ensemble
+        Motions in the order of `Y0`. One that does not reach its end raises nothing: its
+        ``status`` says why.
 
     Raises
     ------
@@ -75,9 +94,22 @@ def ensemble(
     solvers.catalogue.UnknownMethodError
         When no method has this name.
     solvers.compiler.NoCompilerError
-        When ``backend="compiled"`` and no compiler could build the loop.
+        When ``backend="compiled"`` or ``compensated=True``, and no compiler could build the loop.
     solvers.solution.Interrupted
         When the user interrupts; it holds the `Ensemble` up to there.
+
+    Warns
+    -----
+    UserWarning
+        When no compiler could build the loop, and it runs in Python.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> starts = [(0.1 * k, 0.0, 0.0, 0.0) for k in range(20)]
+    >>> motions = ensemble(dp, (0, 5), starts, dp.DEFAULTS)
+    >>> motions.y.shape
+    (20, 4)
     """
     names = ordinary_state(module, form or "")
     starts = request.table("Y0", Y0, names)

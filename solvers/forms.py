@@ -122,6 +122,22 @@ class Form:
 
         Turns of angles that are known by sine and cosine only are counted from the
         state `before`, `elapsed` seconds ago, with the mean of both velocities.
+
+        Parameters
+        ----------
+        t : float
+            In s.
+        z : ndarray of shape (inside,)
+            A state of this form.
+        before : ndarray of shape (state,)
+            An ordinary state not long before.
+        elapsed : float
+            Time since then in s, negative backwards.
+
+        Returns
+        -------
+        ndarray of shape (state,)
+            In the order of ``ordinary``; rad, m, rad/s and m/s.
         """
         if self.name == "hamiltonian":
             return np.array(evaluated(self.module, "lagrangian_state", t, z, self.params))

@@ -35,7 +35,18 @@ class HorizonWarning(UserWarning):
 
 @contextmanager
 def beyond_horizon() -> Iterator[None]:
-    """Where runs are meant to be longer than their errors allow: no warning."""
+    """Where runs are meant to be longer than their errors allow: no warning.
+
+    Yields
+    ------
+    None
+        In a ``with`` block, within which `HorizonWarning` is not shown.
+
+    Notes
+    -----
+    Python keeps one list of warnings to be shown for all threads: others, too, do not warn
+    meanwhile.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", HorizonWarning)
         yield
@@ -49,6 +60,18 @@ def horizon(problem: Problem, end: float) -> float:
     A change that is not followed to the end of the run goes on as before. Infinity if
     there is no such time, or it is not known: for fixed steps, and without a compiled
     loop.
+
+    Parameters
+    ----------
+    problem : Problem
+        What was integrated.
+    end : float
+        When its integration ended, in s.
+
+    Returns
+    -------
+    float
+        In s, as times of the problem are counted.
     """
     begin = problem.span[0]
     module = problem.form.module

@@ -56,46 +56,41 @@ def integrate(
         Coordinates and velocities in the order of ``module.STATE``, whatever the form.
     params : array_like of shape (parameters,)
         In the order of ``module.PARAMETERS``.
-    method : str
+    method : str, optional
         One of ``solvers.catalogue.names()``, or a method of SciPy's ``solve_ivp``.
     form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
-        The equations that are integrated; by default rational ones in a compiled loop,
-        where they exist, and Lagrange's otherwise. The variational form carries a small
-        change along: `y0` is then the state, followed by its change.
-    rtol, atol : float
-        A step's error in a component may be atol + rtol |y|; `atol` may be an array.
-        They have no effect on fixed steps.
+        The equations that are integrated; by default rational ones, where they exist, in a
+        compiled loop of an explicit method, and Lagrange's otherwise. The variational form
+        carries a small change along: `y0` is then the state, followed by its change.
+    rtol, atol : float, optional
+        A step's error in a component may be atol + rtol |y|; of Lagrange's form `atol` may be
+        an array of shape (state,). They have no effect on fixed steps.
     h : float, optional
         A fixed step in s; methods without error estimate need one. The last step is
         shortened to end at the end.
     t_eval : array_like of shape (n,), optional
-        Times of the states that are returned; every step's end by default. States
-        between steps are as accurate as the method.
+        Times in s of the states that are returned; the beginning and every step's end by
+        default. States between steps are as accurate as the method.
     events : callable or sequence of callables, optional
         ``event(t, y)`` changes its sign where the event occurs; of several changes
         within one step one is found. It may have the attributes ``terminal`` (true: the
         integration ends there) and ``direction`` (1: only upwards, -1: only downwards).
         ``solvers.crossing.Crossing`` makes events that compiled loops know.
-    energy : bool
+    energy : bool, optional
         Whether to return the energy at these times.
-    max_steps : int
+    max_steps : int, optional
         After so many steps the integration stops with what it has.
     backend : {"compiled", "python"}, optional
         Where the loop runs; by default compiled if that is possible.
-    compensated : bool
+    compensated : bool, optional
         Whether a compiled loop carries the state's rounding errors along, which pays
         over very many steps.
 
     Returns
     -------
     Solution
-
-    Warns
-    -----
-    solvers.horizon.HorizonWarning
-        When errors of the size of the tolerances outgrow the motion before its end.
-    UserWarning
-        When no compiler could build the loop, and it runs in Python.
+        Coordinates and velocities, whatever the form. A motion that does not reach its end
+        raises nothing: its ``status`` says why, and what there is of it is returned.
 
     Raises
     ------
@@ -104,9 +99,25 @@ def integrate(
     solvers.catalogue.UnknownMethodError
         When no method has this name.
     solvers.compiler.NoCompilerError
-        When ``backend="compiled"`` and no compiler could build the loop.
+        When ``backend="compiled"`` or ``compensated=True``, and no compiler could build the loop.
     solvers.solution.Interrupted
         When the user interrupts; it holds the solution up to there.
+
+    Warns
+    -----
+    solvers.horizon.HorizonWarning
+        When errors of the size of the tolerances outgrow the motion before its end.
+    UserWarning
+        When no compiler could build the loop, and it runs in Python.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> motion = integrate(dp, (0, 1), (0.1, 0.0, 0.0, 0.0), dp.DEFAULTS, t_eval=[0, 0.5, 1])
+    >>> motion.y.shape
+    (4, 3)
+    >>> motion.status.name
+    'FINISHED'
     """
     where = request.rung(backend, compensated)
 

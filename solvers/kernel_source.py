@@ -164,6 +164,11 @@ def program(
     changes : int
         How many numbers at the end of the state are a small change, out of which powers of
         two are taken where it is large.
+
+    Returns
+    -------
+    str
+        C99, complete, as `solvers.compiler.build` takes it.
     """
     sines, rates = ([pair[part] for pair in equations.angles] or [0] for part in (0, 1))
     texts = {

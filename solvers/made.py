@@ -27,6 +27,16 @@ def made(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -> ModuleT
         All that decides what is in it.
     texts : callable
         Generates it, as texts by file name; called where the cache does not have it.
+
+    Returns
+    -------
+    module
+        A new one at every call; ``sys.modules`` does not know it.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written to the cache.
     """
     digest = hashlib.sha256(key.encode()).hexdigest()[:32]
     folder = cache_folder()

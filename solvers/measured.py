@@ -58,11 +58,24 @@ def measured(
     duration : float
         In s.
     backend : {"compiled", "python", "scipy"}
-        Where it runs.
+        Where it runs. Of the last two the method decides: ours run in Python.
     rtol : float
         Relative and absolute tolerance.
     h : float, optional
-        A fixed step instead.
+        A fixed step in s instead.
+
+    Returns
+    -------
+    Measured or None
+
+    Raises
+    ------
+    ValueError
+        When an argument makes no sense.
+    solvers.catalogue.UnknownMethodError
+        When no method has this name.
+    solvers.compiler.NoCompilerError
+        When ``backend="compiled"`` and no compiler could build the loop.
     """
     span = (0.0, duration)
     if backend == "compiled":
@@ -112,6 +125,18 @@ def work_at(error: float, errors: Sequence[float], works: Sequence[float]) -> fl
     An error that a dearer run exceeds again was luck: each run counts with the largest
     error from there on. Where rounding makes errors grow again, the curve ends: with the
     two neighbours of which the worse is best.
+
+    Parameters
+    ----------
+    error : float
+        For which work is wanted.
+    errors, works : sequence of float
+        What each run misses, and what it costs, from cheap to dear; all positive.
+
+    Returns
+    -------
+    float
+        In the unit of `works`.
     """
     if not errors:
         return float("nan")

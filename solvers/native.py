@@ -50,6 +50,18 @@ def header(module: ModuleType) -> Path | None:
 def equations(module: ModuleType, form: str) -> Equations:
     """One form of a generated module in C.
 
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    form : str
+        One of its forms.
+
+    Returns
+    -------
+    Equations
+        The whole header's text, and what of it belongs to this form.
+
     Raises
     ------
     ValueError
@@ -93,10 +105,16 @@ def native_rhs(
     ----------
     module : module
         A generated module, whose header stands beside it.
-    form : {"lagrangian", "hamiltonian", "rational", "variational"}
+    form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
         Which right-hand side.
-    reproducible : bool
+    reproducible : bool, optional
         Whether every compiler is to give the same bits, at some cost of speed.
+
+    Returns
+    -------
+    NativeRhs
+        A function of the time in s, the state of this form, room for its rate of change, and the
+        parameters in the order of ``module.PARAMETERS``.
 
     Raises
     ------

@@ -6,13 +6,30 @@ GREEK = ("theta", "phi", "psi", "alpha", "beta")
 
 
 def symbol(name: str) -> str:
-    """A name as mathematics writes it."""
+    r"""A name as mathematics writes it.
+
+    Parameters
+    ----------
+    name : str
+        Of a coordinate, velocity or parameter: a letter's name and an index, and ``_dot`` after
+        those of a velocity.
+
+    Returns
+    -------
+    str
+        TeX between dollar signs: ``$\dot{\theta}_{1}$`` for ``theta1_dot``.
+    """
+    return f"${_tex(name)}$"
+
+
+def _tex(name: str) -> str:
     base, dot, _ = name.partition("_dot")
-    letters = base.rstrip("0123456789")
-    index = base[len(letters) :]
+    stem, _, below = base.partition("_")
+    letters = stem.rstrip("0123456789")
+    index = stem[len(letters) :] + (_tex(below) if below else "")
     word = rf"\{letters}" if letters in GREEK else letters
     word = rf"\dot{{{word}}}" if dot else word
-    return f"${word}_{{{index}}}$" if index else f"${word}$"
+    return f"{word}_{{{index}}}" if index else word
 
 
 def divided(words: str, unit: str) -> str:

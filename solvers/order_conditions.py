@@ -29,6 +29,28 @@ def order(A: Sequence[Sequence[Number]], b: Sequence[Number], most: int = 12) ->
     """The order of the method with stage matrix `A` and weights `b`, at most `most`.
 
     The nodes are taken to be the row sums of A.
+
+    Parameters
+    ----------
+    A : sequence of sequences
+        Stage matrix, stages × stages, of exact numbers (`fractions.Fraction`,
+        `solvers.surd.Surd`) or of decimals with all their published digits.
+    b : sequence
+        Weights, stages of them, of the same kind.
+    most : int
+        Trees with more nodes are not looked at.
+
+    Returns
+    -------
+    int
+        0 if the weights do not even add up to 1.
+
+    Raises
+    ------
+    ValueError
+        When `A` is not stages × stages.
+    TypeError
+        When fractions and decimals stand beside each other.
     """
     with localcontext() as context:
         context.prec = WORKING_DIGITS

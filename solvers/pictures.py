@@ -19,7 +19,30 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 def panels(
     title: str, *, rows: int = 1, columns: int = 1, size: tuple[float, float] = (10, 5)
 ) -> tuple[Figure, list[Axes]]:  # fmt: skip
-    """A figure with a title and axes, row by row."""
+    """A figure with a title and axes, row by row.
+
+    Parameters
+    ----------
+    title : str
+        Of the whole figure; what stands between dollar signs is TeX.
+    rows, columns : int, optional
+        How many axes there are below and beside each other.
+    size : pair of float, optional
+        Width and height in inches.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+        To be drawn with `save`; no window shows it.
+    axes : list of matplotlib.axes.Axes
+        As many as rows times columns.
+
+    Examples
+    --------
+    >>> figure, axes = panels("Two panels", columns=2)
+    >>> len(axes)
+    2
+    """
     # without pyplot, which would look for a screen and keep every figure
     figure = Figure(size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
@@ -28,7 +51,26 @@ def panels(
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as a PNG file, beside its name first."""
+    """Write a figure as a PNG file, beside its name first.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        What to write; its axes lose their upper and right edges.
+    path : str or Path
+        Where; missing folders are made, and what stands there is replaced.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written; then nothing has changed.
+
+    Examples
+    --------
+    >>> figure, (panel,) = panels("A line")
+    >>> line = panel.plot([0, 1], [0, 1])
+    >>> save(figure, "line.png")
+    """
     written(Path(path), png(figure))
 
 

@@ -55,8 +55,22 @@ def prepare(
 
     Parameters
     ----------
-    module, params, method, form, rtol, atol, h, max_steps, compensated
-        As in `solvers.integration.integrate`.
+    module : module
+        A generated module.
+    params : array_like of shape (parameters,)
+        In the order of ``module.PARAMETERS``.
+    method : str, optional
+        One of ``solvers.catalogue.names()``.
+    form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
+        The equations that are integrated, as in `solvers.integration.integrate`.
+    rtol, atol : float, optional
+        A step's error in a component may be atol + rtol |y|.
+    h : float, optional
+        A fixed step in s.
+    max_steps : int, optional
+        No motion takes more steps.
+    compensated : bool, optional
+        Whether the state's rounding errors are carried along.
 
     Returns
     -------
@@ -66,11 +80,19 @@ def prepare(
     Raises
     ------
     ValueError
-        When an argument makes no sense.
+        When an argument makes no sense, or no compiled loop can do what is asked.
     solvers.catalogue.UnknownMethodError
         When no method has this name.
     solvers.compiler.NoCompilerError
         When no compiler could build the loop.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> run = prepare(dp, dp.DEFAULTS, rtol=1e-10)
+    >>> end = run((0, 5), (0.1, 0.0, 0.0, 0.0))
+    >>> [round(x, 6) for x in end]
+    [-0.026553, -0.044719, -0.27311, 0.19133]
     """
 
     def asked(form: str) -> Problem:
@@ -93,9 +115,18 @@ def prepare(
 class Prepared:
     """A function that integrates one motion after another: ``run((t0, t1), y0)``.
 
-    It takes a time span and an ordinary state, and returns the state at the span's end
+    It takes a time span in s and an ordinary state, and returns the state at the span's end
     as a tuple. It raises `ValueError` for a span or state that makes no sense and
     `NotFinishedError` where the motion does not reach its end.
+
+    Parameters
+    ----------
+    once : ctypes function
+        As in `solvers.kernel.Kernel`.
+    batch : Batch
+        One motion, of which `once` uses the room.
+    problem : Problem
+        What is asked.
     """
 
     def __init__(self, once: Any, batch: Batch, problem: Problem) -> None:

@@ -83,6 +83,19 @@ class Outcome:
 
     Its fields are those of `Solution`; times and states are kept in blocks, of shape
     (rows,) and (rows, state), events as lists.
+
+    Attributes
+    ----------
+    end : pair of float and ndarray
+        Time in s and ordinary state up to which it has come.
+    t_events, y_events : list of list
+        Times in s and ordinary states, a list for each event.
+    t, y : list of ndarray
+        Blocks of times in s, and of ordinary states in rows.
+    status, nfev, njev, steps, rejected
+        As in `Solution`.
+    backend : str
+        What runs it, and by which compiler.
     """
 
     end: tuple[float, Array]

@@ -71,6 +71,11 @@ def quantity(value: object, unit: str) -> float:
     unit : str
         Such as ``rad`` or ``m/s^2``.
 
+    Returns
+    -------
+    float
+        It is finite.
+
     Raises
     ------
     QuantityError

@@ -53,6 +53,11 @@ class Record:
         inside : callable
             The state within the step at a time, up to its end, in the form that runs.
 
+        Returns
+        -------
+        bool
+            Whether one does: then `now` and `place` are where it occurs.
+
         Raises
         ------
         ArithmeticError

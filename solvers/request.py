@@ -29,6 +29,16 @@ def problem(
 ) -> Problem:  # fmt: skip
     """The problem that `solvers.integration.integrate` is asked to solve.
 
+    Parameters
+    ----------
+    module, t_span, y0, params, method, form, rtol, atol, h, t_eval, events, max_steps
+        As there; the form is named.
+
+    Returns
+    -------
+    Problem
+        With arrays of its own; tolerances are 0 where steps are fixed.
+
     Raises
     ------
     ValueError

@@ -28,6 +28,20 @@ def names(folder: Path) -> tuple[str, ...]:
 def path(kind: str, name: str, folder: Path) -> Path:
     """The file that is meant by a name: one of a folder, or somebody's own, which ends in .toml.
 
+    Parameters
+    ----------
+    kind : str
+        What it is, in a message: ``scene`` or ``sweep``.
+    name : str
+        What somebody wrote.
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    Path
+        Somebody's own need not be there.
+
     Raises
     ------
     InputError
@@ -47,6 +61,18 @@ def path(kind: str, name: str, folder: Path) -> Path:
 
 def read(path: Path, meaning: Callable[[Mapping[str, Any]], Said]) -> Said:
     """What a file means.
+
+    Parameters
+    ----------
+    path : Path
+        A TOML file.
+    meaning : callable
+        Takes its table; raises `ValueError` when that makes no sense.
+
+    Returns
+    -------
+    object
+        What `meaning` gives.
 
     Raises
     ------

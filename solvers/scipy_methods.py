@@ -25,10 +25,18 @@ def ode_solver(method: str) -> type[OdeSolver]:
     method : str
         An explicit method that estimates its error, one of ``solvers.catalogue.names()``.
 
+    Returns
+    -------
+    type
+        A subclass of ``scipy.integrate.OdeSolver`` with the options `max_step` and `first_step`
+        in s, `rtol` and `atol`.
+
     Raises
     ------
     ValueError
         For a method without error estimate, or an implicit one.
+    solvers.catalogue.UnknownMethodError
+        When no method has this name.
     """
     tableau = load(method)
     if not tableau.b_hat or not tableau.is_explicit:

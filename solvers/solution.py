@@ -31,11 +31,12 @@ class Solution:
     Attributes
     ----------
     t : ndarray of shape (n,)
-        Times: those asked for, or every step's end.
+        Times in s: those asked for, or the beginning and every step's end.
     y : ndarray of shape (state, n)
-        States of the module's Lagrangian or Hamiltonian form at these times.
+        Coordinates and velocities at these times, whatever form was integrated; of the
+        variational form with their small changes below.
     t_events, y_events : list of ndarray
-        Times and states, the latter of shape (occurrences, state), of each event.
+        Times in s and states, the latter of shape (occurrences, state), of each event.
     nfev, njev : int
         Evaluations of the right-hand side and of its Jacobian.
     status : Status
@@ -51,7 +52,7 @@ class Solution:
     backend : str
         ``compiled``, ``python`` or ``scipy``.
     end : pair of float and ndarray
-        Time and state where it ended, from which another integration can go on.
+        Time in s and state where it ended, from which another integration can go on.
     """
 
     t: Array

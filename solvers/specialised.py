@@ -45,6 +45,16 @@ def specialised(
         Writes it, where the cache does not have it.
     version : str
         Of the generator: another one writes it anew.
+
+    Returns
+    -------
+    module
+        Its functions take an empty sequence of parameters.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written to the cache.
     """
     name = module.__name__.rpartition(".")[2]
     values = dict(zip(module.PARAMETERS, map(float, params), strict=True))

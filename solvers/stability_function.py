@@ -24,10 +24,19 @@ Polynomial = tuple[Fraction, ...]  # coefficients of z⁰, z¹, …
 class StabilityFunction:
     """R(z) = numerator / denominator.
 
-    Attributes
+    Parameters
     ----------
     numerator, denominator : tuple of Fraction
         Coefficients of z⁰, z¹, ….
+
+    Examples
+    --------
+    >>> from solvers.catalogue import load
+    >>> function = StabilityFunction.of(load("rk4"))
+    >>> [str(c) for c in function.numerator]
+    ['1', '1', '1/2', '1/6', '1/24']
+    >>> round(function.imaginary_stability_interval, 6)
+    2.828427
     """
 
     numerator: Polynomial
@@ -39,6 +48,16 @@ class StabilityFunction:
 
         Where coefficients are published as rounded decimals, those of R up to the
         method's order are 1/k! nevertheless, since its order is proved.
+
+        Parameters
+        ----------
+        tableau : Tableau
+            The method's coefficients.
+
+        Returns
+        -------
+        StabilityFunction
+            With a constant denominator 1 for explicit methods.
         """
         numerator, denominator = ([_fraction(x) for x in part] for part in
                                   tableau.stability_function)  # fmt: skip

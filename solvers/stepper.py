@@ -59,6 +59,18 @@ class Stepper:
     def slope(self, t: float, y: Array) -> Array:
         """The right-hand side, counted and found finite.
 
+        Parameters
+        ----------
+        t : float
+            In s.
+        y : ndarray of shape (state,)
+            The state.
+
+        Returns
+        -------
+        ndarray of shape (state,)
+            In the units of the state, a second.
+
         Raises
         ------
         NotFiniteError
@@ -78,16 +90,30 @@ class Stepper:
     def step(self, t: float, y: Array, h: float, first: Array) -> tuple[Array, Array, Array | None]:
         """The state after `h`, estimates of its local error, and the slope there if known.
 
-        The estimates have shape (estimates, state).
-
         Parameters
         ----------
         t, y : float and ndarray
-            Where the step begins.
+            Where the step begins, in s and in the units of the state.
         h : float
-            Its length, negative backwards.
+            Its length in s, negative backwards.
         first : ndarray
             The slope at the beginning.
+
+        Returns
+        -------
+        end : ndarray of shape (state,)
+            The state.
+        error : ndarray of shape (estimates, state)
+            One row of zeros for a method that does not estimate it.
+        slope : ndarray of shape (state,) or None
+            Of methods whose last stage is the first of the next step.
+
+        Raises
+        ------
+        NotFiniteError
+            When a stage of an explicit method is not finite.
+        NoConvergenceError
+            When the stage equations of an implicit method are not solved.
         """
         if self._tableau.is_explicit:
             slopes = self._explicit(t, y, h, first)

@@ -19,6 +19,16 @@ def first_fall(polynomial: Polynomial) -> float:
     Roots are told apart by Sturm's theorem, so that one where the polynomial only touches
     zero is not taken for a change of sign (D. E. Knuth, The Art of Computer Programming,
     volume 2, exercise 4.6.2-22).
+
+    Parameters
+    ----------
+    polynomial : sequence of Fraction
+        Coefficients of x⁰, x¹, ….
+
+    Returns
+    -------
+    float
+        A root to `RESOLUTION`, rounded; or 0 or infinity.
     """
     p = list(polynomial)
     while p and p[-1] == 0:

@@ -12,6 +12,13 @@ class Surd:
     """The number a + b√d, with a and b rational and d fixed in one computation.
 
     Equal to a rational number only if b is 0; converts to the nearest float.
+
+    Parameters
+    ----------
+    a, b : Fraction
+        The rational part, and how many of the root.
+    d : int
+        What the root is of, positive and no square.
     """
 
     a: Fraction

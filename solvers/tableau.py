@@ -20,6 +20,8 @@ ROUNDING = 1e-25
 class Tableau:
     """Coefficients A, b and, for methods that estimate their error, b_hat.
 
+    Nothing is checked here: `order` and the like say what the coefficients are worth.
+
     Parameters
     ----------
     title : str
@@ -27,7 +29,7 @@ class Tableau:
     A : tuple of tuples
         Stage matrix, stages × stages.
     b : tuple
-        Weights of the solution.
+        Weights of the solution, one a stage.
     b_hat : tuple, optional
         Weights of the embedded solution.
     b_low : tuple, optional
@@ -39,6 +41,12 @@ class Tableau:
     Coefficients are exact (`fractions.Fraction`, `solvers.surd.Surd`) or, where a
     method is published in decimals only, `decimal.Decimal` with all their digits.
     The nodes c are the row sums of A.
+
+    Examples
+    --------
+    >>> heun = Tableau.explicit("Heun", rows="1", b="1/2 1/2")
+    >>> heun.order, heun.stages
+    (2, 2)
     """
 
     title: str
@@ -51,7 +59,34 @@ class Tableau:
     def explicit(
         cls, title: str, rows: str, b: str, b_hat: str = "", b_low: str = ""
     ) -> Tableau:  # fmt: skip
-        """A tableau from text: numbers between spaces, rows of later stages between semicolons."""
+        """A tableau from text: numbers between spaces, rows of later stages between semicolons.
+
+        Numbers are fractions such as ``1/6`` or decimals, and are meant exactly; if a decimal among
+        those of A and b has more than `LONG` characters, all become `decimal.Decimal`.
+
+        Parameters
+        ----------
+        title : str
+            What people call the method.
+        rows : str
+            Rows of A from the second stage on, each left of its diagonal; empty for one stage.
+        b : str
+            Weights of the solution, one a stage.
+        b_hat, b_low : str, optional
+            Weights of embedded solutions.
+
+        Returns
+        -------
+        Tableau
+            With zeros from the diagonal on.
+
+        Raises
+        ------
+        ValueError
+            When a text is no number.
+        ArithmeticError
+            When a number is divided by zero; or a text is no number where all become decimals.
+        """
         lines = [[], *(row.split() for row in rows.split(";") if row.strip())]
         numbers = [*(number for line in lines for number in line), *b.split()]
         rounded = any(len(number) > LONG and "/" not in number for number in numbers)

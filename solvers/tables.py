@@ -21,6 +21,11 @@ def report(judged: Mapping[str, Any]) -> str:
     judged : mapping
         ``equations``, ``programs`` and ``claims`` as ``holonomic verify --json`` prints
         them, and ``state``, where the witnesses were computed.
+
+    Returns
+    -------
+    str
+        Wrapped to the width of the terminal, and to 120 characters at most.
     """
     width = min(shutil.get_terminal_size((100, 24)).columns, 120)
     lines = [*_equations(judged["equations"], width), ""]

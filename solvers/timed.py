@@ -22,6 +22,11 @@ def evaluated(
         Such as ``energy``, or ``energy_many`` with arrays.
     t, y, params : array_like
         What the function takes.
+
+    Returns
+    -------
+    object
+        What the function gives: a number, a tuple or an array.
     """
     timed = function.removesuffix("_many") in getattr(module, "TIMED", ())
     call = getattr(module, function)

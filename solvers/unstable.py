@@ -21,6 +21,18 @@ def unstable(problem: Problem, failed: bool) -> str:
     Empty if nothing is, if steps are controlled, or if the module has no Jacobian. The
     modes are those of the equations linearised where the run begins; modes that grow by
     themselves are left out. A run that failed is blamed on less growth than another.
+
+    Parameters
+    ----------
+    problem : Problem
+        What was run.
+    failed : bool
+        Whether it came upon numbers that are not finite.
+
+    Returns
+    -------
+    str
+        A sentence without a full stop, with times and steps in s.
     """
     method, h, module = problem.method, problem.h, problem.form.module
     if h is None or not isinstance(method, Tableau) or not hasattr(module, "jacobian"):

@@ -12,6 +12,18 @@ from typing import IO
 def written(path: Path, text: str | bytes) -> Path:
     """Write a file beside its name first, then move it into place.
 
+    Parameters
+    ----------
+    path : Path
+        Its name; missing folders are made, and what stands there is replaced.
+    text : str or bytes
+        What it is to hold; text becomes UTF-8.
+
+    Returns
+    -------
+    Path
+        `path`.
+
     Raises
     ------
     OSError
@@ -25,6 +37,16 @@ def written(path: Path, text: str | bytes) -> Path:
 @contextmanager
 def placed(path: Path) -> Iterator[IO[bytes]]:
     """A file to write to, which is moved into place when it is whole.
+
+    Parameters
+    ----------
+    path : Path
+        Its name; missing folders are made, and what stands there is replaced.
+
+    Yields
+    ------
+    binary file
+        Open for writing, beside `path`.
 
     Raises
     ------

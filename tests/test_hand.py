@@ -172,6 +172,7 @@ def test_the_command_tells_what_is_wrong_and_exits_so(
     ('system = "single_pendulum"\nlagrangian = 3\n[names]\nx = "y"\n', "names.x: unknown name 'y'"),
     ('system = "single_pendulum"\nlagrangian = 3\n[equal]\nk = "1"\n', "parameters are m, l, g"),
     ('lagrangian = "1"\n', "'system' is missing"),
+    (f'system = {"1" * 5000}\n', "is no TOML file"),
 ])  # fmt: skip
 def test_files_that_make_no_sense_are_refused(text: str, words: str, tmp_path: Path) -> None:
     path = tmp_path / "hand.toml"

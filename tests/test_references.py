@@ -9,10 +9,12 @@ from mpmath import mp
 from scipy.special import ellipk
 
 import generated.double_pendulum as dp
+import generated.driven_pendulum as driven
+import generated.foucault_pendulum as foucault
 import generated.single_pendulum as sp
 from solvers.references.extrapolation import extrapolated
 from solvers.references.pendulum import jacobi, pendulum
-from solvers.references.taylor import sine_and_cosine, taylor
+from solvers.references.taylor import NoSeriesError, sine_and_cosine, taylor
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
 EXTENDED = np.finfo(np.longdouble).nmant > 60
@@ -93,6 +95,13 @@ def test_the_period_is_the_complete_elliptic_integral() -> None:
     period = 4 * sqrt(2.0 / 9.81) * ellipk(np.sin(amplitude / 2) ** 2)
     end = taylor(sp, sp.DEFAULTS, (amplitude, 0.0), [0, period])[-1]
     assert end == pytest.approx([amplitude, 0.0], abs=1e-14)
+
+
+def test_equations_that_have_no_series_are_refused() -> None:
+    with pytest.raises(NoSeriesError, match=r"driven_pendulum .* depend on time"):
+        taylor(driven, driven.DEFAULTS, (1.0, 0.0), [0, 1])
+    with pytest.raises(NoSeriesError, match=r"foucault_pendulum .* call a function"):
+        taylor(foucault, foucault.DEFAULTS, (30.0, 10.0, 0.0, 0.0), [0, 1])
 
 
 def test_decimal_sine_and_cosine() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from derive.expression import ExpressionError
 from derive.report.equation import Equation, Stated
-from derive.report.judgement import EQUATIONS, judged, verdict
+from derive.report.judgement import EQUATIONS, judged, named, verdict
 from derive.report.programs import programs
 from derive.statement import RELATION
 from solvers.order_conditions import order
@@ -196,3 +196,9 @@ def test_the_programs_are_read_as_they_are() -> None:
     assert "it assigns to its functions f1, f2, f3, f4" in third.stops
     assert "it never assigns to j1, j2, j3, j4, which it needs" in third.stops
     assert any("duration: 50 instead of 5" in reason for reason in third.differs)
+
+
+def test_an_equation_that_is_not_there_is_named_with_its_nearest() -> None:
+    assert named("eq33").id == "eq33"
+    with pytest.raises(LookupError, match=r"no equation 'eq333' .did you mean 'eq33'"):
+        named("eq333")

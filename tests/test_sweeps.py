@@ -288,6 +288,7 @@ def test_a_map_of_a_system_of_one_s_own_needs_its_texts_only(tmp_path: Path) -> 
     ({"maps": {"l1": Lyapunov()}, "axes": Grid({"theta1": [1], "theta2": [1], "l1": [1]})},
      "cannot be a map's name"),
     ({"maps": {"a": Samples(("theta1",), 5), "b": Samples(("theta1",), 6)}}, "as many"),
+    ({"maps": {"a": Final(())}}, "map a keeps nothing: name some of theta1"),
     ({"maps": {"a": Final(("theta",))}}, "'theta' .did you mean 'theta"),
     ({"axes": Grid({"theta1": [1.0]})}, "theta2 is missing"),
     ({"axes": Grid({"thet1": [1.0]})}, "'thet1' .did you mean 'theta1'"),

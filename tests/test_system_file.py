@@ -1,8 +1,10 @@
 """Systems as TOML files: what they say, and what is refused, at once and without executing it."""
 
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 
+import numpy as np
 import pytest
 import sympy as sp
 
@@ -13,6 +15,7 @@ from derive.system_file import read_system
 from solvers.answers.answer import answer
 from solvers.answers.seen import energy_errors
 from solvers.cli import generated_module, specialiser
+from solvers.cli import main as holonomic
 from solvers.scenes.shipped import find
 
 BEAD = """
@@ -206,6 +209,18 @@ def test_deeply_nested_definitions_are_derived_as_they_are(tmp_path: Path) -> No
     assert perf_counter() - begun < 30
 
 
+def test_what_has_no_generated_code_ends_every_command_alike(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written(tmp_path, BEAD.replace('"m*g*height"', '"m*g*height**(5/4)"'), "odd")
+    scene = written(tmp_path, 'system = "odd.toml"\nduration = 1\ninitial = { x = 1 }\n', "scene")
+    with pytest.raises(SystemExit, match="2"):
+        holonomic(["run", str(scene)])
+    assert "no generated code for" in capsys.readouterr().err
+    assert holonomic(["derive", str(tmp_path / "odd.toml"), "--output", str(tmp_path)]) == 2
+    assert "no generated code for" in capsys.readouterr().err
+
+
 def test_files_that_are_too_large_or_not_there_are_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -273,6 +288,7 @@ def test_decimals_are_the_fractions_that_their_digits_say() -> None:
         potential=0.5 * m * x**2,
     )  # fmt: skip
     assert found.potential == m * x**2 / 2
+    assert replace(found, potential=np.int64(3)).potential == 3
     assert Derivation(found).mass_matrix[0] == m / 100
 
 

@@ -18,7 +18,28 @@ PUBLISHED = Path(__file__).parent.parent / "published"
 def verify(names: Sequence[str], *, as_json: bool) -> int:
     """Judge files, or the published equations of systems; print; return the exit code.
 
-    0 if all are right, 1 if one is wrong, 2 if one cannot be read.
+    Parameters
+    ----------
+    names : sequence of str
+        Paths that end in ``.toml``, and names of systems with published equations.
+    as_json : bool
+        Whether to print JSON instead of words.
+
+    Returns
+    -------
+    int
+        0 if all equations are right, 1 if one is wrong, 2 if one cannot be read.
+
+    Raises
+    ------
+    TableError
+        When a file is no hand derivation, or no published equations are called so.
+    ExpressionError
+        When a parameter is set to what is no formula.
+    UnknownSystemError
+        When a file is about a system that does not ship.
+    SystemDefinitionError
+        When a file is about a system whose own file is wrong.
     """
     found = [judge(_place(name), system_of) for name in names]
     if as_json:

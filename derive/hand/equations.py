@@ -50,10 +50,17 @@ def judge(path: Path, system_of: Callable[[str], System]) -> HandDerivation:
     system_of : callable
         Gives a system by its name, or by the path of its file.
 
+    Returns
+    -------
+    HandDerivation
+        With a judgement on each equation, those that cannot be read among them.
+
     Raises
     ------
     TableError
         When it is no such file, or names what a system has not.
+    ExpressionError
+        When a parameter is set to what is no formula.
     """
     table = Table(str(path), read(path), (*ABOUT, *EQUATIONS))
     name = table.text("system")

@@ -123,6 +123,22 @@ def scale(
     """The factor with which `right` agrees with most of the terms written.
 
     Equations may have one. Where opinions are divided, terms with `trusted` symbols decide.
+
+    Parameters
+    ----------
+    parts : collection of Written
+        The terms of the sum that is written.
+    right : sympy.Expr
+        What the sum should be, up to a factor.
+    state : collection of sympy.Symbol
+        All that changes; the factor is made of other symbols.
+    trusted : collection of sympy.Symbol
+        Whose terms count first, such as accelerations.
+
+    Returns
+    -------
+    sympy.Expr
+        1 if both sums have no term in common.
     """
     have, wanted = _compared(parts, right, state)
     shared = [dependent for dependent in have if dependent in wanted]

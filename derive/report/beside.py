@@ -83,6 +83,11 @@ def beside(
         Of the double pendulum.
     verdict : callable
         Gives the verdict on an equation of the report by its id.
+
+    Yields
+    ------
+    Beside
+        From the positions to Hamilton's equations.
     """
     for step in steps(derivation):
         yield Beside(step, tuple(map(verdict, PLACES[step.title].split())))

@@ -10,6 +10,7 @@ from functools import cache
 import sympy as sp
 
 from derive.expression import ExpressionError, Value, parsed
+from derive.near import near
 from derive.report import appendix, chapters, contexts
 from derive.report.contexts import STRAY
 from derive.report.equation import Equation, Stated, Verdict
@@ -36,13 +37,38 @@ def verdicts(order_of: OrderOf) -> list[Verdict]:
     ----------
     order_of : callable
         ``order_of(A, b)``, the order of a Runge–Kutta method by its order conditions.
+
+    Returns
+    -------
+    list of Verdict
+        One for each of `EQUATIONS`.
     """
     return [verdict(equation, order_of) for equation in EQUATIONS]
 
 
 def named(name: str) -> Equation | Stated:
-    """The equation of the report whose id this is, such as ``eq33``."""
-    return next(equation for equation in EQUATIONS if equation.id == name)
+    """The equation of the report whose id this is.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``eq33`` for equation (33), or ``A9`` for the ninth display without a number.
+
+    Returns
+    -------
+    Equation or Stated
+        Stated where nothing here can decide it.
+
+    Raises
+    ------
+    LookupError
+        When no equation has this id.
+    """
+    for equation in EQUATIONS:
+        if equation.id == name:
+            return equation
+    known = [equation.id for equation in EQUATIONS]
+    raise LookupError(f"the report has no equation {name[:50]!r}{near(name, known)}")
 
 
 def verdict(equation: Equation | Stated, order_of: OrderOf) -> Verdict:
@@ -50,6 +76,25 @@ def verdict(equation: Equation | Stated, order_of: OrderOf) -> Verdict:
 
     ``verified``: it holds as printed. ``misprint``: it does not, and its correction
     does. ``wrong``: neither does, which would be a fault of this project's.
+
+    Parameters
+    ----------
+    equation : Equation or Stated
+        As `named` gives it; one that is stated has its verdict with it.
+    order_of : callable
+        ``order_of(A, b)``, the order of a Runge–Kutta method by its order conditions.
+
+    Returns
+    -------
+    Verdict
+        Of a misprint with its correction, how far it is from that, and a number that shows it.
+
+    Raises
+    ------
+    ExpressionError
+        When the equation is no formula, or has a name without a meaning.
+    NotImplementedError
+        When it is not rational in symbols, sines and cosines, so that nothing decides it.
     """
     if isinstance(equation, Stated):
         return Verdict(equation.id, equation.verdict, equation.printed, note=equation.reason)

@@ -22,10 +22,24 @@ class NotRungeKuttaError(ValueError):
 def coefficients(lines: Sequence[str]) -> tuple[list[list[Fraction]], list[Fraction]]:
     """A and b of ``m_k = h*f(t_i + c*h, w_i + Σ a*m_j)``, …, ``w_next = w_i + Σ b*m_k``.
 
+    Parameters
+    ----------
+    lines : sequence of str
+        The four stages, then the step.
+
+    Returns
+    -------
+    A : list of list of Fraction
+        Stage matrix, a row for each stage.
+    b : list of Fraction
+        Weights of the stages.
+
     Raises
     ------
     NotRungeKuttaError
         When a line has another form, or c is not the sum of its row of A.
+    ExpressionError
+        When a line is no formula.
     """
     *stages, step = lines
     A = []

@@ -94,18 +94,38 @@ def answer(
     scene : Scene
         What is asked.
     specialiser : callable, optional
-        Makes code for the scene alone, where the scene asks for it.
+        ``specialiser(module, params, way)`` gives the module with these parameters folded in;
+        needed where ``scene.code`` is ``"specialised"``.
     tell : callable, optional
-        Is told what is going on.
+        ``tell(text)`` is told what is going on.
+
+    Returns
+    -------
+    Answer
+        Its ``is_met`` says whether the error estimate stays below ``scene.accuracy``, which it
+        need not where the scene names a model or a step.
 
     Raises
     ------
     solvers.models.full.NotAccurateError
         When not even the full equations come as close as asked.
+    solvers.models.full.TooLongError
+        When they take longer than anybody waits for.
     solvers.models.model.OutsideDomainError
-        When there is no model, since a coordinate moves no mass.
+        When there is no model, since a coordinate moves no mass; or when the model that the scene
+        names says nothing about its motion.
     ValueError
         When the scene asks for special code and nobody makes any.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers.scenes.scene import Scene
+    >>> found = answer(Scene(sp, sp.DEFAULTS, (0.001, 0.0), 10.0, accuracy=1e-6))
+    >>> found.choice.model.name
+    'normal modes'
+    >>> found.is_met
+    True
     """
 
     def code(asked: Asked, way: Way) -> Asked:

@@ -30,7 +30,19 @@ PANEL, ROW, WRITTEN = 4.6, 3.6, 15
 
 
 def drawn(answers: Sequence[Answer]) -> Figure:
-    """All that a scene has to show, with what is shown beside it; the note stands below."""
+    """All that a scene has to show, with what is shown beside it; the note stands below.
+
+    Parameters
+    ----------
+    answers : sequence of Answer
+        The scene's own, then those of the scenes beside it; one at least.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A panel for each of the scene's ``pictures``, row by row; without these, for everything
+        that there is to see.
+    """
     main = answers[0]
     pictures = main.scene.pictures or usual(main)
     columns = min(len(pictures), 3 if len(pictures) <= MOST else 4)

@@ -23,9 +23,19 @@ def places(answer: Answer) -> np.ndarray:
 
 
 def projected(positions: np.ndarray) -> np.ndarray:
-    """Positions of shape (masses, axes, samples) as they are seen: in the plane as they are.
+    """Positions as they are seen: in the plane as they are.
 
     In space from above and from the side, without perspective.
+
+    Parameters
+    ----------
+    positions : ndarray of shape (masses, axes, samples)
+        In m, with 2 or 3 axes.
+
+    Returns
+    -------
+    ndarray of shape (masses, 2, samples)
+        In m, to the right and up.
     """
     if positions.shape[1] == 2:
         return positions
@@ -36,10 +46,22 @@ def projected(positions: np.ndarray) -> np.ndarray:
 
 
 def links(answer: Answer, positions: np.ndarray) -> list[tuple[int, int]]:
-    """Which masses are joined, by their numbers; -1 is the origin. `positions` are `places`.
+    """Which masses are joined, by their numbers; -1 is the origin.
 
     Neighbours that keep their distance are, and a single mass whose distance from the origin
     is a coordinate.
+
+    Parameters
+    ----------
+    answer : Answer
+        The motion, with its coordinates.
+    positions : ndarray of shape (masses, axes, samples)
+        Its masses' `places` in m.
+
+    Returns
+    -------
+    list of pairs of int
+        In the order of the masses, the one before it first.
     """
     joined = []
     before = np.zeros(positions.shape[1:])

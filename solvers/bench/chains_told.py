@@ -23,6 +23,12 @@ def figures(
         Gives the generated module of a system.
     hy : module
         heyoka.
+
+    Returns
+    -------
+    dict of str
+        As `told` takes them, by ``derived and emitted``, ``right-hand sides``, ``integrated``,
+        ``growth`` and ``exponents``.
     """
     rows = growth.growth(made)
     return {

@@ -20,7 +20,17 @@ def double_pendulum(hy: Any) -> dict[str, list[tuple[Any, Any]]]:
 
     ``positions`` derives them by heyoka's own Lagrangian from the positions of the
     masses, as holonomic does; ``textbook`` from the kinetic energy that a textbook
-    prints; ``rational`` are those that holonomic generates.
+    prints. Those that holonomic generates come from `generated`.
+
+    Parameters
+    ----------
+    hy : module
+        heyoka.
+
+    Returns
+    -------
+    dict of str to list of pair
+        For each of the two, variables and their rates, angles before velocities.
     """
     theta, omega = hy.make_vars("theta1", "theta2"), hy.make_vars("omega1", "omega2")
     m1, m2, l1, l2, g = (hy.par[k] for k in range(5))
@@ -43,7 +53,21 @@ def double_pendulum(hy: Any) -> dict[str, list[tuple[Any, Any]]]:
 def chain(hy: Any, n: int) -> tuple[list[Any], list[Any], list[tuple[Any, Any]]]:
     """Angles, velocities and equations of n pendulums, from heyoka's own Lagrangian.
 
-    Parameters are masses, lengths and g, as in the generated chain.
+    Left open are masses, lengths and g, as in the generated chain.
+
+    Parameters
+    ----------
+    hy : module
+        heyoka.
+    n : int
+        How many pendulums.
+
+    Returns
+    -------
+    angles, velocities : list
+        heyoka's variables, n of each.
+    equations : list of pair
+        All 2n variables and their rates.
     """
     q = hy.make_vars(*(f"theta{k}" for k in range(n)))
     rates = hy.make_vars(*(f"omega{k}" for k in range(n)))
@@ -69,7 +93,25 @@ def single(hy: Any, equations: Any, start: Sequence[float], params: Sequence[flo
            tol: float, *, compact: bool = False) -> Callable[[], Array]:  # fmt: skip
     """A function that integrates one motion from `start` and returns its state at `end`.
 
-    In `compact` mode, which large systems need, since else they compile for minutes.
+    Parameters
+    ----------
+    hy : module
+        heyoka.
+    equations : list of pair
+        Variables and their rates.
+    start, params : sequence of float
+        State at time 0, and parameters, in the order of the equations.
+    end : float
+        In s.
+    tol : float
+        Tolerance of a step.
+    compact : bool
+        Large systems need it, since else they compile for minutes.
+
+    Returns
+    -------
+    callable
+        Takes nothing. The state is heyoka's own array, which the next call overwrites.
     """
     integrator = hy.taylor_adaptive(
         equations, list(start), tol=tol, pars=list(params), compact_mode=compact

@@ -46,6 +46,11 @@ def main(
         Derive a chain of pendulums here, and with SymPy's own mechanics.
     mechanics : callable
         Gives its equations.
+
+    Returns
+    -------
+    int
+        The exit code, 0.
     """
     parser = argparse.ArgumentParser(
         prog="holonomic bench",

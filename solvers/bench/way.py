@@ -71,6 +71,16 @@ def ways(
         Gives another program's package.
     chain, mechanics : callable
         Derive a chain of pendulums, here and with SymPy's mechanics.
+
+    Returns
+    -------
+    list of Way
+        Ours first.
+
+    Raises
+    ------
+    ArithmeticError
+        When a program does not come within `ERROR` of the end with any tolerance.
     """
     programs: Mapping[str, Callable[[], tuple[float, float, Run]]] = {
         "holonomic": lambda: _ours(module, chain),

@@ -21,7 +21,21 @@ EXAMPLE = "verner87"
 
 
 def work_precision(title: str, curves: Sequence[Curve]) -> Figure:
-    """Methods in seconds and in calls; forms and backends; other programs."""
+    """Methods in seconds and in calls; forms and backends; other programs.
+
+    Parameters
+    ----------
+    title : str
+        Of the picture.
+    curves : sequence of Curve
+        Of one scene; those that no panel wants are left out.
+
+    Returns
+    -------
+    Figure
+        Four panels of the global error in rad and rad/s over time in s, one of them over
+        calls of the right-hand side.
+    """
     figure, (seconds, calls, choices, peers) = panels(title, rows=2, columns=2, size=(14, 10))
     for n, method in enumerate(METHODS):
         style = {"color": COLOURS[n % len(COLOURS)], "linestyle": STYLES[n // len(COLOURS)]}
@@ -66,7 +80,20 @@ def _draw(panel: Axes, curve: Curve, work: str, label: str, **style: str) -> Non
 
 
 def steps(title: str, curves: Sequence[Curve]) -> Figure:
-    """Errors of the report's rules over the step."""
+    """Errors of the report's rules over the step.
+
+    Parameters
+    ----------
+    title : str
+        Of the picture.
+    curves : sequence of Curve
+        Of one scene; of these the report's rules, compiled, in Lagrange's form.
+
+    Returns
+    -------
+    Figure
+        The global error in rad and rad/s over the step in s, both logarithmic.
+    """
     figure, (axes,) = panels(title, size=(7.5, 5))
     for (name, method), colour in zip(REPORT.items(), COLOURS, strict=False):
         for curve in curves:

@@ -36,9 +36,10 @@ class Turning:
     method : str
         Which.
     h, global_error : float
-        The step with the least error, in s, and that error, of two neighbours the worse.
+        The shorter of the two neighbouring steps of which the worse is best, in s, and its
+        error: the curve ends there, and a single lucky run does not count.
     finest, finest_error : float
-        The shortest step that was tried, and its error.
+        The shortest step with a result, in s, and its error.
     order : float
         By what power of the step errors fall before, observed; NaN where they do not yet
         fall as the method's order says.
@@ -53,7 +54,18 @@ class Turning:
 
 
 def turnings(curves: Sequence[Curve]) -> list[Turning]:
-    """For the report's rules, compiled, in Lagrange's form."""
+    """For the report's rules, compiled, in Lagrange's form.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Of one scene; other curves are left out.
+
+    Returns
+    -------
+    list of Turning
+        For each rule that has a curve, from RK1 to RK4.
+    """
     found = []
     for method in REPORT.values():
         curve = next((c for c in curves if (c.method, c.form, c.backend)

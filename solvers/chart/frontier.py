@@ -45,7 +45,20 @@ class Best:
 
 
 def frontier(curves: Sequence[Curve], work: str = "work_seconds") -> list[Best]:
-    """The cheapest combination for each error that some combination reaches."""
+    """The cheapest combination for each error that some combination reaches.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Of one scene.
+    work : {"work_seconds", "work_rhs"}
+        What is to be cheap: time in s, or calls of the right-hand side.
+
+    Returns
+    -------
+    list of Best
+        One for each of `ERRORS` that is reached, the largest first.
+    """
     found = []
     for error in ERRORS:
         costs = [(cost, curve) for curve in curves if isfinite(cost := curve.at(error, work))]

@@ -52,7 +52,29 @@ def combinations(module: ModuleType) -> Iterator[Combination]:
 
 
 def curves(scene: Scene, truth: Reference, wanted: Iterable[Combination]) -> list[Curve]:
-    """A curve for each combination; those that no compiler builds are left out."""
+    """A curve for each combination; those that no compiler builds are left out.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is run.
+    truth : Reference
+        Its end, beside which errors are found.
+    wanted : iterable of tuple
+        Method, form and backend of each, as `combinations` gives them.
+
+    Returns
+    -------
+    list of Curve
+        In the order of `wanted`, without those of which no run means anything.
+
+    Raises
+    ------
+    ValueError
+        When the module has no such form, or the method cannot be run in it.
+    solvers.catalogue.UnknownMethodError
+        When no method has this name.
+    """
     found = []
     for combination in wanted:
         try:

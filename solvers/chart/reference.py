@@ -43,7 +43,25 @@ class Reference:
 
 
 def reference(scene: Scene) -> Reference:
-    """The end of a scene's motion, and differences between three families of references."""
+    """The end of a scene's motion, and differences between three families of references.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose equations are free of time.
+
+    Returns
+    -------
+    Reference
+        With the end by Taylor series. The extrapolated midpoint rule stands beside it unless
+        a mode is `STIFF` times as fast as another, elliptic functions if it is the single
+        pendulum.
+
+    Raises
+    ------
+    TypeError
+        When the equations call a function beside sines and cosines of angles.
+    """
     module, params, span = scene.module, scene.params, (0.0, scene.duration)
     end, rough = (taylor(module, params, scene.y0, span, digits)[-1] for digits in (DIGITS, FEWER))
     error = max(float(np.abs(end - rough).max()), float(np.spacing(np.abs(end).max())))

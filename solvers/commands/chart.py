@@ -35,9 +35,14 @@ def main(
     argv : sequence of str
         Options.
     module : callable
-        Gives a generated module by its name.
+        Gives a generated module by its name; raises `LookupError` for an unknown one.
     package : callable
         Gives another program's package by its name, or None if it is not installed.
+
+    Returns
+    -------
+    int
+        Exit code 0; what goes wrong is raised.
     """
     scenes, arguments = options(
         argv, module, name="chart", scenes="what to chart", usual=USUAL, example="report --json",

@@ -42,7 +42,12 @@ def main(
     derived : mapping of str to callables
         The stations before there is code.
     style : str
-        How their part of the page looks.
+        How their part of the page looks, as CSS.
+
+    Returns
+    -------
+    int
+        Exit code 0; what goes wrong is raised.
     """
     parser = argparse.ArgumentParser(
         prog="holonomic demo",

@@ -32,6 +32,20 @@ def options(
         Their names if none is given.
     record : str
         What ``--record`` does, if the command has it.
+
+    Returns
+    -------
+    scenes : list of Scene
+        In the order in which they are named, each once.
+    arguments : argparse.Namespace
+        ``scenes``, ``output`` and ``json``; and ``record``, if the command has it.
+
+    Raises
+    ------
+    SystemExit
+        When an option or a scene makes no sense, with what is allowed on standard error.
+    OSError
+        When a scene cannot be read, or the folder cannot be made.
     """
     parser = argparse.ArgumentParser(
         prog=f"holonomic {name}",

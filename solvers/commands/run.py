@@ -33,6 +33,18 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType], specialiser: 
         Gives a generated module by its name; raises `LookupError` for an unknown one.
     specialiser : callable
         Makes code for one scene.
+
+    Returns
+    -------
+    int
+        Exit code 0; what goes wrong is raised.
+
+    Raises
+    ------
+    ValueError
+        When two scenes have the same name, or there is no model of one.
+    ArithmeticError
+        When a scene cannot be answered as accurately as it asks.
     """
     scenes, arguments = options(
         argv, module, name="run", scenes="what to run: a name, or a file that ends in .toml",

@@ -40,7 +40,12 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
     argv : sequence of str
         Options.
     module : callable
-        Gives a generated module by its name.
+        Gives a generated module by its name; raises `LookupError` for an unknown one.
+
+    Returns
+    -------
+    int
+        Exit code 0; what goes wrong is raised.
     """
     scenes, arguments = options(
         argv, module, name="stability", scenes="whose small motions to judge", usual=USUAL,

@@ -49,6 +49,20 @@ def main(
         Gives a generated module by its name; raises `LookupError` for an unknown one.
     package : callable
         Gives a package by its name, or None if it is not installed.
+
+    Returns
+    -------
+    int
+        Exit code: 0, or 3 when no motion has ended as it should.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        When the user interrupts; the chunks that are done are kept.
+    ValueError
+        When the sweep makes no sense, or another one is in its folder.
+    OSError
+        When no scheduler answers, Dask is not installed, or a file cannot be written.
     """
     parser = argparse.ArgumentParser(
         prog="holonomic sweep",

@@ -21,7 +21,25 @@ FUNCTIONS = {
 
 
 def operations(module: ModuleType, function: str) -> int:
-    """What a function says of itself: additions, multiplications, divisions and calls."""
+    """What a function says of itself: additions, multiplications, divisions and calls.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    function : str
+        One of its functions, such as ``rhs``.
+
+    Returns
+    -------
+    int
+        Operations a call.
+
+    Raises
+    ------
+    ValueError
+        When the function does not say: then the module must be generated anew.
+    """
     words = inspect.getdoc(getattr(module, function)) or ""
     found = re.search(r"(\d+) operations", words)
     if not found:

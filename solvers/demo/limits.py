@@ -62,7 +62,18 @@ def limits(scene: Scene) -> Station:
 
 
 def regions(functions: Mapping[str, StabilityFunction]) -> Chart:
-    """Boundaries |R| = 1 in one panel."""
+    """Boundaries |R| = 1 in one panel.
+
+    Parameters
+    ----------
+    functions : mapping of str to StabilityFunction
+        By what they are called in the legend; up to seven, which is how many colours there are.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The plane of hλ, a step times an eigenvalue, which has no unit.
+    """
     figure, (panel,) = panels("", size=(5.2, 4.8))
     x, y = np.linspace(LEFT, RIGHT, 331), np.linspace(-TOP, TOP, 421)
     for function, colour in zip(functions.values(), COLOURS, strict=False):

@@ -62,7 +62,12 @@ def page(
     made : mapping of str to str
         Where and with what the page was made.
     style : str
-        Of the derivation.
+        Of the derivation, as CSS.
+
+    Returns
+    -------
+    str
+        HTML, a whole file.
     """
     title = "Double pendulum: from positions to motion"
     body = [

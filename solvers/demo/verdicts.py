@@ -25,6 +25,11 @@ def verdicts(judged: Mapping[str, Any], misprints: Sequence[str]) -> str:
         As ``holonomic verify --json`` prints it.
     misprints : sequence of str
         HTML of each wrong line and its correction.
+
+    Returns
+    -------
+    str
+        HTML, a part of the page.
     """
     claims = [(c["id"], c["claim"], c["verdict"], c["number"]) for c in judged["claims"]]
     programs = [

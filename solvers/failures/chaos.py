@@ -57,6 +57,30 @@ def lyapunov(
     A small change is carried along by the generated variational equations and brought
     back to length 1 every second; the exponent is the mean of the logarithms by which it
     has grown (G. Benettin, L. Galgani, J.-M. Strelcyn, Physical Review A 14, 2338, 1976).
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    params : sequence of float
+        In the order of ``module.PARAMETERS``.
+    y0 : sequence of float
+        Coordinates and velocities at the beginning, in the order of ``module.STATE``.
+    duration : float
+        Over which the mean is taken, in s: `FEWEST` at least, and whole seconds of it. The
+        first `TRANSIENT` seconds of the motion come before it.
+
+    Returns
+    -------
+    Mean
+        The exponent and its standard error, both in 1/s.
+
+    Raises
+    ------
+    ValueError
+        When an argument makes no sense.
+    solvers.prepared.NotFinishedError
+        When the motion does not go on that long.
     """
     run = _stretch(module, params)
     n = len(module.STATE)

@@ -57,7 +57,18 @@ def stiffness(found: Sequence[Cost]) -> Figure:
 
 
 def drift(found: Sequence[Drift]) -> Figure:
-    """Largest energy error so far over time."""
+    """Largest energy error so far over time.
+
+    Parameters
+    ----------
+    found : sequence of Drift
+        Of at most seven methods, as `solvers.failures.drift.study` finds them.
+
+    Returns
+    -------
+    Figure
+        Both axes logarithmic, time in periods of the slow mode.
+    """
     figure, (axes,) = panels("Energy over very many periods: lost by Runge-Kutta methods, "
                              "kept by symplectic ones", size=(8, 5))  # fmt: skip
     colours = dict(zip(dict.fromkeys(d.method for d in found), COLOURS, strict=False))
@@ -92,7 +103,18 @@ def singular(found: Sequence[Loss]) -> Figure:
 
 
 def chaos(found: Mapping[str, Any]) -> Figure:
-    """Growth of a difference; horizons seen and predicted."""
+    """Growth of a difference; horizons seen and predicted.
+
+    Parameters
+    ----------
+    found : mapping of str
+        ``exponent``, ``separation`` and ``horizons`` of `solvers.failures.studies.chaos_study`.
+
+    Returns
+    -------
+    Figure
+        Two panels: the difference over time, and horizons over the tolerance, both in s.
+    """
     figure, (growth, horizons) = panels("Chaos in the report's motion", columns=2)
     apart, exponent = found["separation"], found["exponent"]
     growth.semilogy(apart.t, apart.distance, color=COLOURS[0], label="two references")

@@ -69,7 +69,29 @@ class Drift:
 
 def study(pendulum: ModuleType, periods: float, cases: Sequence[tuple[str, str, int]] = CASES,
           ) -> list[Drift]:  # fmt: skip
-    """Energy errors of the double pendulum over so many periods of its slow mode."""
+    """Energy errors of the double pendulum over so many periods of its slow mode.
+
+    Parameters
+    ----------
+    pendulum : module
+        The generated double pendulum.
+    periods : float
+        How many: more than `LENGTH` by one at least.
+    cases : sequence of tuple
+        Method, form and steps per period of each run.
+
+    Returns
+    -------
+    list of Drift
+        One for each of `cases`.
+
+    Raises
+    ------
+    ValueError
+        When a method or form does not exist, or there are too few periods.
+    KeyboardInterrupt
+        When the user interrupts; no further case is begun.
+    """
     params = pendulum.DEFAULTS
     period = 2 * pi / Modes.at_rest(pendulum, params).frequencies[0]
 

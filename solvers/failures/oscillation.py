@@ -40,6 +40,19 @@ def growth(pendulum: ModuleType, method: str, steps_per_period: float) -> Growth
     """Growth of a small oscillation of the single pendulum, predicted from R(z), and run.
 
     So many periods are run as make it grow a hundredfold, if it grows, but at most 1000.
+
+    Parameters
+    ----------
+    pendulum : module
+        The generated single pendulum.
+    method : str
+        One of ``solvers.catalogue.names()``.
+    steps_per_period : float
+        How long its steps are.
+
+    Returns
+    -------
+    Growth
     """
     length, gravity = pendulum.DEFAULTS[1:]
     frequency = np.sqrt(gravity / length)

@@ -48,6 +48,16 @@ def sensitivity(module: ModuleType) -> list[Sensitivity]:
 
     The fall from a distance δ takes ln(const/δ)/ω, so that a change of δ shifts it by
     1/(ωδ) of time; angle and velocity change by at most 2ω and ω² in a second.
+
+    Parameters
+    ----------
+    module : module
+        The generated single pendulum.
+
+    Returns
+    -------
+    list of Sensitivity
+        One for each of `DISTANCES`.
     """
     _, length, gravity = module.DEFAULTS
     omega = sqrt(gravity / length)
@@ -97,6 +107,16 @@ def falls(module: ModuleType) -> list[Fall]:
     With energy k² (1 on the separatrix) the quarter period is K(k²)/ω or K(1/k²)/(kω),
     and K = ln(4/√|1 - k²|) for k close to 1 (NIST Digital Library of Mathematical
     Functions, 19.12.1).
+
+    Parameters
+    ----------
+    module : module
+        The generated single pendulum.
+
+    Returns
+    -------
+    list of Fall
+        For each of `METHODS` one for each of `TOLERANCES`.
     """
     _, length, gravity = module.DEFAULTS
     omega = sqrt(gravity / length)
@@ -141,6 +161,16 @@ def upright(module: ModuleType) -> Upright:
     At first the angle from upright is δ cosh ωt; when that is large beside δ and still
     small, tan(angle/4) = (δ/8) e^(ωt), and it stays so: the horizontal is reached after
     ln(8 tan(π/8)/δ)/ω.
+
+    Parameters
+    ----------
+    module : module
+        The generated single pendulum.
+
+    Returns
+    -------
+    Upright
+        With the times in s that the formula predicts and that a run by ``verner98`` sees.
     """
     _, length, gravity = module.DEFAULTS
     omega = sqrt(gravity / length)

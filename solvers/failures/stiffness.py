@@ -115,10 +115,25 @@ def reference(
 ) -> float:  # fmt: skip
     """The slow coordinate at the end, by an explicit and by an implicit method.
 
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    params, start : sequence of float
+        In the order of ``module.PARAMETERS`` and ``module.STATE``.
+    slow : int
+        Which coordinate is the slow one.
+
+    Returns
+    -------
+    float
+        In rad, after `DURATION`.
+
     Raises
     ------
     AssertionError
-        When they differ by more than a hundredth of the error that is asked for.
+        When they differ by more than a hundredth of the error that is asked for, or one of
+        them does not reach the end.
     """
     ends = [
         run.end[slow]

@@ -85,7 +85,27 @@ def studies(
 
 
 def chaos_study(double: ModuleType, size: Size) -> dict[str, Any]:
-    """Exponent, separation, horizons and what holds beyond them."""
+    """Exponent, separation, horizons and what holds beyond them.
+
+    Parameters
+    ----------
+    double : module
+        The generated double pendulum; it moves from `CHAOTIC` with its default parameters.
+    size : Size
+        How much is computed: `FULL`, `SMALL` or another. Of its methods SciPy's are left out.
+
+    Returns
+    -------
+    dict of str
+        ``exponent``, a `chaos.Mean` in 1/s; ``separation``, a `chaos.Separation`;
+        ``horizons``, a list of `chaos.Horizon`; ``statistics``, a list of
+        `chaos.Statistics`, one for each of `LONG_RUNS`.
+
+    Raises
+    ------
+    solvers.catalogue.UnknownMethodError
+        When one of the other methods does not exist.
+    """
     params = double.DEFAULTS
     exponent = chaos.lyapunov(double, params, CHAOTIC, size.exponent)
     t, truth = chaos.reference(double, params, CHAOTIC, size.horizon)

@@ -70,10 +70,19 @@ class EnergyForm:
 def energy_form(asked: Asked) -> EnergyForm:
     """The form of a motion.
 
+    Parameters
+    ----------
+    asked : Asked
+        The motion.
+
+    Returns
+    -------
+    EnergyForm
+
     Raises
     ------
     OutsideDomainError
-        When more than one degree of freedom is left.
+        When more than one degree of freedom is left, or the energy is not finite.
     """
     q, qdot = np.split(np.array(asked.y0), 2)
     shape, turn = _directions(asked)

@@ -60,6 +60,8 @@ class Full:
         What a run took in s, where it is too long to be timed again.
     kept : pair of ndarray, optional
         Times and states of that run.
+    name : str
+        What to call it.
     """
 
     asked: Asked
@@ -99,12 +101,30 @@ class Full:
 def run(asked: Asked, way: Way, setting: float, t: Array) -> Array:
     """States at times, shape (n, state).
 
+    Parameters
+    ----------
+    asked : Asked
+        The motion.
+    way : Way
+        Method and form.
+    setting : float
+        Tolerance, or step in s, or digits.
+    t : ndarray of shape (n,)
+        Times in s, increasing, within the motion's duration.
+
+    Returns
+    -------
+    ndarray of shape (n, state)
+        Coordinates and velocities.
+
     Raises
     ------
     NotAccurateError
         When the integration does not reach its end.
     TooLongError
         When it takes more steps than anybody waits for.
+    solvers.references.taylor.NoSeriesError
+        When the equations have no Taylor series, as in `taylor`.
     """
     if way.is_series:
         # its times begin with the start
@@ -153,6 +173,11 @@ def full(asked: Asked, accuracy: float, way: Way, checked: Asked, setting: float
         The same motion, by which the run is checked.
     setting : float, optional
         The one tolerance or step that is tried: then the error is what it is.
+
+    Returns
+    -------
+    Full
+        With the estimate of its error.
 
     Raises
     ------
@@ -212,12 +237,30 @@ def _apart(asked: Asked, one: Array, other: Array) -> float:
 def series(asked: Asked, accuracy: float, way: Way, times: Array) -> Full:
     """Taylor series to these times, with as many digits as it takes.
 
+    Parameters
+    ----------
+    asked : Asked
+        The motion.
+    accuracy : float
+        How large errors may be.
+    way : Way
+        Series, and the form that they are made of.
+    times : ndarray of shape (n,)
+        In s, increasing.
+
+    Returns
+    -------
+    Full
+        With the states at `times`, and the seconds that they took.
+
     Raises
     ------
     NotAccurateError
-        When not even the most are enough.
+        When not even the most digits are enough.
     TooLongError
         When they take longer than anybody waits for.
+    solvers.references.taylor.NoSeriesError
+        When the equations have no Taylor series, as in `taylor`.
     """
     _refuse_endless(asked, MOST_TURNS)
     if max(map(abs, asked.y0)) > LARGEST_ANGLE:

@@ -62,6 +62,11 @@ def choice(
     tell : callable
         Is told what is being tried.
 
+    Returns
+    -------
+    Choice
+        One of `RUNGS` that the scene names is taken whatever its error.
+
     Raises
     ------
     solvers.models.full.NotAccurateError
@@ -69,7 +74,8 @@ def choice(
     solvers.models.full.TooLongError
         When they take longer than anybody waits for.
     solvers.models.model.OutsideDomainError
-        When there are no full equations, since a coordinate moves no mass.
+        When the model that the scene names says nothing about its motion, or nothing that is
+        asked for moves mass; when there are no full equations, since a coordinate moves none.
     """
     asked = asked_of(scene)
     declined: dict[str, str] = {}

@@ -22,10 +22,22 @@ def light(asked: Asked) -> Pendulum:
     difference between the angle's acceleration and a pendulum's. Kicks of that size, at
     any time, make the error.
 
+    Parameters
+    ----------
+    asked : Asked
+        The motion, and which angle and velocity are wanted.
+
+    Returns
+    -------
+    Pendulum
+        The more the others act on it, the larger is the estimate of its error.
+
     Raises
     ------
     OutsideDomainError
-        When not exactly one angle is wanted, or the others do act on it.
+        When not exactly one angle of several is wanted, or it would not move as a pendulum
+        does; when a coordinate is no angle or moves no mass, or nothing bounds the others'
+        velocities.
     """
     asked.require_mass()
     module, n = asked.module, asked.coordinates
@@ -85,6 +97,22 @@ def _kicked(square: float, motion: Array, times: Array, kick: float) -> Array:
     """What a kick makes at most of angle and velocity, given at any time and in any direction.
 
     It is given as it is: next to the separatrix nothing is in proportion.
+
+    Parameters
+    ----------
+    square : float
+        ω² of the pendulum in 1/s².
+    motion : ndarray of shape (times, 2)
+        Angles in rad and velocities in rad/s, at some of which kicks are given.
+    times : ndarray of shape (times,)
+        When to look after a kick, in s.
+    kick : float
+        What it adds to the velocity, in rad/s.
+
+    Returns
+    -------
+    ndarray of shape (2,)
+        In rad and rad/s.
     """
     worst = np.zeros(2)
     for angle, velocity in motion[:: max(len(motion) // KICKS, 1)]:

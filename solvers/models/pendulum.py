@@ -43,6 +43,15 @@ class Pendulum:
 def pendulum(asked: Asked) -> Pendulum:
     """The closed form, with what rounding does to it.
 
+    Parameters
+    ----------
+    asked : Asked
+        The motion.
+
+    Returns
+    -------
+    Pendulum
+
     Raises
     ------
     OutsideDomainError

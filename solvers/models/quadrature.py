@@ -103,10 +103,20 @@ class Quadrature:
 def quadrature(asked: Asked) -> Quadrature:
     """The orbit, with the error of its series and of rounding.
 
+    Parameters
+    ----------
+    asked : Asked
+        The motion.
+
+    Returns
+    -------
+    Quadrature
+
     Raises
     ------
     OutsideDomainError
-        When more than one degree of freedom is left, or no series converges.
+        When more than one degree of freedom is left, or that one rests or does not come
+        back, or no series converges.
     """
     form = energy_form(asked)
     found = orbit(form)
@@ -132,10 +142,20 @@ def quadrature(asked: Asked) -> Quadrature:
 def orbit(form: EnergyForm) -> Orbit:
     """The series of a motion.
 
+    Parameters
+    ----------
+    form : EnergyForm
+        The motion.
+
+    Returns
+    -------
+    Orbit
+
     Raises
     ------
     OutsideDomainError
-        When no series with `MOST` points converges.
+        When the motion does not come back, or rests, or no series of `MOST` points
+        converges.
     """
     u, u_dot, _ = form.start
     ends = _turning_points(form)
@@ -177,6 +197,16 @@ def orbit(form: EnergyForm) -> Orbit:
 
 def _turning_points(form: EnergyForm) -> tuple[float, float] | None:
     """Where u turns back, on both sides of the beginning; None if it turns over.
+
+    Parameters
+    ----------
+    form : EnergyForm
+        The motion.
+
+    Returns
+    -------
+    pair of float or None
+        The lower one first, in the unit of u.
 
     Raises
     ------

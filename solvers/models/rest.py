@@ -36,10 +36,19 @@ def rest(asked: Asked) -> Rest:
     its solution is a part of one matrix exponential. As e grows, J changes: Gronwall's
     inequality bounds what that adds.
 
+    Parameters
+    ----------
+    asked : Asked
+        The motion.
+
+    Returns
+    -------
+    Rest
+
     Raises
     ------
     OutsideDomainError
-        When the system moves.
+        When the system moves, or a coordinate moves no mass.
     """
     asked.require_mass()
     if any(asked.y0[asked.coordinates :]):

@@ -47,10 +47,19 @@ def small(asked: Asked) -> Small:
     full equations along the modes minus their own, and B the difference of their Jacobians.
     Both means over time are taken from samples.
 
+    Parameters
+    ----------
+    asked : Asked
+        The motion.
+
+    Returns
+    -------
+    Small
+
     Raises
     ------
     OutsideDomainError
-        When the module has no stable equilibrium.
+        When the module has no stable equilibrium, or a coordinate moves no mass.
     """
     asked.require_mass()
     try:

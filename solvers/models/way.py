@@ -75,6 +75,20 @@ def cheapest(module: ModuleType, params: Sequence[float], accuracy: float) -> Wa
     Scenes of the same system are alike, and of these those whose modes are: a method that
     pays where the fastest mode is hundreds of times as fast as the slowest does not where
     both are alike. Of scenes as alike the one that was charted first counts.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    params : sequence of float
+        In the order of ``module.PARAMETERS``.
+    accuracy : float
+        How large errors may be.
+
+    Returns
+    -------
+    Way
+        Where nothing charted is as accurate, that for the smallest error charted.
     """
     spread = mode_spread(module, params)
     system = module.__name__.rpartition(".")[2]

@@ -22,6 +22,11 @@ def document(title: str, body: str, *, style: str, script: str) -> str:
         HTML. Its style attributes and scripts are not obeyed.
     style, script : str
         The only ones that the browser may obey.
+
+    Returns
+    -------
+    str
+        HTML, a whole file.
     """
     # Template fills in once, so that no text of the user's is itself filled in
     return Template(FRAME.read_text(encoding="utf-8")).substitute(

@@ -52,6 +52,11 @@ class Page:
     def write(self, path: Path) -> None:
         """Write the file beside its name, and move it into place; missing folders are made.
 
+        Parameters
+        ----------
+        path : Path
+            Its name; what stands there is replaced.
+
         Raises
         ------
         OSError
@@ -65,6 +70,16 @@ class Page:
 
 def player(tracks: Sequence[Track]) -> str:
     """The part of a page that plays `tracks`; it needs `style` and `script`.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        The runs, one at least.
+
+    Returns
+    -------
+    str
+        HTML, to stand in a body.
 
     Raises
     ------

@@ -19,12 +19,14 @@ MOST_SAMPLES = 20_000
 class Track:
     """One run: where its masses were, and how well it kept its energy.
 
+    It may hold anything: `check` says whether it can be played, and a `Page` asks.
+
     Attributes
     ----------
     label : str
         Which run, such as ``"rk4, h = 0.05 s"``.
     t : ndarray of shape (n,)
-        Increasing times in s.
+        Increasing times in s, two at least.
     positions : ndarray of shape (masses, 2, n)
         In m; x points to the right and y up.
     links : tuple of pairs of int

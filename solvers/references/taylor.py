@@ -36,7 +36,7 @@ def taylor(
     ----------
     module : module
         A generated module whose equations are rational in sines, cosines and other
-        coordinates.
+        coordinates, and free of time.
     params, y0 : sequence of float
         In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact.
     times : array_like of shape (n,)
@@ -49,6 +49,11 @@ def taylor(
     -------
     ndarray of shape (n, state)
         The states, rounded to floats at the very end.
+
+    Raises
+    ------
+    NoSeriesError
+        When the equations call a function, be it of parameters only, or depend on time.
 
     Notes
     -----
@@ -77,11 +82,22 @@ def taylor(
     return np.array(states)
 
 
+class NoSeriesError(ArithmeticError):
+    """Equations that are more than sums, products and quotients of the state."""
+
+
 class _Motion:
     """A motion as series of its state about where it is.
 
     The state is that of the fastest form, followed by the angles, whose slopes are
     velocities that the form holds.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    params, y0 : sequence of float
+        In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact.
     """
 
     def __init__(self, module: ModuleType, params: Sequence[float], y0: Sequence[float]) -> None:
@@ -90,9 +106,13 @@ class _Motion:
         self._tape: Tape = []
         self._state = [Series(self._tape, []) for _ in form.state]
         constants = [Series.number(self._tape, p) for p in params]
-        rates = getattr(module, "rhs" if form.name == "lagrangian" else f"rhs_{form.name}")(
-            0.0, self._state, constants
-        )
+        name = "rhs" if form.name == "lagrangian" else f"rhs_{form.name}"
+        if name in module.TIMED:
+            raise self._refusal(module, "depend on time")
+        try:
+            rates = getattr(module, name)(0.0, self._state, constants)
+        except TypeError:  # of the function, which takes numbers only
+            raise self._refusal(module, "call a function") from None
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
         self._places = dict(form.kept)
         start = [Decimal(0)] * len(form.state)
@@ -105,6 +125,14 @@ class _Motion:
             self._rates.append(self._state[self._places[self._half + k]])
             self._state.append(Series(self._tape, []))
         self.begin(start)
+
+    @staticmethod
+    def _refusal(module: ModuleType, why: str) -> NoSeriesError:
+        system = module.__name__.rpartition(".")[2]
+        return NoSeriesError(
+            f"{system} has no Taylor series, since its equations {why}: ordinary numbers have to "
+            "do; ask for less accuracy or a shorter duration"
+        )
 
     def begin(self, state: Sequence[Decimal]) -> None:
         """Series that begin anew at this state."""

@@ -31,6 +31,13 @@ class MassMatrixWarning(UserWarning):
 def check_masses(module: ModuleType, params: Sequence[float], y0: Sequence[float]) -> None:
     """Refuse coordinates that hardly move mass: those that are absent do not move any.
 
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    params, y0 : sequence of float
+        In the order of ``module.PARAMETERS`` and ``module.STATE``.
+
     Raises
     ------
     ValueError
@@ -68,6 +75,17 @@ def check_method(
 ) -> None:
     """Refuse a method, form and step that do not go together.
 
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    method, form : object
+        Their names, or None.
+    step : float or None
+        In s.
+    duration : float
+        Of the scene in s.
+
     Raises
     ------
     ValueError
@@ -97,6 +115,13 @@ def check_method(
 def check_pictures(pictures: Sequence[str], state: Sequence[str]) -> None:
     """Refuse pictures of what is not there.
 
+    Parameters
+    ----------
+    pictures : sequence of str
+        Such as ``theta1 over t``.
+    state : sequence of str
+        Components of the state.
+
     Raises
     ------
     ValueError
@@ -121,6 +146,15 @@ def curves_of(picture: str) -> tuple[list[str], str]:
 def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[str]) -> None:
     """Refuse to be asked for what is not there, or for no part of the state.
 
+    Parameters
+    ----------
+    outputs : sequence of str
+        What is asked for.
+    state : sequence of str
+        Components of the state.
+    known : sequence of str
+        All that can be asked for.
+
     Raises
     ------
     ValueError
@@ -140,6 +174,11 @@ def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[
 def check_samples(value: object) -> None:
     """Refuse what is no number of samples.
 
+    Parameters
+    ----------
+    value : object
+        How many are asked for.
+
     Raises
     ------
     ValueError
@@ -154,6 +193,11 @@ def check_samples(value: object) -> None:
 def check_positive(**numbers: float | None) -> None:
     """Refuse numbers that are not positive, or not finite.
 
+    Parameters
+    ----------
+    **numbers : float or None
+        By name; None is left out.
+
     Raises
     ------
     ValueError
@@ -167,6 +211,11 @@ def check_positive(**numbers: float | None) -> None:
 def check_accuracy(accuracy: float) -> None:
     """Refuse what numbers cannot resolve.
 
+    Parameters
+    ----------
+    accuracy : float
+        How large errors may be.
+
     Raises
     ------
     ValueError
@@ -178,6 +227,13 @@ def check_accuracy(accuracy: float) -> None:
 
 def check_params(module: ModuleType, params: Sequence[float]) -> None:
     """Refuse negative masses, lengths and stiffnesses.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    params : sequence of float
+        In the order of ``module.PARAMETERS``.
 
     Raises
     ------
@@ -191,6 +247,15 @@ def check_params(module: ModuleType, params: Sequence[float]) -> None:
 
 def check_choice(name: str, value: object, allowed: Sequence[str]) -> None:
     """Refuse what is not one of a few words, or left out.
+
+    Parameters
+    ----------
+    name : str
+        Of what is chosen.
+    value : object
+        What somebody chose; None if it is left out.
+    allowed : sequence of str
+        The words.
 
     Raises
     ------

@@ -43,6 +43,11 @@ def read(path: Path, module: Callable[[str], ModuleType]) -> Scene:
     module : callable
         Gives a generated module by its name; raises `LookupError` for an unknown one.
 
+    Returns
+    -------
+    Scene
+        Named as the file is, without ``.toml``.
+
     Raises
     ------
     InputError
@@ -63,10 +68,26 @@ def _from_here(path: Path, name: str) -> str:
 def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleType]) -> Scene:
     """The scene that a table says.
 
+    Parameters
+    ----------
+    name : str
+        What to call it.
+    table : mapping
+        A scene's file, parsed.
+    module : callable
+        Gives a generated module by its name; raises `LookupError` for an unknown one.
+
+    Returns
+    -------
+    Scene
+        With those that are to be shown beside it.
+
     Raises
     ------
+    InputError
+        When a key or its value makes no sense.
     ValueError
-        When it makes no sense.
+        When values make no sense together.
     """
     said.check_keys("a scene", table, KEYS)
     missing = [key for key in NEEDED if key not in table]

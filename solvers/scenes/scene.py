@@ -35,32 +35,33 @@ class Scene:
         Coordinates and velocities at time 0, in the order of ``module.STATE``.
     duration : float
         In s.
-    accuracy : float
+    accuracy : float, optional
         How large the error of what is asked for may be at any time: in rad, rad/s, m, m/s.
-    outputs : tuple of str
+    outputs : tuple of str, optional
         What is asked for: components of the state, and ``energy``; by default the state.
-    samples : int
+    samples : int, optional
         At how many times, evenly over the duration, both ends included; 0 for a hundred a
         second, within `FEWEST` and `MOST`.
     model : str or None
         One of `MODELS`; by default the smallest that is good enough.
     method, form : str or None
-        Method of integration and form of the equations; by default the cheapest.
+        Method of integration, one of ``solvers.catalogue.names()`` or of SciPy's, and form of the
+        equations, ``lagrangian``, ``hamiltonian`` or ``rational``; by default the cheapest.
     step : float or None
         A fixed step in s instead of one that is controlled.
     code : {"general", "specialised"} or None
         Whether to integrate with code in which the parameters are folded in; by default
         it is general.
-    pictures : tuple of str
+    pictures : tuple of str, optional
         What to draw, each as ``theta1, theta2 over t``, or ``path`` or ``energy``; by
         default all that there is.
-    title, name : str
+    title, name : str, optional
         What to call it, for people and for files.
-    label : str
-        What to call this run beside others.
-    note : str
+    label : str, optional
+        What to call this run beside others; by default its title.
+    note : str, optional
         What it shows, and how sure that is.
-    beside : tuple of Scene
+    beside : tuple of Scene, optional
         What to show beside it.
 
     Raises
@@ -72,6 +73,16 @@ class Scene:
     -----
     solvers.scenes.checks.MassMatrixWarning
         When the mass matrix is nearly singular.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> Scene(sp, sp.DEFAULTS, (0.1, 0.0), 10.0).times.shape
+    (1001,)
+    >>> Scene(sp, sp.DEFAULTS, (0.1,), 10.0)
+    Traceback (most recent call last):
+    ...
+    ValueError: ...
     """
 
     module: ModuleType

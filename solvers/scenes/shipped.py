@@ -28,11 +28,23 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Scene:
     module : callable
         Gives a generated module by its name; raises `LookupError` for an unknown one.
 
+    Returns
+    -------
+    Scene
+        With the scenes beside it.
+
     Raises
     ------
     solvers.said.InputError
         When there is none, or it makes no sense.
     OSError
         When the file cannot be read.
+
+    Warns
+    -----
+    solvers.scenes.checks.MassMatrixWarning
+        When the mass matrix is nearly singular.
+    UserWarning
+        When an initial angle without a unit is more than a turn, so that degrees may be meant.
     """
     return read(said.path("scene", name, FILES), module)

@@ -76,7 +76,29 @@ class CriticalStep:
 
 
 def critical_step(method: str, module: ModuleType, params: Sequence[float]) -> CriticalStep:
-    """Find the longest stable step of a method for small motions of a system about rest."""
+    """Find the longest stable step of a method for small motions of a system about rest.
+
+    Parameters
+    ----------
+    method : str
+        One of ``solvers.catalogue.names()``.
+    module : module
+        A generated module.
+    params : sequence of float
+        In the order of ``module.PARAMETERS``.
+
+    Returns
+    -------
+    CriticalStep
+        The limit in s, as R(z) predicts it and as runs show it.
+
+    Raises
+    ------
+    solvers.catalogue.UnknownMethodError
+        When no method has this name.
+    ValueError
+        When the system has no stable equilibrium that is known, or a mode without mass.
+    """
     modes = Modes.at_rest(module, params)
     fastest = float(modes.frequencies[-1])
     tableau = load(method)

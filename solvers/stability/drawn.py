@@ -29,10 +29,15 @@ def regions(
         Of the picture.
     steps : sequence of CriticalStep
         Methods; those with the same function share a panel.
-    frequencies : ndarray
-        Of the modes about rest: dots, with h at the limit, or 1/frequency if there is none.
+    frequencies : ndarray of shape (modes,)
+        Of the modes about rest in rad/s, ascending: dots, with h at the limit, or
+        1/frequency of the fastest if there is none.
     along : ndarray
-        Eigenvalues along the scene's motion, with the same h.
+        Eigenvalues along the scene's motion in 1/s, with the same h.
+
+    Returns
+    -------
+    Figure
     """
     shared: dict[object, list[CriticalStep]] = {}
     for step in steps:

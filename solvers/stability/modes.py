@@ -36,10 +36,22 @@ class Modes:
     def at_rest(cls, module: ModuleType, params: Sequence[float]) -> Modes:
         """The modes about the equilibrium that the module's ``linear`` is written for.
 
+        Parameters
+        ----------
+        module : module
+            A generated module.
+        params : sequence of float
+            In the order of ``module.PARAMETERS``.
+
+        Returns
+        -------
+        Modes
+            From slow to fast.
+
         Raises
         ------
         ValueError
-            When the module knows no equilibrium, or it is not stable.
+            When the module knows no equilibrium, or it is not stable, or a mode has no mass.
         """
         if not hasattr(module, "linear"):
             raise ValueError(f"{module.__name__} has no equilibrium: small motions have no modes")

@@ -46,14 +46,21 @@ class Grid(_Listed):
 
     Parameters
     ----------
-    values : mapping of str to array_like
+    values : mapping of str to array_like of shape (count,)
         Values in the unit of the coordinate, velocity or parameter of this name; or of the
         energy in J.
 
     Raises
     ------
     ValueError
-        When an axis has no values, or some that are not finite.
+        When there is no axis, one has no values or some that are not finite, or there are more
+        than 2**53 combinations.
+
+    Examples
+    --------
+    >>> grid = Grid({"theta1": [0.0, 0.1, 0.2], "m2": [1.0, 2.0]})
+    >>> grid.shape
+    (3, 2)
     """
 
     def __post_init__(self) -> None:

@@ -53,6 +53,22 @@ def lower_place(
     """A place where a watched coordinate has its value, below all of `places`; empty if none is.
 
     It is looked for by descent from random places, with numbers that are always the same.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    watched : mapping of str to sequence of float
+        Values by coordinate, in rad or m.
+    places : sequence of mapping of str to float
+        Coordinates in rad or m; what is not named is 0.
+    params : sequence of float
+        In the order of ``module.PARAMETERS``.
+
+    Returns
+    -------
+    dict of str to float
+        All coordinates by name, in rad or m.
     """
     own = [np.array([p]) for p in params]
     top = float(barrier(module, places, own, 1)[0])

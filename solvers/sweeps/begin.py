@@ -47,9 +47,27 @@ def begun(
 
 
 def rate(module: ModuleType, state: Array, params: list[Array], place: int, energy: Array) -> Array:
-    """The positive velocity at `place` with which states have an energy; NaN where none has.
+    """The velocity of 0 or more with which states have an energy; NaN where there is none.
 
     The energy is a polynomial of the second degree in the velocity.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    state : ndarray of shape (n, state)
+        States, in which this velocity may be anything.
+    params : list of ndarray of shape (n,)
+        In the order of ``module.PARAMETERS``.
+    place : int
+        Which component of the state it is.
+    energy : ndarray of shape (n,)
+        In J.
+
+    Returns
+    -------
+    ndarray of shape (n,)
+        In rad/s or m/s.
     """
     at = {}
     for value in (-1.0, 0.0, 1.0):

@@ -10,7 +10,7 @@ from solvers.near import near
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.barrier import lower_place
 from solvers.sweeps.map import Map
-from solvers.sweeps.maps import EnergyError, First, Samples
+from solvers.sweeps.maps import EnergyError, Final, First, Samples
 
 #: What may vary or be given beside coordinates, velocities and parameters.
 ENERGY = "energy"
@@ -26,6 +26,15 @@ Values = Mapping[str, float | str]
 
 def check_names(module: ModuleType, axes: Axes, values: Values) -> None:
     """Refuse names that are not there, are there twice or are missing, and wrong numbers.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    axes : Grid, Table or Random
+        What varies.
+    values : mapping of str to float or str
+        What does not.
 
     Raises
     ------
@@ -62,6 +71,15 @@ def check_names(module: ModuleType, axes: Axes, values: Values) -> None:
 def check_energy(module: ModuleType, given: Sequence[str], values: Values) -> None:
     """Refuse an energy that sets nothing, and velocities that are set by none.
 
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    given : sequence of str
+        Names of what varies and of what does not.
+    values : mapping of str to float or str
+        What does not vary.
+
     Raises
     ------
     ValueError
@@ -83,6 +101,17 @@ def check_energy(module: ModuleType, given: Sequence[str], values: Values) -> No
 
 def check_maps(module: ModuleType, axes: Axes, maps: Mapping[str, Map], values: Values) -> None:
     """Refuse maps without a proper name, and what they ask of the system in vain.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    axes : Grid, Table or Random
+        What varies.
+    maps : mapping of str to Map
+        What is kept.
+    values : mapping of str to float or str
+        What does not vary.
 
     Raises
     ------
@@ -107,6 +136,8 @@ def check_maps(module: ModuleType, axes: Axes, maps: Mapping[str, Map], values: 
                     f"map {name} names {component[:50]!r}{near(component, module.STATE)}: known "
                     f"are {', '.join(module.STATE)}"
                 )
+        if isinstance(one, Final) and not one.of:
+            raise ValueError(f"map {name} keeps nothing: name some of {', '.join(module.STATE)}")
         if isinstance(one, First) and not one.events(module):
             raise ValueError(f"map {name} watches nothing: name values by component")
         one.events(module)

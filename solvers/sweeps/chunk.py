@@ -25,6 +25,18 @@ def chunk_length(asked: Sweep, job: Job) -> int:
     There, so much that chunks cost no more than it costs to wait for the last of them. How
     long motions take follows from how often some evaluate their right-hand side, not from
     how fast they happen to be, so that a sweep is always cut alike.
+
+    Parameters
+    ----------
+    asked : Sweep
+        What is to be done.
+    job : Job
+        The same, for one motion.
+
+    Returns
+    -------
+    int
+        One at least.
     """
     most, maps = asked.motions, asked.maps.values()
     starts, params, status = begun(job, asked.module, some(asked.axes, TRIED))

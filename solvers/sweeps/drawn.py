@@ -26,7 +26,29 @@ MOST = 12
 
 
 def drawn(results: Results) -> Figure:
-    """All maps of a sweep, a panel or more each."""
+    """All maps of a sweep, a panel or more each.
+
+    Parameters
+    ----------
+    results : Results
+        What it has found, whole or so far.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Up to `MOST` panels, three in a row; what the colours do not say stands below.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> from solvers.sweeps.axes import Grid
+    >>> from solvers.sweeps.maps import EnergyError
+    >>> from solvers.sweeps.running import sweep
+    >>> from solvers.sweeps.sweep import Sweep
+    >>> axes = Grid({"theta1": [0.1, 0.2, 0.3], "theta2": [0.0, 0.1]})
+    >>> results = sweep(Sweep(dp, axes, {"drift": EnergyError()}, duration=5), "drift")
+    >>> figure = drawn(results)
+    """
     every = list(_panels(results))
     found = every[:MOST]
     columns = min(3, len(found))

@@ -85,7 +85,20 @@ class Final(Map):
 
 @dataclass(frozen=True)
 class Extremes(Final):
-    """The smallest and the largest value of some coordinates, between steps, too."""
+    """The smallest and the largest value of some coordinates, between steps, too.
+
+    Of each motion two numbers a coordinate are kept, in rad or m.
+
+    Parameters
+    ----------
+    of : tuple of str
+        Coordinates; a `solvers.sweeps.sweep.Sweep` raises `ValueError` for other names.
+
+    Examples
+    --------
+    >>> Extremes(("theta1", "theta2")).shape
+    (2, 2)
+    """
 
     @property
     def occurrences(self) -> int:
@@ -200,7 +213,17 @@ class Lyapunov(Map):
 
 @dataclass(frozen=True)
 class EnergyError(Map):
-    """By how much the energy at the end differs from that at the beginning, in J."""
+    """By how much the energy at the end differs from that at the beginning, in J.
+
+    Of each motion one number is kept, above 0 where energy has grown. Where forces or friction
+    change the energy it is no error: a `solvers.sweeps.sweep.Sweep` of such a system raises
+    `ValueError`.
+
+    Examples
+    --------
+    >>> EnergyError().shape
+    ()
+    """
 
     def unit(self, module: ModuleType) -> str:
         """Unit of an energy."""

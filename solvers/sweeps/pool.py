@@ -33,7 +33,14 @@ class Pool:
     Raises
     ------
     ValueError
-        When `workers` is no positive number.
+        When `workers` is no positive whole number.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ProcessPoolExecutor
+    >>> Pool(workers=2).workers
+    2
+    >>> pool = Pool(ProcessPoolExecutor, workers=4)
     """
 
     executor: Executor | None = None
@@ -58,6 +65,24 @@ class Pool:
         """What is kept of the motions in each span, as it is done, in any order.
 
         No more than two spans a worker are under way.
+
+        Parameters
+        ----------
+        executor : concurrent.futures.Executor
+            As `opened` gives it.
+        job : Job
+            What is done with every motion.
+        axes : Grid, Table or Random
+            What varies.
+        spans : sequence of pairs of int
+            The first motion of each part, and the one after its last.
+
+        Yields
+        ------
+        span : pair of int
+            One of `spans`.
+        kept : structured ndarray of shape (motions of the span,)
+            With the fields of ``job.dtype``.
         """
         waiting = iter(spans)
         under_way: dict[Future[NDArray[np.void]], tuple[int, int]] = {}

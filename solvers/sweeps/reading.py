@@ -43,12 +43,17 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Sweep:
     module : callable
         Gives a generated module by its name; raises `LookupError` for an unknown one.
 
+    Returns
+    -------
+    Sweep
+        Named as the file is, without ``.toml``.
+
     Raises
     ------
     solvers.said.InputError
         When there is none, or it makes no sense.
     OSError
-        When the file cannot be read.
+        When the file, or the table that it names, cannot be read.
     """
     path = said.path("sweep", name, FILES)
     return said.read(path, lambda table: _sweep(path, table, module))

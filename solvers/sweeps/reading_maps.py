@@ -30,6 +30,20 @@ MOST = 10**6
 def kept(key: str, module: ModuleType, given: Given) -> Map:
     """The map that a table says.
 
+    Parameters
+    ----------
+    key : str
+        Where the table stands in the file, such as ``maps.flip``.
+    module : module
+        A generated module.
+    given : mapping
+        The table.
+
+    Returns
+    -------
+    Map
+        Of the kind that is named.
+
     Raises
     ------
     solvers.said.InputError

@@ -36,7 +36,7 @@ class Results:
     axes : dict of str to ndarray
         What varies: the values along each axis of a grid, else of each motion.
     status : ndarray of int
-        How each motion ended, as a place in `solvers.sweeps.work.STATUSES`.
+        How each motion ended, as a place in `solvers.sweeps.job.STATUSES`.
     """
 
     asked: Sweep
@@ -48,6 +48,18 @@ class Results:
     @classmethod
     def of(cls, asked: Sweep, folder: Path) -> Results:
         """Open the maps in a folder.
+
+        Parameters
+        ----------
+        asked : Sweep
+            What was asked.
+        folder : Path
+            Where a finished sweep is kept.
+
+        Returns
+        -------
+        Results
+            With arrays that are read when they are looked at, and cannot be written to.
 
         Raises
         ------
@@ -76,6 +88,11 @@ class Results:
 
     def dataset(self) -> Any:
         """All maps in one ``xarray.Dataset``, with named axes and units; ``to_zarr`` writes it.
+
+        Returns
+        -------
+        xarray.Dataset
+            Its dimensions are the axes of a grid, else ``motion``; ``status`` is in it, too.
 
         Raises
         ------

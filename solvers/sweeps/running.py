@@ -37,12 +37,12 @@ def sweep(
     ----------
     asked : Sweep
         What is to be done.
-    folder : path
-        Where it is kept. What is there of the same sweep is not done again.
-    pool : Pool
-        Who does it.
-    tell : callable
-        Is told how far it is.
+    folder : str or Path
+        Where it is kept; it is made. What is there of the same sweep is not done again.
+    pool : Pool, optional
+        Who does it; by default threads, one for each processor.
+    tell : callable, optional
+        ``tell(text)`` is told how far it is.
 
     Returns
     -------
@@ -55,7 +55,22 @@ def sweep(
     solvers.sweeps.folder.FolderError
         When another sweep is in the folder, or another process works there.
     OSError
-        When something cannot be written.
+        When something cannot be written, or there is not room enough.
+    KeyboardInterrupt
+        When the user interrupts; the chunks that are done are kept, and the same call goes on.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> from solvers.sweeps.axes import Grid
+    >>> from solvers.sweeps.maps import Extremes
+    >>> from solvers.sweeps.sweep import Sweep
+    >>> axes = Grid({"theta1": [0.1, 0.2, 0.3], "theta2": [0.0, 0.1]})
+    >>> results = sweep(Sweep(dp, axes, {"reach": Extremes(("theta2",))}, duration=5), "reach")
+    >>> results.maps["reach"].shape
+    (3, 2, 1, 2)
+    >>> results.count
+    {'finished': 6}
     """
     job = Job.of(asked)
     with _folder(asked, job, folder) as kept:
@@ -74,6 +89,18 @@ def sweep(
 
 def sofar(asked: Sweep, folder: str | Path) -> Results:
     """What is there of a sweep that is not finished; it may be going on.
+
+    Parameters
+    ----------
+    asked : Sweep
+        What is being done.
+    folder : str or Path
+        Where it is kept; nothing in it is changed.
+
+    Returns
+    -------
+    Results
+        With NaN for motions that are not done yet, whose status is 0.
 
     Raises
     ------

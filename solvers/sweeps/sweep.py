@@ -33,17 +33,17 @@ class Sweep:
         What is kept of each motion, by the name of the map.
     duration : float
         In s.
-    values : mapping of str to float
+    values : mapping of str to float or str, optional
         What does not vary, of coordinates, velocities, parameters and energy, in their units.
         Velocities that are not named are 0, parameters have their default. One velocity may
-        be ``"energy"``: it is positive, and as large as the energy demands.
-    method : str
-        One of ours.
-    rtol, atol : float
+        be ``"energy"``: it is 0 or more, and as large as the energy demands.
+    method : str, optional
+        One of ``solvers.catalogue.names()`` that estimates its error.
+    rtol, atol : float, optional
         Tolerances of each step, as in `solvers.ensemble.ensemble`.
-    max_steps : int
+    max_steps : int, optional
         How many steps a motion may take.
-    name, title : str
+    name, title : str, optional
         What to call it, for files and for people.
 
     Raises
@@ -52,6 +52,15 @@ class Sweep:
         When something makes no sense; the message says what is allowed.
     solvers.catalogue.UnknownMethodError
         When no method has this name.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> from solvers.sweeps.axes import Grid
+    >>> from solvers.sweeps.maps import Extremes
+    >>> axes = Grid({"theta1": [0.1, 0.2, 0.3], "theta2": [0.0, 0.1]})
+    >>> Sweep(dp, axes, {"reach": Extremes(("theta2",))}, duration=5).motions
+    6
     """
 
     module: ModuleType

@@ -23,10 +23,22 @@ Array: TypeAlias = NDArray[np.float64]
 def work(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
     """Integrate the motions whose varying values are `columns`, and keep what is asked.
 
+    Parameters
+    ----------
+    job : Job
+        What is done with each.
+    columns : mapping of str to ndarray of shape (n,)
+        What varies, in the unit of the coordinate, velocity or parameter, or of the energy in J.
+
     Returns
     -------
     structured ndarray of shape (n,)
         With the fields of ``job.dtype``.
+
+    Raises
+    ------
+    InterruptedError
+        When `solvers.ensemble.stop` was called meanwhile.
     """
     module = loaded(job.source)
     starts, params, status = begun(job, module, columns)

@@ -20,6 +20,11 @@ def objectives(evidence: Evidence, equations: Mapping[str, int]) -> list[Claim]:
         Runs of its scenes.
     equations : mapping of str to int
         How many of its equations have which verdict.
+
+    Returns
+    -------
+    list of Claim
+        In the order of the report.
     """
     euler, rk4 = evidence.error("RK1", 0.01), evidence.error("RK4", 0.01)
     calls = [(evidence.calls("rk4", e), evidence.calls(OURS, e)) for e in ERRORS]

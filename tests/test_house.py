@@ -1,0 +1,53 @@
+"""What helps the next person is there, and says the same everywhere."""
+
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).parent.parent
+
+
+def read(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def test_a_commit_is_held_to_what_ci_asks_before_the_tests() -> None:
+    (repository,) = yaml.safe_load(read(".pre-commit-config.yaml"))["repos"]
+    (hook,) = repository["hooks"]
+    assert hook["entry"] == "make lint types"
+    assert hook["entry"] in read(".ci/run").splitlines()
+    assert hook["pass_filenames"] is False
+
+
+def test_help_lists_every_target() -> None:
+    listed = subprocess.run(["make", "--silent", "help"], cwd=ROOT, capture_output=True, text=True,
+                            check=True).stdout  # fmt: skip
+    targets = re.findall(r"^\.PHONY: (.*)$", read("Makefile"), re.MULTILINE)[0].split()
+    assert [line.split()[0] for line in listed.splitlines()] == targets
+    assert all(len(line.split()) > 1 for line in listed.splitlines())
+
+
+def test_make_check_asks_no_less_than_ci() -> None:
+    made = read("Makefile").partition("\ncheck:")[2].partition("\n\n")[0]
+    for line in read(".ci/run").splitlines():
+        if line.startswith("make "):
+            assert {*line.split()[1:]} <= {*made.split(), "demo"}
+        elif line.startswith(".venv/bin/holonomic"):
+            assert line.removeprefix(".venv/bin/") in made.replace("$(BIN)/", "")
+
+
+def test_citation_package_and_changelog_agree() -> None:
+    project = tomllib.loads(read("pyproject.toml"))["project"]
+    citation = yaml.safe_load(read("CITATION.cff"))
+    assert citation["version"] == project["version"]
+    assert citation["license"] == project["license"]
+    assert re.search(rf"^## {re.escape(project['version'])}\b", read("CHANGELOG.md"), re.MULTILINE)
+
+
+def test_the_base_install_needs_four_packages() -> None:
+    needed = tomllib.loads(read("pyproject.toml"))["project"]["dependencies"]
+    names = [re.split(r"[<>=]", one)[0] for one in needed]
+    assert names == ["sympy", "numpy", "scipy", "matplotlib"]
