@@ -35,7 +35,7 @@ lint: .venv/ready  ## style and common mistakes
 types: .venv/ready  ## strict type check of the three packages
 	$(BIN)/mypy
 
-check: lint types test  ## everything that decides whether a change lands
+check: lint types test notebooks  ## everything that decides whether a change lands
 	$(BIN)/holonomic derive --check
 	$(BIN)/holonomic verify > /dev/null
 
