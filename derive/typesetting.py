@@ -8,7 +8,6 @@ that a narrow screen may put on the next line.
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -17,14 +16,10 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.expression import ExpressionError, tree
+from derive.lettering import letters, named
 from derive.statement import RELATION
 
-GREEK = dict(zip(
-    "alpha beta chi delta lambda omega phi pi psi tau theta Omega".split(),
-    "αβχδλωφπψτθΩ", strict=True,
-))  # fmt: skip
 RELATIONS = {"=": "=", "<": "&lt;", ">": "&gt;", "<=": "≤", ">=": "≥"}
-DOTS = {"_dot": ".", "_ddot": ".."}
 TIMES, APPLIED = "<mo>&#x2062;</mo>", "<mo>&#x2061;</mo>"  # seen by no one, read by machines
 GAP = '<mspace width="0.167em"/>'
 
@@ -64,7 +59,7 @@ class Formula:
         """Pieces of MathML, with room between them for a new line."""
         try:
             lines = [_line(part) for part in self.text.split(";")]
-        except ExpressionError:
+        except (ExpressionError, RecursionError):
             return f'<code class="formula">{escape(self.text)}</code>'
         return "".join(f'<div class="formula">{line}</div>' for line in lines)
 
@@ -98,7 +93,7 @@ def _set(node: ast.expr) -> Set:
         case ast.Constant(value=int() | float() as number):
             return f"<mn>{number}</mn>", ATOM
         case ast.Name(id=name):
-            return _named(name), ATOM
+            return named(name), ATOM
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return f'<mo form="prefix">−</mo>{_within(operand, PRODUCT)}', SUM
         case ast.BinOp(op=ast.Add() | ast.Sub()):
@@ -151,8 +146,8 @@ def _power(base: ast.expr, exponent: ast.expr) -> str:
     match base:
         case ast.Call(func=ast.Name(id="sin" | "cos" | "tan" as name), args=[argument]):
             return f"<msup><mi>{name}</mi>{raised}</msup>{APPLIED}{_brackets(_set(argument)[0])}"
-        case ast.Name(id=name) if (letter := _letter(name))[1]:
-            return f"<msubsup>{''.join(letter)}{raised}</msubsup>"
+        case ast.Name(id=name) if (pair := letters(name))[1]:
+            return f"<msubsup>{''.join(pair)}{raised}</msubsup>"
     return f"<msup>{_row(_within(base, ATOM))}{raised}</msup>"
 
 
@@ -177,7 +172,7 @@ def _call(name: str, arguments: Sequence[ast.expr]) -> Set:
         case "only", _:
             name_of, *parts = parts
             return name_of + APPLIED + _brackets("<mo>,</mo>".join(parts)), ATOM
-    return _named(name) + APPLIED + _brackets("<mo>,</mo>".join(parts)), ATOM
+    return named(name) + APPLIED + _brackets("<mo>,</mo>".join(parts)), ATOM
 
 
 def _matrix(rows: Sequence[Sequence[ast.expr]]) -> str:
@@ -185,41 +180,6 @@ def _matrix(rows: Sequence[Sequence[ast.expr]]) -> str:
         f"<mtr>{''.join(f'<mtd>{_set(entry)[0]}</mtd>' for entry in row)}</mtr>" for row in rows
     )
     return _brackets(f"<mtable>{set_rows}</mtable>")
-
-
-def _named(name: str) -> str:
-    markup, index = _letter(name)
-    return f"<msub>{markup}{index}</msub>" if index else markup
-
-
-def _letter(name: str) -> tuple[str, str]:
-    """A name as mathematics writes it: ``theta1_dot`` is a θ with a dot, and its index 1."""
-    stem = re.sub("_d?dot$", "", name)
-    dots = DOTS.get(name[len(stem) :], "")
-    letter, _, below = stem.partition("_")
-    if letter.endswith("dot"):
-        letter, dots = letter.removesuffix("dot"), "."
-    found = re.fullmatch(r"([A-Za-z]+?)(\d+|[xyz]{2})", letter)
-    letter, index = found.groups() if found else (letter, "")
-    word = GREEK.get(letter, escape(letter))
-    markup = f"<mi>{word}</mi>"
-    if below == "vector":
-        markup, below = f'<mover accent="true">{markup}<mo>→</mo></mover>', ""
-    if dots:
-        # no accent: many fonts would draw the dots into the letter; and no reason for a
-        # superscript to stand higher
-        dotted = f"<mover>{markup}<mo>{dots}</mo></mover>"
-        markup = f'<mpadded height="0.75em">{dotted}</mpadded>'
-    indices = _index(index) + _index(below)
-    return markup, _row(indices) if indices else ""
-
-
-def _index(below: str) -> str:
-    if below == "next":
-        return "<mi>i</mi><mo>+</mo><mn>1</mn>"
-    if below.isdigit():
-        return f"<mn>{below}</mn>"
-    return _named(below) if below else ""
 
 
 def _infix(sign: str) -> str:

@@ -139,3 +139,8 @@ def test_derivatives_matrices_and_indices_are_set() -> None:
     assert rows == [["a", "b"], ["c", "d"]]
     column = ElementTree.fromstring(Formula("r = l*(sin(theta), 0)").html)
     assert len([*column.iter("mtr")]) == 2
+
+
+def test_what_is_too_long_is_shown_as_it_stands() -> None:
+    for text in ("x + " * 4000 + "x", "x + " * 40_000 + "x"):
+        assert Formula(text).html.startswith("<code")
