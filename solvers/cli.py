@@ -177,11 +177,12 @@ def _derived() -> Station:
     every = beside(derivation, lambda name: verdict(named(name), order))
     return Station(
         (
-            *broken_sum(f"L = {derivation.lagrangian}", 80).splitlines(),
+            *broken_sum(f"L = {derivation.lagrangian}", 67).splitlines(),
             f"M = {derivation.mass_matrix.tolist()[0]}",
-            f"    {derivation.mass_matrix.tolist()[1]}, and M qddot = f with",
-            f"f = ({first},",
-            f"     {second})",
+            f"    {derivation.mass_matrix.tolist()[1]}",
+            "and M qddot = (f1, f2) with",
+            *broken_sum(f"f1 = {first}", 67).splitlines(),
+            *broken_sum(f"f2 = {second}", 67).splitlines(),
         ),
         "".join(one.section for one in every),
     )
@@ -232,7 +233,7 @@ def _generated() -> Station:
     return Station(
         (
             f"generated/double_pendulum.py: {state}",
-            f"operations a call: {', '.join(f'{name} {n}' for name, n in counts.items())}",
+            f"operations: {', '.join(f'{name} {n}' for name, n in counts.items())}",
         ),
         listing(dp),
         (

@@ -50,7 +50,9 @@ def test_it_shows_the_whole_way_on_one_screen(made: tuple[str, Path]) -> None:
     assert "up to date" in shown
     assert "theta1 = 2.22806424" in shown
     assert str(page) in shown
-    assert len(shown.splitlines()) <= 30
+    lines = shown.splitlines()
+    assert len(lines) <= 40
+    assert max(map(len, lines)) <= 80
     assert {path.name for path in page.parent.iterdir()} == {"demo.html", "flips"}
 
 

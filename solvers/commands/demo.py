@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import platform
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import date
 from importlib.metadata import version
+from itertools import zip_longest
 from pathlib import Path
+from textwrap import wrap
 from types import ModuleType
 
 from solvers.compiler import NoCompilerError
@@ -23,6 +25,8 @@ from solvers.progress import Progress
 from solvers.scenes import shipped
 from solvers.sweeps import reading
 
+#: How wide the screen is, and where its lines begin.
+COLUMNS, MARGIN = 80, 13
 #: What the page is made with.
 PACKAGES = ("holonomic", "sympy", "numpy", "scipy", "matplotlib")
 
@@ -80,13 +84,24 @@ def main(
                 print(f"{number} {name:<11}left out: it needs a C compiler")
                 continue
             found[name] = station()
-        first, *lines = found[name].lines
-        print(f"{number} {name:<11}{first}", *lines, sep="\n" + " " * 13, end="")
-        print(f"  [{time.perf_counter() - start:.1f} s]", flush=True)
+        print(*_beside(f"{number} {name}", time.perf_counter() - start, found[name].lines),
+              sep="\n", flush=True)  # fmt: skip
     page = output / "demo.html"
     write_demo(page, found, made(), style)
     print(f"\nall of it on one page: {page}")
     return 0
+
+
+def _beside(name: str, seconds: float, words: Sequence[str]) -> Iterator[str]:
+    """Lines no wider than a screen, with a name and a time to the left of them."""
+    lines = [part for line in words for part in _wrapped(line)]
+    for left, line in zip_longest((name, f"{seconds:7.1f} s"), lines, fillvalue=""):
+        yield f"{left:<{MARGIN}}{line}".rstrip()
+
+
+def _wrapped(line: str) -> list[str]:
+    return wrap(line, COLUMNS - MARGIN, subsequent_indent="  ", break_long_words=False,
+                break_on_hyphens=False)  # fmt: skip
 
 
 def made() -> dict[str, str]:

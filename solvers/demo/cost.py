@@ -19,7 +19,7 @@ from solvers.scenes.scene import Scene
 COMPARED: dict[Combination, str] = {
     ("rk1", "rational", "compiled"): "Euler",
     ("rk4", "rational", "compiled"): "RK4",
-    ("dp54", "rational", "compiled"): "Dormand–Prince 5(4)",
+    ("dp54", "rational", "compiled"): "Dormand-Prince 5(4)",
     ("verner98", "rational", "compiled"): "Verner 9(8)",
     ("RK45", "lagrangian", "scipy"): "SciPy RK45",
     ("DOP853", "lagrangian", "scipy"): "SciPy DOP853",
@@ -35,7 +35,7 @@ def cost(scene: Scene) -> Station:
     seconds = {_name(curve): curve.at(ERROR) for curve in measured}
     seconds = {name: cost for name, cost in seconds.items() if isfinite(cost)}
     best, *others = sorted(seconds, key=seconds.__getitem__)
-    least = f"{best} {seconds[best] * 1e6:.0f} µs"
+    least = f"{best} {seconds[best] * 1e6:.0f} us"
     ratios = [(name, f"{seconds[name] / seconds[best]:.3g}") for name in others]
     how = (
         f"medians of runs on this machine; errors against {truth.METHOD}, "

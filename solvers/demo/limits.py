@@ -19,7 +19,7 @@ from solvers.stability.modes import Modes
 from solvers.stability_function import StabilityFunction
 
 #: Whose regions are drawn; the last one's limit is measured, too.
-DRAWN = {"rk1": "Euler", "dp54": "Dormand–Prince", "dop853": "DOP853", "rk4": "RK4"}
+DRAWN = {"rk1": "Euler", "dp54": "Dormand-Prince", "dop853": "DOP853", "rk4": "RK4"}
 #: Methods whose limits are listed.
 LISTED = ("rk1", "midpoint", "rk3", "rk4", "dp54", "dop853", "verner87", "gauss2", "radau3")
 #: What of the complex plane is shown.

@@ -35,10 +35,10 @@ def motion(scene: Scene) -> Station:
     names = zip(module.COORDINATES, ours.y[:, -1], strict=False)
     return Station(
         (
-            f"the report's scene, {scene.duration:g} s: "
+            f"after {scene.duration:g} s: "
             + ", ".join(f"{name} = {value:.9f}" for name, value in names) + " rad",
             ours.run,
-            f"SciPy's DOP853 ends {apart:.1g} rad or rad/s apart; energy is kept to {change:.1g}",
+            f"SciPy's DOP853 ends {apart:.1g} apart; energy is kept to {change:.1g}",
         ),
         player(tracks),
         (

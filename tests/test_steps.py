@@ -1,0 +1,61 @@
+"""A derivation's steps say what is derived, for every system, and stand beside the right lines."""
+
+import pytest
+import sympy as sp
+
+from derive import Derivation, load, names
+from derive.expression import FUNCTIONS, parsed
+from derive.report.beside import PLACES, beside
+from derive.report.equation import Verdict
+from derive.report.judgement import EQUATIONS, named
+from derive.steps import steps
+
+
+def meant(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
+    """What each name on a left side stands for."""
+    s = d.system
+    rates, pushes = d.hamilton_equations
+    pushed = (p.name.replace("p_", "pdot_", 1) for p in s.p)
+    return {
+        "K": d.kinetic_energy, "P": d.potential_energy, "L": d.lagrangian, "H": d.hamiltonian,
+        "M": d.mass_matrix, "f": d.forcing,
+        **{f"r{k}": sp.Matrix(mass.position) for k, mass in enumerate(s.masses, 1)},
+        **{f"r{k}_dot": velocity for k, velocity in enumerate(d.velocities, 1)},
+        **dict(zip((p.name for p in s.p), d.momenta, strict=True)),
+        **dict(zip((q.name for q in s.qdot), rates, strict=True)),
+        **dict(zip(pushed, pushes, strict=True)),
+    }  # fmt: skip
+
+
+# three angles take SymPy half a minute, and show nothing more
+@pytest.mark.parametrize("name", [name for name in names() if not name.endswith("_3")])
+def test_every_formula_says_what_is_derived(name: str) -> None:
+    derivation = Derivation(load(name))
+    values = meant(derivation)
+    symbols = set().union(*(sp.Matrix([v]).free_symbols for v in values.values()))
+    scope = {**FUNCTIONS, **{s.name: s for s in symbols | {*derivation.system.qddot}}}
+    said, residuals = set(), []
+    for step in steps(derivation):
+        for formula in step.formulas:
+            left, right = formula.text.split(" = ")
+            if left not in values:
+                residuals.append(left)
+                continue
+            said.add(left)
+            apart = sp.Matrix([parsed(right, scope)]) - sp.Matrix([values[left]])
+            assert apart.expand().is_zero_matrix or sp.simplify(apart).is_zero_matrix, left
+    assert said == {*values}
+    *equations, product = residuals
+    assert [parsed(e, scope) for e in equations] == list(derivation.euler_lagrange)
+    assert product.startswith("M*[[")
+
+
+def test_every_step_stands_beside_lines_of_its_own(double: Derivation) -> None:
+    every = list(beside(double, lambda name: Verdict(name, "verified", named(name).printed)))
+    assert [one.step.title for one in every] == [*PLACES]
+    shown = [verdict.id for one in every for verdict in one.verdicts]
+    assert len({*shown}) == len(shown)
+    assert {*shown} <= {equation.id for equation in EQUATIONS}
+    for one in every:
+        assert one.html.count('class="line verified"') == len(one.verdicts)
+        assert one.section.startswith(f"<h3>{one.step.title}</h3>")
