@@ -116,7 +116,20 @@ def test_every_misprint_stands_beside_its_correction(made: tuple[str, Path]) -> 
     lines = re.findall(r'<div class="line misprint">', verdict)
     assert len(lines) == verdict.count("<p>should be</p>") == 23
     assert len(EQUATIONS) == 150
-    assert "<strong>119</strong> hold as printed" in page
+    for words in ("119</strong> hold as printed", "23</strong> are misprints",
+                  "6</strong> are definitions", "7</strong> cannot be tested"):  # fmt: skip
+        assert page.count(f"<strong>{words}") == 1
+
+
+def test_the_fastest_comes_first_and_two_programs_are_two(made: tuple[str, Path]) -> None:
+    page = made[1].read_text(encoding="utf-8")
+    rows = page.partition("<th>times as long</th>")[2].partition("</table>")[0]
+    ratios = list(map(float, re.findall(r"<td>([\d.e+]+)</td></tr>", rows)))
+    assert len(ratios) == 5
+    assert ratios == sorted(ratios)
+    assert ratios[0] == 1
+    apart = re.findall(r"states after 5 s</td><td>(\S+) rad or rad/s", page)
+    assert 0 < float(apart[0]) < 1e-9
 
 
 def test_every_figure_says_how_it_was_obtained(made: tuple[str, Path]) -> None:

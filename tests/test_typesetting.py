@@ -108,6 +108,23 @@ def test_a_formula_of_the_report_keeps_its_value(text: str) -> None:
     assert all(isclose(plain, shown, rel_tol=1e-12) for plain, shown in apart(text))
 
 
+@pytest.mark.parametrize("text", [
+    "K - (P + L) = K - (P - L)*H", "-(K - P)**2 = -K**2", "(K*P)**2 = (K/P)**2",
+    "K/(P/L) = K/P/L", "-K*(-P) = K*-P", "K*(-P) = -(K + P)/2", "sin(K)**2*P = (sin(K)*P)**2",
+    "K**2**L = K**(P + L)", "-K/P - -L = (-K)**2", "3*K/4 = (K + P)/4*2", "K**-1 = 2*3*K",
+])  # fmt: skip
+def test_brackets_stand_where_they_must(text: str) -> None:
+    assert all(isclose(plain, shown, rel_tol=1e-12) for plain, shown in apart(text))
+
+
+@pytest.mark.parametrize(("text", "count"), [
+    ("a*b + c*d/e - f**2", 0), ("(a + b)*c", 1), ("a*(b*c)*d/(e + f)", 0), ("-(a*b)", 0),
+    ("sin(a)**2", 1), ("(a/b)**2", 1), ("(a + b)/2", 1), ("f(a, b)", 1),
+])  # fmt: skip
+def test_brackets_stand_where_they_must_and_nowhere_else(text: str, count: int) -> None:
+    assert Formula(text).html.count(">(<") == count
+
+
 def test_what_is_derived_keeps_its_value(double: Derivation) -> None:
     for value in (double.lagrangian, double.hamiltonian, *double.hamilton_equations[1],
                   *double.euler_lagrange):  # fmt: skip

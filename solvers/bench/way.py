@@ -86,7 +86,8 @@ def ways(
         "holonomic": lambda: _ours(module, chain),
         "heyoka.py": lambda: _heyoka(peer("heyoka"), module),
         "JiTCODE, equations by SymPy": lambda: _jitcode(peer("jitcode"), module, mechanics),
-        "PyDy with Cython, SymPy, SciPy": lambda: _pydy(peer("pydy"), module, mechanics),
+        "SciPy's DOP853, equations by holonomic": lambda: _scipy(module, chain),
+        "PyDy with Cython, SymPy, SciPy's DOP853": lambda: _pydy(peer("pydy"), module, mechanics),
     }
     return [_way(name, *prepared()) for name, prepared in programs.items()]
 
@@ -94,10 +95,10 @@ def ways(
 def told(found: list[Way]) -> Iterator[str]:
     """The ways as a table."""
     yield f"From positions to 5 s of motion, error below {ERROR:g}; seconds:"
-    yield f"{'':<32}{'derivation':>11}{'preparation':>13}{'run':>11}"
+    yield f"{'':<40}{'derivation':>11}{'preparation':>13}{'run':>11}"
     for way in found:
         yield (
-            f"{way.name:<32}{way.derivation:>11.2f}{way.preparation:>13.2f}{way.run:>11.2g}"
+            f"{way.name:<40}{way.derivation:>11.2f}{way.preparation:>13.2f}{way.run:>11.2g}"
             f"{way.run / found[0].run:>9,.1f} x"
         )
 
@@ -172,6 +173,17 @@ def _jitcode(
     return derived - begin, preparation, run
 
 
+def _scipy(
+    module: ModuleType, chain: Callable[[int, str], Any]
+) -> tuple[float, float, Run]:  # fmt: skip
+    derived, emitted, *_ = chain(2, "")
+
+    def run(tolerance: float) -> Callable[[], Any]:
+        return lambda: _dop853(module.rhs, tolerance, module.DEFAULTS)
+
+    return derived, emitted, run
+
+
 def _pydy(
     _: ModuleType, module: ModuleType, mechanics: Callable[[int], Any]
 ) -> tuple[float, float, Run]:
@@ -185,13 +197,17 @@ def _pydy(
     )  # fmt: skip
     preparation, params = time.perf_counter() - derived, np.array(module.DEFAULTS)
 
-    def rhs(t: float, y: Array) -> Any:
+    def rhs(t: float, y: Array, params: Array) -> Any:
         return field(y, t, params)
 
     def run(tolerance: float) -> Callable[[], Any]:
-        return lambda: solve_ivp(
-            rhs, (0.0, END), START, method="DOP853", rtol=tolerance, atol=tolerance,
-            t_eval=[END],
-        ).y[:, -1]  # fmt: skip
+        return lambda: _dop853(rhs, tolerance, params)
 
     return derived - begin, preparation, run
+
+
+def _dop853(rhs: Callable[..., Any], tolerance: float, params: Any) -> Any:
+    return solve_ivp(
+        rhs, (0.0, END), START, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=[END],
+        args=(params,),
+    ).y[:, -1]  # fmt: skip
