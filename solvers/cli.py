@@ -52,9 +52,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"holonomic {version('holonomic')}")
         return 0
     name, *rest = arguments
-    # a command integrates many times: one notice is enough
-    warnings.filterwarnings("once", message="integrating in Python")
-    warnings.formatwarning = lambda message, *_: f"holonomic {name}: {message}\n"
+    warnings.filterwarnings("default", message="integrating in Python")
+    warnings.showwarning = _telling_once(name)
     if name not in COMMANDS:
         print(f"holonomic: unknown command {name[:50]!r}\n\n{USAGE}", end="", file=sys.stderr)
         return 2
@@ -74,6 +73,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f"holonomic {name}: {error}", file=sys.stderr)
         return 4
+
+
+def _telling_once(name: str) -> Callable[..., None]:
+    """Show warnings as lines of a command, each once: a command integrates many times."""
+    told: set[str] = set()
+
+    def show(message: Warning | str, *_: object) -> None:
+        text = f"holonomic {name}: {message}"
+        if text not in told:
+            told.add(text)
+            print(text, file=sys.stderr)
+
+    return show
 
 
 def _derive(argv: Sequence[str]) -> int:

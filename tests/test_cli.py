@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import warnings
 from collections import Counter
 from pathlib import Path
 
@@ -145,3 +146,18 @@ def test_a_reader_who_leaves_early_causes_no_traceback() -> None:
     )  # fmt: skip
     assert "Traceback" not in run.stderr
     assert run.stdout in ("0\n", "141\n")
+
+
+def test_a_notice_is_told_once_however_often_it_comes(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def noisy(_: object) -> int:
+        for _ in range(3):
+            with warnings.catch_warnings():  # which forgets what was told
+                warnings.warn("integrating in Python: why", stacklevel=1)
+        return 0
+
+    monkeypatch.setitem(COMMANDS, "verify", noisy)
+    with warnings.catch_warnings():
+        assert main(["verify"]) == 0
+    assert capsys.readouterr().err == "holonomic verify: integrating in Python: why\n"
