@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from numbers import Real
 
@@ -41,6 +41,15 @@ def formula(value: sp.Expr | float) -> sp.Expr:
     raise SystemDefinitionError(
         f"{str(value)[:50]!r} is no formula: use numbers and SymPy expressions"
     )
+
+
+def _place(position: object) -> tuple[sp.Expr, ...]:
+    if not isinstance(position, Iterable) or isinstance(position, str):
+        raise SystemDefinitionError(
+            f"position {str(position)[:50]!r} is no position: give its components, (x, up) or "
+            "(x, y, up)"
+        )
+    return tuple(map(formula, position))
 
 
 def check_text(place: str, text: str) -> None:
@@ -166,7 +175,7 @@ class PointMass:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mass", formula(self.mass))
-        object.__setattr__(self, "position", tuple(map(formula, self.position)))
+        object.__setattr__(self, "position", _place(self.position))
         if self.mass.is_nonpositive:
             raise SystemDefinitionError(
                 f"mass {self.mass} is not positive: give a number or a positive symbol, or leave "

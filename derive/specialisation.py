@@ -53,7 +53,7 @@ def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
         parameters=[p for p in system.parameters if p.symbol not in values],
         masses=[mass.mapped(folded) for mass in system.masses],
         potential=folded(system.potential_energy),
-        gravity=None,
+        gravity=(sp.S.Zero,) * system.dimension,  # it is in the potential
         dissipation=folded(system.dissipation),
         forces=tuple(map(folded, system.forces)),
         equilibrium=None if system.equilibrium is None else tuple(map(folded, system.equilibrium)),

@@ -110,6 +110,7 @@ class System:
         self._check_names()
         self._check_counts()
         self._check_symbols()
+        self._check_weight()
 
     @property
     def dimension(self) -> int:
@@ -210,6 +211,17 @@ class System:
         yield "the equilibrium", sp.Tuple(*(self.equilibrium or ())), constants
         yield "the list of forces", sp.Tuple(self.dissipation, *self.forces), {*self.qdot, *moving}
         yield "the list of reactions", sp.Tuple(*self.reactions), constants
+
+    def _check_weight(self) -> None:
+        used = set().union(*(expression.free_symbols for _, expression, _ in self._places()))
+        weightless = self.potential is not None and self.gravity is None
+        if weightless and any(s.name == "g" and s not in used for s in self.params):
+            down = ", ".join(["0"] * (self.dimension - 1) + ["-g"])
+            raise SystemDefinitionError(
+                f"parameter 'g' of system {self.name!r} is used nowhere: a system with a potential "
+                f"of its own has weight only where gravity says so; give gravity=({down}), the "
+                "acceleration of free fall, or leave g out"
+            )
 
     def _check_symbols(self) -> None:
         for place, expression, known in self._places():

@@ -279,7 +279,7 @@ def test_python_numbers_are_formulas_and_exact() -> None:
 def test_without_a_known_equilibrium_there_is_no_linear_form() -> None:
     falling = Derivation(system(masses=[PointMass(mass, (0, x))]))
     assert "linear" not in {f.name for f in contents(falling).functions}
-    spring = {"potential": (x - 1) ** 2, "equilibrium": (1,)}
+    spring = {"potential": (x - 1) ** 2, "gravity": (0, 0), "equilibrium": (1,)}
     assert "linear" in {f.name for f in contents(Derivation(system(**spring))).functions}
     with pytest.raises(SystemDefinitionError, match="not at rest at x = 2"):
         contents(Derivation(system(**(spring | {"equilibrium": (2,)}))))
@@ -302,3 +302,11 @@ def test_small_motions_on_a_turntable_are_more_than_masses_and_springs() -> None
     assert "linear" not in names
     with pytest.raises(SystemDefinitionError, match="are turned by a moving frame"):
         table.linearisation()
+
+
+def test_weight_that_is_forgotten_beside_another_potential_is_asked_for() -> None:
+    with pytest.raises(SystemDefinitionError, match=r"'g' .* nowhere: .*gravity=\(0, -g\)"):
+        system(potential=x**2)
+    assert system(potential=x**2, gravity=(0, -g)).potential_energy.has(g)
+    with pytest.raises(SystemDefinitionError, match="give its components"):
+        PointMass(mass, x)  # type: ignore[arg-type]

@@ -142,7 +142,8 @@ def test_the_command_prints_every_method_and_where_methods_fail(
                  "Aligned rods", "released upright", "Achieved over asked"):  # fmt: skip
         assert line in text
     drawn = {path.name for path in tmp_path.iterdir()}
-    assert {"stability_report.png", "drift.png", "chaos.png", "tolerances.png"} <= drawn
+    studies = {f"failures_{name}.png" for name in ("drift", "chaos", "tolerances")}
+    assert {"stability_report.png", *studies} <= drawn
     with pytest.raises(SystemExit, match="2"):
         main(["stability", "repotr"])
     assert "did you mean 'report'" in capsys.readouterr().err

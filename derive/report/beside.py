@@ -31,7 +31,7 @@ STYLE = """\
 .formula { margin: 0.3rem 0; padding-left: 1.5rem; text-indent: -1.5rem; line-height: 1.9;
   overflow-x: auto; overflow-y: hidden; }
 .formula math { text-indent: 0; padding: 0.15em 0;
-  font-family: "Latin Modern Math", "STIX Two Math", "Cambria Math", math; }
+  font-family: "Latin Modern Math", "STIX Two Math", "Cambria Math", "DejaVu Math TeX Gyre", math; }
 .line { margin: 0.3rem 0; padding-left: 0.75rem; border-left: 0.2rem solid #009e73; }
 .line.misprint { border-color: #d55e00; }
 .line.definition, .line.context { border-color: #8a8f94; }

@@ -133,7 +133,7 @@ def told(one: Scene, steps: Sequence[CriticalStep]) -> Iterator[str]:
     yield f"Longest stable steps of {one.title}: its fastest small motion, in s"
     yield (
         f"{'method':<10}{'order':>5}{'real':>9}{'imaginary':>11}{'predicted':>12}"
-        f"{'linear':>10}{'nonlinear':>11}   growth a step, at h"
+        f"{'linear':>10}{'nonlinear':>11}   ln growth a step, at h"
     )
     for s in steps:
         function = s.function
@@ -143,7 +143,7 @@ def told(one: Scene, steps: Sequence[CriticalStep]) -> Iterator[str]:
             f"{s.measured:>11.5g}   {s.growth_measured:>8.1e} ({s.growth_predicted:.1e}), "
             f"{s.probe:.3g}"
         )
-    yield "0: oscillations grow with every step; inf: with none; growth measured (predicted)"
+    yield "0: oscillations grow whatever the step; inf: they never do; measured (predicted)"
 
 
 def picture(one: Scene, steps: Sequence[CriticalStep]) -> Any:

@@ -19,6 +19,7 @@ from solvers.jsonable import jsonable
 from solvers.pictures import save
 from solvers.progress import Progress
 from solvers.sweeps.drawn import drawn
+from solvers.sweeps.maps import Extremes
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import Results
@@ -176,17 +177,19 @@ def ranges(results: Results) -> dict[str, dict[str, Any]]:
     """What each map holds; of several components, what of each."""
     found, module = {}, results.asked.module
     for name, one in results.asked.maps.items():
-        of = one.labels[0] if one.labels else ()
-        whole = results.maps[name]
-        parts = np.moveaxis(whole, -len(one.shape), 0) if of else [whole]
-        for component, values in zip(of or ("",), parts, strict=True):
+        # the smallest and the largest value of something have no common median
+        labels = one.labels[: 2 if isinstance(one, Extremes) else 1]
+        rows = results.maps[name].reshape(-1, *one.shape)
+        for place in np.ndindex(*map(len, labels)):
+            words = [part[k] for part, k in zip(labels, place, strict=True)]
+            values = rows[(slice(None), *place)]
             finite = values[np.isfinite(values)]
             low, middle, high = (
                 np.percentile(finite, (0, 50, 100)).tolist() if finite.size else [np.nan] * 3
             )
-            found[f"{name} {component}".strip()] = {
+            found[" ".join([name, *words])] = {
                 "smallest": low, "median": middle, "largest": high,
-                "unit": module.UNITS[component] if component else one.unit(module),
+                "unit": module.UNITS[words[0]] if words else one.unit(module),
                 "known": finite.size / values.size,
             }  # fmt: skip
     return found

@@ -182,6 +182,6 @@ DRAW: dict[str, Callable[[Any], Figure]] = {
 
 def draw(name: str, found: Any, folder: Path) -> Path:
     """Write the picture of a study into `folder`, and say where."""
-    path = folder / f"{name}.png"
+    path = folder / f"failures_{name}.png"  # scenes have names, too
     save(DRAW[name](found), path)
     return path

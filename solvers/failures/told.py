@@ -18,7 +18,7 @@ Lines = Iterator[str]
 
 def oscillation(found: Sequence[Growth]) -> Lines:
     """Growth per period."""
-    yield "Small oscillations of the single pendulum: growth of the amplitude per period"
+    yield "Small oscillations of the single pendulum: logarithm of the growth per period"
     yield f"{'method':<10}{'steps/period':>13}{'predicted':>13}{'measured':>13}"
     for g in found:
         yield (

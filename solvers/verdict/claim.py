@@ -10,7 +10,9 @@ import numpy as np
 CHART, STEPS = (
     f"holonomic chart: {name}.png" for name in ("work_precision_report", "steps_report")
 )
-CHAOS, TOLERANCES = (f"holonomic stability: {name}.png" for name in ("chaos", "tolerances"))
+CHAOS, TOLERANCES = (
+    f"holonomic stability: failures_{name}.png" for name in ("chaos", "tolerances")
+)
 
 
 @dataclass(frozen=True)
