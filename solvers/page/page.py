@@ -65,7 +65,8 @@ class Page:
         written(path, self.html)
 
     def _repr_html_(self) -> str:
-        return f'<iframe srcdoc="{escape(self.html)}" width="100%" height="760"></iframe>'
+        look = 'width="100%" height="760" style="border: 0"'
+        return f'<iframe {look} srcdoc="{escape(self.html)}"></iframe>'
 
 
 def player(tracks: Sequence[Track]) -> str:
