@@ -8,7 +8,7 @@ BIN := .venv/bin
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
-demo: .venv/ready  ## set up and run the main job: derive, verify, generate, integrate
+demo: .venv/base  ## set up and run the main job: derive, verify, generate, integrate
 	$(BIN)/holonomic demo
 
 test: .venv/ready  ## set up and run the tests
@@ -22,7 +22,7 @@ notebooks: .venv/ready  ## run the notebooks and render them as pages, into out/
 		notebooks/*.ipynb
 	@ls out/notebooks/*.html
 
-derive: .venv/ready  ## write the generated modules anew
+derive: .venv/base  ## write the generated modules anew
 	$(BIN)/holonomic derive
 
 bench: .venv/bench  ## time compiled loops beside other programs (ten minutes, idle machine)
@@ -42,14 +42,20 @@ check: lint types test notebooks  ## everything that decides whether a change la
 clean:  ## remove the environment and what the tools left behind
 	rm -rf .venv out build dist .mypy_cache .pytest_cache .ruff_cache
 
-# The environment. Versions are those that are known to work together.
-.venv/ready: pyproject.toml .ci/constraints.txt
+# The environment, in three sizes. Versions are those that are known to work together.
+PIP := PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install \
+	--quiet --disable-pip-version-check --editable
+
+.venv/base: pyproject.toml .ci/constraints.txt
+	@echo "setting up .venv: half a minute for the demonstration, another minute for the tests"
 	$(PYTHON) -m venv .venv
-	PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install \
-		--quiet --disable-pip-version-check --editable '.[test]'
+	$(PIP) .
+	@touch $@
+
+.venv/ready: .venv/base
+	$(PIP) '.[test]'
 	@touch $@
 
 .venv/bench: .venv/ready
-	PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install \
-		--quiet --disable-pip-version-check --editable '.[test,bench]'
+	$(PIP) '.[test,bench]'
 	@touch $@
