@@ -47,7 +47,7 @@ PIP := PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install
 	--quiet --disable-pip-version-check --editable
 
 .venv/base: pyproject.toml .ci/constraints.txt
-	@echo "setting up .venv: half a minute for the demonstration, another minute for the tests"
+	@echo "setting up .venv, which takes most of a minute"
 	$(PYTHON) -m venv .venv
 	$(PIP) .
 	@touch $@
