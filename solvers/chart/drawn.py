@@ -56,15 +56,18 @@ def work_precision(title: str, curves: Sequence[Curve]) -> Figure:
                     label = f"{method}, {backend}, {form}"
                     _draw(choices, curve, "work_seconds", label, color=colour, linestyle=STYLES[n])
     choices.set(title="forms and backends", xlabel="time / s")
-    for curve in curves:
-        if (curve.method, curve.form, curve.backend) == (EXAMPLE, "rational", "compiled"):
-            _draw(peers, curve, "work_seconds", f"holonomic {EXAMPLE}", color="black")
     others = [curve for curve in curves if curve.backend in PEERS]
+    ours = (EXAMPLE, "rational", "compiled")
+    for curve in curves if others else ():
+        if (curve.method, curve.form, curve.backend) == ours:
+            _draw(peers, curve, "work_seconds", f"holonomic {EXAMPLE}", color="black")
     for n, curve in enumerate(others):
         _draw(peers, curve, "work_seconds", f"{curve.backend} {curve.method}",
               color=COLOURS[n % 6], linestyle=STYLES[n // 6])  # fmt: skip
-    peers.set(title="other programs" if others else "other programs: none is installed",
-              xlabel="time / s")  # fmt: skip
+    peers.set(title="other programs", xlabel="time / s")
+    if not others:
+        peers.set_axis_off()
+        peers.set_title("other programs: none is installed")
     for panel in (calls, choices, peers):
         if panel.lines:
             panel.legend(frameon=False, fontsize="small")

@@ -26,7 +26,11 @@ SECTIONS = {
         "What SymPy derives from the positions alone, and beside it the report's own lines, each "
         "judged by computation.",
     ),
-    "verify": ("The verdict on the report", ""),
+    "verify": (
+        "The verdict on the report",
+        "The technical report Comparing Method in Double Pendulum derives these equations by hand "
+        "and compares methods. Every formula and every conclusion of it is judged by computation.",
+    ),
     "generate": (
         "Generated code",
         "The equations are written as readable Python and C; the rational form calls no function.",
@@ -74,7 +78,7 @@ def page(
         f"<header><h1>{title}</h1><p>From the positions of two masses to equations, code, motion "
         "and their proof, made by <code>holonomic demo</code>.</p><nav>",
         *(f'<a href="#{name}">{escape(SECTIONS[name][0])}</a> ' for name in _shown(stations)),
-        '<a href="#figures">Figures</a></nav></header><main>',
+        '<a href="#figures">Numbers</a></nav></header><main>',
         *(_section(name, stations[name]) for name in _shown(stations)),
         _figures(stations, made),
         "</main>",
@@ -96,15 +100,15 @@ def _shown(stations: Mapping[str, Station]) -> list[str]:
 
 def _section(name: str, station: Station) -> str:
     title, words = SECTIONS[name]
-    note = f"<p>{escape(words)}</p>" if words else ""
-    return f'<section id="{name}"><h2>{escape(title)}</h2>{note}{station.html}</section>'
+    head = f"<h2>{escape(title)}</h2><p>{escape(words)}</p>"
+    return f'<section id="{name}">{head}{station.html}</section>'
 
 
 def _figures(stations: Mapping[str, Station], made: Mapping[str, str]) -> str:
     figures = [figure for name in _shown(stations) for figure in stations[name].figures]
     rows = [(figure.what, figure.value, figure.how, figure.command) for figure in figures]
     return (
-        '<section id="figures"><h2>Figures, and where they come from</h2>'
+        '<section id="figures"><h2>Numbers, and where they come from</h2>'
         + table(("what", "value", "how", "again by"), rows)
         + table(("made with", ""), made.items())
         + "</section>"
