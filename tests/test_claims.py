@@ -50,7 +50,7 @@ def test_figures_that_verdicts_name_are_drawn_by_the_commands_they_name(
     drawn = {
         "chart": {f"{kind}_{name}.png" for kind in ("work_precision", "steps", "energy")
                   for name in USUAL},
-        "stability": {f"{name}.png" for name in DRAW},
+        "stability": {f"failures_{name}.png" for name in DRAW},
     }  # fmt: skip
     shown = {claim.figure for claim in claims(evidence) if claim.figure}
     assert len(shown) >= 4
