@@ -181,6 +181,7 @@ def _derived() -> Station:
     from derive.report.beside import beside
     from derive.report.judgement import named, verdict
     from derive.summary import broken_sum
+    from solvers.commands.demo import WIDTH
     from solvers.demo.station import Station
     from solvers.order_conditions import order
 
@@ -189,12 +190,12 @@ def _derived() -> Station:
     every = beside(derivation, lambda name: verdict(named(name), order))
     return Station(
         (
-            *broken_sum(f"L = {derivation.lagrangian}", 67).splitlines(),
+            *broken_sum(f"L = {derivation.lagrangian}", WIDTH).splitlines(),
             f"M = {derivation.mass_matrix.tolist()[0]}",
             f"    {derivation.mass_matrix.tolist()[1]}",
             "and M qddot = (f1, f2) with",
-            *broken_sum(f"f1 = {first}", 67).splitlines(),
-            *broken_sum(f"f2 = {second}", 67).splitlines(),
+            *broken_sum(f"f1 = {first}", WIDTH).splitlines(),
+            *broken_sum(f"f2 = {second}", WIDTH).splitlines(),
         ),
         "".join(one.section for one in every),
     )
@@ -203,7 +204,7 @@ def _derived() -> Station:
 def _verified() -> Station:
     from derive.report.beside import line
     from derive.report.equation import Verdict
-    from solvers.demo.station import Figure, Station
+    from solvers.demo.station import Number, Station
     from solvers.demo.verdicts import verdicts
     from solvers.tables import counted
 
@@ -223,10 +224,10 @@ def _verified() -> Station:
         ),
         verdicts(judged, misprints),
         (
-            Figure("equations of the report", equations,
+            Number("equations of the report", equations,
                    "proved or refuted symbolically, and in numbers with 40 digits",
                    "holonomic verify"),
-            Figure("claims of the report", claims, "computed", "holonomic verify"),
+            Number("claims of the report", claims, "computed", "holonomic verify"),
         ),
     )  # fmt: skip
 
@@ -234,8 +235,9 @@ def _verified() -> Station:
 def _generated() -> Station:
     import generated.double_pendulum as dp
     from derive.command import planned
-    from solvers.demo.code import listing, operations
-    from solvers.demo.station import Figure, Station
+    from solvers.demo.code import listing
+    from solvers.demo.station import Number, Station
+    from solvers.stated import operations
 
     tree = planned(["double_pendulum"], None)
     state = "differs: run holonomic derive" if tree.differences() else "up to date"
@@ -249,7 +251,7 @@ def _generated() -> Station:
         ),
         listing(dp),
         (
-            Figure("operations of a right-hand side", str(counts["rhs"]),
+            Number("operations of a right-hand side", str(counts["rhs"]),
                    "counted in the generated function", "holonomic derive"),
         ),
     )  # fmt: skip

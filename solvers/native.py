@@ -8,6 +8,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from solvers import stated
 from solvers.compiler import Library, build
 from solvers.forms import Form
 from solvers.kernel_source import Equations
@@ -69,7 +70,7 @@ def equations(module: ModuleType, form: str) -> Equations:
     """
     place = header(module)
     if place is None:
-        name = module.__name__.rpartition(".")[2]
+        name = stated.system(module)
         raise ValueError(f"{name}.h is missing: write it with holonomic derive {name}")
     text = place.read_text(encoding="utf-8")
     rhs = f"{place.stem}_rhs" + ("" if form == "lagrangian" else f"_{form}")

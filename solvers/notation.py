@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-GREEK = ("theta", "phi", "psi", "alpha", "beta")
+GREEK = (
+    "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi chi "
+    "psi omega Gamma Delta Theta Lambda Pi Sigma Phi Psi Omega"
+).split()
 
 
 def symbol(name: str) -> str:

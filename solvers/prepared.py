@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers import compiled, request
+from solvers.compiler import NoCompilerError
 from solvers.forms import ordinary_state
 from solvers.kernel import STATUSES, Batch
 from solvers.problem import SHORTEST, Problem
@@ -181,3 +182,12 @@ class Prepared:
         """Raise for what makes no sense in a span or a state."""
         request.time_span(t_span)
         request.numbers("y0", y0, self._problem.form.ordinary)
+
+
+def no_compiler(module: ModuleType) -> str:
+    """Why what takes very many steps cannot be compiled; empty if it can."""
+    try:
+        prepare(module, module.DEFAULTS)
+    except NoCompilerError as error:
+        return str(error)
+    return ""

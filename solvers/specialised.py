@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
 
+from solvers import stated
 from solvers.catalogue import load
 from solvers.made import made
 from solvers.request import SCIPY
@@ -56,7 +57,7 @@ def specialised(
     OSError
         When it cannot be written to the cache.
     """
-    name = module.__name__.rpartition(".")[2]
+    name = stated.system(module)
     values = dict(zip(module.PARAMETERS, map(float, params), strict=True))
     key = repr((name, values, tuple(functions), version))
     return made(name, key, lambda: generator(name, values, functions))

@@ -14,10 +14,11 @@ import generated.double_pendulum as dp
 from derive.report.judgement import EQUATIONS
 from solvers.cli import generated_module, main
 from solvers.commands import demo as command
-from solvers.demo.code import FUNCTIONS, operations
+from solvers.demo.code import FUNCTIONS
 from solvers.demo.html import table
 from solvers.demo.page import write_demo
 from solvers.demo.station import Station
+from solvers.stated import operations, operations_on_state
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +135,7 @@ def test_the_fastest_comes_first_and_two_programs_are_two(made: tuple[str, Path]
 
 def test_every_figure_says_how_it_was_obtained(made: tuple[str, Path]) -> None:
     page = made[1].read_text(encoding="utf-8")
-    rows = re.findall(r"<tr>(.*?)</tr>", page.partition('id="figures"')[2])[1:]
+    rows = re.findall(r"<tr>(.*?)</tr>", page.partition('id="numbers"')[2])[1:]
     figures = [re.findall(r"<td>(.*?)</td>", row) for row in rows]
     figures = [cells for cells in figures if len(cells) == 4]
     assert len(figures) >= 8
@@ -147,6 +148,7 @@ def test_operations_are_those_that_the_functions_state() -> None:
         "rhs": 32, "rhs_hamiltonian": 35, "rhs_rational": 39, "rhs_variational": 77,
         "jacobian": 85, "energy": 26,
     }  # fmt: skip
+    assert operations_on_state(dp, "rhs_rational") == 34
     with pytest.raises(ValueError, match=r"module.*states no operations: generate it anew"):
         operations(type("module", (), {"rhs": test_operations_are_those_that_the_functions_state,
                                        "__name__": "module"}), "rhs")  # fmt: skip
@@ -155,11 +157,11 @@ def test_operations_are_those_that_the_functions_state() -> None:
 def test_without_a_compiler_the_map_is_left_out_and_said_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(command, "_has_compiler", lambda _: False)
+    monkeypatch.setattr(command, "no_compiler", lambda _: "no C compiler")
     quick = {"derive": lambda: Station(("a line",), "<p>something</p>")}
     monkeypatch.setattr(command, "cost", lambda _: Station(("cost",), ""))
     assert command.main(["--output", str(tmp_path)], generated_module, quick, "") == 0
-    assert "it needs a C compiler" in capsys.readouterr().out
+    assert "left out: no C compiler" in capsys.readouterr().out
     assert 'id="map"' not in (tmp_path / "demo.html").read_text(encoding="utf-8")
 
 

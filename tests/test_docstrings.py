@@ -52,7 +52,7 @@ def imported(sources: list[str]) -> dict[str, Any]:
         ):
             module = import_module(node.module or "")
             for alias in node.names:
-                thing = getattr(module, alias.name)
+                thing = getattr(module, alias.name, None)  # or a module
                 if callable(thing):
                     found[f"{node.module}.{alias.name}"] = thing
     return found

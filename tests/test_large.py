@@ -13,7 +13,7 @@ from derive.functions import contents
 from derive.python import module as text_of
 from derive.timing import chain as chain_in_c
 from derive.timing import mechanics
-from solvers.bench import calls
+from solvers.bench import calls, way
 from solvers.cli import generated_module
 from solvers.ensemble import ensemble
 from solvers.forms import Form
@@ -113,3 +113,20 @@ def test_what_sympys_mechanics_derives_is_what_is_generated() -> None:
                       strict=True))  # fmt: skip
     rates = [float(rate.subs(values)) for rate in found.rates]
     assert rates == pytest.approx(dp.rhs(0.0, y, params), rel=1e-12)
+
+
+def test_the_way_is_timed_with_the_loosest_tolerance_that_is_good_enough() -> None:
+    found = way._way("a program", 0.1, 0.2, lambda tol: lambda: np.add(way.FINAL, 20 * tol))
+    assert found.global_error == pytest.approx(2e-10, rel=1e-3)
+    assert (found.derivation, found.preparation) == (0.1, 0.2)
+    with pytest.raises(ArithmeticError, match="a program does not come within 1e-09"):
+        way._way("a program", 0.1, 0.2, lambda _: lambda: np.add(way.FINAL, 1e-8))
+
+
+def test_the_way_here_and_with_scipy_ends_where_it_should() -> None:
+    ours = way._way("holonomic", *way._ours(dp, chain_in_c))
+    scipy = way._way("SciPy", *way._scipy(dp, chain_in_c))
+    assert 0 < max(ours.global_error, scipy.global_error) < way.ERROR
+    lines = list(way.told([ours, scipy]))
+    assert lines[2].endswith(" 1.0 x")
+    assert len({len(line) for line in lines[2:]}) == 1

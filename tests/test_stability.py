@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.contour import ContourSet
 from numpy.polynomial import polynomial
 
 import generated.double_pendulum as dp
@@ -20,6 +21,7 @@ from solvers.integration import integrate
 from solvers.solution import Status
 from solvers.stability import critical
 from solvers.stability.critical import CriticalStep, critical_step, limit
+from solvers.stability.drawn import boundaries
 from solvers.stability.modes import Modes, along
 from solvers.stability_function import StabilityFunction
 from solvers.stepper import Stepper
@@ -201,3 +203,13 @@ def test_motion_damped_to_nothing_is_still_a_motion(backend: str) -> None:
                     backend=backend)  # fmt: skip
     assert run.status is Status.FINISHED
     assert 0 < np.abs(run.y[:, -1]).max() < 1e-290
+
+
+def test_boundaries_are_where_nothing_grows_or_fades() -> None:
+    function = StabilityFunction.of(load("rk4"))
+    (panel,) = boundaries({"RK4": function}).axes
+    (contour,) = (one for one in panel.collections if isinstance(one, ContourSet))
+    points = np.concatenate([path.vertices for path in contour.get_paths()])
+    size = np.abs(function(points[:, 0] + 1j * points[:, 1]))
+    assert len(points) > 100
+    assert np.abs(size - 1).max() < 0.02

@@ -71,6 +71,7 @@ def named(name: str) -> Equation | Stated:
     raise LookupError(f"the report has no equation {name[:50]!r}{near(name, known)}")
 
 
+@cache  # what stands beside a derivation is asked for again in the whole verdict
 def verdict(equation: Equation | Stated, order_of: OrderOf) -> Verdict:
     """The verdict on one equation.
 

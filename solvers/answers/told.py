@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
@@ -12,6 +11,7 @@ import numpy as np
 
 from solvers.answers.answer import Answer
 from solvers.models.full import Full
+from solvers.stated import operations_on_state
 
 
 def told(answer: Answer) -> Iterator[str]:
@@ -79,7 +79,7 @@ def special_code(answer: Answer) -> Path | None:
 def _code(answer: Answer, model: Full) -> str:
     """What specialised code saves."""
     special, general = (
-        operations(module, model.way.form) for module in (model.asked.module, answer.scene.module)
+        _operations(module, model.way.form) for module in (model.asked.module, answer.scene.module)
     )
     return (
         f"specialised code ({special} operations instead of {general}, general code takes "
@@ -87,11 +87,8 @@ def _code(answer: Answer, model: Full) -> str:
     )
 
 
-def operations(module: ModuleType, form: str) -> int:
-    """What a call of a right-hand side costs, without terms of the parameters alone."""
-    rhs = getattr(module, "rhs" if form == "lagrangian" else f"rhs_{form}")
-    every, constant = re.findall(r"(\d+) operations, (\d+) of them", rhs.__doc__)[0]
-    return int(every) - int(constant)
+def _operations(module: ModuleType, form: str) -> int:
+    return operations_on_state(module, "rhs" if form == "lagrangian" else f"rhs_{form}")
 
 
 def cost(answer: Answer) -> str:
@@ -123,7 +120,7 @@ def figures(answer: Answer) -> dict[str, Any]:
         "form": answer.form,
         "setting": {_setting(answer, model): model.setting} if isinstance(model, Full) else None,
         "code": "specialised" if is_specialised(answer) else "general",
-        "operations": operations(model.asked.module, model.way.form)
+        "operations": _operations(model.asked.module, model.way.form)
         if isinstance(model, Full)
         else None,
         "general_seconds": answer.general_seconds,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import re
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -21,6 +20,7 @@ from solvers.compiler import build
 from solvers.ensemble import ensemble
 from solvers.kernel_source import program
 from solvers.native import equations
+from solvers.stated import operations
 
 
 def calls(module: ModuleType, lambdified: Callable[..., object]) -> dict[str, float]:
@@ -79,9 +79,11 @@ def peak_share(module: ModuleType) -> dict[str, float]:
     method = "verner87"
     tableau = load(method)
     weights = [*(a for row in tableau.A for a in row), *tableau.b]
-    operations = int(re.findall(r"(\d+) operations", module.rhs_rational.__doc__ or "")[0])
     state = len(module.STATE_RATIONAL)
-    step = 2 * state * sum(w != 0 for w in weights) + operations * tableau.stages
+    step = (
+        2 * state * sum(w != 0 for w in weights)
+        + operations(module, "rhs_rational") * tableau.stages
+    )
     controlled = step + 2 * state * sum(w != 0 for row in tableau.error_weights for w in row)
     run = partial(ensemble, module, (0, END), starts, module.DEFAULTS, method=method, workers=1)
     free, held = run(rtol=1e-11, atol=1e-11), run(h=0.01)

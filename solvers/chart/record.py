@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from solvers import stated
 from solvers.chart.findings import Charted
 from solvers.chart.frontier import frontier
 from solvers.jsonable import jsonable
@@ -20,7 +21,7 @@ def recorded(charts: Sequence[Charted]) -> str:
     rows = [
         {
             "scene": chart.scene.name,
-            "system": chart.scene.module.__name__.rpartition(".")[2],
+            "system": stated.system(chart.scene.module),
             "duration": chart.scene.duration,
             "spread": mode_spread(chart.scene.module, chart.scene.params),
             "frontier": frontier([c for c in chart.curves if c.backend == "compiled"]),

@@ -13,20 +13,20 @@ from pathlib import Path
 from textwrap import wrap
 from types import ModuleType
 
-from solvers.compiler import NoCompilerError
 from solvers.demo.cost import cost
 from solvers.demo.flips import flips
 from solvers.demo.limits import limits
 from solvers.demo.motion import motion
 from solvers.demo.page import write_demo
 from solvers.demo.station import Station
-from solvers.prepared import prepare
+from solvers.prepared import no_compiler
 from solvers.progress import Progress
 from solvers.scenes import shipped
 from solvers.sweeps import reading
 
 #: How wide the screen is, and where its lines begin.
 COLUMNS, MARGIN = 80, 13
+WIDTH = COLUMNS - MARGIN
 #: What the page is made with.
 PACKAGES = ("holonomic", "sympy", "numpy", "scipy", "matplotlib")
 
@@ -80,8 +80,8 @@ def main(
         start = time.perf_counter()
         with Progress() as tell:
             tell(name)
-            if name == "map" and not _has_compiler(scene.module):
-                print(f"{number} {name:<11}left out: it needs a C compiler")
+            if name == "map" and (missing := no_compiler(scene.module)):
+                print(f"{number} {name:<11}left out: {missing}")
                 continue
             found[name] = station()
         print(*_beside(f"{number} {name}", time.perf_counter() - start, found[name].lines),
@@ -100,7 +100,7 @@ def _beside(name: str, seconds: float, words: Sequence[str]) -> Iterator[str]:
 
 
 def _wrapped(line: str) -> list[str]:
-    return wrap(line, COLUMNS - MARGIN, subsequent_indent="  ", break_long_words=False,
+    return wrap(line, WIDTH, subsequent_indent="  ", break_long_words=False,
                 break_on_hyphens=False)  # fmt: skip
 
 
@@ -112,11 +112,3 @@ def made() -> dict[str, str]:
         "Python": platform.python_version(),
         **{name: version(name) for name in PACKAGES},
     }
-
-
-def _has_compiler(module: ModuleType) -> bool:
-    try:
-        prepare(module, module.DEFAULTS)
-    except NoCompilerError:
-        return False
-    return True

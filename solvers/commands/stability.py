@@ -12,14 +12,13 @@ import numpy as np
 
 from solvers.catalogue import names
 from solvers.commands.options import options
-from solvers.compiler import NoCompilerError
 from solvers.failures.drawn import draw
 from solvers.failures.studies import FULL, studies
 from solvers.failures.told import TELL
 from solvers.integration import integrate
 from solvers.jsonable import jsonable
 from solvers.pictures import save
-from solvers.prepared import prepare
+from solvers.prepared import no_compiler
 from solvers.progress import Progress
 from solvers.scenes.scene import Scene
 from solvers.stability.critical import CriticalStep, critical_step
@@ -82,15 +81,6 @@ def main(argv: Sequence[str], module: Callable[[str], ModuleType]) -> int:
     if arguments.json:
         print(json.dumps(jsonable(found), indent=2))
     return 0
-
-
-def no_compiler(module: ModuleType) -> str:
-    """Why the studies, which take millions of steps, cannot be compiled; empty if they can."""
-    try:
-        prepare(module, module.DEFAULTS)
-    except NoCompilerError as error:
-        return str(error)
-    return ""
 
 
 def scene_steps(one: Scene, tell: Callable[[str], None] = lambda _: None) -> list[CriticalStep]:

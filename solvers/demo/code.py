@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import inspect
-import re
 from html import escape
 from types import ModuleType
 
 from solvers.demo.html import opened, table
+from solvers.stated import operations
 
 #: Functions whose costs are listed, and what they are.
 FUNCTIONS = {
@@ -18,33 +18,6 @@ FUNCTIONS = {
     "jacobian": "derivatives of Lagrange's form by the state",
     "energy": "energy",
 }
-
-
-def operations(module: ModuleType, function: str) -> int:
-    """What a function says of itself: additions, multiplications, divisions and calls.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    function : str
-        One of its functions, such as ``rhs``.
-
-    Returns
-    -------
-    int
-        Operations a call.
-
-    Raises
-    ------
-    ValueError
-        When the function does not say: then the module must be generated anew.
-    """
-    words = inspect.getdoc(getattr(module, function)) or ""
-    found = re.search(r"(\d+) operations", words)
-    if not found:
-        raise ValueError(f"{module.__name__}.{function} states no operations: generate it anew")
-    return int(found[1])
 
 
 def listing(module: ModuleType) -> str:

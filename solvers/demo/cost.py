@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite
 
-from matplotlib.figure import Figure as Chart
+from matplotlib.figure import Figure
 
 from solvers.chart.curve import Curve
 from solvers.chart.measurement import Combination, curves
 from solvers.chart.reference import reference
 from solvers.demo.html import drawing, pair, table
-from solvers.demo.station import Figure, Station
+from solvers.demo.station import Number, Station
 from solvers.pictures import COLOURS, panels
 from solvers.scenes.scene import Scene
 
@@ -51,14 +51,14 @@ def cost(scene: Scene) -> Station:
             table((f"for an error of {ERROR:g}", "times as long"), [(best, "1"), *ratios]),
         ),
         (
-            Figure(f"seconds for an error of {ERROR:g}",
+            Number(f"seconds for an error of {ERROR:g}",
                    f"{least}; {', '.join(f'{name} {ratio} x' for name, ratio in ratios)}",
                    how, f"holonomic chart {scene.name}"),
         ),
     )  # fmt: skip
 
 
-def charted(measured: Sequence[Curve]) -> Chart:
+def charted(measured: Sequence[Curve]) -> Figure:
     """One panel, which a narrow screen can show."""
     figure, (panel,) = panels("", size=(5.2, 4.4))
     for curve, colour in zip(measured, COLOURS, strict=False):

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from solvers.demo.html import image
-from solvers.demo.station import Figure, Station
+from solvers.demo.station import Number, Station
 from solvers.sweeps.drawn import drawn
 from solvers.sweeps.running import sweep
 from solvers.sweeps.sweep import Sweep
@@ -22,12 +22,12 @@ def flips(asked: Sweep, folder: Path) -> Station:
     flipped = results.count.get("event", 0)
     return Station(
         (
-            f"{asked.motions:,} motions of {asked.duration:g} s: {flipped:,} turn over  "
+            f"{asked.motions:,} motions of {asked.duration:g} s: {flipped:,} turn over "
             f"({seconds:.1f} s this time)",
         ),
         image(drawn(results), "Map of the time until one of the rods turns over"),
         (
-            Figure(
+            Number(
                 f"motions of {asked.motions:,} that turn over within {asked.duration:g} s",
                 f"{flipped:,}", f"{doubt.motions} of them again with rtol = {tighter(asked):.0e}: "
                 f"half of the times change by less than {doubt.median:.0e} s",

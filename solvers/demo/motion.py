@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from solvers.demo.station import Figure, Station
+from solvers.demo.station import Number, Station
 from solvers.energy import energy_error
 from solvers.integration import integrate
 from solvers.page.page import player
@@ -42,13 +42,13 @@ def motion(scene: Scene) -> Station:
         ),
         player(tracks),
         (
-            Figure(
+            Number(
                 f"largest difference of two programs' states after {scene.duration:g} s",
                 f"{apart:.1e} rad or rad/s",
                 f"Verner 9(8) beside SciPy's DOP853, both with tolerances of {TOLERANCE:g}",
                 "holonomic demo",
             ),
-            Figure(
+            Number(
                 "largest relative energy error", f"{change:.1e}",
                 "computed along the motion, in parts of the energy above rest",
                 "holonomic demo",

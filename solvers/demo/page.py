@@ -78,9 +78,9 @@ def page(
         f"<header><h1>{title}</h1><p>From the positions of two masses to equations, code, motion "
         "and their proof, made by <code>holonomic demo</code>.</p><nav>",
         *(f'<a href="#{name}">{escape(SECTIONS[name][0])}</a> ' for name in _shown(stations)),
-        '<a href="#figures">Numbers</a></nav></header><main>',
+        '<a href="#numbers">Numbers</a></nav></header><main>',
         *(_section(name, stations[name]) for name in _shown(stations)),
-        _figures(stations, made),
+        _numbers(stations, made),
         "</main>",
     ]
     looks = motions.style() + style + STYLE.read_text(encoding="utf-8")
@@ -104,11 +104,11 @@ def _section(name: str, station: Station) -> str:
     return f'<section id="{name}">{head}{station.html}</section>'
 
 
-def _figures(stations: Mapping[str, Station], made: Mapping[str, str]) -> str:
-    figures = [figure for name in _shown(stations) for figure in stations[name].figures]
-    rows = [(figure.what, figure.value, figure.how, figure.command) for figure in figures]
+def _numbers(stations: Mapping[str, Station], made: Mapping[str, str]) -> str:
+    numbers = [number for name in _shown(stations) for number in stations[name].numbers]
+    rows = [(number.what, number.value, number.how, number.command) for number in numbers]
     return (
-        '<section id="figures"><h2>Numbers, and where they come from</h2>'
+        '<section id="numbers"><h2>Numbers, and where they come from</h2>'
         + table(("what", "value", "how", "again by"), rows)
         + table(("made with", ""), made.items())
         + "</section>"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Figure:
+class Number:
     """A number that is shown, and where it comes from.
 
     Attributes
@@ -35,10 +35,10 @@ class Station:
         For the terminal.
     html : str
         For the page.
-    figures : tuple of Figure
+    numbers : tuple of Number
         Its numbers.
     """
 
     lines: tuple[str, ...]
     html: str
-    figures: tuple[Figure, ...] = ()
+    numbers: tuple[Number, ...] = ()

@@ -10,6 +10,7 @@ from math import log, nan
 from types import ModuleType
 from typing import Any
 
+from solvers import stated
 from solvers.catalogue import load, names
 from solvers.chart.record import RECORD
 from solvers.forms import fastest_form, has_form
@@ -91,7 +92,7 @@ def cheapest(module: ModuleType, params: Sequence[float], accuracy: float) -> Wa
         Where nothing charted is as accurate, that for the smallest error charted.
     """
     spread = mode_spread(module, params)
-    system = module.__name__.rpartition(".")[2]
+    system = stated.system(module)
     own = [scene for scene in _record() if scene["system"] == system] or _record()
     nearest = min(own, key=lambda scene: abs(log(scene["spread"] / spread)))
     rows: list[dict[str, Any]] = nearest["frontier"]

@@ -40,7 +40,7 @@ class Page:
     tracks: Sequence[Track]
 
     def __post_init__(self) -> None:
-        player(self.tracks)
+        _check(self.tracks)
 
     @property
     def html(self) -> str:
@@ -87,12 +87,16 @@ def player(tracks: Sequence[Track]) -> str:
     ValueError
         When there is no track, or one cannot be played: the message says why.
     """
+    _check(tracks)
+    motions = json.dumps([track.plain() for track in tracks], separators=(",", ":"))
+    return Template(_source("player.html")).substitute(motions=_inert(motions))
+
+
+def _check(tracks: Sequence[Track]) -> None:
     if not tracks:
         raise ValueError("tracks is empty, but a page plays at least one: give it a Track")
     for track in tracks:
         track.check()
-    motions = json.dumps([track.plain() for track in tracks], separators=(",", ":"))
-    return Template(_source("player.html")).substitute(motions=_inert(motions))
 
 
 def style() -> str:

@@ -14,6 +14,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from solvers import stated
 from solvers.forms import Form, fastest_form
 from solvers.references.series import Series, Tape
 
@@ -128,7 +129,7 @@ class _Motion:
 
     @staticmethod
     def _refusal(module: ModuleType, why: str) -> NoSeriesError:
-        system = module.__name__.rpartition(".")[2]
+        system = stated.system(module)
         return NoSeriesError(
             f"{system} has no Taylor series, since its equations {why}: ordinary numbers have to "
             "do; ask for less accuracy or a shorter duration"

@@ -1,17 +1,19 @@
-"""Stability regions, with a scene's modes laid over them."""
+"""Stability regions: each with a scene's modes, or the boundaries of several."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import inf
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from solvers.pictures import COLOURS, panels
 from solvers.stability.critical import CriticalStep
+from solvers.stability_function import StabilityFunction
 
 #: What of the complex plane is shown, and how finely.
 LEFT, RIGHT, TOP, POINTS = -7.0, 4.0, 7.0, 221
@@ -52,6 +54,33 @@ def regions(
         panel.set_axis_off()
     figure.supxlabel("Re h λ")
     figure.supylabel("Im h λ")
+    return figure
+
+
+def boundaries(functions: Mapping[str, StabilityFunction]) -> Figure:
+    """Boundaries |R| = 1 in one panel.
+
+    Parameters
+    ----------
+    functions : mapping of str to StabilityFunction
+        By what they are called in the legend; up to seven, which is how many colours there are.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The plane of hλ, a step times an eigenvalue, which has no unit.
+    """
+    figure, (panel,) = panels("", size=(5.2, 4.8))
+    x, y = np.linspace(LEFT, RIGHT, POINTS), np.linspace(-TOP, TOP, POINTS)
+    for function, colour in zip(functions.values(), COLOURS, strict=False):
+        size = np.abs(function(x + 1j * y[:, None]))
+        panel.contour(x, y, size, levels=[1], colors=[colour], linewidths=1.4)
+    panel.axvline(0, color="#bbbbbb", linewidth=0.6, zorder=0)
+    panel.axhline(0, color="#bbbbbb", linewidth=0.6, zorder=0)
+    panel.set(xlabel="Re hλ", ylabel="Im hλ", aspect="equal")
+    handles = [Line2D([], [], color=colour) for colour, _ in zip(COLOURS, functions, strict=False)]
+    figure.legend(handles, list(functions), frameon=False, loc="outside upper center", ncols=4,
+                  fontsize="small", columnspacing=1.2)  # fmt: skip
     return figure
 
 

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from solvers import stated
+
 Array = NDArray[np.float64]
 
 
@@ -53,12 +55,13 @@ class Modes:
         ValueError
             When the module knows no equilibrium, or it is not stable, or a mode has no mass.
         """
+        name = stated.system(module)
         if not hasattr(module, "linear"):
-            raise ValueError(f"{_name(module)} has no equilibrium: small motions have no modes")
+            raise ValueError(f"{name} has no equilibrium: small motions have no modes")
         mass_matrix, stiffness_matrix = np.array(module.linear(params))
         squares, shapes = eigh(stiffness_matrix, mass_matrix)
         if squares[0] <= 0:
-            raise ValueError(f"{_name(module)} does not oscillate about rest with {params}: "
+            raise ValueError(f"{name} does not oscillate about rest with {params}: "
                              f"squared frequencies are {squares}")  # fmt: skip
         return cls(mass_matrix, stiffness_matrix, np.sqrt(squares), shapes)
 
@@ -74,11 +77,6 @@ class Modes:
         x, velocity = np.split(y, 2)
         twice = velocity @ self.mass_matrix @ velocity + x @ self.stiffness_matrix @ x
         return float(np.sqrt(twice))
-
-
-def _name(module: ModuleType) -> str:
-    """What people call a module's system."""
-    return module.__name__.rpartition(".")[2]
 
 
 def along(module: ModuleType, params: Sequence[float], states: Array) -> NDArray[np.complex128]:

@@ -14,6 +14,7 @@ from types import ModuleType
 
 import numpy as np
 
+from solvers import stated
 from solvers.made import made
 from solvers.native import header
 from solvers.solution import Status
@@ -45,7 +46,7 @@ class Source:
             return cls(module.__name__)
         files = filter(None, (Path(str(module.__file__)), header(module)))
         texts = tuple((path.name, path.read_text(encoding="utf-8")) for path in files)
-        return cls(module.__name__.rpartition(".")[2], texts)
+        return cls(stated.system(module), texts)
 
 
 @lru_cache

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from solvers import request
+from solvers import request, stated
 from solvers.catalogue import load, names
 from solvers.native import header
 from solvers.scenes.checks import check_positive
@@ -123,7 +123,7 @@ class Sweep:
         """All that decides what its numbers are, as JSON knows it."""
         generated = header(self.module) or Path(str(self.module.__file__))
         return {
-            "system": self.module.__name__.rpartition(".")[2],
+            "system": stated.system(self.module),
             "equations": hashlib.sha256(generated.read_bytes()).hexdigest(),
             "duration": self.duration,
             "values": dict(sorted(self.values.items())),
