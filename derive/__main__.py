@@ -2,6 +2,6 @@
 
 import sys
 
-from derive.command import main
+from derive.commands.derive import main
 
 sys.exit(main(sys.argv[1:]))

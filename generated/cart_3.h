@@ -113,7 +113,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[8] = {...}, rate[8], params[8] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81};
-       cart_3_rhs(0.0, state, rate, params);
+       cart_3_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -131,6 +131,12 @@
 
 typedef HOLONOMIC_REAL cart_3_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define CART_3_NUMBER(x) ((cart_3_real){0} + (x))
+#else
+#define CART_3_NUMBER(x) (x)
+#endif
+
 enum {
     CART_3_LAGRANGIAN_STATE = 8,
     CART_3_HAMILTONIAN_STATE = 8,
@@ -144,7 +150,7 @@ enum {
    131 operations, 13 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void cart_3_rhs(
-    cart_3_real t, const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real theta1 = state[1];
@@ -229,7 +235,7 @@ static inline void cart_3_rhs(
    399 operations, 14 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void cart_3_jacobian(
-    cart_3_real t, const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real theta1 = state[1];
@@ -429,7 +435,7 @@ static inline void cart_3_jacobian(
    66 operations, 15 of them on parameters alone.
    Energy in J. */
 static inline void cart_3_energy(
-    const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real theta1 = state[1];
@@ -478,6 +484,7 @@ static inline void cart_3_energy(
         - c13*cos_theta2 - c14*cos_theta3;
     /* outputs */
     result[0] = x1;
+    (void)t;
 }
 #endif
 
@@ -486,7 +493,7 @@ static inline void cart_3_energy(
    27 operations, 12 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void cart_3_mass_matrix(
-    const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real theta1 = state[1];
@@ -532,6 +539,7 @@ static inline void cart_3_mass_matrix(
     result[13] = x4;
     result[14] = x5;
     result[15] = l3*c4;
+    (void)t;
 }
 #endif
 
@@ -540,7 +548,7 @@ static inline void cart_3_mass_matrix(
    20 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void cart_3_positions(
-    const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real x = state[0];
@@ -564,6 +572,7 @@ static inline void cart_3_positions(
     result[5] = -x3;
     result[6] = x2 + l3*sin(theta3);
     result[7] = -(x3 + l3*cos(theta3));
+    (void)t;
 }
 #endif
 
@@ -572,7 +581,7 @@ static inline void cart_3_positions(
    53 operations, 7 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void cart_3_hamiltonian_state(
-    const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real x = state[0];
@@ -621,6 +630,7 @@ static inline void cart_3_hamiltonian_state(
     result[5] = l1*(x0 + c1*x_dot*cos_theta1 + x4*x1 + x5*x2);
     result[6] = l2*x7;
     result[7] = c5*x8;
+    (void)t;
 }
 #endif
 
@@ -629,7 +639,7 @@ static inline void cart_3_hamiltonian_state(
    138 operations, 14 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void cart_3_rhs_hamiltonian(
-    cart_3_real t, const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real theta1 = state[1];
@@ -715,7 +725,7 @@ static inline void cart_3_rhs_hamiltonian(
    453 operations, 14 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void cart_3_jacobian_hamiltonian(
-    cart_3_real t, const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real theta1 = state[1];
@@ -938,7 +948,7 @@ static inline void cart_3_jacobian_hamiltonian(
    111 operations, 11 of them on parameters alone.
    Energy in J. */
 static inline void cart_3_energy_hamiltonian(
-    const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real theta1 = state[1];
@@ -1002,6 +1012,7 @@ static inline void cart_3_energy_hamiltonian(
     const cart_3_real x23 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3);
     /* outputs */
     result[0] = 0.5*(p_x*x19 + x9*x20 + x22 - x1*x21) - x23;
+    (void)t;
 }
 #endif
 
@@ -1010,7 +1021,7 @@ static inline void cart_3_energy_hamiltonian(
    98 operations, 9 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void cart_3_lagrangian_state(
-    const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real x = state[0];
@@ -1075,6 +1086,7 @@ static inline void cart_3_lagrangian_state(
     result[5] = c3*x18;
     result[6] = -c1*x19;
     result[7] = x20;
+    (void)t;
 }
 #endif
 
@@ -1083,7 +1095,7 @@ static inline void cart_3_lagrangian_state(
    6 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void cart_3_rational_state(
-    const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real x = state[0];
@@ -1106,6 +1118,7 @@ static inline void cart_3_rational_state(
     result[8] = theta1_dot;
     result[9] = theta2_dot;
     result[10] = theta3_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -1114,7 +1127,7 @@ static inline void cart_3_rational_state(
    134 operations, 13 of them on parameters alone.
    Time derivative of y. */
 static inline void cart_3_rhs_rational(
-    cart_3_real t, const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real sin_theta1 = state[1];
@@ -1197,7 +1210,7 @@ static inline void cart_3_rhs_rational(
    279 operations, 13 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void cart_3_rhs_variational(
-    cart_3_real t, const cart_3_real *state, cart_3_real *result, const cart_3_real *params)
+    cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real sin_theta1 = state[1];
@@ -1335,29 +1348,26 @@ static inline void cart_3_rhs_variational(
     (void)t;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0, 0, 0, 0). */
 static inline void cart_3_equilibrium(
-    cart_3_real *result, const cart_3_real *params)
+    const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 0.0;
-    result[3] = 0.0;
+    result[0] = CART_3_NUMBER(0.0);
+    result[1] = CART_3_NUMBER(0.0);
+    result[2] = CART_3_NUMBER(0.0);
+    result[3] = CART_3_NUMBER(0.0);
     (void)params;
 }
-#endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (0, 0, 0, 0).
    15 operations, 15 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void cart_3_linear(
-    cart_3_real *result, const cart_3_real *params)
+    const cart_3_real *params, cart_3_real *result)
 {
     /* inputs */
     const cart_3_real m0 = params[0];
@@ -1394,23 +1404,22 @@ static inline void cart_3_linear(
     result[13] = c6;
     result[14] = c7;
     result[15] = l3*c4;
-    result[16] = 0.0;
-    result[17] = 0.0;
-    result[18] = 0.0;
-    result[19] = 0.0;
-    result[20] = 0.0;
+    result[16] = CART_3_NUMBER(0.0);
+    result[17] = CART_3_NUMBER(0.0);
+    result[18] = CART_3_NUMBER(0.0);
+    result[19] = CART_3_NUMBER(0.0);
+    result[20] = CART_3_NUMBER(0.0);
     result[21] = c2*g;
-    result[22] = 0.0;
-    result[23] = 0.0;
-    result[24] = 0.0;
-    result[25] = 0.0;
+    result[22] = CART_3_NUMBER(0.0);
+    result[23] = CART_3_NUMBER(0.0);
+    result[24] = CART_3_NUMBER(0.0);
+    result[25] = CART_3_NUMBER(0.0);
     result[26] = c3*g;
-    result[27] = 0.0;
-    result[28] = 0.0;
-    result[29] = 0.0;
-    result[30] = 0.0;
+    result[27] = CART_3_NUMBER(0.0);
+    result[28] = CART_3_NUMBER(0.0);
+    result[29] = CART_3_NUMBER(0.0);
+    result[30] = CART_3_NUMBER(0.0);
     result[31] = c4*g;
 }
-#endif
 
 #endif

@@ -132,6 +132,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "cart_3"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x",
@@ -143,54 +144,97 @@ STATE = (
     "theta2_dot",
     "theta3_dot",
 )
-STATE_HAMILTONIAN = (
-    "x",
-    "theta1",
-    "theta2",
-    "theta3",
-    "p_x",
-    "p_theta1",
-    "p_theta2",
-    "p_theta3",
-)
-STATE_RATIONAL = (
-    "x",
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "sin_theta3",
-    "cos_theta3",
-    "x_dot",
-    "theta1_dot",
-    "theta2_dot",
-    "theta3_dot",
-)
-STATE_VARIATIONAL = (
-    "x",
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "sin_theta3",
-    "cos_theta3",
-    "x_dot",
-    "theta1_dot",
-    "theta2_dot",
-    "theta3_dot",
-    "delta_x",
-    "delta_theta1",
-    "delta_theta2",
-    "delta_theta3",
-    "delta_x_dot",
-    "delta_theta1_dot",
-    "delta_theta2_dot",
-    "delta_theta3_dot",
-)
-PARAMETERS = ("m0", "m1", "m2", "m3", "l1", "l2", "l3", "g")
-DEFAULTS = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": (
+        "x",
+        "theta1",
+        "theta2",
+        "theta3",
+        "x_dot",
+        "theta1_dot",
+        "theta2_dot",
+        "theta3_dot",
+    ),
+    "hamiltonian": (
+        "x",
+        "theta1",
+        "theta2",
+        "theta3",
+        "p_x",
+        "p_theta1",
+        "p_theta2",
+        "p_theta3",
+    ),
+    "rational": (
+        "x",
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "sin_theta3",
+        "cos_theta3",
+        "x_dot",
+        "theta1_dot",
+        "theta2_dot",
+        "theta3_dot",
+    ),
+    "variational": (
+        "x",
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "sin_theta3",
+        "cos_theta3",
+        "x_dot",
+        "theta1_dot",
+        "theta2_dot",
+        "theta3_dot",
+        "delta_x",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta3",
+        "delta_x_dot",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+        "delta_theta3_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m0", "m1", "m2", "m3", "l1", "l2", "l3", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m0", "m1", "m2", "m3", "l1", "l2", "l3")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "mass_matrix",
+    "positions",
+    "hamiltonian_state",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "lagrangian_state",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (131, 13),
+    "jacobian": (399, 14),
+    "energy": (66, 15),
+    "mass_matrix": (27, 12),
+    "positions": (20, 0),
+    "hamiltonian_state": (53, 7),
+    "rhs_hamiltonian": (138, 14),
+    "jacobian_hamiltonian": (453, 14),
+    "energy_hamiltonian": (111, 11),
+    "lagrangian_state": (98, 9),
+    "rational_state": (6, 0),
+    "rhs_rational": (134, 13),
+    "rhs_variational": (279, 13),
+    "equilibrium": (0, 0),
+    "linear": (15, 15),
+}
 UNITS = {
     "m0": "kg",
     "m1": "kg",
@@ -229,6 +273,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -237,7 +299,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
         theta3_dot in rad/s.
@@ -314,7 +376,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (8, ...)."""
     from numpy import cos, sin
 
@@ -393,7 +455,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
         theta3_dot in rad/s.
@@ -557,7 +619,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (8, 8, ...)."""
     from numpy import cos, sin
 
@@ -744,13 +806,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     66 operations, 15 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
         theta3_dot in rad/s.
@@ -800,7 +864,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return x1
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -842,13 +906,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return x1
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     27 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
         theta3_dot in rad/s.
@@ -888,7 +954,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos
 
@@ -934,13 +1000,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     20 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
         theta3_dot in rad/s.
@@ -969,7 +1037,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (4, 2, ...)."""
     from numpy import cos, sin
 
@@ -996,13 +1064,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     53 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
         theta3_dot in rad/s.
@@ -1051,7 +1121,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (8, ...)."""
     from numpy import cos
 
@@ -1102,7 +1172,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; p_x in kg m/s; p_theta1, p_theta2, p_theta3
         in J s.
@@ -1172,7 +1242,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x19, c3*x20, -c1*x21, c0*x22, 0.0, -x26, -x28, -m3*x29)
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (8, ...)."""
     from numpy import cos, sin
 
@@ -1242,7 +1312,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; p_x in kg m/s; p_theta1, p_theta2, p_theta3
         in J s.
@@ -1425,7 +1495,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (8, 8, ...)."""
     from numpy import cos, sin
 
@@ -1631,13 +1701,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     111 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; p_x in kg m/s; p_theta1, p_theta2, p_theta3
         in J s.
@@ -1701,7 +1773,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return 0.5*(p_x*x19 + x9*x20 + x22 - x1*x21) - x23
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -1757,13 +1829,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return 0.5*(p_x*x19 + x9*x20 + x22 - x1*x21) - x23
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     98 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; p_x in kg m/s; p_theta1, p_theta2, p_theta3
         in J s.
@@ -1821,7 +1895,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (x, theta1, theta2, theta3, x17, c3*x18, -c1*x19, x20)
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (8, ...)."""
     from numpy import cos, sin
 
@@ -1871,13 +1945,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((8,), y[0], x, theta1, theta2, theta3, x17, c3*x18, -c1*x19, x20)
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     6 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 8 floats
         x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
         theta3_dot in rad/s.
@@ -1907,7 +1983,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (11, ...)."""
     from numpy import cos, sin
 
@@ -1939,7 +2015,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 11 floats
         x in m; sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
         x_dot in m/s; theta1_dot, theta2_dot, theta3_dot in rad/s.
@@ -2013,7 +2089,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (11, ...)."""
     # inputs
     _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y
@@ -2087,7 +2163,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 19 floats
         x in m; sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
         x_dot in m/s; theta1_dot, theta2_dot, theta3_dot in rad/s; delta_x in m;
@@ -2219,7 +2295,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (19, ...)."""
     # inputs
     _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y

@@ -92,7 +92,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[6] = {...}, rate[6], params[7] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81};
-       chain_3_rhs(0.0, state, rate, params);
+       chain_3_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -110,6 +110,12 @@
 
 typedef HOLONOMIC_REAL chain_3_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define CHAIN_3_NUMBER(x) ((chain_3_real){0} + (x))
+#else
+#define CHAIN_3_NUMBER(x) (x)
+#endif
+
 enum {
     CHAIN_3_LAGRANGIAN_STATE = 6,
     CHAIN_3_HAMILTONIAN_STATE = 6,
@@ -123,7 +129,8 @@ enum {
    91 operations, 11 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void chain_3_rhs(
-    chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -191,7 +198,8 @@ static inline void chain_3_rhs(
    256 operations, 12 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void chain_3_jacobian(
-    chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -330,7 +338,8 @@ static inline void chain_3_jacobian(
    50 operations, 14 of them on parameters alone.
    Energy in J. */
 static inline void chain_3_energy(
-    const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -370,6 +379,7 @@ static inline void chain_3_energy(
         - c11*cos(theta2) - c12*cos(theta3);
     /* outputs */
     result[0] = x1;
+    (void)t;
 }
 #endif
 
@@ -378,7 +388,8 @@ static inline void chain_3_energy(
    20 operations, 11 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void chain_3_mass_matrix(
-    const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -411,6 +422,7 @@ static inline void chain_3_mass_matrix(
     result[6] = x1;
     result[7] = x2;
     result[8] = l3*c3;
+    (void)t;
 }
 #endif
 
@@ -419,7 +431,8 @@ static inline void chain_3_mass_matrix(
    19 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void chain_3_positions(
-    const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -440,6 +453,7 @@ static inline void chain_3_positions(
     result[3] = -x3;
     result[4] = x2 + l3*sin(theta3);
     result[5] = -(x3 + l3*cos(theta3));
+    (void)t;
 }
 #endif
 
@@ -448,7 +462,8 @@ static inline void chain_3_positions(
    34 operations, 6 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void chain_3_hamiltonian_state(
-    const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -483,6 +498,7 @@ static inline void chain_3_hamiltonian_state(
     result[3] = l1*(c1*theta1_dot + x0*x1 + x2*x3);
     result[4] = l2*(x1 + c4*theta1_dot*x0 + x4*x3);
     result[5] = c3*x5;
+    (void)t;
 }
 #endif
 
@@ -491,7 +507,8 @@ static inline void chain_3_hamiltonian_state(
    94 operations, 13 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void chain_3_rhs_hamiltonian(
-    chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -558,7 +575,8 @@ static inline void chain_3_rhs_hamiltonian(
    271 operations, 13 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void chain_3_jacobian_hamiltonian(
-    chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -706,7 +724,8 @@ static inline void chain_3_jacobian_hamiltonian(
    76 operations, 10 of them on parameters alone.
    Energy in J. */
 static inline void chain_3_energy_hamiltonian(
-    const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -757,6 +776,7 @@ static inline void chain_3_energy_hamiltonian(
     const chain_3_real x15 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3);
     /* outputs */
     result[0] = 0.5*x14 - x15;
+    (void)t;
 }
 #endif
 
@@ -765,7 +785,8 @@ static inline void chain_3_energy_hamiltonian(
    51 operations, 7 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void chain_3_lagrangian_state(
-    const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -809,6 +830,7 @@ static inline void chain_3_lagrangian_state(
     result[3] = c0*x7;
     result[4] = c2*x8;
     result[5] = -c1*(cos_x0*x7 + cos_x2*x8 - c5*p_theta3);
+    (void)t;
 }
 #endif
 
@@ -817,7 +839,8 @@ static inline void chain_3_lagrangian_state(
    6 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void chain_3_rational_state(
-    const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real theta1 = state[0];
@@ -836,6 +859,7 @@ static inline void chain_3_rational_state(
     result[6] = theta1_dot;
     result[7] = theta2_dot;
     result[8] = theta3_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -844,7 +868,8 @@ static inline void chain_3_rational_state(
    94 operations, 11 of them on parameters alone.
    Time derivative of y. */
 static inline void chain_3_rhs_rational(
-    chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real sin_theta1 = state[0];
@@ -910,7 +935,8 @@ static inline void chain_3_rhs_rational(
    193 operations, 11 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void chain_3_rhs_variational(
-    chain_3_real t, const chain_3_real *state, chain_3_real *result, const chain_3_real *params)
+    chain_3_real t, const chain_3_real *state,
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real sin_theta1 = state[0];
@@ -1024,28 +1050,25 @@ static inline void chain_3_rhs_variational(
     (void)t;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0, 0, 0). */
 static inline void chain_3_equilibrium(
-    chain_3_real *result, const chain_3_real *params)
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 0.0;
+    result[0] = CHAIN_3_NUMBER(0.0);
+    result[1] = CHAIN_3_NUMBER(0.0);
+    result[2] = CHAIN_3_NUMBER(0.0);
     (void)params;
 }
-#endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (0, 0, 0).
    14 operations, 14 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void chain_3_linear(
-    chain_3_real *result, const chain_3_real *params)
+    const chain_3_real *params, chain_3_real *result)
 {
     /* inputs */
     const chain_3_real m1 = params[0];
@@ -1074,15 +1097,14 @@ static inline void chain_3_linear(
     result[7] = c6;
     result[8] = l3*c4;
     result[9] = g*c1;
-    result[10] = 0.0;
-    result[11] = 0.0;
-    result[12] = 0.0;
+    result[10] = CHAIN_3_NUMBER(0.0);
+    result[11] = CHAIN_3_NUMBER(0.0);
+    result[12] = CHAIN_3_NUMBER(0.0);
     result[13] = g*c2;
-    result[14] = 0.0;
-    result[15] = 0.0;
-    result[16] = 0.0;
+    result[14] = CHAIN_3_NUMBER(0.0);
+    result[15] = CHAIN_3_NUMBER(0.0);
+    result[16] = CHAIN_3_NUMBER(0.0);
     result[17] = g*c4;
 }
-#endif
 
 #endif

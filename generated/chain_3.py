@@ -111,41 +111,83 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "chain_3"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
-STATE_HAMILTONIAN = ("theta1", "theta2", "theta3", "p_theta1", "p_theta2", "p_theta3")
-STATE_RATIONAL = (
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "sin_theta3",
-    "cos_theta3",
-    "theta1_dot",
-    "theta2_dot",
-    "theta3_dot",
-)
-STATE_VARIATIONAL = (
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "sin_theta3",
-    "cos_theta3",
-    "theta1_dot",
-    "theta2_dot",
-    "theta3_dot",
-    "delta_theta1",
-    "delta_theta2",
-    "delta_theta3",
-    "delta_theta1_dot",
-    "delta_theta2_dot",
-    "delta_theta3_dot",
-)
-PARAMETERS = ("m1", "m2", "m3", "l1", "l2", "l3", "g")
-DEFAULTS = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": (
+        "theta1",
+        "theta2",
+        "theta3",
+        "theta1_dot",
+        "theta2_dot",
+        "theta3_dot",
+    ),
+    "hamiltonian": ("theta1", "theta2", "theta3", "p_theta1", "p_theta2", "p_theta3"),
+    "rational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "sin_theta3",
+        "cos_theta3",
+        "theta1_dot",
+        "theta2_dot",
+        "theta3_dot",
+    ),
+    "variational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "sin_theta3",
+        "cos_theta3",
+        "theta1_dot",
+        "theta2_dot",
+        "theta3_dot",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta3",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+        "delta_theta3_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m1", "m2", "m3", "l1", "l2", "l3", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m1", "m2", "m3", "l1", "l2", "l3")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "mass_matrix",
+    "positions",
+    "hamiltonian_state",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "lagrangian_state",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (91, 11),
+    "jacobian": (256, 12),
+    "energy": (50, 14),
+    "mass_matrix": (20, 11),
+    "positions": (19, 0),
+    "hamiltonian_state": (34, 6),
+    "rhs_hamiltonian": (94, 13),
+    "jacobian_hamiltonian": (271, 13),
+    "energy_hamiltonian": (76, 10),
+    "lagrangian_state": (51, 7),
+    "rational_state": (6, 0),
+    "rhs_rational": (94, 11),
+    "rhs_variational": (193, 11),
+    "equilibrium": (0, 0),
+    "linear": (14, 14),
+}
 UNITS = {
     "m1": "kg",
     "m2": "kg",
@@ -178,6 +220,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -186,7 +246,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
     params : iterable of 7 floats
@@ -247,7 +307,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (6, ...)."""
     from numpy import cos, sin
 
@@ -311,7 +371,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
     params : iterable of 7 floats
@@ -427,7 +487,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (6, 6, ...)."""
     from numpy import cos, sin
 
@@ -554,13 +614,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     50 operations, 14 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
     params : iterable of 7 floats
@@ -600,7 +662,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return x1
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -633,13 +695,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return x1
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     20 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
     params : iterable of 7 floats
@@ -668,7 +732,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((l1*l1*(m1 + c0), x0, x1), (x0, l2*c1, x2), (x1, x2, l3*c3))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (3, 3, ...)."""
     from numpy import cos
 
@@ -702,13 +766,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     19 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
     params : iterable of 7 floats
@@ -735,7 +801,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (3, 2, ...)."""
     from numpy import cos, sin
 
@@ -760,13 +826,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     34 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
     params : iterable of 7 floats
@@ -804,7 +872,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (6, ...)."""
     from numpy import cos
 
@@ -845,7 +913,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; p_theta1, p_theta2, p_theta3 in J s.
     params : iterable of 7 floats
@@ -905,7 +973,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (6, ...)."""
     from numpy import cos, sin
 
@@ -968,7 +1036,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; p_theta1, p_theta2, p_theta3 in J s.
     params : iterable of 7 floats
@@ -1106,7 +1174,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (6, 6, ...)."""
     from numpy import cos, sin
 
@@ -1241,13 +1309,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     76 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; p_theta1, p_theta2, p_theta3 in J s.
     params : iterable of 7 floats
@@ -1298,7 +1368,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return 0.5*x14 - x15
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -1342,13 +1412,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return 0.5*x14 - x15
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     51 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; p_theta1, p_theta2, p_theta3 in J s.
     params : iterable of 7 floats
@@ -1394,7 +1466,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (6, ...)."""
     from numpy import cos, sin
 
@@ -1435,13 +1507,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     6 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 6 floats
         theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
     params : iterable of 7 floats
@@ -1468,7 +1542,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (9, ...)."""
     from numpy import cos, sin
 
@@ -1498,7 +1572,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 9 floats
         sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
         theta1_dot, theta2_dot, theta3_dot in rad/s.
@@ -1557,7 +1631,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (9, ...)."""
     # inputs
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot = y
@@ -1616,7 +1690,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 15 floats
         sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
         theta1_dot, theta2_dot, theta3_dot in rad/s; delta_theta1, delta_theta2,
@@ -1725,7 +1799,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (15, ...)."""
     # inputs
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot, delta_theta1, delta_theta2, delta_theta3, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y

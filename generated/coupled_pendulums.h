@@ -73,7 +73,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[4] = {...}, rate[4], params[5] = {1.0, 1.0, 1.0, 1.0, 9.81};
-       coupled_pendulums_rhs(0.0, state, rate, params);
+       coupled_pendulums_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -91,6 +91,12 @@
 
 typedef HOLONOMIC_REAL coupled_pendulums_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define COUPLED_PENDULUMS_NUMBER(x) ((coupled_pendulums_real){0} + (x))
+#else
+#define COUPLED_PENDULUMS_NUMBER(x) (x)
+#endif
+
 enum {
     COUPLED_PENDULUMS_LAGRANGIAN_STATE = 4,
     COUPLED_PENDULUMS_HAMILTONIAN_STATE = 4,
@@ -104,7 +110,8 @@ enum {
    66 operations, 8 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void coupled_pendulums_rhs(
-    coupled_pendulums_real t, const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -160,7 +167,8 @@ static inline void coupled_pendulums_rhs(
    95 operations, 9 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void coupled_pendulums_jacobian(
-    coupled_pendulums_real t, const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -230,7 +238,8 @@ static inline void coupled_pendulums_jacobian(
    67 operations, 10 of them on parameters alone.
    Energy in J. */
 static inline void coupled_pendulums_energy(
-    const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -273,15 +282,16 @@ static inline void coupled_pendulums_energy(
         - c2*sin_theta1 - c4*x6 - sin_theta2*x2;
     /* outputs */
     result[0] = x9;
+    (void)t;
 }
 #endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
    2 operations, 2 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void coupled_pendulums_mass_matrix(
-    const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real m = params[0];
@@ -290,19 +300,20 @@ static inline void coupled_pendulums_mass_matrix(
     const coupled_pendulums_real c0 = m*l*l;
     /* outputs */
     result[0] = c0;
-    result[1] = 0.0;
-    result[2] = 0.0;
+    result[1] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[2] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[3] = c0;
+    (void)t;
     (void)state;
 }
-#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Positions of the masses.
    11 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void coupled_pendulums_positions(
-    const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -314,6 +325,7 @@ static inline void coupled_pendulums_positions(
     result[1] = -l*cos(theta1);
     result[2] = d + l*sin(theta2);
     result[3] = -l*cos(theta2);
+    (void)t;
 }
 #endif
 
@@ -321,7 +333,8 @@ static inline void coupled_pendulums_positions(
    4 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void coupled_pendulums_hamiltonian_state(
-    const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -337,6 +350,7 @@ static inline void coupled_pendulums_hamiltonian_state(
     result[1] = theta2;
     result[2] = c0*theta1_dot;
     result[3] = c0*theta2_dot;
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -344,7 +358,8 @@ static inline void coupled_pendulums_hamiltonian_state(
    69 operations, 9 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void coupled_pendulums_rhs_hamiltonian(
-    coupled_pendulums_real t, const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -400,7 +415,8 @@ static inline void coupled_pendulums_rhs_hamiltonian(
    94 operations, 11 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void coupled_pendulums_jacobian_hamiltonian(
-    coupled_pendulums_real t, const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -469,7 +485,8 @@ static inline void coupled_pendulums_jacobian_hamiltonian(
    71 operations, 11 of them on parameters alone.
    Energy in J. */
 static inline void coupled_pendulums_energy_hamiltonian(
-    const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -513,6 +530,7 @@ static inline void coupled_pendulums_energy_hamiltonian(
         c9*p_theta1*(c10*p_theta1) + c9*p_theta2*(c10*p_theta2);
     /* outputs */
     result[0] = x8 + 0.5*x9;
+    (void)t;
 }
 #endif
 
@@ -520,7 +538,8 @@ static inline void coupled_pendulums_energy_hamiltonian(
    7 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void coupled_pendulums_lagrangian_state(
-    const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -537,6 +556,7 @@ static inline void coupled_pendulums_lagrangian_state(
     result[1] = theta2;
     result[2] = c0*(c1*p_theta1);
     result[3] = c0*(c1*p_theta2);
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -544,7 +564,8 @@ static inline void coupled_pendulums_lagrangian_state(
    4 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void coupled_pendulums_rational_state(
-    const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real theta1 = state[0];
@@ -558,6 +579,7 @@ static inline void coupled_pendulums_rational_state(
     result[3] = cos(theta2);
     result[4] = theta1_dot;
     result[5] = theta2_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -567,7 +589,8 @@ static inline void coupled_pendulums_rational_state(
    68 operations, 8 of them on parameters alone.
    Time derivative of y. */
 static inline void coupled_pendulums_rhs_rational(
-    coupled_pendulums_real t, const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real sin_theta1 = state[0];
@@ -623,7 +646,8 @@ static inline void coupled_pendulums_rhs_rational(
    123 operations, 8 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void coupled_pendulums_rhs_variational(
-    coupled_pendulums_real t, const coupled_pendulums_real *state, coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    coupled_pendulums_real t, const coupled_pendulums_real *state,
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real sin_theta1 = state[0];
@@ -690,27 +714,24 @@ static inline void coupled_pendulums_rhs_variational(
 }
 #endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void coupled_pendulums_equilibrium(
-    coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
+    result[0] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[1] = COUPLED_PENDULUMS_NUMBER(0.0);
     (void)params;
 }
-#endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (0, 0).
    8 operations, 8 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void coupled_pendulums_linear(
-    coupled_pendulums_real *result, const coupled_pendulums_real *params)
+    const coupled_pendulums_real *params, coupled_pendulums_real *result)
 {
     /* inputs */
     const coupled_pendulums_real m = params[0];
@@ -724,14 +745,13 @@ static inline void coupled_pendulums_linear(
     const coupled_pendulums_real c3 = -k*c0;
     /* outputs */
     result[0] = c1;
-    result[1] = 0.0;
-    result[2] = 0.0;
+    result[1] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[2] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[3] = c1;
     result[4] = c2;
     result[5] = c3;
     result[6] = c3;
     result[7] = c2;
 }
-#endif
 
 #endif

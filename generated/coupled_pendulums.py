@@ -92,33 +92,67 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "coupled_pendulums"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
-STATE_HAMILTONIAN = ("theta1", "theta2", "p_theta1", "p_theta2")
-STATE_RATIONAL = (
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "theta1_dot",
-    "theta2_dot",
-)
-STATE_VARIATIONAL = (
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "theta1_dot",
-    "theta2_dot",
-    "delta_theta1",
-    "delta_theta2",
-    "delta_theta1_dot",
-    "delta_theta2_dot",
-)
-PARAMETERS = ("m", "l", "k", "d", "g")
-DEFAULTS = (1.0, 1.0, 1.0, 1.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
+    "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
+    "rational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "theta1_dot",
+        "theta2_dot",
+    ),
+    "variational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "theta1_dot",
+        "theta2_dot",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m", "l", "k", "d", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m", "l", "k", "d")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "positions",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "rational_state",
+    "rhs_rational",
+    "rhs_variational",
+)
+OPERATIONS = {
+    "rhs": (66, 8),
+    "jacobian": (95, 9),
+    "energy": (67, 10),
+    "mass_matrix": (2, 2),
+    "positions": (11, 0),
+    "hamiltonian_state": (4, 2),
+    "rhs_hamiltonian": (69, 9),
+    "jacobian_hamiltonian": (94, 11),
+    "energy_hamiltonian": (71, 11),
+    "lagrangian_state": (7, 3),
+    "rational_state": (4, 0),
+    "rhs_rational": (68, 8),
+    "rhs_variational": (123, 8),
+    "equilibrium": (0, 0),
+    "linear": (8, 8),
+}
 UNITS = {
     "m": "kg",
     "l": "m",
@@ -142,6 +176,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -150,7 +202,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -196,7 +248,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta1_dot, theta2_dot, -c0*(c1*x8), -c0*(c1*x9))
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -243,7 +295,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -299,7 +351,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -362,13 +414,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     67 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -417,7 +471,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return x9
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos, sin, sqrt
 
@@ -459,13 +513,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return x9
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     2 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -484,7 +540,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((c0, 0.0), (0.0, c0))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
     # inputs
     m, l, _, _, _ = params
@@ -494,13 +550,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], c0, 0.0, 0.0, c0)
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     11 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -521,7 +579,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos, sin
 
@@ -539,13 +597,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     4 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -565,7 +625,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta1, theta2, c0*theta1_dot, c0*theta2_dot)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
     # inputs
     theta1, theta2, theta1_dot, theta2_dot = y
@@ -584,7 +644,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -630,7 +690,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*(c1*p_theta1), c0*(c1*p_theta2), -l*x8, -l*x9)
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -677,7 +737,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -732,7 +792,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -794,13 +854,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     71 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -848,7 +910,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return x8 + 0.5*x9
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos, sin, sqrt
 
@@ -889,13 +951,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return x8 + 0.5*x9
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     7 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -916,7 +980,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta1, theta2, c0*(c1*p_theta1), c0*(c1*p_theta2))
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (4, ...)."""
     # inputs
     theta1, theta2, p_theta1, p_theta2 = y
@@ -928,13 +992,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((4,), y[0], theta1, theta2, c0*(c1*p_theta1), c0*(c1*p_theta2))
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     4 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -958,7 +1024,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (6, ...)."""
     from numpy import cos, sin
 
@@ -985,7 +1051,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 6 floats
         sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
         rad/s.
@@ -1035,7 +1101,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (6, ...)."""
     from numpy import sqrt
 
@@ -1087,7 +1153,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 10 floats
         sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
         rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
@@ -1151,7 +1217,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (10, ...)."""
     from numpy import sqrt
 

@@ -65,7 +65,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[4] = {...}, rate[4], params[5] = {1.0, 1.0, 1.0, 1.0, 9.81};
-       double_bar_pendulum_rhs(0.0, state, rate, params);
+       double_bar_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -83,6 +83,12 @@
 
 typedef HOLONOMIC_REAL double_bar_pendulum_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define DOUBLE_BAR_PENDULUM_NUMBER(x) ((double_bar_pendulum_real){0} + (x))
+#else
+#define DOUBLE_BAR_PENDULUM_NUMBER(x) (x)
+#endif
+
 enum {
     DOUBLE_BAR_PENDULUM_LAGRANGIAN_STATE = 4,
     DOUBLE_BAR_PENDULUM_HAMILTONIAN_STATE = 4,
@@ -96,7 +102,8 @@ enum {
    39 operations, 8 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void double_bar_pendulum_rhs(
-    double_bar_pendulum_real t, const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -137,7 +144,8 @@ static inline void double_bar_pendulum_rhs(
    99 operations, 9 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void double_bar_pendulum_jacobian(
-    double_bar_pendulum_real t, const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -210,7 +218,8 @@ static inline void double_bar_pendulum_jacobian(
    31 operations, 12 of them on parameters alone.
    Energy in J. */
 static inline void double_bar_pendulum_energy(
-    const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -237,6 +246,7 @@ static inline void double_bar_pendulum_energy(
         (1.0/6.0)*c1*theta2_dot*theta2_dot + 0.5*x0 - c5*cos(theta1);
     /* outputs */
     result[0] = x1;
+    (void)t;
 }
 #endif
 
@@ -245,7 +255,8 @@ static inline void double_bar_pendulum_energy(
    12 operations, 8 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void double_bar_pendulum_mass_matrix(
-    const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -264,6 +275,7 @@ static inline void double_bar_pendulum_mass_matrix(
     result[1] = x0;
     result[2] = x0;
     result[3] = (1.0/3.0)*l2*c0;
+    (void)t;
 }
 #endif
 
@@ -272,7 +284,8 @@ static inline void double_bar_pendulum_mass_matrix(
    15 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void double_bar_pendulum_positions(
-    const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -287,6 +300,7 @@ static inline void double_bar_pendulum_positions(
     result[1] = -0.5*x1;
     result[2] = x0 + 0.5*l2*sin(theta2);
     result[3] = -(x1 + 0.5*l2*cos(theta2));
+    (void)t;
 }
 #endif
 
@@ -295,7 +309,8 @@ static inline void double_bar_pendulum_positions(
    19 operations, 4 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void double_bar_pendulum_hamiltonian_state(
-    const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -317,6 +332,7 @@ static inline void double_bar_pendulum_hamiltonian_state(
     result[1] = theta2;
     result[2] = l1*(c0*theta1_dot + 0.5*c1*theta2_dot*x0);
     result[3] = x1;
+    (void)t;
 }
 #endif
 
@@ -325,7 +341,8 @@ static inline void double_bar_pendulum_hamiltonian_state(
    47 operations, 11 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void double_bar_pendulum_rhs_hamiltonian(
-    double_bar_pendulum_real t, const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -365,7 +382,8 @@ static inline void double_bar_pendulum_rhs_hamiltonian(
    89 operations, 11 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void double_bar_pendulum_jacobian_hamiltonian(
-    double_bar_pendulum_real t, const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -437,7 +455,8 @@ static inline void double_bar_pendulum_jacobian_hamiltonian(
    40 operations, 9 of them on parameters alone.
    Energy in J. */
 static inline void double_bar_pendulum_energy_hamiltonian(
-    const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -466,6 +485,7 @@ static inline void double_bar_pendulum_energy_hamiltonian(
         - g*(c5*cos(theta1) + 0.5*c3*cos(theta2));
     /* outputs */
     result[0] = x4;
+    (void)t;
 }
 #endif
 
@@ -474,7 +494,8 @@ static inline void double_bar_pendulum_energy_hamiltonian(
    27 operations, 6 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void double_bar_pendulum_lagrangian_state(
-    const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -499,6 +520,7 @@ static inline void double_bar_pendulum_lagrangian_state(
     result[1] = theta2;
     result[2] = c0*x1;
     result[3] = 3.0*c1*(c3*p_theta2 - 0.5*x0*x1);
+    (void)t;
 }
 #endif
 
@@ -507,7 +529,8 @@ static inline void double_bar_pendulum_lagrangian_state(
    4 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void double_bar_pendulum_rational_state(
-    const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real theta1 = state[0];
@@ -521,6 +544,7 @@ static inline void double_bar_pendulum_rational_state(
     result[3] = cos(theta2);
     result[4] = theta1_dot;
     result[5] = theta2_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -529,7 +553,8 @@ static inline void double_bar_pendulum_rational_state(
    46 operations, 8 of them on parameters alone.
    Time derivative of y. */
 static inline void double_bar_pendulum_rhs_rational(
-    double_bar_pendulum_real t, const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real sin_theta1 = state[0];
@@ -571,7 +596,8 @@ static inline void double_bar_pendulum_rhs_rational(
    90 operations, 8 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void double_bar_pendulum_rhs_variational(
-    double_bar_pendulum_real t, const double_bar_pendulum_real *state, double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    double_bar_pendulum_real t, const double_bar_pendulum_real *state,
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real sin_theta1 = state[0];
@@ -634,27 +660,24 @@ static inline void double_bar_pendulum_rhs_variational(
     (void)t;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void double_bar_pendulum_equilibrium(
-    double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
+    result[0] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
+    result[1] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
     (void)params;
 }
-#endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (0, 0).
    15 operations, 15 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void double_bar_pendulum_linear(
-    double_bar_pendulum_real *result, const double_bar_pendulum_real *params)
+    const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
 {
     /* inputs */
     const double_bar_pendulum_real m1 = params[0];
@@ -671,10 +694,9 @@ static inline void double_bar_pendulum_linear(
     result[2] = c1;
     result[3] = (1.0/3.0)*l2*c0;
     result[4] = l1*g*(m2 + 0.5*m1);
-    result[5] = 0.0;
-    result[6] = 0.0;
+    result[5] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
+    result[6] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
     result[7] = 0.5*g*c0;
 }
-#endif
 
 #endif

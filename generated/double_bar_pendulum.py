@@ -84,33 +84,68 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "double_bar_pendulum"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
-STATE_HAMILTONIAN = ("theta1", "theta2", "p_theta1", "p_theta2")
-STATE_RATIONAL = (
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "theta1_dot",
-    "theta2_dot",
-)
-STATE_VARIATIONAL = (
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "theta1_dot",
-    "theta2_dot",
-    "delta_theta1",
-    "delta_theta2",
-    "delta_theta1_dot",
-    "delta_theta2_dot",
-)
-PARAMETERS = ("m1", "m2", "l1", "l2", "g")
-DEFAULTS = (1.0, 1.0, 1.0, 1.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
+    "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
+    "rational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "theta1_dot",
+        "theta2_dot",
+    ),
+    "variational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "theta1_dot",
+        "theta2_dot",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m1", "m2", "l1", "l2", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m1", "m2", "l1", "l2")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "mass_matrix",
+    "positions",
+    "hamiltonian_state",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "lagrangian_state",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (39, 8),
+    "jacobian": (99, 9),
+    "energy": (31, 12),
+    "mass_matrix": (12, 8),
+    "positions": (15, 0),
+    "hamiltonian_state": (19, 4),
+    "rhs_hamiltonian": (47, 11),
+    "jacobian_hamiltonian": (89, 11),
+    "energy_hamiltonian": (40, 9),
+    "lagrangian_state": (27, 6),
+    "rational_state": (4, 0),
+    "rhs_rational": (46, 8),
+    "rhs_variational": (90, 8),
+    "equilibrium": (0, 0),
+    "linear": (15, 15),
+}
 UNITS = {
     "m1": "kg",
     "m2": "kg",
@@ -134,6 +169,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -142,7 +195,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -174,7 +227,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta1_dot, theta2_dot, -c0*x4, 1.5*c4*(x2 + cos_x0*x4))
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -214,7 +267,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -276,7 +329,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -340,13 +393,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     31 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -377,7 +432,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return x1
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -401,13 +456,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return x1
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     12 operations, 8 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -430,7 +487,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((l1*l1*(m2 + (1.0/3.0)*m1), x0), (x0, (1.0/3.0)*l2*c0))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos
 
@@ -446,13 +503,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], l1*l1*(m2 + (1.0/3.0)*m1), x0, x0, (1.0/3.0)*l2*c0)
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     15 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -476,7 +535,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos, sin
 
@@ -497,13 +556,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     19 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -527,7 +588,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta1, theta2, l1*(c0*theta1_dot + 0.5*c1*theta2_dot*x0), x1)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
     from numpy import cos
 
@@ -559,7 +620,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -595,7 +656,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -634,7 +695,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -690,7 +751,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -753,13 +814,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     40 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -793,7 +856,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return x4
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -820,13 +883,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return x4
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     27 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -852,7 +917,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta1, theta2, c0*x1, 3.0*c1*(c3*p_theta2 - 0.5*x0*x1))
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (4, ...)."""
     from numpy import cos
 
@@ -878,13 +943,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     4 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -908,7 +975,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (6, ...)."""
     from numpy import cos, sin
 
@@ -935,7 +1002,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 6 floats
         sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
         rad/s.
@@ -974,7 +1041,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (6, ...)."""
     # inputs
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y
@@ -1013,7 +1080,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 10 floats
         sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
         rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
@@ -1074,7 +1141,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (10, ...)."""
     # inputs
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y

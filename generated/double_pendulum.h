@@ -65,7 +65,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[4] = {...}, rate[4], params[5] = {1.0, 1.0, 2.0, 2.0, 9.81};
-       double_pendulum_rhs(0.0, state, rate, params);
+       double_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -83,6 +83,12 @@
 
 typedef HOLONOMIC_REAL double_pendulum_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define DOUBLE_PENDULUM_NUMBER(x) ((double_pendulum_real){0} + (x))
+#else
+#define DOUBLE_PENDULUM_NUMBER(x) (x)
+#endif
+
 enum {
     DOUBLE_PENDULUM_LAGRANGIAN_STATE = 4,
     DOUBLE_PENDULUM_HAMILTONIAN_STATE = 4,
@@ -96,7 +102,8 @@ enum {
    32 operations, 5 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void double_pendulum_rhs(
-    double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -135,7 +142,8 @@ static inline void double_pendulum_rhs(
    85 operations, 6 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void double_pendulum_jacobian(
-    double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -205,7 +213,8 @@ static inline void double_pendulum_jacobian(
    26 operations, 8 of them on parameters alone.
    Energy in J. */
 static inline void double_pendulum_energy(
-    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -232,6 +241,7 @@ static inline void double_pendulum_energy(
         - c6*cos(theta2);
     /* outputs */
     result[0] = x1;
+    (void)t;
 }
 #endif
 
@@ -240,7 +250,8 @@ static inline void double_pendulum_energy(
    48 operations, 4 of them on parameters alone.
    One for each: a rod's tension, positive where it pulls. */
 static inline void double_pendulum_reactions(
-    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -274,6 +285,7 @@ static inline void double_pendulum_reactions(
     /* outputs */
     result[0] = c1*x0 + x1*x3 + c3*cos_theta1 - (x6 + x1*x8)*x7;
     result[1] = m2*(l2*x2 + x1*x5 + g*cos_theta2 - x4*x8);
+    (void)t;
 }
 #endif
 
@@ -282,7 +294,8 @@ static inline void double_pendulum_reactions(
    9 operations, 6 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void double_pendulum_mass_matrix(
-    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -301,6 +314,7 @@ static inline void double_pendulum_mass_matrix(
     result[1] = x0;
     result[2] = x0;
     result[3] = l2*c0;
+    (void)t;
 }
 #endif
 
@@ -309,7 +323,8 @@ static inline void double_pendulum_mass_matrix(
    12 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void double_pendulum_positions(
-    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -324,6 +339,7 @@ static inline void double_pendulum_positions(
     result[1] = -x1;
     result[2] = x0 + l2*sin(theta2);
     result[3] = -(x1 + l2*cos(theta2));
+    (void)t;
 }
 #endif
 
@@ -332,7 +348,8 @@ static inline void double_pendulum_positions(
    15 operations, 3 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void double_pendulum_hamiltonian_state(
-    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -353,6 +370,7 @@ static inline void double_pendulum_hamiltonian_state(
     result[1] = theta2;
     result[2] = l1*(c0*theta1_dot + c1*theta2_dot*x0);
     result[3] = c1*(l2*theta2_dot + l1*theta1_dot*x0);
+    (void)t;
 }
 #endif
 
@@ -361,7 +379,8 @@ static inline void double_pendulum_hamiltonian_state(
    35 operations, 8 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void double_pendulum_rhs_hamiltonian(
-    double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -401,7 +420,8 @@ static inline void double_pendulum_rhs_hamiltonian(
    65 operations, 8 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void double_pendulum_jacobian_hamiltonian(
-    double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -468,7 +488,8 @@ static inline void double_pendulum_jacobian_hamiltonian(
    31 operations, 6 of them on parameters alone.
    Energy in J. */
 static inline void double_pendulum_energy_hamiltonian(
-    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -497,6 +518,7 @@ static inline void double_pendulum_energy_hamiltonian(
         0.5*(x0*x3 + (c3*p_theta2 - cos_x1*x3)*x2) - g*(c4*cos(theta1) + c2*cos(theta2));
     /* outputs */
     result[0] = x4;
+    (void)t;
 }
 #endif
 
@@ -505,7 +527,8 @@ static inline void double_pendulum_energy_hamiltonian(
    20 operations, 4 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void double_pendulum_lagrangian_state(
-    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -531,6 +554,7 @@ static inline void double_pendulum_lagrangian_state(
     result[1] = theta2;
     result[2] = c0*x1;
     result[3] = c1*(c2*p_theta2 - cos_x0*x1);
+    (void)t;
 }
 #endif
 
@@ -539,7 +563,8 @@ static inline void double_pendulum_lagrangian_state(
    4 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void double_pendulum_rational_state(
-    const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real theta1 = state[0];
@@ -553,6 +578,7 @@ static inline void double_pendulum_rational_state(
     result[3] = cos(theta2);
     result[4] = theta1_dot;
     result[5] = theta2_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -561,7 +587,8 @@ static inline void double_pendulum_rational_state(
    39 operations, 5 of them on parameters alone.
    Time derivative of y. */
 static inline void double_pendulum_rhs_rational(
-    double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real sin_theta1 = state[0];
@@ -600,7 +627,8 @@ static inline void double_pendulum_rhs_rational(
    77 operations, 5 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void double_pendulum_rhs_variational(
-    double_pendulum_real t, const double_pendulum_real *state, double_pendulum_real *result, const double_pendulum_real *params)
+    double_pendulum_real t, const double_pendulum_real *state,
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real sin_theta1 = state[0];
@@ -661,27 +689,24 @@ static inline void double_pendulum_rhs_variational(
     (void)t;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void double_pendulum_equilibrium(
-    double_pendulum_real *result, const double_pendulum_real *params)
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
+    result[0] = DOUBLE_PENDULUM_NUMBER(0.0);
+    result[1] = DOUBLE_PENDULUM_NUMBER(0.0);
     (void)params;
 }
-#endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (0, 0).
    8 operations, 8 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void double_pendulum_linear(
-    double_pendulum_real *result, const double_pendulum_real *params)
+    const double_pendulum_real *params, double_pendulum_real *result)
 {
     /* inputs */
     const double_pendulum_real m1 = params[0];
@@ -699,10 +724,9 @@ static inline void double_pendulum_linear(
     result[2] = c2;
     result[3] = l2*c1;
     result[4] = g*c0;
-    result[5] = 0.0;
-    result[6] = 0.0;
+    result[5] = DOUBLE_PENDULUM_NUMBER(0.0);
+    result[6] = DOUBLE_PENDULUM_NUMBER(0.0);
     result[7] = g*c1;
 }
-#endif
 
 #endif

@@ -84,33 +84,70 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "double_pendulum"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
-STATE_HAMILTONIAN = ("theta1", "theta2", "p_theta1", "p_theta2")
-STATE_RATIONAL = (
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "theta1_dot",
-    "theta2_dot",
-)
-STATE_VARIATIONAL = (
-    "sin_theta1",
-    "cos_theta1",
-    "sin_theta2",
-    "cos_theta2",
-    "theta1_dot",
-    "theta2_dot",
-    "delta_theta1",
-    "delta_theta2",
-    "delta_theta1_dot",
-    "delta_theta2_dot",
-)
-PARAMETERS = ("m1", "m2", "l1", "l2", "g")
-DEFAULTS = (1.0, 1.0, 2.0, 2.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
+    "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
+    "rational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "theta1_dot",
+        "theta2_dot",
+    ),
+    "variational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "theta1_dot",
+        "theta2_dot",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m1", "m2", "l1", "l2", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 1.0, 2.0, 2.0, 9.81)
 POSITIVE = ("m1", "m2", "l1", "l2")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "reactions",
+    "mass_matrix",
+    "positions",
+    "hamiltonian_state",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "lagrangian_state",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (32, 5),
+    "jacobian": (85, 6),
+    "energy": (26, 8),
+    "reactions": (48, 4),
+    "mass_matrix": (9, 6),
+    "positions": (12, 0),
+    "hamiltonian_state": (15, 3),
+    "rhs_hamiltonian": (35, 8),
+    "jacobian_hamiltonian": (65, 8),
+    "energy_hamiltonian": (31, 6),
+    "lagrangian_state": (20, 4),
+    "rational_state": (4, 0),
+    "rhs_rational": (39, 5),
+    "rhs_variational": (77, 5),
+    "equilibrium": (0, 0),
+    "linear": (8, 8),
+}
 UNITS = {
     "m1": "kg",
     "m2": "kg",
@@ -134,6 +171,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -142,7 +197,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -172,7 +227,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta1_dot, theta2_dot, -c0*x3, c3*(x1 + cos_x0*x3))
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -203,7 +258,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -263,7 +318,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -325,13 +380,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     26 operations, 8 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -363,7 +420,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return x1
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -388,13 +445,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return x1
 
 
-def reactions(y: Numbers, params: Numbers) -> Vector:
+def reactions(t: float, y: Numbers, params: Numbers) -> Vector:
     """Forces that hold l1, l2, by Lagrange's multipliers.
 
     48 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -434,7 +493,7 @@ def reactions(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def reactions_many(y: Arrays, params: Arrays) -> Array:
+def reactions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`reactions` over arrays: the result has shape (2, ...)."""
     from numpy import cos, sin
 
@@ -469,13 +528,15 @@ def reactions_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     9 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -498,7 +559,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((l1*l1*(m1 + m2), x0), (x0, l2*c0))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos
 
@@ -514,13 +575,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], l1*l1*(m1 + m2), x0, x0, l2*c0)
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     12 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -541,7 +604,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     return ((x0, -x1), (x0 + l2*sin(theta2), -(x1 + l2*cos(theta2))))
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos, sin
 
@@ -555,13 +618,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], x0, -x1, x0 + l2*sin(theta2), -(x1 + l2*cos(theta2)))
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     15 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -589,7 +654,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
     from numpy import cos
 
@@ -620,7 +685,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -657,7 +722,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -697,7 +762,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -749,7 +814,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -808,13 +873,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     31 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -846,7 +913,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return x4
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -871,13 +938,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return x4
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     20 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; p_theta1, p_theta2 in J s.
     params : iterable of 5 floats
@@ -904,7 +973,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta1, theta2, c0*x1, c1*(c2*p_theta2 - cos_x0*x1))
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -924,13 +993,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((4,), y[0], theta1, theta2, c0*x1, c1*(c2*p_theta2 - cos_x0*x1))
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     4 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
     params : iterable of 5 floats
@@ -954,7 +1025,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (6, ...)."""
     from numpy import cos, sin
 
@@ -981,7 +1052,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 6 floats
         sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
         rad/s.
@@ -1018,7 +1089,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (6, ...)."""
     # inputs
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y
@@ -1055,7 +1126,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 10 floats
         sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
         rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
@@ -1117,7 +1188,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (10, ...)."""
     # inputs
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y

@@ -48,7 +48,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[2] = {...}, rate[2], params[6] = {1.0, 1.0, 0.1, 100.0, 0.0, 9.81};
-       driven_pendulum_rhs(0.0, state, rate, params);
+       driven_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -66,6 +66,12 @@
 
 typedef HOLONOMIC_REAL driven_pendulum_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define DRIVEN_PENDULUM_NUMBER(x) ((driven_pendulum_real){0} + (x))
+#else
+#define DRIVEN_PENDULUM_NUMBER(x) (x)
+#endif
+
 enum {
     DRIVEN_PENDULUM_LAGRANGIAN_STATE = 2,
     DRIVEN_PENDULUM_HAMILTONIAN_STATE = 2,
@@ -79,7 +85,8 @@ enum {
    19 operations, 7 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void driven_pendulum_rhs(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -110,7 +117,8 @@ static inline void driven_pendulum_rhs(
    16 operations, 8 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void driven_pendulum_jacobian(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -136,7 +144,8 @@ static inline void driven_pendulum_jacobian(
    21 operations, 6 of them on parameters alone.
    Energy in J. */
 static inline void driven_pendulum_energy(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -166,7 +175,8 @@ static inline void driven_pendulum_energy(
    22 operations, 6 of them on parameters alone.
    Power in W. */
 static inline void driven_pendulum_power(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -200,13 +210,15 @@ static inline void driven_pendulum_power(
    2 operations, 2 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void driven_pendulum_mass_matrix(
-    const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real m = params[0];
     const driven_pendulum_real l = params[1];
     /* outputs */
     result[0] = m*l*l;
+    (void)t;
     (void)state;
 }
 
@@ -215,7 +227,8 @@ static inline void driven_pendulum_mass_matrix(
    8 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void driven_pendulum_positions(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -233,7 +246,8 @@ static inline void driven_pendulum_positions(
    10 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void driven_pendulum_hamiltonian_state(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -256,7 +270,8 @@ static inline void driven_pendulum_hamiltonian_state(
    25 operations, 8 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void driven_pendulum_rhs_hamiltonian(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -291,7 +306,8 @@ static inline void driven_pendulum_rhs_hamiltonian(
    34 operations, 10 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void driven_pendulum_jacobian_hamiltonian(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -333,7 +349,8 @@ static inline void driven_pendulum_jacobian_hamiltonian(
    30 operations, 9 of them on parameters alone.
    Energy in J. */
 static inline void driven_pendulum_energy_hamiltonian(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -367,7 +384,8 @@ static inline void driven_pendulum_energy_hamiltonian(
    13 operations, 5 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void driven_pendulum_lagrangian_state(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -392,7 +410,8 @@ static inline void driven_pendulum_lagrangian_state(
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void driven_pendulum_rational_state(
-    const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real theta = state[0];
@@ -401,6 +420,7 @@ static inline void driven_pendulum_rational_state(
     result[0] = sin(theta);
     result[1] = cos(theta);
     result[2] = theta_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -410,7 +430,8 @@ static inline void driven_pendulum_rational_state(
    21 operations, 7 of them on parameters alone.
    Time derivative of y. */
 static inline void driven_pendulum_rhs_rational(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real sin_theta = state[0];
@@ -442,7 +463,8 @@ static inline void driven_pendulum_rhs_rational(
    31 operations, 7 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void driven_pendulum_rhs_variational(
-    driven_pendulum_real t, const driven_pendulum_real *state, driven_pendulum_real *result, const driven_pendulum_real *params)
+    driven_pendulum_real t, const driven_pendulum_real *state,
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     const driven_pendulum_real sin_theta = state[0];
@@ -477,18 +499,16 @@ static inline void driven_pendulum_rhs_variational(
 }
 #endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0). */
 static inline void driven_pendulum_equilibrium(
-    driven_pendulum_real *result, const driven_pendulum_real *params)
+    const driven_pendulum_real *params, driven_pendulum_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
+    result[0] = DRIVEN_PENDULUM_NUMBER(0.0);
     (void)params;
 }
-#endif
 
 #endif

@@ -67,19 +67,24 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "driven_pendulum"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
-STATE_HAMILTONIAN = ("theta", "p_theta")
-STATE_RATIONAL = ("sin_theta", "cos_theta", "theta_dot")
-STATE_VARIATIONAL = (
-    "sin_theta",
-    "cos_theta",
-    "theta_dot",
-    "delta_theta",
-    "delta_theta_dot",
-)
-PARAMETERS = ("m", "l", "a", "Omega", "c", "g")
-DEFAULTS = (1.0, 1.0, 0.1, 100.0, 0.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("theta", "theta_dot"),
+    "hamiltonian": ("theta", "p_theta"),
+    "rational": ("sin_theta", "cos_theta", "theta_dot"),
+    "variational": (
+        "sin_theta",
+        "cos_theta",
+        "theta_dot",
+        "delta_theta",
+        "delta_theta_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m", "l", "a", "Omega", "c", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 1.0, 0.1, 100.0, 0.0, 9.81)
 POSITIVE = ("m", "l")
 TIMED = (
     "rhs",
@@ -95,6 +100,38 @@ TIMED = (
     "rhs_rational",
     "rhs_variational",
 )
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "power",
+    "positions",
+    "hamiltonian_state",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "lagrangian_state",
+    "rational_state",
+    "rhs_rational",
+    "rhs_variational",
+)
+OPERATIONS = {
+    "rhs": (19, 7),
+    "jacobian": (16, 8),
+    "energy": (21, 6),
+    "power": (22, 6),
+    "mass_matrix": (2, 2),
+    "positions": (8, 0),
+    "hamiltonian_state": (10, 2),
+    "rhs_hamiltonian": (25, 8),
+    "jacobian_hamiltonian": (34, 10),
+    "energy_hamiltonian": (30, 9),
+    "lagrangian_state": (13, 5),
+    "rational_state": (2, 0),
+    "rhs_rational": (21, 7),
+    "rhs_variational": (31, 7),
+    "equilibrium": (0, 0),
+}
 UNITS = {
     "m": "kg",
     "l": "m",
@@ -110,6 +147,24 @@ UNITS = {
     "sin_theta": "1",
     "cos_theta": "1",
 }
+
+
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
 
 
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -147,7 +202,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot, -c0*(c2*x0))
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (2, ...)."""
     from numpy import cos, sin
 
@@ -199,7 +254,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos
 
@@ -255,7 +310,7 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     return m*x1
 
 
-def energy_many(t: float, y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -316,7 +371,7 @@ def power(t: float, y: Numbers, params: Numbers) -> float:
     return -x1
 
 
-def power_many(t: float, y: Arrays, params: Arrays) -> Array:
+def power_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`power` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -342,13 +397,15 @@ def power_many(t: float, y: Arrays, params: Arrays) -> Array:
     return -x1
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     2 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 6 floats
@@ -365,7 +422,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((m*l*l,),)
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (1, 1, ...)."""
     # inputs
     m, l, _, _, _, _ = params
@@ -399,7 +456,7 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((l*sin(theta), a*cos(Omega*t) - l*cos(theta)),)
 
 
-def positions_many(t: float, y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (1, 2, ...)."""
     from numpy import cos, sin
 
@@ -439,7 +496,7 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*(l*theta_dot - c1*sin(theta)*sin(Omega*t)))
 
 
-def hamiltonian_state_many(t: float, y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (2, ...)."""
     from numpy import sin
 
@@ -492,7 +549,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*x1, -(c5*sin_theta + c6*x1 + c7*x0*x1*cos(theta)))
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (2, ...)."""
     from numpy import cos, sin
 
@@ -559,7 +616,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((c0*x2, c0*c3), (-x4, -c0*(c8 + x2)))
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos, sin
 
@@ -627,7 +684,7 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     return 0.5*c0*x1*(c4*x1) - m*x2
 
 
-def energy_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -683,7 +740,7 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*(c2*(p_theta + c3*sin(theta)*sin(Omega*t))))
 
 
-def lagrangian_state_many(t: float, y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (2, ...)."""
     from numpy import sin
 
@@ -699,13 +756,15 @@ def lagrangian_state_many(t: float, y: Arrays, params: Arrays) -> Array:
     return _stacked((2,), y[0], theta, c0*(c2*(p_theta + c3*sin(theta)*sin(Omega*t))))
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     2 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 6 floats
@@ -722,7 +781,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     return (sin(theta), cos(theta), theta_dot)
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (3, ...)."""
     from numpy import cos, sin
 
@@ -766,7 +825,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot*cos_theta, -theta_dot*sin_theta, -c0*(c2*x0))
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (3, ...)."""
     from numpy import cos
 
@@ -829,7 +888,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (5, ...)."""
     from numpy import cos
 

@@ -57,7 +57,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[4] = {...}, rate[4], params[4] = {1.0, 100.0, 1.0, 9.81};
-       elastic_pendulum_rhs(0.0, state, rate, params);
+       elastic_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -75,6 +75,12 @@
 
 typedef HOLONOMIC_REAL elastic_pendulum_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define ELASTIC_PENDULUM_NUMBER(x) ((elastic_pendulum_real){0} + (x))
+#else
+#define ELASTIC_PENDULUM_NUMBER(x) (x)
+#endif
+
 enum {
     ELASTIC_PENDULUM_LAGRANGIAN_STATE = 4,
     ELASTIC_PENDULUM_HAMILTONIAN_STATE = 4,
@@ -88,7 +94,8 @@ enum {
    20 operations, 3 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void elastic_pendulum_rhs(
-    elastic_pendulum_real t, const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -119,7 +126,8 @@ static inline void elastic_pendulum_rhs(
    26 operations, 1 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void elastic_pendulum_jacobian(
-    elastic_pendulum_real t, const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -159,7 +167,8 @@ static inline void elastic_pendulum_jacobian(
    20 operations, 3 of them on parameters alone.
    Energy in J. */
 static inline void elastic_pendulum_energy(
-    const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -179,33 +188,35 @@ static inline void elastic_pendulum_energy(
     const elastic_pendulum_real x1 = c1 + k*x0 + m*r_dot*r_dot + m*theta_dot*theta_dot*x0;
     /* outputs */
     result[0] = 0.5*x1 - c0*r - c2*r*cos(theta);
+    (void)t;
 }
 #endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
    2 operations, 0 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void elastic_pendulum_mass_matrix(
-    const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
     const elastic_pendulum_real m = params[0];
     /* outputs */
     result[0] = m;
-    result[1] = 0.0;
-    result[2] = 0.0;
+    result[1] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[2] = ELASTIC_PENDULUM_NUMBER(0.0);
     result[3] = m*r*r;
+    (void)t;
 }
-#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Positions of the masses.
    5 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void elastic_pendulum_positions(
-    const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -213,6 +224,7 @@ static inline void elastic_pendulum_positions(
     /* outputs */
     result[0] = r*sin(theta);
     result[1] = -r*cos(theta);
+    (void)t;
     (void)params;
 }
 #endif
@@ -221,7 +233,8 @@ static inline void elastic_pendulum_positions(
    4 operations, 0 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void elastic_pendulum_hamiltonian_state(
-    const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -234,6 +247,7 @@ static inline void elastic_pendulum_hamiltonian_state(
     result[1] = theta;
     result[2] = m*r_dot;
     result[3] = m*r*r*theta_dot;
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -241,7 +255,8 @@ static inline void elastic_pendulum_hamiltonian_state(
    20 operations, 3 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void elastic_pendulum_rhs_hamiltonian(
-    elastic_pendulum_real t, const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -272,7 +287,8 @@ static inline void elastic_pendulum_rhs_hamiltonian(
    27 operations, 2 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void elastic_pendulum_jacobian_hamiltonian(
-    elastic_pendulum_real t, const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -316,7 +332,8 @@ static inline void elastic_pendulum_jacobian_hamiltonian(
    23 operations, 4 of them on parameters alone.
    Energy in J. */
 static inline void elastic_pendulum_energy_hamiltonian(
-    const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -338,6 +355,7 @@ static inline void elastic_pendulum_energy_hamiltonian(
         + 0.5*(p_r*(c3*p_r) + p_theta*(c3*p_theta/r)/r);
     /* outputs */
     result[0] = x0;
+    (void)t;
 }
 #endif
 
@@ -345,7 +363,8 @@ static inline void elastic_pendulum_energy_hamiltonian(
    5 operations, 1 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void elastic_pendulum_lagrangian_state(
-    const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -360,6 +379,7 @@ static inline void elastic_pendulum_lagrangian_state(
     result[1] = theta;
     result[2] = c0*p_r;
     result[3] = c0*p_theta/r/r;
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -367,7 +387,8 @@ static inline void elastic_pendulum_lagrangian_state(
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void elastic_pendulum_rational_state(
-    const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -380,6 +401,7 @@ static inline void elastic_pendulum_rational_state(
     result[2] = cos(theta);
     result[3] = r_dot;
     result[4] = theta_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -388,7 +410,8 @@ static inline void elastic_pendulum_rational_state(
    21 operations, 3 of them on parameters alone.
    Time derivative of y. */
 static inline void elastic_pendulum_rhs_rational(
-    elastic_pendulum_real t, const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -419,7 +442,8 @@ static inline void elastic_pendulum_rhs_rational(
    46 operations, 3 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void elastic_pendulum_rhs_variational(
-    elastic_pendulum_real t, const elastic_pendulum_real *state, elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    elastic_pendulum_real t, const elastic_pendulum_real *state,
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real r = state[0];
@@ -461,12 +485,11 @@ static inline void elastic_pendulum_rhs_variational(
     (void)t;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    4 operations, 4 of them on parameters alone.
    q = (g*m/k + l, 0). */
 static inline void elastic_pendulum_equilibrium(
-    elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real m = params[0];
@@ -475,16 +498,14 @@ static inline void elastic_pendulum_equilibrium(
     const elastic_pendulum_real g = params[3];
     /* outputs */
     result[0] = l + g*m*(1.0/k);
-    result[1] = 0.0;
+    result[1] = ELASTIC_PENDULUM_NUMBER(0.0);
 }
-#endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (g*m/k + l, 0).
    7 operations, 7 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void elastic_pendulum_linear(
-    elastic_pendulum_real *result, const elastic_pendulum_real *params)
+    const elastic_pendulum_real *params, elastic_pendulum_real *result)
 {
     /* inputs */
     const elastic_pendulum_real m = params[0];
@@ -496,14 +517,13 @@ static inline void elastic_pendulum_linear(
     const elastic_pendulum_real c1 = l + 1.0/k*c0;
     /* outputs */
     result[0] = m;
-    result[1] = 0.0;
-    result[2] = 0.0;
+    result[1] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[2] = ELASTIC_PENDULUM_NUMBER(0.0);
     result[3] = m*c1*c1;
     result[4] = k;
-    result[5] = 0.0;
-    result[6] = 0.0;
+    result[5] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[6] = ELASTIC_PENDULUM_NUMBER(0.0);
     result[7] = c1*c0;
 }
-#endif
 
 #endif

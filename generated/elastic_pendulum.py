@@ -76,25 +76,57 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "elastic_pendulum"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
-STATE_HAMILTONIAN = ("r", "theta", "p_r", "p_theta")
-STATE_RATIONAL = ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot")
-STATE_VARIATIONAL = (
-    "r",
-    "sin_theta",
-    "cos_theta",
-    "r_dot",
-    "theta_dot",
-    "delta_r",
-    "delta_theta",
-    "delta_r_dot",
-    "delta_theta_dot",
-)
-PARAMETERS = ("m", "k", "l", "g")
-DEFAULTS = (1.0, 100.0, 1.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("r", "theta", "r_dot", "theta_dot"),
+    "hamiltonian": ("r", "theta", "p_r", "p_theta"),
+    "rational": ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot"),
+    "variational": (
+        "r",
+        "sin_theta",
+        "cos_theta",
+        "r_dot",
+        "theta_dot",
+        "delta_r",
+        "delta_theta",
+        "delta_r_dot",
+        "delta_theta_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m", "k", "l", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 100.0, 1.0, 9.81)
 POSITIVE = ("m", "k", "l")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "positions",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (20, 3),
+    "jacobian": (26, 1),
+    "energy": (20, 3),
+    "mass_matrix": (2, 0),
+    "positions": (5, 0),
+    "hamiltonian_state": (4, 0),
+    "rhs_hamiltonian": (20, 3),
+    "jacobian_hamiltonian": (27, 2),
+    "energy_hamiltonian": (23, 4),
+    "lagrangian_state": (5, 1),
+    "rational_state": (2, 0),
+    "rhs_rational": (21, 3),
+    "rhs_variational": (46, 3),
+    "equilibrium": (4, 4),
+    "linear": (7, 7),
+}
 UNITS = {
     "m": "kg",
     "k": "N/m",
@@ -115,6 +147,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -123,7 +173,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -147,7 +197,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (r_dot, theta_dot, c0*x0, -(2.0*r_dot*theta_dot + g*sin(theta))/r)
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -179,7 +229,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -211,7 +261,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -245,13 +295,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     20 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -276,7 +328,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return 0.5*x1 - c0*r - c2*r*cos(theta)
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -294,13 +346,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return 0.5*x1 - c0*r - c2*r*cos(theta)
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     2 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -318,7 +372,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((m, 0.0), (0.0, m*r*r))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
     # inputs
     r, _, _, _ = y
@@ -327,13 +381,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], m, 0.0, 0.0, m*r*r)
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     5 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -350,7 +406,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     return ((r*sin(theta), -r*cos(theta)),)
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (1, 2, ...)."""
     from numpy import cos, sin
 
@@ -360,13 +416,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((1, 2), y[0], r*sin(theta), -r*cos(theta))
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     4 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -384,7 +442,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (r, theta, m*r_dot, m*r*r*theta_dot)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
     # inputs
     r, theta, r_dot, theta_dot = y
@@ -401,7 +459,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; p_r in kg m/s; p_theta in J s.
     params : iterable of 4 floats
@@ -430,7 +488,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -462,7 +520,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; p_r in kg m/s; p_theta in J s.
     params : iterable of 4 floats
@@ -494,7 +552,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -533,13 +591,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     23 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; p_r in kg m/s; p_theta in J s.
     params : iterable of 4 floats
@@ -567,7 +627,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return x0
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -588,13 +648,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return x0
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     5 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; p_r in kg m/s; p_theta in J s.
     params : iterable of 4 floats
@@ -614,7 +676,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (r, theta, c0*p_r, c0*p_theta/r/r)
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (4, ...)."""
     # inputs
     r, theta, p_r, p_theta = y
@@ -625,13 +687,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((4,), y[0], r, theta, c0*p_r, c0*p_theta/r/r)
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     2 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -648,7 +712,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     return (r, sin(theta), cos(theta), r_dot, theta_dot)
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (5, ...)."""
     from numpy import cos, sin
 
@@ -666,7 +730,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 5 floats
         r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -696,7 +760,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (5, ...)."""
     # inputs
     r, sin_theta, cos_theta, r_dot, theta_dot = y
@@ -727,7 +791,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 9 floats
         r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s; delta_r in m;
         delta_theta in rad; delta_r_dot in m/s; delta_theta_dot in rad/s.
@@ -767,7 +831,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (9, ...)."""
     # inputs
     r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y

@@ -77,7 +77,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[4] = {...}, rate[4], params[5] = {28.0, 67.0, 9.81, 7.292e-05, 0.8527};
-       foucault_pendulum_rhs(0.0, state, rate, params);
+       foucault_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -107,7 +107,8 @@ enum {
    122 operations, 8 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void foucault_pendulum_rhs(
-    foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -171,7 +172,8 @@ static inline void foucault_pendulum_rhs(
    387 operations, 10 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void foucault_pendulum_jacobian(
-    foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -312,7 +314,8 @@ static inline void foucault_pendulum_jacobian(
    41 operations, 5 of them on parameters alone.
    Energy in J. */
 static inline void foucault_pendulum_energy(
-    const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -341,6 +344,7 @@ static inline void foucault_pendulum_energy(
         c1*x5 - x_dot*x_dot*(1.0 - x1/x3) - y_dot*y_dot*(1.0 - x0/x3);
     /* outputs */
     result[0] = -m*(g*x4 + x_dot*x*y*y_dot/x3 + 0.5*x6);
+    (void)t;
 }
 #endif
 
@@ -348,7 +352,8 @@ static inline void foucault_pendulum_energy(
    15 operations, 1 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void foucault_pendulum_mass_matrix(
-    const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -367,6 +372,7 @@ static inline void foucault_pendulum_mass_matrix(
     result[1] = x3;
     result[2] = x3;
     result[3] = m*(1.0 - x1/x2);
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -374,7 +380,8 @@ static inline void foucault_pendulum_mass_matrix(
    25 operations, 3 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void foucault_pendulum_positions(
-    foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -404,7 +411,8 @@ static inline void foucault_pendulum_positions(
    38 operations, 3 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void foucault_pendulum_hamiltonian_state(
-    const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -433,6 +441,7 @@ static inline void foucault_pendulum_hamiltonian_state(
     result[1] = y;
     result[2] = -m*(x4 + y_dot*x5/x2 - x_dot*(1.0 - x0/x2));
     result[3] = m*x6;
+    (void)t;
 }
 #endif
 
@@ -441,7 +450,8 @@ static inline void foucault_pendulum_hamiltonian_state(
    134 operations, 10 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void foucault_pendulum_rhs_hamiltonian(
-    foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -508,7 +518,8 @@ static inline void foucault_pendulum_rhs_hamiltonian(
    395 operations, 11 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void foucault_pendulum_jacobian_hamiltonian(
-    foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -651,7 +662,8 @@ static inline void foucault_pendulum_jacobian_hamiltonian(
    69 operations, 8 of them on parameters alone.
    Energy in J. */
 static inline void foucault_pendulum_energy_hamiltonian(
-    const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -689,6 +701,7 @@ static inline void foucault_pendulum_energy_hamiltonian(
         0.5*(x5*x10 + x6*(x7*(x6 + x10*x8/x3))) - m*(0.5*c2*x11 + g*x4);
     /* outputs */
     result[0] = x12;
+    (void)t;
 }
 #endif
 
@@ -697,7 +710,8 @@ static inline void foucault_pendulum_energy_hamiltonian(
    45 operations, 4 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void foucault_pendulum_lagrangian_state(
-    const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];
@@ -730,6 +744,7 @@ static inline void foucault_pendulum_lagrangian_state(
     result[1] = y;
     result[2] = x10;
     result[3] = x6*(x5 + x10*x8/x2);
+    (void)t;
 }
 #endif
 
@@ -738,7 +753,8 @@ static inline void foucault_pendulum_lagrangian_state(
    370 operations, 10 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void foucault_pendulum_rhs_variational(
-    foucault_pendulum_real t, const foucault_pendulum_real *state, foucault_pendulum_real *result, const foucault_pendulum_real *params)
+    foucault_pendulum_real t, const foucault_pendulum_real *state,
+    const foucault_pendulum_real *params, foucault_pendulum_real *result)
 {
     /* inputs */
     const foucault_pendulum_real x = state[0];

@@ -96,23 +96,53 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "foucault_pendulum"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
-STATE_HAMILTONIAN = ("x", "y", "p_x", "p_y")
-STATE_VARIATIONAL = (
-    "x",
-    "y",
-    "x_dot",
-    "y_dot",
-    "delta_x",
-    "delta_y",
-    "delta_x_dot",
-    "delta_y_dot",
-)
-PARAMETERS = ("m", "l", "g", "Omega", "latitude")
-DEFAULTS = (28.0, 67.0, 9.81, 7.292e-05, 0.8527)
+FORMS = ("lagrangian", "hamiltonian", "variational")
+STATES = {
+    "lagrangian": ("x", "y", "x_dot", "y_dot"),
+    "hamiltonian": ("x", "y", "p_x", "p_y"),
+    "variational": (
+        "x",
+        "y",
+        "x_dot",
+        "y_dot",
+        "delta_x",
+        "delta_y",
+        "delta_x_dot",
+        "delta_y_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m", "l", "g", "Omega", "latitude")
+DEFAULTS: tuple[float, ...] = (28.0, 67.0, 9.81, 7.292e-05, 0.8527)
 POSITIVE = ("m", "l")
 TIMED = ("positions",)
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "positions",
+    "hamiltonian_state",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "lagrangian_state",
+    "rhs_variational",
+)
+OPERATIONS = {
+    "rhs": (122, 8),
+    "jacobian": (387, 10),
+    "energy": (41, 5),
+    "mass_matrix": (15, 1),
+    "positions": (25, 3),
+    "hamiltonian_state": (38, 3),
+    "rhs_hamiltonian": (134, 10),
+    "jacobian_hamiltonian": (395, 11),
+    "energy_hamiltonian": (69, 8),
+    "lagrangian_state": (45, 4),
+    "rhs_variational": (370, 10),
+}
 UNITS = {
     "m": "kg",
     "l": "m",
@@ -132,6 +162,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -140,7 +188,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
     params : iterable of 5 floats
@@ -197,7 +245,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x_dot, y_dot, x22, -(x20 - x22*x6/x2)*x21)
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -255,7 +303,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
     params : iterable of 5 floats
@@ -386,7 +434,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -519,13 +567,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Jacobi's integral qdot dL/dqdot - L, which is not T + V since positions depend on time.
 
     41 operations, 5 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
     params : iterable of 5 floats
@@ -557,7 +607,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return -m*(g*x4 + x_dot*x*y_*y_dot/x3 + 0.5*x6)
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos, sin, sqrt
 
@@ -582,13 +632,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return -m*(g*x4 + x_dot*x*y_*y_dot/x3 + 0.5*x6)
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     15 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
     params : iterable of 5 floats
@@ -613,7 +665,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((m*(1.0 - x0/x2), x3), (x3, m*(1.0 - x1/x2)))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
     # inputs
     x, y_, _, _ = y
@@ -671,7 +723,7 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def positions_many(t: float, y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (1, 3, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -698,13 +750,15 @@ def positions_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     38 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
     params : iterable of 5 floats
@@ -734,7 +788,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (x, y_, -m*(x4 + y_dot*x5/x2 - x_dot*(1.0 - x0/x2)), m*x6)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -772,7 +826,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; p_x, p_y in kg m/s.
     params : iterable of 5 floats
@@ -833,7 +887,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x13, x14, -m*x21, -m*x22)
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -895,7 +949,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; p_x, p_y in kg m/s.
     params : iterable of 5 floats
@@ -1025,7 +1079,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -1162,13 +1216,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     69 operations, 8 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; p_x, p_y in kg m/s.
     params : iterable of 5 floats
@@ -1209,7 +1265,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return x12
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos, sin, sqrt
 
@@ -1243,13 +1299,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return x12
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     45 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; p_x, p_y in kg m/s.
     params : iterable of 5 floats
@@ -1284,7 +1342,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (x, y_, x10, x6*(x5 + x10*x8/x2))
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin, sqrt
 
@@ -1320,7 +1378,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 8 floats
         x, y in m; x_dot, y_dot in m/s; delta_x, delta_y in m; delta_x_dot, delta_y_dot in
         m/s.
@@ -1449,7 +1507,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (8, ...)."""
     from numpy import cos, sin, sqrt
 

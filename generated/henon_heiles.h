@@ -44,7 +44,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[4] = {...}, rate[4], params[0] = {};
-       henon_heiles_rhs(0.0, state, rate, params);
+       henon_heiles_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -62,6 +62,12 @@
 
 typedef HOLONOMIC_REAL henon_heiles_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define HENON_HEILES_NUMBER(x) ((henon_heiles_real){0} + (x))
+#else
+#define HENON_HEILES_NUMBER(x) (x)
+#endif
+
 enum {
     HENON_HEILES_LAGRANGIAN_STATE = 4,
     HENON_HEILES_HAMILTONIAN_STATE = 4,
@@ -73,7 +79,8 @@ enum {
    9 operations, 0 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void henon_heiles_rhs(
-    henon_heiles_real t, const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -89,12 +96,12 @@ static inline void henon_heiles_rhs(
     (void)params;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs`.
    6 operations, 0 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void henon_heiles_jacobian(
-    henon_heiles_real t, const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -102,32 +109,32 @@ static inline void henon_heiles_jacobian(
     /* intermediate terms */
     const henon_heiles_real x0 = -2.0*x;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
+    result[0] = HENON_HEILES_NUMBER(0.0);
+    result[1] = HENON_HEILES_NUMBER(0.0);
+    result[2] = HENON_HEILES_NUMBER(1.0);
+    result[3] = HENON_HEILES_NUMBER(0.0);
+    result[4] = HENON_HEILES_NUMBER(0.0);
+    result[5] = HENON_HEILES_NUMBER(0.0);
+    result[6] = HENON_HEILES_NUMBER(0.0);
+    result[7] = HENON_HEILES_NUMBER(1.0);
     result[8] = -(1.0 + 2.0*y);
     result[9] = x0;
-    result[10] = 0.0;
-    result[11] = 0.0;
+    result[10] = HENON_HEILES_NUMBER(0.0);
+    result[11] = HENON_HEILES_NUMBER(0.0);
     result[12] = x0;
     result[13] = 2.0*y - 1.0;
-    result[14] = 0.0;
-    result[15] = 0.0;
+    result[14] = HENON_HEILES_NUMBER(0.0);
+    result[15] = HENON_HEILES_NUMBER(0.0);
     (void)t;
     (void)params;
 }
-#endif
 
 /* Total energy T + V.
    13 operations, 0 of them on parameters alone.
    Energy in J. */
 static inline void henon_heiles_energy(
-    const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -141,32 +148,34 @@ static inline void henon_heiles_energy(
         x0*y + 0.5*(x0 + x1 + x_dot*x_dot + y_dot*y_dot) - (1.0/3.0)*y*x1;
     /* outputs */
     result[0] = x2;
+    (void)t;
     (void)params;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
    0 operations, 0 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void henon_heiles_mass_matrix(
-    const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 1.0;
-    result[1] = 0.0;
-    result[2] = 0.0;
-    result[3] = 1.0;
+    result[0] = HENON_HEILES_NUMBER(1.0);
+    result[1] = HENON_HEILES_NUMBER(0.0);
+    result[2] = HENON_HEILES_NUMBER(0.0);
+    result[3] = HENON_HEILES_NUMBER(1.0);
+    (void)t;
     (void)state;
     (void)params;
 }
-#endif
 
 /* Positions of the masses.
    0 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void henon_heiles_positions(
-    const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -174,6 +183,7 @@ static inline void henon_heiles_positions(
     /* outputs */
     result[0] = x;
     result[1] = y;
+    (void)t;
     (void)params;
 }
 
@@ -181,7 +191,8 @@ static inline void henon_heiles_positions(
    0 operations, 0 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void henon_heiles_hamiltonian_state(
-    const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -193,6 +204,7 @@ static inline void henon_heiles_hamiltonian_state(
     result[1] = y;
     result[2] = x_dot;
     result[3] = y_dot;
+    (void)t;
     (void)params;
 }
 
@@ -200,7 +212,8 @@ static inline void henon_heiles_hamiltonian_state(
    9 operations, 0 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void henon_heiles_rhs_hamiltonian(
-    henon_heiles_real t, const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -216,12 +229,12 @@ static inline void henon_heiles_rhs_hamiltonian(
     (void)params;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs_hamiltonian`.
    6 operations, 0 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void henon_heiles_jacobian_hamiltonian(
-    henon_heiles_real t, const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -229,32 +242,32 @@ static inline void henon_heiles_jacobian_hamiltonian(
     /* intermediate terms */
     const henon_heiles_real x0 = -2.0*x;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
+    result[0] = HENON_HEILES_NUMBER(0.0);
+    result[1] = HENON_HEILES_NUMBER(0.0);
+    result[2] = HENON_HEILES_NUMBER(1.0);
+    result[3] = HENON_HEILES_NUMBER(0.0);
+    result[4] = HENON_HEILES_NUMBER(0.0);
+    result[5] = HENON_HEILES_NUMBER(0.0);
+    result[6] = HENON_HEILES_NUMBER(0.0);
+    result[7] = HENON_HEILES_NUMBER(1.0);
     result[8] = -(1.0 + 2.0*y);
     result[9] = x0;
-    result[10] = 0.0;
-    result[11] = 0.0;
+    result[10] = HENON_HEILES_NUMBER(0.0);
+    result[11] = HENON_HEILES_NUMBER(0.0);
     result[12] = x0;
     result[13] = 2.0*y - 1.0;
-    result[14] = 0.0;
-    result[15] = 0.0;
+    result[14] = HENON_HEILES_NUMBER(0.0);
+    result[15] = HENON_HEILES_NUMBER(0.0);
     (void)t;
     (void)params;
 }
-#endif
 
 /* Hamiltonian H(q, p): `energy` by momenta.
    14 operations, 0 of them on parameters alone.
    Energy in J. */
 static inline void henon_heiles_energy_hamiltonian(
-    const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -268,6 +281,7 @@ static inline void henon_heiles_energy_hamiltonian(
         x0*y + 0.5*(x0 + x1) - (1.0/3.0)*y*x1 + 0.5*(p_x*p_x + p_y*p_y);
     /* outputs */
     result[0] = x2;
+    (void)t;
     (void)params;
 }
 
@@ -275,7 +289,8 @@ static inline void henon_heiles_energy_hamiltonian(
    0 operations, 0 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void henon_heiles_lagrangian_state(
-    const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -287,6 +302,7 @@ static inline void henon_heiles_lagrangian_state(
     result[1] = y;
     result[2] = p_x;
     result[3] = p_y;
+    (void)t;
     (void)params;
 }
 
@@ -294,7 +310,8 @@ static inline void henon_heiles_lagrangian_state(
    21 operations, 0 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void henon_heiles_rhs_variational(
-    henon_heiles_real t, const henon_heiles_real *state, henon_heiles_real *result, const henon_heiles_real *params)
+    henon_heiles_real t, const henon_heiles_real *state,
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     const henon_heiles_real x = state[0];
@@ -320,40 +337,36 @@ static inline void henon_heiles_rhs_variational(
     (void)params;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void henon_heiles_equilibrium(
-    henon_heiles_real *result, const henon_heiles_real *params)
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
+    result[0] = HENON_HEILES_NUMBER(0.0);
+    result[1] = HENON_HEILES_NUMBER(0.0);
     (void)params;
 }
-#endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (0, 0).
    0 operations, 0 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void henon_heiles_linear(
-    henon_heiles_real *result, const henon_heiles_real *params)
+    const henon_heiles_real *params, henon_heiles_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 1.0;
-    result[1] = 0.0;
-    result[2] = 0.0;
-    result[3] = 1.0;
-    result[4] = 1.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
+    result[0] = HENON_HEILES_NUMBER(1.0);
+    result[1] = HENON_HEILES_NUMBER(0.0);
+    result[2] = HENON_HEILES_NUMBER(0.0);
+    result[3] = HENON_HEILES_NUMBER(1.0);
+    result[4] = HENON_HEILES_NUMBER(1.0);
+    result[5] = HENON_HEILES_NUMBER(0.0);
+    result[6] = HENON_HEILES_NUMBER(0.0);
+    result[7] = HENON_HEILES_NUMBER(1.0);
     (void)params;
 }
-#endif
 
 #endif

@@ -62,23 +62,44 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "henon_heiles"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
-STATE_HAMILTONIAN = ("x", "y", "p_x", "p_y")
-STATE_VARIATIONAL = (
-    "x",
-    "y",
-    "x_dot",
-    "y_dot",
-    "delta_x",
-    "delta_y",
-    "delta_x_dot",
-    "delta_y_dot",
-)
-PARAMETERS = ()
-DEFAULTS = ()
+FORMS = ("lagrangian", "hamiltonian", "variational")
+STATES = {
+    "lagrangian": ("x", "y", "x_dot", "y_dot"),
+    "hamiltonian": ("x", "y", "p_x", "p_y"),
+    "variational": (
+        "x",
+        "y",
+        "x_dot",
+        "y_dot",
+        "delta_x",
+        "delta_y",
+        "delta_x_dot",
+        "delta_y_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ()
+DEFAULTS: tuple[float, ...] = ()
 POSITIVE = ()
 TIMED = ()
+CALLS_FUNCTIONS = ()
+OPERATIONS = {
+    "rhs": (9, 0),
+    "jacobian": (6, 0),
+    "energy": (13, 0),
+    "mass_matrix": (0, 0),
+    "positions": (0, 0),
+    "hamiltonian_state": (0, 0),
+    "rhs_hamiltonian": (9, 0),
+    "jacobian_hamiltonian": (6, 0),
+    "energy_hamiltonian": (14, 0),
+    "lagrangian_state": (0, 0),
+    "rhs_variational": (21, 0),
+    "equilibrium": (0, 0),
+    "linear": (0, 0),
+}
 UNITS = {
     "x": "m",
     "x_dot": "m/s",
@@ -93,6 +114,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -101,7 +140,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
 
@@ -116,7 +155,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x_dot, y_dot, -x*(1.0 + 2.0*y_), -(y_ + x*x - y_*y_))
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (4, ...)."""
     # inputs
     x, y_, x_dot, y_dot = y
@@ -132,7 +171,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
 
@@ -154,7 +193,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (4, 4, ...)."""
     # inputs
     x, y_, _, _ = y
@@ -183,13 +222,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     13 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
 
@@ -208,7 +249,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return x2
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     # inputs
     x, y_, x_dot, y_dot = y
@@ -220,13 +261,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return x2
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     0 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
 
@@ -240,20 +283,22 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((1.0, 0.0), (0.0, 1.0))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
     # inputs
     # outputs
     return _stacked((2, 2), y[0], 1.0, 0.0, 0.0, 1.0)
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     0 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
 
@@ -268,7 +313,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     return ((x, y_),)
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (1, 2, ...)."""
     # inputs
     x, y_, _, _ = y
@@ -276,13 +321,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((1, 2), y[0], x, y_)
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     0 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; x_dot, y_dot in m/s.
 
@@ -297,7 +344,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (x, y_, x_dot, y_dot)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
     # inputs
     x, y_, x_dot, y_dot = y
@@ -313,7 +360,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; p_x, p_y in kg m/s.
 
@@ -328,7 +375,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (p_x, p_y, -x*(1.0 + 2.0*y_), -(y_ + x*x - y_*y_))
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
     # inputs
     x, y_, p_x, p_y = y
@@ -344,7 +391,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; p_x, p_y in kg m/s.
 
@@ -366,7 +413,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
     # inputs
     x, y_, _, _ = y
@@ -395,13 +442,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     14 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; p_x, p_y in kg m/s.
 
@@ -420,7 +469,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return x2
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     # inputs
     x, y_, p_x, p_y = y
@@ -432,13 +481,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return x2
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     0 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         x, y in m; p_x, p_y in kg m/s.
 
@@ -453,7 +504,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (x, y_, p_x, p_y)
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (4, ...)."""
     # inputs
     x, y_, p_x, p_y = y
@@ -469,7 +520,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 8 floats
         x, y in m; x_dot, y_dot in m/s; delta_x, delta_y in m; delta_x_dot, delta_y_dot in
         m/s.
@@ -496,7 +547,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (8, ...)."""
     # inputs
     x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y

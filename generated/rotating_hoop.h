@@ -44,7 +44,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[2] = {...}, rate[2], params[4] = {1.0, 1.0, 4.0, 9.81};
-       rotating_hoop_rhs(0.0, state, rate, params);
+       rotating_hoop_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -62,6 +62,12 @@
 
 typedef HOLONOMIC_REAL rotating_hoop_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define ROTATING_HOOP_NUMBER(x) ((rotating_hoop_real){0} + (x))
+#else
+#define ROTATING_HOOP_NUMBER(x) (x)
+#endif
+
 enum {
     ROTATING_HOOP_LAGRANGIAN_STATE = 2,
     ROTATING_HOOP_HAMILTONIAN_STATE = 2,
@@ -75,7 +81,8 @@ enum {
    9 operations, 3 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void rotating_hoop_rhs(
-    rotating_hoop_real t, const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -98,7 +105,8 @@ static inline void rotating_hoop_rhs(
    13 operations, 3 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void rotating_hoop_jacobian(
-    rotating_hoop_real t, const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -126,7 +134,8 @@ static inline void rotating_hoop_jacobian(
    15 operations, 3 of them on parameters alone.
    Energy in J. */
 static inline void rotating_hoop_energy(
-    const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -144,6 +153,7 @@ static inline void rotating_hoop_energy(
         g*cos(theta) + 0.5*(c1*sin_theta*sin_theta - R*theta_dot*theta_dot);
     /* outputs */
     result[0] = -c0*x0;
+    (void)t;
 }
 #endif
 
@@ -151,13 +161,15 @@ static inline void rotating_hoop_energy(
    2 operations, 2 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void rotating_hoop_mass_matrix(
-    const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real m = params[0];
     const rotating_hoop_real R = params[1];
     /* outputs */
     result[0] = m*R*R;
+    (void)t;
     (void)state;
 }
 
@@ -166,7 +178,8 @@ static inline void rotating_hoop_mass_matrix(
    10 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void rotating_hoop_positions(
-    rotating_hoop_real t, const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -186,7 +199,8 @@ static inline void rotating_hoop_positions(
    3 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void rotating_hoop_hamiltonian_state(
-    const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -198,6 +212,7 @@ static inline void rotating_hoop_hamiltonian_state(
     /* outputs */
     result[0] = theta;
     result[1] = c0*theta_dot;
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -205,7 +220,8 @@ static inline void rotating_hoop_hamiltonian_state(
    14 operations, 5 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void rotating_hoop_rhs_hamiltonian(
-    rotating_hoop_real t, const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -231,7 +247,8 @@ static inline void rotating_hoop_rhs_hamiltonian(
    16 operations, 6 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void rotating_hoop_jacobian_hamiltonian(
-    rotating_hoop_real t, const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -261,7 +278,8 @@ static inline void rotating_hoop_jacobian_hamiltonian(
    18 operations, 5 of them on parameters alone.
    Energy in J. */
 static inline void rotating_hoop_energy_hamiltonian(
-    const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -281,6 +299,7 @@ static inline void rotating_hoop_energy_hamiltonian(
         0.5*c0*p_theta*(c2*p_theta) - c1*(0.5*c3*sin_theta*sin_theta + g*cos(theta));
     /* outputs */
     result[0] = x0;
+    (void)t;
 }
 #endif
 
@@ -288,7 +307,8 @@ static inline void rotating_hoop_energy_hamiltonian(
    5 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void rotating_hoop_lagrangian_state(
-    const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -301,6 +321,7 @@ static inline void rotating_hoop_lagrangian_state(
     /* outputs */
     result[0] = theta;
     result[1] = c0*(c1*p_theta);
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -308,7 +329,8 @@ static inline void rotating_hoop_lagrangian_state(
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void rotating_hoop_rational_state(
-    const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real theta = state[0];
@@ -317,6 +339,7 @@ static inline void rotating_hoop_rational_state(
     result[0] = sin(theta);
     result[1] = cos(theta);
     result[2] = theta_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -325,7 +348,8 @@ static inline void rotating_hoop_rational_state(
    11 operations, 3 of them on parameters alone.
    Time derivative of y. */
 static inline void rotating_hoop_rhs_rational(
-    rotating_hoop_real t, const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real sin_theta = state[0];
@@ -348,7 +372,8 @@ static inline void rotating_hoop_rhs_rational(
    18 operations, 3 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void rotating_hoop_rhs_variational(
-    rotating_hoop_real t, const rotating_hoop_real *state, rotating_hoop_real *result, const rotating_hoop_real *params)
+    rotating_hoop_real t, const rotating_hoop_real *state,
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real sin_theta = state[0];
@@ -374,25 +399,23 @@ static inline void rotating_hoop_rhs_variational(
     (void)t;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0). */
 static inline void rotating_hoop_equilibrium(
-    rotating_hoop_real *result, const rotating_hoop_real *params)
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
+    result[0] = ROTATING_HOOP_NUMBER(0.0);
     (void)params;
 }
-#endif
 
 /* Matrices of small motions x about rest at q = (0).
    6 operations, 6 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void rotating_hoop_linear(
-    rotating_hoop_real *result, const rotating_hoop_real *params)
+    const rotating_hoop_real *params, rotating_hoop_real *result)
 {
     /* inputs */
     const rotating_hoop_real m = params[0];

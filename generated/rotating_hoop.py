@@ -63,21 +63,53 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "rotating_hoop"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
-STATE_HAMILTONIAN = ("theta", "p_theta")
-STATE_RATIONAL = ("sin_theta", "cos_theta", "theta_dot")
-STATE_VARIATIONAL = (
-    "sin_theta",
-    "cos_theta",
-    "theta_dot",
-    "delta_theta",
-    "delta_theta_dot",
-)
-PARAMETERS = ("m", "R", "Omega", "g")
-DEFAULTS = (1.0, 1.0, 4.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("theta", "theta_dot"),
+    "hamiltonian": ("theta", "p_theta"),
+    "rational": ("sin_theta", "cos_theta", "theta_dot"),
+    "variational": (
+        "sin_theta",
+        "cos_theta",
+        "theta_dot",
+        "delta_theta",
+        "delta_theta_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m", "R", "Omega", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 1.0, 4.0, 9.81)
 POSITIVE = ("m", "R")
 TIMED = ("positions",)
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "positions",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (9, 3),
+    "jacobian": (13, 3),
+    "energy": (15, 3),
+    "mass_matrix": (2, 2),
+    "positions": (10, 0),
+    "hamiltonian_state": (3, 2),
+    "rhs_hamiltonian": (14, 5),
+    "jacobian_hamiltonian": (16, 6),
+    "energy_hamiltonian": (18, 5),
+    "lagrangian_state": (5, 3),
+    "rational_state": (2, 0),
+    "rhs_rational": (11, 3),
+    "rhs_variational": (18, 3),
+    "equilibrium": (0, 0),
+    "linear": (6, 6),
+}
 UNITS = {
     "m": "kg",
     "R": "m",
@@ -93,6 +125,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -101,7 +151,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -122,7 +172,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot, c0*(sin(theta)*(c1*cos(theta) - g)))
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (2, ...)."""
     from numpy import cos, sin
 
@@ -144,7 +194,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -169,7 +219,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, 1.0), (-c0*x0, 0.0))
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos, sin
 
@@ -187,13 +237,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], 0.0, 1.0, -c0*x0, 0.0)
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Jacobi's integral qdot dL/dqdot - L, which is not T + V since positions depend on time.
 
     15 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -217,7 +269,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return -c0*x0
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -234,13 +286,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return -c0*x0
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     2 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -257,7 +311,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((m*R*R,),)
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (1, 1, ...)."""
     # inputs
     m, R, _, _ = params
@@ -294,7 +348,7 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((cos(x0)*x1, sin(x0)*x1, -R*cos(theta)),)
 
 
-def positions_many(t: float, y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (1, 3, ...)."""
     from numpy import cos, sin
 
@@ -308,13 +362,15 @@ def positions_many(t: float, y: Arrays, params: Arrays) -> Array:
     return _stacked((1, 3), y[0], cos(x0)*x1, sin(x0)*x1, -R*cos(theta))
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     3 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -334,7 +390,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*theta_dot)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (2, ...)."""
     # inputs
     theta, theta_dot = y
@@ -353,7 +409,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; p_theta in J s.
     params : iterable of 4 floats
@@ -376,7 +432,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*(c2*p_theta), -c1*sin(theta)*(g - c3*cos(theta)))
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (2, ...)."""
     from numpy import cos, sin
 
@@ -400,7 +456,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; p_theta in J s.
     params : iterable of 4 floats
@@ -425,7 +481,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, 1.0/c0*(1.0/R)), (-c0*x0, 0.0))
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos, sin
 
@@ -443,13 +499,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/R), -c0*x0, 0.0)
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     18 operations, 5 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; p_theta in J s.
     params : iterable of 4 floats
@@ -475,7 +533,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return x0
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -494,13 +552,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return x0
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     5 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; p_theta in J s.
     params : iterable of 4 floats
@@ -521,7 +581,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*(c1*p_theta))
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (2, ...)."""
     # inputs
     theta, p_theta = y
@@ -533,13 +593,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2,), y[0], theta, c0*(c1*p_theta))
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     2 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -556,7 +618,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     return (sin(theta), cos(theta), theta_dot)
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (3, ...)."""
     from numpy import cos, sin
 
@@ -574,7 +636,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 3 floats
         sin_theta, cos_theta in 1; theta_dot in rad/s.
     params : iterable of 4 floats
@@ -599,7 +661,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (3, ...)."""
     # inputs
     sin_theta, cos_theta, theta_dot = y
@@ -625,7 +687,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 5 floats
         sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
         in rad/s.
@@ -656,7 +718,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (5, ...)."""
     # inputs
     sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y

@@ -43,7 +43,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[2] = {...}, rate[2], params[3] = {1.0, 2.0, 9.81};
-       single_pendulum_rhs(0.0, state, rate, params);
+       single_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -61,6 +61,12 @@
 
 typedef HOLONOMIC_REAL single_pendulum_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define SINGLE_PENDULUM_NUMBER(x) ((single_pendulum_real){0} + (x))
+#else
+#define SINGLE_PENDULUM_NUMBER(x) (x)
+#endif
+
 enum {
     SINGLE_PENDULUM_LAGRANGIAN_STATE = 2,
     SINGLE_PENDULUM_HAMILTONIAN_STATE = 2,
@@ -74,7 +80,8 @@ enum {
    5 operations, 1 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void single_pendulum_rhs(
-    single_pendulum_real t, const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -95,7 +102,8 @@ static inline void single_pendulum_rhs(
    5 operations, 1 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void single_pendulum_jacobian(
-    single_pendulum_real t, const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -117,7 +125,8 @@ static inline void single_pendulum_jacobian(
    8 operations, 1 of them on parameters alone.
    Energy in J. */
 static inline void single_pendulum_energy(
-    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -129,6 +138,7 @@ static inline void single_pendulum_energy(
     const single_pendulum_real c0 = m*l;
     /* outputs */
     result[0] = c0*(0.5*l*theta_dot*theta_dot - g*cos(theta));
+    (void)t;
 }
 #endif
 
@@ -137,7 +147,8 @@ static inline void single_pendulum_energy(
    6 operations, 0 of them on parameters alone.
    One for each: a rod's tension, positive where it pulls. */
 static inline void single_pendulum_reactions(
-    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -147,6 +158,7 @@ static inline void single_pendulum_reactions(
     const single_pendulum_real g = params[2];
     /* outputs */
     result[0] = m*(l*theta_dot*theta_dot + g*cos(theta));
+    (void)t;
 }
 #endif
 
@@ -154,13 +166,15 @@ static inline void single_pendulum_reactions(
    2 operations, 2 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void single_pendulum_mass_matrix(
-    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real m = params[0];
     const single_pendulum_real l = params[1];
     /* outputs */
     result[0] = m*l*l;
+    (void)t;
     (void)state;
 }
 
@@ -169,7 +183,8 @@ static inline void single_pendulum_mass_matrix(
    5 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void single_pendulum_positions(
-    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -177,6 +192,7 @@ static inline void single_pendulum_positions(
     /* outputs */
     result[0] = l*sin(theta);
     result[1] = -l*cos(theta);
+    (void)t;
 }
 #endif
 
@@ -184,7 +200,8 @@ static inline void single_pendulum_positions(
    3 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void single_pendulum_hamiltonian_state(
-    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -196,6 +213,7 @@ static inline void single_pendulum_hamiltonian_state(
     /* outputs */
     result[0] = theta;
     result[1] = c0*theta_dot;
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -203,7 +221,8 @@ static inline void single_pendulum_hamiltonian_state(
    9 operations, 4 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void single_pendulum_rhs_hamiltonian(
-    single_pendulum_real t, const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -228,7 +247,8 @@ static inline void single_pendulum_rhs_hamiltonian(
    8 operations, 5 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void single_pendulum_jacobian_hamiltonian(
-    single_pendulum_real t, const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -252,7 +272,8 @@ static inline void single_pendulum_jacobian_hamiltonian(
    11 operations, 4 of them on parameters alone.
    Energy in J. */
 static inline void single_pendulum_energy_hamiltonian(
-    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -267,6 +288,7 @@ static inline void single_pendulum_energy_hamiltonian(
     const single_pendulum_real c3 = c1*g;
     /* outputs */
     result[0] = 0.5*c0*p_theta*(c2*p_theta) - c3*cos(theta);
+    (void)t;
 }
 #endif
 
@@ -274,7 +296,8 @@ static inline void single_pendulum_energy_hamiltonian(
    5 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void single_pendulum_lagrangian_state(
-    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -287,6 +310,7 @@ static inline void single_pendulum_lagrangian_state(
     /* outputs */
     result[0] = theta;
     result[1] = c0*(c1*p_theta);
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -294,7 +318,8 @@ static inline void single_pendulum_lagrangian_state(
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void single_pendulum_rational_state(
-    const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real theta = state[0];
@@ -303,6 +328,7 @@ static inline void single_pendulum_rational_state(
     result[0] = sin(theta);
     result[1] = cos(theta);
     result[2] = theta_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -311,7 +337,8 @@ static inline void single_pendulum_rational_state(
    7 operations, 1 of them on parameters alone.
    Time derivative of y. */
 static inline void single_pendulum_rhs_rational(
-    single_pendulum_real t, const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real sin_theta = state[0];
@@ -332,7 +359,8 @@ static inline void single_pendulum_rhs_rational(
    11 operations, 1 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void single_pendulum_rhs_variational(
-    single_pendulum_real t, const single_pendulum_real *state, single_pendulum_real *result, const single_pendulum_real *params)
+    single_pendulum_real t, const single_pendulum_real *state,
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real sin_theta = state[0];
@@ -353,25 +381,23 @@ static inline void single_pendulum_rhs_variational(
     (void)t;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0). */
 static inline void single_pendulum_equilibrium(
-    single_pendulum_real *result, const single_pendulum_real *params)
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
+    result[0] = SINGLE_PENDULUM_NUMBER(0.0);
     (void)params;
 }
-#endif
 
 /* Matrices of small motions x about rest at q = (0).
    3 operations, 3 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void single_pendulum_linear(
-    single_pendulum_real *result, const single_pendulum_real *params)
+    const single_pendulum_real *params, single_pendulum_real *result)
 {
     /* inputs */
     const single_pendulum_real m = params[0];

@@ -62,21 +62,55 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "single_pendulum"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
-STATE_HAMILTONIAN = ("theta", "p_theta")
-STATE_RATIONAL = ("sin_theta", "cos_theta", "theta_dot")
-STATE_VARIATIONAL = (
-    "sin_theta",
-    "cos_theta",
-    "theta_dot",
-    "delta_theta",
-    "delta_theta_dot",
-)
-PARAMETERS = ("m", "l", "g")
-DEFAULTS = (1.0, 2.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("theta", "theta_dot"),
+    "hamiltonian": ("theta", "p_theta"),
+    "rational": ("sin_theta", "cos_theta", "theta_dot"),
+    "variational": (
+        "sin_theta",
+        "cos_theta",
+        "theta_dot",
+        "delta_theta",
+        "delta_theta_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m", "l", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 2.0, 9.81)
 POSITIVE = ("m", "l")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "reactions",
+    "positions",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (5, 1),
+    "jacobian": (5, 1),
+    "energy": (8, 1),
+    "reactions": (6, 0),
+    "mass_matrix": (2, 2),
+    "positions": (5, 0),
+    "hamiltonian_state": (3, 2),
+    "rhs_hamiltonian": (9, 4),
+    "jacobian_hamiltonian": (8, 5),
+    "energy_hamiltonian": (11, 4),
+    "lagrangian_state": (5, 3),
+    "rational_state": (2, 0),
+    "rhs_rational": (7, 1),
+    "rhs_variational": (11, 1),
+    "equilibrium": (0, 0),
+    "linear": (3, 3),
+}
 UNITS = {
     "m": "kg",
     "l": "m",
@@ -91,6 +125,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -99,7 +151,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -119,7 +171,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot, -c0*(g*sin(theta)))
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (2, ...)."""
     from numpy import sin
 
@@ -140,7 +192,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -160,7 +212,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, 1.0), (-c0*(g*cos(theta)), 0.0))
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos
 
@@ -173,13 +225,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], 0.0, 1.0, -c0*(g*cos(theta)), 0.0)
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     8 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -199,7 +253,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return c0*(0.5*l*theta_dot*theta_dot - g*cos(theta))
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -212,13 +266,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return c0*(0.5*l*theta_dot*theta_dot - g*cos(theta))
 
 
-def reactions(y: Numbers, params: Numbers) -> Vector:
+def reactions(t: float, y: Numbers, params: Numbers) -> Vector:
     """Forces that hold l, by Lagrange's multipliers.
 
     6 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -236,7 +292,7 @@ def reactions(y: Numbers, params: Numbers) -> Vector:
     return (m*(l*theta_dot*theta_dot + g*cos(theta)),)
 
 
-def reactions_many(y: Arrays, params: Arrays) -> Array:
+def reactions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`reactions` over arrays: the result has shape (1, ...)."""
     from numpy import cos
 
@@ -247,13 +303,15 @@ def reactions_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((1,), y[0], m*(l*theta_dot*theta_dot + g*cos(theta)))
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     2 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -270,7 +328,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((m*l*l,),)
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (1, 1, ...)."""
     # inputs
     m, l, _ = params
@@ -278,13 +336,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((1, 1), y[0], m*l*l)
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     5 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -302,7 +362,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     return ((l*sin(theta), -l*cos(theta)),)
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (1, 2, ...)."""
     from numpy import cos, sin
 
@@ -313,13 +373,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((1, 2), y[0], l*sin(theta), -l*cos(theta))
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     3 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -339,7 +401,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*theta_dot)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (2, ...)."""
     # inputs
     theta, theta_dot = y
@@ -358,7 +420,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; p_theta in J s.
     params : iterable of 3 floats
@@ -381,7 +443,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*(c2*p_theta), -c3*sin(theta))
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (2, ...)."""
     from numpy import sin
 
@@ -405,7 +467,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; p_theta in J s.
     params : iterable of 3 floats
@@ -426,7 +488,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, 1.0/c0*(1.0/l)), (-c1*cos(theta), 0.0))
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos
 
@@ -440,13 +502,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/l), -c1*cos(theta), 0.0)
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     11 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; p_theta in J s.
     params : iterable of 3 floats
@@ -469,7 +533,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return 0.5*c0*p_theta*(c2*p_theta) - c3*cos(theta)
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -485,13 +549,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return 0.5*c0*p_theta*(c2*p_theta) - c3*cos(theta)
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     5 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; p_theta in J s.
     params : iterable of 3 floats
@@ -512,7 +578,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*(c1*p_theta))
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (2, ...)."""
     # inputs
     theta, p_theta = y
@@ -524,13 +590,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2,), y[0], theta, c0*(c1*p_theta))
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     2 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 2 floats
         theta in rad; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -547,7 +615,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     return (sin(theta), cos(theta), theta_dot)
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (3, ...)."""
     from numpy import cos, sin
 
@@ -565,7 +633,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 3 floats
         sin_theta, cos_theta in 1; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -585,7 +653,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot*cos_theta, -theta_dot*sin_theta, -c0*(g*sin_theta))
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (3, ...)."""
     # inputs
     sin_theta, cos_theta, theta_dot = y
@@ -610,7 +678,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 5 floats
         sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
         in rad/s.
@@ -637,7 +705,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (5, ...)."""
     # inputs
     sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y

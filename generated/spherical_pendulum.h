@@ -57,7 +57,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[4] = {...}, rate[4], params[3] = {1.0, 1.0, 9.81};
-       spherical_pendulum_rhs(0.0, state, rate, params);
+       spherical_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -75,6 +75,12 @@
 
 typedef HOLONOMIC_REAL spherical_pendulum_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define SPHERICAL_PENDULUM_NUMBER(x) ((spherical_pendulum_real){0} + (x))
+#else
+#define SPHERICAL_PENDULUM_NUMBER(x) (x)
+#endif
+
 enum {
     SPHERICAL_PENDULUM_LAGRANGIAN_STATE = 4,
     SPHERICAL_PENDULUM_HAMILTONIAN_STATE = 4,
@@ -88,7 +94,8 @@ enum {
    13 operations, 1 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void spherical_pendulum_rhs(
-    spherical_pendulum_real t, const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -115,7 +122,8 @@ static inline void spherical_pendulum_rhs(
    36 operations, 1 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void spherical_pendulum_jacobian(
-    spherical_pendulum_real t, const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -159,7 +167,8 @@ static inline void spherical_pendulum_jacobian(
    14 operations, 1 of them on parameters alone.
    Energy in J. */
 static inline void spherical_pendulum_energy(
-    const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -176,6 +185,7 @@ static inline void spherical_pendulum_energy(
         l*theta_dot*theta_dot + l*phi_dot*phi_dot*sin_theta*sin_theta;
     /* outputs */
     result[0] = c0*(0.5*x0 - g*cos(theta));
+    (void)t;
 }
 #endif
 
@@ -184,7 +194,8 @@ static inline void spherical_pendulum_energy(
    5 operations, 2 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void spherical_pendulum_mass_matrix(
-    const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -199,6 +210,7 @@ static inline void spherical_pendulum_mass_matrix(
     result[1] = 0.0;
     result[2] = 0.0;
     result[3] = c0*sin_theta*sin_theta;
+    (void)t;
 }
 #endif
 
@@ -207,7 +219,8 @@ static inline void spherical_pendulum_mass_matrix(
    9 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void spherical_pendulum_positions(
-    const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -219,6 +232,7 @@ static inline void spherical_pendulum_positions(
     result[0] = cos(phi)*x0;
     result[1] = sin(phi)*x0;
     result[2] = -l*cos(theta);
+    (void)t;
 }
 #endif
 
@@ -227,7 +241,8 @@ static inline void spherical_pendulum_positions(
    7 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void spherical_pendulum_hamiltonian_state(
-    const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -245,6 +260,7 @@ static inline void spherical_pendulum_hamiltonian_state(
     result[1] = phi;
     result[2] = c0*theta_dot;
     result[3] = c0*phi_dot*sin_theta*sin_theta;
+    (void)t;
 }
 #endif
 
@@ -253,7 +269,8 @@ static inline void spherical_pendulum_hamiltonian_state(
    19 operations, 4 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void spherical_pendulum_rhs_hamiltonian(
-    spherical_pendulum_real t, const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -283,7 +300,8 @@ static inline void spherical_pendulum_rhs_hamiltonian(
    32 operations, 5 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void spherical_pendulum_jacobian_hamiltonian(
-    spherical_pendulum_real t, const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -331,7 +349,8 @@ static inline void spherical_pendulum_jacobian_hamiltonian(
    18 operations, 4 of them on parameters alone.
    Energy in J. */
 static inline void spherical_pendulum_energy_hamiltonian(
-    const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -351,6 +370,7 @@ static inline void spherical_pendulum_energy_hamiltonian(
         c0*p_theta*(c2*p_theta) + c0*p_phi*(c2*p_phi/sin_theta)/sin_theta;
     /* outputs */
     result[0] = 0.5*x0 - c3*cos(theta);
+    (void)t;
 }
 #endif
 
@@ -359,7 +379,8 @@ static inline void spherical_pendulum_energy_hamiltonian(
    10 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void spherical_pendulum_lagrangian_state(
-    const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -378,6 +399,7 @@ static inline void spherical_pendulum_lagrangian_state(
     result[1] = phi;
     result[2] = c0*(c1*p_theta);
     result[3] = c0*(c1*p_phi/sin_theta)/sin_theta;
+    (void)t;
 }
 #endif
 
@@ -386,7 +408,8 @@ static inline void spherical_pendulum_lagrangian_state(
    4 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void spherical_pendulum_rational_state(
-    const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real theta = state[0];
@@ -400,6 +423,7 @@ static inline void spherical_pendulum_rational_state(
     result[3] = cos(phi);
     result[4] = theta_dot;
     result[5] = phi_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -408,7 +432,8 @@ static inline void spherical_pendulum_rational_state(
    18 operations, 1 of them on parameters alone.
    Time derivative of y. */
 static inline void spherical_pendulum_rhs_rational(
-    spherical_pendulum_real t, const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real sin_theta = state[0];
@@ -438,7 +463,8 @@ static inline void spherical_pendulum_rhs_rational(
    49 operations, 1 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void spherical_pendulum_rhs_variational(
-    spherical_pendulum_real t, const spherical_pendulum_real *state, spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    spherical_pendulum_real t, const spherical_pendulum_real *state,
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real sin_theta = state[0];
@@ -481,27 +507,24 @@ static inline void spherical_pendulum_rhs_variational(
     (void)t;
 }
 
-#ifndef HOLONOMIC_VECTOR
 /* Coordinates at rest.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void spherical_pendulum_equilibrium(
-    spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
+    result[0] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[1] = SPHERICAL_PENDULUM_NUMBER(0.0);
     (void)params;
 }
-#endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Matrices of small motions x about rest at q = (0, 0).
    3 operations, 3 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void spherical_pendulum_linear(
-    spherical_pendulum_real *result, const spherical_pendulum_real *params)
+    const spherical_pendulum_real *params, spherical_pendulum_real *result)
 {
     /* inputs */
     const spherical_pendulum_real m = params[0];
@@ -511,14 +534,13 @@ static inline void spherical_pendulum_linear(
     const spherical_pendulum_real c0 = m*l;
     /* outputs */
     result[0] = l*c0;
-    result[1] = 0.0;
-    result[2] = 0.0;
-    result[3] = 0.0;
+    result[1] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[2] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[3] = SPHERICAL_PENDULUM_NUMBER(0.0);
     result[4] = g*c0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 0.0;
+    result[5] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[6] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[7] = SPHERICAL_PENDULUM_NUMBER(0.0);
 }
-#endif
 
 #endif

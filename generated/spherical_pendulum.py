@@ -76,26 +76,68 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "spherical_pendulum"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
-STATE_HAMILTONIAN = ("theta", "phi", "p_theta", "p_phi")
-STATE_RATIONAL = ("sin_theta", "cos_theta", "sin_phi", "cos_phi", "theta_dot", "phi_dot")
-STATE_VARIATIONAL = (
-    "sin_theta",
-    "cos_theta",
-    "sin_phi",
-    "cos_phi",
-    "theta_dot",
-    "phi_dot",
-    "delta_theta",
-    "delta_phi",
-    "delta_theta_dot",
-    "delta_phi_dot",
-)
-PARAMETERS = ("m", "l", "g")
-DEFAULTS = (1.0, 1.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("theta", "phi", "theta_dot", "phi_dot"),
+    "hamiltonian": ("theta", "phi", "p_theta", "p_phi"),
+    "rational": (
+        "sin_theta",
+        "cos_theta",
+        "sin_phi",
+        "cos_phi",
+        "theta_dot",
+        "phi_dot",
+    ),
+    "variational": (
+        "sin_theta",
+        "cos_theta",
+        "sin_phi",
+        "cos_phi",
+        "theta_dot",
+        "phi_dot",
+        "delta_theta",
+        "delta_phi",
+        "delta_theta_dot",
+        "delta_phi_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("m", "l", "g")
+DEFAULTS: tuple[float, ...] = (1.0, 1.0, 9.81)
 POSITIVE = ("m", "l")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "mass_matrix",
+    "positions",
+    "hamiltonian_state",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "lagrangian_state",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (13, 1),
+    "jacobian": (36, 1),
+    "energy": (14, 1),
+    "mass_matrix": (5, 2),
+    "positions": (9, 0),
+    "hamiltonian_state": (7, 2),
+    "rhs_hamiltonian": (19, 4),
+    "jacobian_hamiltonian": (32, 5),
+    "energy_hamiltonian": (18, 4),
+    "lagrangian_state": (10, 3),
+    "rational_state": (4, 0),
+    "rhs_rational": (18, 1),
+    "rhs_variational": (49, 1),
+    "equilibrium": (0, 0),
+    "linear": (3, 3),
+}
 UNITS = {
     "m": "kg",
     "l": "m",
@@ -117,6 +159,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -125,7 +185,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; theta_dot, phi_dot in rad/s.
     params : iterable of 3 floats
@@ -153,7 +213,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -184,7 +244,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; theta_dot, phi_dot in rad/s.
     params : iterable of 3 floats
@@ -226,7 +286,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -265,13 +325,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     14 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; theta_dot, phi_dot in rad/s.
     params : iterable of 3 floats
@@ -294,7 +356,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return c0*(0.5*x0 - g*cos(theta))
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -310,13 +372,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return c0*(0.5*x0 - g*cos(theta))
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     5 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; theta_dot, phi_dot in rad/s.
     params : iterable of 3 floats
@@ -338,7 +402,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((c0, 0.0), (0.0, c0*sin_theta*sin_theta))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
     from numpy import sin
 
@@ -353,13 +417,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], c0, 0.0, 0.0, c0*sin_theta*sin_theta)
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     9 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; theta_dot, phi_dot in rad/s.
     params : iterable of 3 floats
@@ -379,7 +445,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     return ((cos(phi)*x0, sin(phi)*x0, -l*cos(theta)),)
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (1, 3, ...)."""
     from numpy import cos, sin
 
@@ -392,13 +458,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((1, 3), y[0], cos(phi)*x0, sin(phi)*x0, -l*cos(theta))
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     7 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; theta_dot, phi_dot in rad/s.
     params : iterable of 3 floats
@@ -420,7 +488,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta, phi, c0*theta_dot, c0*phi_dot*sin_theta*sin_theta)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
     from numpy import sin
 
@@ -450,7 +518,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; p_theta, p_phi in J s.
     params : iterable of 3 floats
@@ -480,7 +548,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -513,7 +581,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; p_theta, p_phi in J s.
     params : iterable of 3 floats
@@ -549,7 +617,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -592,13 +660,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     18 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; p_theta, p_phi in J s.
     params : iterable of 3 floats
@@ -624,7 +694,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return 0.5*x0 - c3*cos(theta)
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos, sin
 
@@ -643,13 +713,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return 0.5*x0 - c3*cos(theta)
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     10 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; p_theta, p_phi in J s.
     params : iterable of 3 floats
@@ -672,7 +744,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (theta, phi, c0*(c1*p_theta), c0*(c1*p_phi/sin_theta)/sin_theta)
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (4, ...)."""
     from numpy import sin
 
@@ -695,13 +767,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     4 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         theta, phi in rad; theta_dot, phi_dot in rad/s.
     params : iterable of 3 floats
@@ -718,7 +792,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     return (sin(theta), cos(theta), sin(phi), cos(phi), theta_dot, phi_dot)
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (6, ...)."""
     from numpy import cos, sin
 
@@ -745,7 +819,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 6 floats
         sin_theta, cos_theta, sin_phi, cos_phi in 1; theta_dot, phi_dot in rad/s.
     params : iterable of 3 floats
@@ -775,7 +849,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (6, ...)."""
     # inputs
     sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot = y
@@ -806,7 +880,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 10 floats
         sin_theta, cos_theta, sin_phi, cos_phi in 1; theta_dot, phi_dot in rad/s;
         delta_theta, delta_phi in rad; delta_theta_dot, delta_phi_dot in rad/s.
@@ -849,7 +923,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (10, ...)."""
     # inputs
     sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot, delta_theta, _, delta_theta_dot, delta_phi_dot = y

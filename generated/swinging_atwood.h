@@ -56,7 +56,7 @@
    kept. Use it from C99 or C++ by including this file and linking with -lm:
 
        double state[4] = {...}, rate[4], params[3] = {3.0, 1.0, 9.81};
-       swinging_atwood_rhs(0.0, state, rate, params);
+       swinging_atwood_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
@@ -74,6 +74,12 @@
 
 typedef HOLONOMIC_REAL swinging_atwood_real;
 
+#ifdef HOLONOMIC_VECTOR
+#define SWINGING_ATWOOD_NUMBER(x) ((swinging_atwood_real){0} + (x))
+#else
+#define SWINGING_ATWOOD_NUMBER(x) (x)
+#endif
+
 enum {
     SWINGING_ATWOOD_LAGRANGIAN_STATE = 4,
     SWINGING_ATWOOD_HAMILTONIAN_STATE = 4,
@@ -87,7 +93,8 @@ enum {
    18 operations, 2 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void swinging_atwood_rhs(
-    swinging_atwood_real t, const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -115,7 +122,8 @@ static inline void swinging_atwood_rhs(
    27 operations, 4 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void swinging_atwood_jacobian(
-    swinging_atwood_real t, const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -157,7 +165,8 @@ static inline void swinging_atwood_jacobian(
    17 operations, 3 of them on parameters alone.
    Energy in J. */
 static inline void swinging_atwood_energy(
-    const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -176,15 +185,16 @@ static inline void swinging_atwood_energy(
         c0*r + 0.5*(c1*r_dot*r_dot + m*r*r*theta_dot*theta_dot) - c2*r*cos(theta);
     /* outputs */
     result[0] = x0;
+    (void)t;
 }
 #endif
 
-#ifndef HOLONOMIC_VECTOR
 /* Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
    3 operations, 1 of them on parameters alone.
    M, symmetric and positive definite, row by row. */
 static inline void swinging_atwood_mass_matrix(
-    const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -192,18 +202,19 @@ static inline void swinging_atwood_mass_matrix(
     const swinging_atwood_real m = params[1];
     /* outputs */
     result[0] = M + m;
-    result[1] = 0.0;
-    result[2] = 0.0;
+    result[1] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[2] = SWINGING_ATWOOD_NUMBER(0.0);
     result[3] = m*r*r;
+    (void)t;
 }
-#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Positions of the masses.
    5 operations, 0 of them on parameters alone.
    One row a mass: its Cartesian components in m, the last one upwards. */
 static inline void swinging_atwood_positions(
-    const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -213,6 +224,7 @@ static inline void swinging_atwood_positions(
     result[1] = r;
     result[2] = r*sin(theta);
     result[3] = -r*cos(theta);
+    (void)t;
     (void)params;
 }
 #endif
@@ -221,7 +233,8 @@ static inline void swinging_atwood_positions(
    5 operations, 1 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void swinging_atwood_hamiltonian_state(
-    const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -237,6 +250,7 @@ static inline void swinging_atwood_hamiltonian_state(
     result[1] = theta;
     result[2] = c0*r_dot;
     result[3] = m*r*r*theta_dot;
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -244,7 +258,8 @@ static inline void swinging_atwood_hamiltonian_state(
    21 operations, 4 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void swinging_atwood_rhs_hamiltonian(
-    swinging_atwood_real t, const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -274,7 +289,8 @@ static inline void swinging_atwood_rhs_hamiltonian(
    26 operations, 4 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void swinging_atwood_jacobian_hamiltonian(
-    swinging_atwood_real t, const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -317,7 +333,8 @@ static inline void swinging_atwood_jacobian_hamiltonian(
    17 operations, 3 of them on parameters alone.
    Energy in J. */
 static inline void swinging_atwood_energy_hamiltonian(
-    const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -335,6 +352,7 @@ static inline void swinging_atwood_energy_hamiltonian(
         g*r*(M - m*cos(theta)) + 0.5*(p_r*(c0*p_r) + p_theta*(c1*p_theta/r)/r);
     /* outputs */
     result[0] = x0;
+    (void)t;
 }
 #endif
 
@@ -342,7 +360,8 @@ static inline void swinging_atwood_energy_hamiltonian(
    7 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void swinging_atwood_lagrangian_state(
-    const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -359,6 +378,7 @@ static inline void swinging_atwood_lagrangian_state(
     result[1] = theta;
     result[2] = c0*p_r;
     result[3] = c1*p_theta/r/r;
+    (void)t;
 }
 
 #ifndef HOLONOMIC_VECTOR
@@ -366,7 +386,8 @@ static inline void swinging_atwood_lagrangian_state(
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void swinging_atwood_rational_state(
-    const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -379,6 +400,7 @@ static inline void swinging_atwood_rational_state(
     result[2] = cos(theta);
     result[3] = r_dot;
     result[4] = theta_dot;
+    (void)t;
     (void)params;
 }
 #endif
@@ -387,7 +409,8 @@ static inline void swinging_atwood_rational_state(
    19 operations, 2 of them on parameters alone.
    Time derivative of y. */
 static inline void swinging_atwood_rhs_rational(
-    swinging_atwood_real t, const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];
@@ -415,7 +438,8 @@ static inline void swinging_atwood_rhs_rational(
    42 operations, 3 of them on parameters alone.
    Time derivative of y: the motion's, then that of the change, to first order. */
 static inline void swinging_atwood_rhs_variational(
-    swinging_atwood_real t, const swinging_atwood_real *state, swinging_atwood_real *result, const swinging_atwood_real *params)
+    swinging_atwood_real t, const swinging_atwood_real *state,
+    const swinging_atwood_real *params, swinging_atwood_real *result)
 {
     /* inputs */
     const swinging_atwood_real r = state[0];

@@ -75,25 +75,55 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
+SYSTEM = "swinging_atwood"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
-STATE_HAMILTONIAN = ("r", "theta", "p_r", "p_theta")
-STATE_RATIONAL = ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot")
-STATE_VARIATIONAL = (
-    "r",
-    "sin_theta",
-    "cos_theta",
-    "r_dot",
-    "theta_dot",
-    "delta_r",
-    "delta_theta",
-    "delta_r_dot",
-    "delta_theta_dot",
-)
-PARAMETERS = ("M", "m", "g")
-DEFAULTS = (3.0, 1.0, 9.81)
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+STATES = {
+    "lagrangian": ("r", "theta", "r_dot", "theta_dot"),
+    "hamiltonian": ("r", "theta", "p_r", "p_theta"),
+    "rational": ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot"),
+    "variational": (
+        "r",
+        "sin_theta",
+        "cos_theta",
+        "r_dot",
+        "theta_dot",
+        "delta_r",
+        "delta_theta",
+        "delta_r_dot",
+        "delta_theta_dot",
+    ),
+}
+PARAMETERS: tuple[str, ...] = ("M", "m", "g")
+DEFAULTS: tuple[float, ...] = (3.0, 1.0, 9.81)
 POSITIVE = ("M", "m")
 TIMED = ()
+CALLS_FUNCTIONS = (
+    "rhs",
+    "jacobian",
+    "energy",
+    "positions",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "rational_state",
+)
+OPERATIONS = {
+    "rhs": (18, 2),
+    "jacobian": (27, 4),
+    "energy": (17, 3),
+    "mass_matrix": (3, 1),
+    "positions": (5, 0),
+    "hamiltonian_state": (5, 1),
+    "rhs_hamiltonian": (21, 4),
+    "jacobian_hamiltonian": (26, 4),
+    "energy_hamiltonian": (17, 3),
+    "lagrangian_state": (7, 3),
+    "rational_state": (2, 0),
+    "rhs_rational": (19, 2),
+    "rhs_variational": (42, 3),
+}
 UNITS = {
     "M": "kg",
     "m": "kg",
@@ -113,6 +143,24 @@ UNITS = {
 }
 
 
+def params(**values: float) -> Vector:
+    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+
+    Raises
+    ------
+    TypeError
+        When a name is not that of a parameter.
+    """
+    for name in values:
+        if name not in PARAMETERS:
+            from difflib import get_close_matches
+
+            near = [f" (did you mean {x!r}?)" for x in get_close_matches(name, PARAMETERS, 1)]
+            known = ", ".join(PARAMETERS)
+            raise TypeError(f"no parameter is called {name!r}{''.join(near)}; known: {known}")
+    return tuple(float(values.get(name, x)) for name, x in zip(PARAMETERS, DEFAULTS))
+
+
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
@@ -121,7 +169,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -143,7 +191,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (r_dot, theta_dot, x0, -(2.0*r_dot*theta_dot + g*sin(theta))/r)
 
 
-def rhs_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -173,7 +221,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -207,7 +255,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -243,13 +291,15 @@ def jacobian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy(y: Numbers, params: Numbers) -> float:
+def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
     17 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -273,7 +323,7 @@ def energy(y: Numbers, params: Numbers) -> float:
     return x0
 
 
-def energy_many(y: Arrays, params: Arrays) -> Array:
+def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -290,13 +340,15 @@ def energy_many(y: Arrays, params: Arrays) -> Array:
     return x0
 
 
-def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
+def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
     3 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -314,7 +366,7 @@ def mass_matrix(y: Numbers, params: Numbers) -> Matrix:
     return ((M + m, 0.0), (0.0, m*r*r))
 
 
-def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
+def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
     # inputs
     r, _, _, _ = y
@@ -323,13 +375,15 @@ def mass_matrix_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], M + m, 0.0, 0.0, m*r*r)
 
 
-def positions(y: Numbers, params: Numbers) -> Matrix:
+def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
     5 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -346,7 +400,7 @@ def positions(y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, r), (r*sin(theta), -r*cos(theta)))
 
 
-def positions_many(y: Arrays, params: Arrays) -> Array:
+def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`positions` over arrays: the result has shape (2, 2, ...)."""
     from numpy import cos, sin
 
@@ -356,13 +410,15 @@ def positions_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], 0.0, r, r*sin(theta), -r*cos(theta))
 
 
-def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
+def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
 
     5 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -382,7 +438,7 @@ def hamiltonian_state(y: Numbers, params: Numbers) -> Vector:
     return (r, theta, c0*r_dot, m*r*r*theta_dot)
 
 
-def hamiltonian_state_many(y: Arrays, params: Arrays) -> Array:
+def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
     # inputs
     r, theta, r_dot, theta_dot = y
@@ -401,7 +457,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; p_r in kg m/s; p_theta in J s.
     params : iterable of 3 floats
@@ -430,7 +486,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
     from numpy import cos, sin
 
@@ -462,7 +518,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; p_r in kg m/s; p_theta in J s.
     params : iterable of 3 floats
@@ -493,7 +549,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
+def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
     from numpy import cos, sin
 
@@ -531,13 +587,15 @@ def jacobian_hamiltonian_many(t: float, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
+def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
     17 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; p_r in kg m/s; p_theta in J s.
     params : iterable of 3 floats
@@ -560,7 +618,7 @@ def energy_hamiltonian(y: Numbers, params: Numbers) -> float:
     return x0
 
 
-def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
+def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`energy_hamiltonian` over arrays: the result has shape (...)."""
     from numpy import cos
 
@@ -576,13 +634,15 @@ def energy_hamiltonian_many(y: Arrays, params: Arrays) -> Array:
     return x0
 
 
-def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
+def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
 
     7 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; p_r in kg m/s; p_theta in J s.
     params : iterable of 3 floats
@@ -603,7 +663,7 @@ def lagrangian_state(y: Numbers, params: Numbers) -> Vector:
     return (r, theta, c0*p_r, c1*p_theta/r/r)
 
 
-def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
+def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`lagrangian_state` over arrays: the result has shape (4, ...)."""
     # inputs
     r, theta, p_r, p_theta = y
@@ -615,13 +675,15 @@ def lagrangian_state_many(y: Arrays, params: Arrays) -> Array:
     return _stacked((4,), y[0], r, theta, c0*p_r, c1*p_theta/r/r)
 
 
-def rational_state(y: Numbers, params: Numbers) -> Vector:
+def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form that belongs to y = (q, qdot).
 
     2 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
+    t : float
+        Time in s; not used.
     y : iterable of 4 floats
         r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -638,7 +700,7 @@ def rational_state(y: Numbers, params: Numbers) -> Vector:
     return (r, sin(theta), cos(theta), r_dot, theta_dot)
 
 
-def rational_state_many(y: Arrays, params: Arrays) -> Array:
+def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rational_state` over arrays: the result has shape (5, ...)."""
     from numpy import cos, sin
 
@@ -656,7 +718,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 5 floats
         r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s.
     params : iterable of 3 floats
@@ -684,7 +746,7 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_rational` over arrays: the result has shape (5, ...)."""
     # inputs
     r, sin_theta, cos_theta, r_dot, theta_dot = y
@@ -713,7 +775,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Parameters
     ----------
     t : float
-        Time in s; nothing here depends on it.
+        Time in s; not used.
     y : iterable of 9 floats
         r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s; delta_r in m;
         delta_theta in rad; delta_r_dot in m/s; delta_theta_dot in rad/s.
@@ -754,7 +816,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_variational_many(t: float, y: Arrays, params: Arrays) -> Array:
+def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     """`rhs_variational` over arrays: the result has shape (9, ...)."""
     # inputs
     r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y

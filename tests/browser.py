@@ -11,16 +11,16 @@ import numpy as np
 from PIL import Image
 
 import generated.double_pendulum as dp
-from solvers.integration import integrate
-from solvers.page.page import Page
-from solvers.page.track import Track
+from solvers.integration.integrate import integrate
+from solvers.player.page import Page
+from solvers.player.track import Track
 
 
 def played(method: str, h: float | None = None) -> Track:
     motion = integrate(dp, (0, 5), (pi / 2, pi, 0, 0), dp.DEFAULTS, method=method, h=h,
                        t_eval=np.linspace(0, 5, 301), energy=True)  # fmt: skip
     assert motion.energy is not None
-    places = np.asarray(dp.positions_many(motion.y, dp.DEFAULTS))
+    places = np.asarray(dp.positions_many(0.0, motion.y, dp.DEFAULTS))
     return Track(method, motion.t, places, ((-1, 0), (0, 1)), (),
                  motion.energy / motion.energy[0] - 1)  # fmt: skip
 

@@ -13,10 +13,10 @@ import sympy as sp
 from browser import Player
 
 from derive import Derivation, load
-from solvers.cli import generated_module
-from solvers.commands.stability import scene_steps
+from solvers.app.commands.stability import scene_steps
+from solvers.app.modules import load as load_module
 from solvers.scenes.shipped import find
-from solvers.stability.critical import CriticalStep
+from solvers.studies.stability.critical_step import CriticalStep
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -42,7 +42,7 @@ def module(derivation: Derivation) -> ModuleType:
 @pytest.fixture(scope="session")
 def report_steps() -> dict[str, CriticalStep]:
     """Every method's critical step for the report's scene."""
-    return {step.method: step for step in scene_steps(find("report", generated_module))}
+    return {step.method: step for step in scene_steps(find("report", load_module))}
 
 
 @pytest.fixture(scope="session")

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from derive import Derivation
-from derive.functions import Function, contents
-from solvers.forms import Form
+from derive.codegen.functions import Function, contents
+from solvers.equations.forms import Form
 
 GENERATED = Path(__file__).parent.parent / "generated"
 STRICT = ["-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic", "-ffp-contract=off"]
@@ -39,7 +39,7 @@ def wrapper(name: str, functions: tuple[Function, ...]) -> str:
     """Every inline function of a header, exported under its own name."""
     lines = [f'#include "{name}.h"']
     for f in functions:
-        given = [*(["0.0"] if f.takes_time else []), *(["y"] if f.state else []), "r", "p"]
+        given = [*(["0.0", "y"] if f.state else []), "p", "r"]
         lines += [
             f"void call_{f.name}(const double *y, double *r, const double *p);",
             f"void call_{f.name}(const double *y, double *r, const double *p)",
@@ -88,7 +88,7 @@ def test_headers_are_valid_cpp_and_two_of_them_fit_into_one_program(tmp_path: Pa
         #include "single_pendulum.h"
         extern "C" double energy(const double *y, const double *p);
         extern "C" double energy(const double *y, const double *p)
-        { double e; single_pendulum_energy(y, &e, p); return e; }
+        { double e; single_pendulum_energy(0.0, y, p, &e); return e; }
     """
     library = ctypes.CDLL(str(compiled(source, tmp_path, compiler="c++")))
     library.energy.restype = ctypes.c_double
@@ -107,7 +107,7 @@ def test_vectors_of_doubles_compute_each_lane_as_a_scalar_does(tmp_path: Path) -
         #include "double_pendulum.h"
         void rates(const lanes *y, lanes *r, const lanes *p);
         void rates(const lanes *y, lanes *r, const lanes *p)
-        { lanes t = {0.0}; double_pendulum_rhs_rational(t, y, r, p); }
+        { lanes t = {0.0}; double_pendulum_rhs_rational(t, y, p, r); }
     """
     library = ctypes.CDLL(str(compiled(source, tmp_path, "-mavx2")))
     together = cases(dp, "rational")[:4]
@@ -138,7 +138,7 @@ def test_another_number_type_is_used_throughout(tmp_path: Path) -> None:
             long double state[4], params[5], energy;
             for (int i = 0; i < 4; ++i) state[i] = y[i];
             for (int i = 0; i < 5; ++i) params[i] = p[i];
-            double_pendulum_energy(state, &energy, params);
+            double_pendulum_energy(0.0L, state, params, &energy);
             return (double)(energy - (long double)(double)energy);
         }
     """

@@ -21,10 +21,9 @@ from mpmath import diff, fdot, mpf, workdps
 from numpy.testing import assert_allclose
 
 from derive import TIME, System, load, names, systems, write
-from derive.catalogue import drawing
-from derive.listing import main
-from solvers.forms import Form, has_form
-from solvers.timed import evaluated
+from derive.commands.systems import main
+from derive.system.catalogue import drawing
+from solvers.equations.forms import Form
 
 SYSTEMS = Path(systems.__path__[0])
 Case = tuple[float, list[float], list[float]]
@@ -141,7 +140,7 @@ def test_the_motion_is_that_of_d_alembert_and_reactions_hold_what_is_held(
             wrong = alembert.forces(mpf(t), q, v, a, values)
             assert abs(wrong[0] - applied[0]) > 1e-9
         if system.reactions:
-            found = evaluated(module, "reactions", t, y, params)
+            found = module.reactions(t, y, params)
             for force, reaction in zip(needed[n:], found, strict=True):
                 assert abs(force + mpf(reaction)) < 1e-11 * scale
 
@@ -152,7 +151,7 @@ def turned(
 ) -> np.ndarray:  # fmt: skip
     """The rate of a function of time and state along `rates`, by a complex step."""
     moved = np.array(y) + 1e-30j * np.array(rates)
-    found = evaluated(module, f"{function}_many", t + 1e-30j, moved, params)
+    found = getattr(module, f"{function}_many")(t + 1e-30j, moved, params)
     return np.asarray(found).imag / 1e-30
 
 
@@ -164,7 +163,7 @@ def test_energy_changes_by_what_forces_and_drives_supply_and_else_not_at_all(
         change = turned(module, "energy", t, y, rates, params)
         parts = [turned(module, "energy", t, y, e * rates, params) for e in np.eye(len(y))]
         scale = np.abs(parts).max()
-        power = evaluated(module, "power", t, y, params) if hasattr(module, "power") else 0.0
+        power = module.power(t, y, params) if hasattr(module, "power") else 0.0
         assert abs(change - power) < 1e-12 * scale
         if power:
             assert abs(change) > 1e-6 * scale
@@ -172,13 +171,13 @@ def test_energy_changes_by_what_forces_and_drives_supply_and_else_not_at_all(
 
 def test_hamilton_s_form_is_the_same_motion(module: ModuleType) -> None:
     for t, y, params in cases(module):
-        z = evaluated(module, "hamiltonian_state", t, y, params)
+        z = module.hamiltonian_state(t, y, params)
         rates = turned(module, "hamiltonian_state", t, y, module.rhs(t, y, params), params)
         assert_allclose(module.rhs_hamiltonian(t, z, params), rates, rtol=1e-9, atol=1e-10)
-        assert_allclose(evaluated(module, "lagrangian_state", t, z, params), y, rtol=1e-11)
+        assert_allclose(module.lagrangian_state(t, z, params), y, rtol=1e-11)
         energies = (
-            evaluated(module, "energy", t, y, params),
-            evaluated(module, "energy_hamiltonian", t, z, params),
+            module.energy(t, y, params),
+            module.energy_hamiltonian(t, z, params),
         )
         assert energies[0] == pytest.approx(energies[1], rel=1e-11)
 
@@ -186,7 +185,7 @@ def test_hamilton_s_form_is_the_same_motion(module: ModuleType) -> None:
 @pytest.mark.parametrize("form", ["", "_hamiltonian"])
 def test_jacobians_are_derivatives(module: ModuleType, form: str) -> None:
     for t, y, params in cases(module):
-        z = y if not form else evaluated(module, "hamiltonian_state", t, y, params)
+        z = y if not form else module.hamiltonian_state(t, y, params)
         steps = np.array(z)[:, None] + 1e-30j * np.eye(len(z))
         expected = getattr(module, f"rhs{form}_many")(t, steps, params).imag / 1e-30
         found = getattr(module, f"jacobian{form}")(t, z, params)
@@ -201,7 +200,7 @@ def test_other_forms_are_the_same_motion(module: ModuleType) -> None:
         form = Form(module, "variational", params)
         rates = form.rhs(t, form.inside(t, np.array([*y, *change])))
         assert_allclose(rates[-2 * n :], direction, rtol=1e-8, atol=1e-9)
-        if has_form(module, "rational"):
+        if "rational" in module.FORMS:
             rational = Form(module, "rational", params)
             rates = rational.rhs(t, rational.inside(t, np.array(y)))
             assert_allclose(rates[-n:], module.rhs(t, y, params)[n:], rtol=1e-9, atol=1e-10)
@@ -216,7 +215,7 @@ def test_what_is_at_rest_stays_there_and_moves_about_it_as_its_matrices_say(
     for t, _, params in cases(module):
         place = module.equilibrium(params)
         n = len(place)
-        if not np.linalg.det(evaluated(module, "mass_matrix", t, [*place, *[0.0] * n], params)):
+        if not np.linalg.det(module.mass_matrix(t, [*place, *[0.0] * n], params)):
             continue  # where no force acts, but the coordinates fail, as on top of a sphere
         still = [*place, *[0.0] * n]
         assert np.abs(module.rhs(t, still, params)).max() < 1e-12

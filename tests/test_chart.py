@@ -10,23 +10,23 @@ import numpy as np
 import pytest
 
 import generated.double_pendulum as dp
-from solvers.catalogue import load
-from solvers.chart import drawn, measurement, peers
-from solvers.chart.curve import Curve, Point
-from solvers.chart.findings import Charted, misled, turnings, wrong_from
-from solvers.chart.frontier import frontier
-from solvers.chart.measurement import combinations, curves, judged
-from solvers.chart.reference import Reference, reference
-from solvers.chart.told import told
-from solvers.cli import generated_module, main
-from solvers.commands import chart as command
-from solvers.forms import Form
-from solvers.measured import measured, work_at
-from solvers.pictures import save
-from solvers.request import SCIPY
+from solvers.app.cli import main
+from solvers.app.commands import chart as command
+from solvers.app.modules import load as load_module
+from solvers.equations.forms import Form
+from solvers.integration.timing import measured, work_at
+from solvers.io.figures import save
+from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.scenes.shipped import find
+from solvers.studies.work_precision import measurement, peers, plots
+from solvers.studies.work_precision.curve import Curve, Point
+from solvers.studies.work_precision.findings import Charted, misled, turnings, wrong_from
+from solvers.studies.work_precision.frontier import frontier
+from solvers.studies.work_precision.measurement import combinations, curves, judged
+from solvers.studies.work_precision.reference import Reference, reference
+from solvers.studies.work_precision.summary import told
 
-REPORT = find("report", generated_module)
+REPORT = find("report", load_module)
 
 
 @pytest.fixture(autouse=True)
@@ -40,7 +40,7 @@ def few_settings(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module")
 def truth() -> Reference:
-    return reference(find("report", generated_module))
+    return reference(find("report", load_module))
 
 
 def point(seconds: float, error: float, energy: float = 1.0) -> Point:
@@ -54,7 +54,7 @@ def curve(method: str, form: str, backend: str, *points: Point) -> Curve:
 def test_two_independent_references_agree_to_the_digits_that_charts_rely_on() -> None:
     # curves end at 1e-13 (1e-7 after 20 s of chaos); references know a hundred times more
     for name, least in (("report", 1e-15), ("long", 1e-9), ("single", 1e-13)):
-        one = find(name, generated_module)
+        one = find(name, load_module)
         found = reference(one)
         assert found.global_error < 1e-14
         assert max(found.apart.values()) < (least if np.finfo(np.longdouble).nmant > 60 else 1e-6)
@@ -63,14 +63,14 @@ def test_two_independent_references_agree_to_the_digits_that_charts_rely_on() ->
 def test_the_reference_s_own_error_is_found_by_fewer_digits(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("solvers.chart.reference.FEWER", 8)
-    assert 1e-10 < reference(find("report", generated_module)).global_error < 1e-4
+    monkeypatch.setattr("solvers.studies.work_precision.reference.FEWER", 8)
+    assert 1e-10 < reference(find("report", load_module)).global_error < 1e-4
 
 
 def test_curves_measure_the_error_beside_the_reference(truth: Reference) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
               ("dp54", "hamiltonian", "python"), ("DOP853", "lagrangian", "scipy")]  # fmt: skip
-    found = curves(find("report", generated_module), truth, wanted)
+    found = curves(find("report", load_module), truth, wanted)
     assert [(c.method, c.form, c.backend) for c in found] == wanted
     for c in found:
         errors = [p.global_error for p in c.points]
@@ -104,7 +104,7 @@ def test_every_method_form_and_backend_is_charted() -> None:
 
 
 def test_a_run_that_means_nothing_is_no_point(truth: Reference) -> None:
-    judge = judged(find("report", generated_module), truth)
+    judge = judged(find("report", load_module), truth)
     run = measured(dp, dp.DEFAULTS, REPORT.y0, 5.0, method="rk4", form="lagrangian",
                    backend="compiled", h=0.1)  # fmt: skip
     assert run
@@ -172,7 +172,7 @@ def test_in_the_report_s_scene_rounding_turns_rk4(
     truth: Reference, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(19))
-    found = curves(find("report", generated_module), truth, [("rk4", "lagrangian", "compiled")])
+    found = curves(find("report", load_module), truth, [("rk4", "lagrangian", "compiled")])
     (turning,) = turnings(found)
     assert turning.order == pytest.approx(load("rk4").order, abs=0.3)
     assert 1e-6 < turning.h < 1e-3
@@ -182,7 +182,7 @@ def test_in_the_report_s_scene_rounding_turns_rk4(
 
 def test_a_small_energy_error_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measurement, "TOLERANCES", 10.0 ** -np.arange(1, 14))
-    one = find("long", generated_module)
+    one = find("long", load_module)
     truth = reference(one)
     wanted = [("gauss2", "hamiltonian", "compiled"), ("verner98", "rational", "compiled")]
     found = curves(one, truth, wanted)
@@ -194,14 +194,14 @@ def test_a_small_energy_error_proves_nothing(monkeypatch: pytest.MonkeyPatch) ->
     right = [replace(right[0], points=[p for p in right[0].points if p.global_error < 0.1])]
     assert misled(right, one, truth) is None
     # in small motion a small error is large
-    small = find("small", generated_module)
+    small = find("small", load_module)
     assert wrong_from(small, reference(small)) < 0.01
 
 
 def test_energy_that_is_not_kept_is_no_case(truth: Reference) -> None:
-    found = curves(find("report", generated_module), truth, [("rk1", "lagrangian", "compiled")])
+    found = curves(find("report", load_module), truth, [("rk1", "lagrangian", "compiled")])
     assert min(p.energy_error for p in found[0].points) < 1
-    assert misled(found, find("report", generated_module), truth) is None
+    assert misled(found, find("report", load_module), truth) is None
 
 
 def test_other_programs_join_when_they_are_there(truth: Reference) -> None:
@@ -221,29 +221,29 @@ def test_other_programs_join_when_they_are_there(truth: Reference) -> None:
     def package(name: str) -> ModuleType | None:
         return Package(name) if name == "numbalsoda" else None
 
-    lsoda, dop853 = peers.curves(find("report", generated_module), truth, package)
+    lsoda, dop853 = peers.curves(find("report", load_module), truth, package)
     assert (lsoda.method, lsoda.form, lsoda.backend) == ("lsoda", "rational", "numbalsoda")
     for p in lsoda.points:
         assert 0.9 < p.global_error / p.setting["rtol"] < 1.5
     assert dop853.points == []
-    assert peers.curves(find("report", generated_module), truth, lambda _: None) == []
+    assert peers.curves(find("report", load_module), truth, lambda _: None) == []
 
 
 def test_pictures_and_text_show_what_was_measured(truth: Reference, tmp_path: Path) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
               ("verner87", "rational", "python"), ("DOP853", "rational", "scipy")]  # fmt: skip
-    found = curves(find("report", generated_module), truth, wanted)
+    found = curves(find("report", load_module), truth, wanted)
     for name in ("work_precision", "steps", "energy"):
         figure = (
-            drawn.energy("title", found, 0.1)
+            plots.energy("title", found, 0.1)
             if name == "energy"
-            else getattr(drawn, name)("title", found)
+            else getattr(plots, name)("title", found)
         )
         lines = sum(len(axes.lines) for axes in figure.axes)
         assert lines >= 1
         save(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000
-    text = "\n".join(told(Charted.of(find("report", generated_module), truth, found)))
+    text = "\n".join(told(Charted.of(find("report", load_module), truth, found)))
     assert "reference: Taylor series, 32 digits, own error" in text
     assert "verner87, rational " in text
     assert "rk4: error falls as h^4" in text

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import generated.double_pendulum as dp
-from solvers.commands.chart import USUAL
-from solvers.failures.chaos import Mean
-from solvers.failures.drawn import DRAW
-from solvers.verdict.claims import claims
-from solvers.verdict.evidence import Evidence, Setting
-from solvers.verdict.objectives import objectives, recommendations
+from solvers.app.commands.chart import USUAL
+from solvers.app.verdict.claims import claims
+from solvers.app.verdict.evidence import Evidence, Setting
+from solvers.app.verdict.objectives import objectives, recommendations
+from solvers.studies.failure_modes.chaos import Mean
+from solvers.studies.failure_modes.plots import DRAW
 
 EQUATIONS = {"verified": 119, "misprint": 23}
 PROSE = Setting(dp.DEFAULTS, (pi / 2, pi, 0.0, 0.0), 5.0)

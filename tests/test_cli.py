@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from derive.report.equation import Equation
-from solvers import cli
-from solvers.cli import COMMANDS, main
-from solvers.order_conditions import order
-from solvers.tables import counted, report
+from derive.verification.report.equation import Equation
+from solvers.app import cli
+from solvers.app.cli import COMMANDS, main
+from solvers.app.tables import counted, report
+from solvers.runge_kutta.order_conditions import order
 
 ROOT = Path(__file__).parent.parent
 
@@ -97,7 +97,7 @@ def test_readme_states_the_verdicts_as_they_are(
 def test_verify_fails_where_an_equation_is_neither_right_nor_mended(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from derive.report import judgement
+    from derive.verification.report import judgement
 
     wrong = Equation("eq47", "x1 = l1*cos(theta1)", corrected="x1 = l2*sin(theta1)")
     assert judgement.verdict(wrong, order).verdict == "wrong"

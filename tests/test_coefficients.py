@@ -6,11 +6,12 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from handwritten import handwritten
 
-from solvers.catalogue import load, names
-from solvers.ensemble import ensemble
-from solvers.integration import integrate
-from solvers.kernel import Kernel
+from solvers.integration.compiled.kernel import Kernel
+from solvers.integration.ensemble import ensemble
+from solvers.integration.integrate import integrate
+from solvers.runge_kutta.catalogue import load, names
 
 EXPLICIT = [name for name in names() if load(name).is_explicit]
 
@@ -20,7 +21,7 @@ double probe_places[64][64], probe_times[64];
 int probe_calls;
 
 static inline void probe_rhs(
-    {real} t, const {real} *state, {real} *result, const {real} *params)
+    {real} t, const {real} *state, const {real} *params, {real} *result)
 {{
     for (int n = 0; n < {stages}; n++) {{
         result[n] = ({real}){{0}} + (double)(n == probe_calls);
@@ -40,12 +41,8 @@ static inline void probe_rhs(
 def probe(folder: Path, stages: int) -> ModuleType:
     """A module with one number of state a stage, and the header for it."""
     (folder / "probe.h").write_text(PROBE.format(real="HOLONOMIC_REAL", stages=stages))
-    module = ModuleType("probe")
-    vars(module).update(
-        __file__=str(folder / "probe.py"), COORDINATES=(), rhs=None,
-        STATE=tuple(f"s{k}" for k in range(stages)), PARAMETERS=("p",), DEFAULTS=(1.0,),
-    )  # fmt: skip
-    return module
+    state = tuple(f"s{k}" for k in range(stages))
+    return handwritten("probe", state, __file__=str(folder / "probe.py"))
 
 
 @pytest.mark.parametrize("lanes", [False, True])
@@ -76,7 +73,7 @@ def test_coefficients_are_read_back_from_the_running_loop(
 IMPLICIT_PROBE = """
 double probe_places[64][64];
 
-static inline void probe_rhs(double t, const double *state, double *result, const double *params)
+static inline void probe_rhs(double t, const double *state, const double *params, double *result)
 {{
     static const double nodes[] = {{{nodes}}};
     for (int i = 0; i < {stages}; i++) {{
@@ -89,7 +86,7 @@ static inline void probe_rhs(double t, const double *state, double *result, cons
 }}
 
 static inline void probe_jacobian(
-    double t, const double *state, double *result, const double *params)
+    double t, const double *state, const double *params, double *result)
 {{
     for (int n = 0; n < {stages}*{stages}; n++) {{
         result[n] = 0;
@@ -106,7 +103,8 @@ def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
     # as above; which stage it is, the time says, and the last round of the iteration is read
     method = load(name)
     module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
-    vars(module)["jacobian"] = lambda t, y, params: np.zeros((method.stages, method.stages))
+    module.OPERATIONS["jacobian"] = (0, 0)
+    module.jacobian = lambda t, y, params: np.zeros((method.stages, method.stages))
     nodes = ", ".join(repr(float(c)) for c in method.c)
     text = IMPLICIT_PROBE.format(nodes=nodes, stages=method.stages)
     (tmp_path / "probe.h").write_text(text)

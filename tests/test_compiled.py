@@ -14,16 +14,17 @@ from mpmath import sin as mpsin
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
-from solvers import compiler, request
-from solvers.catalogue import load, names
-from solvers.crossing import Crossing
-from solvers.ensemble import ensemble
-from solvers.integration import integrate
-from solvers.kernel import STATUSES, Batch, Kernel, kernel
-from solvers.kernel_source import program
-from solvers.native import equations
-from solvers.prepared import NotFinishedError, prepare
-from solvers.solution import Status
+from solvers.integration import validation
+from solvers.integration.compiled import compiler
+from solvers.integration.compiled.kernel import STATUSES, Batch, Kernel, kernel
+from solvers.integration.compiled.kernel_source import program
+from solvers.integration.compiled.native import equations
+from solvers.integration.ensemble import ensemble
+from solvers.integration.events import Crossing
+from solvers.integration.integrate import integrate
+from solvers.integration.prepare import NotFinishedError, prepare
+from solvers.integration.solution import Status
+from solvers.runge_kutta.catalogue import load, names
 
 EXPLICIT = [name for name in names() if load(name).is_explicit]
 FORMS = ("lagrangian", "hamiltonian", "rational")
@@ -193,7 +194,7 @@ def test_sine_and_cosine_stay_on_the_circle_over_long_runs(
 ) -> None:
     # steps leave it by 1e-10, 1e-5 and 1e-3
     built = kernel(sp, "rational", method, lanes=False, compensated=compensated, reproducible=False)
-    problem = request.problem(
+    problem = validation.problem(
         sp, (0.0, 1000.0), (2.0, 0.0), sp.DEFAULTS, method, "rational", 0, 0, h, None, (), 10**6
     )
     batch = Batch(
@@ -264,7 +265,7 @@ def bits(form: str, method: str, *, lanes: bool) -> bytes:
     """What a reproducible loop, built now, makes of some motions with events and samples."""
     built = Kernel(dp, form, method, lanes=lanes, compensated=True, reproducible=True)
     events, times = [Crossing(dp, "theta1", 0.3)], np.linspace(0, 3, 7)
-    problem = request.problem(
+    problem = validation.problem(
         dp, (0.0, 3.0), REPORT, dp.DEFAULTS, method, form, 1e-9, 1e-9, None, times, events, 10**6
     )
     batch = Batch(

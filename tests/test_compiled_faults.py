@@ -10,13 +10,13 @@ import pytest
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
-from solvers import compiler
-from solvers.crossing import Crossing
-from solvers.ensemble import ensemble
-from solvers.integration import integrate
-from solvers.kernel import kernel
-from solvers.prepared import prepare
-from solvers.solution import Ensemble, Interrupted, Solution, Status
+from solvers.integration.compiled import compiler
+from solvers.integration.compiled.kernel import kernel
+from solvers.integration.ensemble import ensemble
+from solvers.integration.events import Crossing
+from solvers.integration.integrate import integrate
+from solvers.integration.prepare import prepare
+from solvers.integration.solution import Ensemble, Interrupted, Solution, Status
 
 FORMS = ("lagrangian", "hamiltonian", "rational")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.control import GROW, SAFETY, SHRINK, Controller
+from solvers.runge_kutta.step_control import GROW, SAFETY, SHRINK, Controller
 
 
 def controller() -> Controller:

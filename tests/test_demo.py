@@ -11,14 +11,15 @@ from typing import Any
 import pytest
 
 import generated.double_pendulum as dp
-from derive.report.judgement import EQUATIONS
-from solvers.cli import generated_module, main
-from solvers.commands import demo as command
-from solvers.demo.code import FUNCTIONS
-from solvers.demo.html import table
-from solvers.demo.page import write_demo
-from solvers.demo.station import Station
-from solvers.stated import operations, operations_on_state
+from derive.verification.report.judgement import EQUATIONS
+from solvers.app.cli import main
+from solvers.app.commands import demo as command
+from solvers.app.demo.code import FUNCTIONS
+from solvers.app.demo.html import table
+from solvers.app.demo.page import write_demo
+from solvers.app.demo.station import Station
+from solvers.app.modules import load as load_module
+from solvers.equations.module import operations_on_state
 
 
 @pytest.fixture(scope="module")
@@ -144,14 +145,11 @@ def test_every_figure_says_how_it_was_obtained(made: tuple[str, Path]) -> None:
 
 
 def test_operations_are_those_that_the_functions_state() -> None:
-    assert {name: operations(dp, name) for name in FUNCTIONS} == {
+    assert {name: dp.OPERATIONS[name][0] for name in FUNCTIONS} == {
         "rhs": 32, "rhs_hamiltonian": 35, "rhs_rational": 39, "rhs_variational": 77,
         "jacobian": 85, "energy": 26,
     }  # fmt: skip
     assert operations_on_state(dp, "rhs_rational") == 34
-    with pytest.raises(ValueError, match=r"module.*states no operations: generate it anew"):
-        operations(type("module", (), {"rhs": test_operations_are_those_that_the_functions_state,
-                                       "__name__": "module"}), "rhs")  # fmt: skip
 
 
 def test_without_a_compiler_the_map_is_left_out_and_said_so(
@@ -160,7 +158,7 @@ def test_without_a_compiler_the_map_is_left_out_and_said_so(
     monkeypatch.setattr(command, "no_compiler", lambda _: "no C compiler")
     quick = {"derive": lambda: Station(("a line",), "<p>something</p>")}
     monkeypatch.setattr(command, "cost", lambda _: Station(("cost",), ""))
-    assert command.main(["--output", str(tmp_path)], generated_module, quick, "") == 0
+    assert command.main(["--output", str(tmp_path)], load_module, quick, "") == 0
     assert "left out: no C compiler" in capsys.readouterr().out
     assert 'id="map"' not in (tmp_path / "demo.html").read_text(encoding="utf-8")
 

@@ -6,10 +6,10 @@ from sympy.physics.mechanics import LagrangesMethod, Lagrangian, Particle, Point
 from sympy.physics.mechanics import dynamicsymbols as dynamic
 
 from derive import TIME, Coordinate, Derivation, Parameter, PointMass, System
-from derive.functions import contents
-from derive.parts import SystemDefinitionError
-from derive.reduction import collected, reduced
-from derive.zero import vanishes
+from derive.codegen.functions import contents
+from derive.formulas.zero import vanishes
+from derive.mechanics.reduction import collected, reduced
+from derive.system.parts import SystemDefinitionError
 
 Motion = dict[sp.Symbol, sp.Expr]
 

@@ -5,16 +5,16 @@ from math import sin, sqrt
 
 import numpy as np
 import pytest
-from made_up import made_up
+from handwritten import handwritten
 from numpy.testing import assert_allclose
 from scipy.special import ellipk
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
-from solvers.crossing import Crossing, Extremum
-from solvers.ensemble import ensemble
-from solvers.integration import integrate
-from solvers.solution import Status
+from solvers.integration.ensemble import ensemble
+from solvers.integration.events import Crossing, Extremum
+from solvers.integration.integrate import integrate
+from solvers.integration.solution import Status
 
 
 def test_events_are_found_to_rounding() -> None:
@@ -68,7 +68,9 @@ def test_a_run_can_go_on_from_an_event_that_ended_it() -> None:
 
 
 def test_flat_and_abrupt_events_are_found() -> None:
-    module = made_up(lambda t, y, params: (1.0, 0.0))
+    module = handwritten(
+        "hand", ("x", "x_dot"), COORDINATES=("x",), rhs=lambda t, y, params: (1.0, 0.0)
+    )
     for event in (lambda t, y: (t - 0.35) ** 5, lambda t, y: 1.0 if t > 0.35 else -1.0,
                   lambda t, y: 1e-170 * (t - 0.35)):  # fmt: skip
         found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=0.3, events=event)

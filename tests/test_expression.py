@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from derive.expression import ExpressionError, parsed
+from derive.formulas.expression import ExpressionError, parsed
 
 x, y = sp.symbols("x y")
 SCOPE = {"x": x, "y": y, "sin": sp.sin}

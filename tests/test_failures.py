@@ -10,10 +10,18 @@ import pytest
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
-from solvers.failures import chaos, drift, oscillation, separatrix, singular, stiffness, tolerances
-from solvers.failures.chaos import Mean
-from solvers.failures.studies import LONG_RUNS, SMALL, studies
-from solvers.stability_function import StabilityFunction
+from solvers.runge_kutta.stability_function import StabilityFunction
+from solvers.studies.failure_modes import (
+    chaos,
+    drift,
+    oscillation,
+    separatrix,
+    singular,
+    stiffness,
+    tolerances,
+)
+from solvers.studies.failure_modes.chaos import Mean
+from solvers.studies.failure_modes.studies import LONG_RUNS, SMALL, studies
 
 
 @pytest.mark.parametrize(("method", "order"), [("rk1", 1), ("midpoint", 2)])

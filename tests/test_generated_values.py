@@ -19,7 +19,7 @@ from planted import Planted, is_constant
 from scipy.integrate import solve_ivp
 
 from derive import Derivation
-from solvers.forms import Form
+from solvers.equations.forms import Form
 
 #: The functions' annotations name types that exist for type checkers only.
 annotations = __future__.annotations.compiler_flag
@@ -132,10 +132,10 @@ def test_the_rational_form_gives_the_same_rates(derivation: Derivation, module: 
         cse=True,
     )
     for y, params in states(module):
-        rational = module.rational_state(y, params)
+        rational = module.rational_state(0.0, y, params)
         rates = module.rhs_rational(0.0, rational, params)
         expected = module.rhs(0.0, y, params)
-        where = module.STATE_RATIONAL.index
+        where = module.STATES["rational"].index
         for q, x, speed in zip(module.COORDINATES, y[:n], y[n:], strict=True):
             if module.UNITS[q] != "rad":
                 assert (rational[where(q)], rates[where(q)]) == (x, speed)
@@ -223,9 +223,9 @@ def test_arrays_may_have_any_number_of_axes_and_numbers_beside_arrays(module: Mo
     y = np.random.default_rng(1).uniform(-1, 1, (n, 3, 2))
     assert module.rhs_many(0.0, y, module.DEFAULTS).shape == (n, 3, 2)
     assert module.jacobian_many(0.0, y, module.DEFAULTS).shape == (n, n, 3, 2)
-    assert module.energy_many(y, module.DEFAULTS).shape == (3, 2)
+    assert module.energy_many(0.0, y, module.DEFAULTS).shape == (3, 2)
     assert module.linear_many(module.DEFAULTS).shape[0] == 2
-    assert module.mass_matrix_many(y, module.DEFAULTS).shape[2:] == (3, 2)
+    assert module.mass_matrix_many(0.0, y, module.DEFAULTS).shape[2:] == (3, 2)
 
 
 def test_functions_take_lists_tuples_and_arrays_and_leave_them_alone(module: ModuleType) -> None:
@@ -241,7 +241,7 @@ def test_functions_take_lists_tuples_and_arrays_and_leave_them_alone(module: Mod
 
 def test_the_mass_matrix_is_symmetric_and_positive_definite(module: ModuleType) -> None:
     for y, params in states(module):
-        M = np.array(module.mass_matrix(y, params))
+        M = np.array(module.mass_matrix(0.0, y, params))
         assert_array_equal(M, M.T)
         scale = np.sqrt(np.diag(M))
         assert np.linalg.eigvalsh(M / np.outer(scale, scale))[0] > 0
@@ -249,14 +249,14 @@ def test_the_mass_matrix_is_symmetric_and_positive_definite(module: ModuleType) 
 
 def test_states_and_energies_convert_from_one_form_to_the_other(module: ModuleType) -> None:
     for y, params in list(states(module))[:20]:
-        canonical = module.hamiltonian_state(y, params)
-        assert_allclose(module.lagrangian_state(canonical, params), y, rtol=1e-11)
+        canonical = module.hamiltonian_state(0.0, y, params)
+        assert_allclose(module.lagrangian_state(0.0, canonical, params), y, rtol=1e-11)
         n = len(y) // 2
-        M, p = np.array(module.mass_matrix(y, params)), np.array(canonical[n:])
-        legendre = p @ y[n:] - (p @ y[n:] / 2 - (module.energy(y, params) - p @ y[n:] / 2))
+        M, p = np.array(module.mass_matrix(0.0, y, params)), np.array(canonical[n:])
+        legendre = p @ y[n:] - (p @ y[n:] / 2 - (module.energy(0.0, y, params) - p @ y[n:] / 2))
         assert_allclose(p, M @ y[n:], rtol=1e-12, atol=1e-12)
-        scale = abs(p @ y[n:]) + abs(module.energy(y, params))
-        assert abs(module.energy_hamiltonian(canonical, params) - legendre) < 1e-12 * scale
+        scale = abs(p @ y[n:]) + abs(module.energy(0.0, y, params))
+        assert abs(module.energy_hamiltonian(0.0, canonical, params) - legendre) < 1e-12 * scale
 
 
 def test_energy_does_not_change_along_either_right_hand_side(module: ModuleType) -> None:
@@ -265,7 +265,7 @@ def test_energy_does_not_change_along_either_right_hand_side(module: ModuleType)
         for y, params in list(states(module))[:20]:
             flow = rhs(0.0, np.array(y), params)
             gradient = [
-                energy(np.array(y) + 1e-30j * e, params).imag / 1e-30 for e in np.eye(len(y))
+                energy(0.0, np.array(y) + 1e-30j * e, params).imag / 1e-30 for e in np.eye(len(y))
             ]
             power, scale = np.dot(gradient, flow), np.abs(gradient) @ np.abs(flow)
             assert abs(power) < 1e-13 * scale
@@ -281,10 +281,10 @@ def test_both_forms_give_the_report_s_motion() -> None:
     y0 = (pi / 2, pi, 0.0, 0.0)
     options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-13, "args": (dp.DEFAULTS,)}
     lagrange = solve_ivp(dp.rhs, (0, 5), y0, **options).y[:, -1]
-    start = dp.hamiltonian_state(y0, dp.DEFAULTS)
+    start = dp.hamiltonian_state(0.0, y0, dp.DEFAULTS)
     hamilton = solve_ivp(dp.rhs_hamiltonian, (0, 5), start, **options).y[:, -1]
     assert_allclose(lagrange, expected, atol=1e-10)
-    assert_allclose(dp.lagrangian_state(hamilton, dp.DEFAULTS), expected, atol=1e-10)
+    assert_allclose(dp.lagrangian_state(0.0, hamilton, dp.DEFAULTS), expected, atol=1e-10)
     coarse = solve_ivp(dp.rhs, (0, 5), y0, **(options | {"rtol": 1e-8})).y[:, -1]
     assert np.abs(coarse - expected).max() > 1e-10
 

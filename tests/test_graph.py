@@ -6,11 +6,11 @@ import random
 import pytest
 import sympy as sp
 
-from derive.factorisation import Factorisation
-from derive.graph import Graph, Node
-from derive.lowering import Lowering
-from derive.operation import Operation
-from derive.translation import Translation, UnsupportedFunctionError
+from derive.codegen.factorisation import Factorisation
+from derive.codegen.graph import Graph, Node
+from derive.codegen.lowering import Lowering
+from derive.codegen.operation import Operation
+from derive.codegen.translation import Translation, UnsupportedFunctionError
 
 a, b, c, d, x = sp.symbols("a b c d x", positive=True)
 FUNCTIONS = {"sin": math.sin, "cos": math.cos, "sqrt": math.sqrt, "exp": math.exp}

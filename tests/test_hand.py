@@ -9,13 +9,13 @@ import pytest
 from planted import Planted
 
 from derive import Derivation, load, names
-from derive.command import system_of
-from derive.hand.command import PUBLISHED
-from derive.hand.equations import judge
-from derive.hand.judgement import judged
-from derive.hand.meaning import Meaning
-from derive.tables import TableError
-from solvers.cli import main
+from derive.commands.derive import system_of
+from derive.commands.verify import PUBLISHED
+from derive.system.tables import TableError
+from derive.verification.hand.equations import judge
+from derive.verification.hand.judgement import judged
+from derive.verification.hand.meaning import Meaning
+from solvers.app.cli import main
 
 FILES = sorted(PUBLISHED.glob("*.toml"))
 

@@ -5,15 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from made_up import made_up
+from handwritten import handwritten
 from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
-from solvers.catalogue import UnknownMethodError
-from solvers.integration import integrate
-from solvers.scipy_methods import ode_solver
-from solvers.solution import Status
+from solvers.integration.integrate import integrate
+from solvers.integration.ode_solver import ode_solver
+from solvers.integration.solution import Status
+from solvers.runge_kutta.catalogue import UnknownMethodError
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
 #: The report's scene at 5 s, from an 80-bit Taylor series.
@@ -21,7 +21,12 @@ END = (2.2280642400930692, -0.2670447339117043, -1.9694093323354762, -2.98597922
 
 
 def test_a_step_that_cannot_be_filled_ends_with_a_status() -> None:
-    hole = made_up(lambda t, y, params: (1.0, np.nan if 0.501 < t < 0.502 else 0.0))
+    hole = handwritten(
+        "hand",
+        ("x", "x_dot"),
+        COORDINATES=("x",),
+        rhs=lambda t, y, params: (1.0, np.nan if 0.501 < t < 0.502 else 0.0),
+    )
     found = integrate(hole, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=1.0, t_eval=[0.5015])
     assert found.status is Status.NOT_FINITE
     singular = integrate(sp, (0, 4), (pi, 0), (1, 1, 1), method="gauss1", h=2.0)
@@ -31,7 +36,12 @@ def test_a_step_that_cannot_be_filled_ends_with_a_status() -> None:
 
 
 def test_nothing_is_evaluated_beyond_what_the_last_step_needs() -> None:
-    edge = made_up(lambda t, y, params: (sqrt(1 - t) if t < 1 else np.nan, 0.0))
+    edge = handwritten(
+        "hand",
+        ("x", "x_dot"),
+        COORDINATES=("x",),
+        rhs=lambda t, y, params: (sqrt(1 - t) if t < 1 else np.nan, 0.0),
+    )
     found = integrate(edge, (0, 1), (0.0, 0.0), (1.0,), method="midpoint", h=0.1)
     assert found.status is Status.FINISHED
 
@@ -111,7 +121,9 @@ def test_an_unknown_method_is_refused() -> None:
 
 def test_a_blow_up_stops_with_what_there_is() -> None:
     # x' = x² from 1 has x = 1/(1 - t)
-    module = made_up(lambda t, y, params: (y[0] ** 2, 0.0))
+    module = handwritten(
+        "hand", ("x", "x_dot"), COORDINATES=("x",), rhs=lambda t, y, params: (y[0] ** 2, 0.0)
+    )
     found = integrate(module, (0, 2), (1.0, 0.0), (1.0,), rtol=1e-8)
     assert found.status in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
     assert not found.success
@@ -122,7 +134,12 @@ def test_a_blow_up_stops_with_what_there_is() -> None:
 
 @pytest.mark.parametrize("h", [None, 0.1])
 def test_a_right_hand_side_that_is_not_finite_ends_the_run(h: float | None) -> None:
-    module = made_up(lambda t, y, params: (1.0, np.nan if y[0] > 0.55 else 0.0))
+    module = handwritten(
+        "hand",
+        ("x", "x_dot"),
+        COORDINATES=("x",),
+        rhs=lambda t, y, params: (1.0, np.nan if y[0] > 0.55 else 0.0),
+    )
     found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), h=h)
     assert found.status in (Status.NOT_FINITE, Status.STEP_TOO_SMALL)
     assert np.isfinite(found.y).all()
@@ -134,7 +151,12 @@ def test_an_exception_in_the_right_hand_side_is_the_caller_s() -> None:
         raise RuntimeError("broken model")
 
     with pytest.raises(RuntimeError, match="broken model"):
-        integrate(made_up(failing), (0, 1), (0.0, 0.0), (1.0,))
+        integrate(
+            handwritten("hand", ("x", "x_dot"), COORDINATES=("x",), rhs=failing),
+            (0, 1),
+            (0.0, 0.0),
+            (1.0,),
+        )
 
 
 def test_the_step_limit_leaves_a_state_to_go_on_from() -> None:

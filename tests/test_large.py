@@ -8,24 +8,24 @@ from numpy.testing import assert_allclose
 
 import generated.double_pendulum as dp
 from derive import Derivation, load
-from derive.factorisation import LARGE
-from derive.functions import contents
-from derive.python import module as text_of
-from derive.timing import chain as chain_in_c
-from derive.timing import mechanics
-from solvers.bench import calls, way
-from solvers.cli import generated_module
-from solvers.ensemble import ensemble
-from solvers.forms import Form
-from solvers.integration import integrate
+from derive.codegen.factorisation import LARGE
+from derive.codegen.functions import contents
+from derive.codegen.python_backend import module as text_of
+from solvers.app.derivation_timing import chain as chain_in_c
+from solvers.app.derivation_timing import mechanics
+from solvers.app.modules import load as load_module
+from solvers.equations.forms import Form
+from solvers.integration.ensemble import ensemble
+from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor
+from solvers.studies.benchmarks import calls, pipeline
 
 N = LARGE + 1
 
 
 @pytest.fixture(scope="module")
 def chain() -> ModuleType:
-    return generated_module(f"chain_{N}")
+    return load_module(f"chain_{N}")
 
 
 def state(seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -46,7 +46,7 @@ def textbook(y: np.ndarray, params: np.ndarray) -> np.ndarray:
 
 def test_loops_solve_the_textbook_equations(chain: ModuleType) -> None:
     assert "_taken_apart" in vars(chain)
-    assert "_taken_apart" not in vars(generated_module("chain_3"))
+    assert "_taken_apart" not in vars(load_module("chain_3"))
     for seed in range(3):
         y, params = state(seed)
         expected = textbook(y, params)
@@ -62,10 +62,10 @@ def test_derivatives_and_hamilton_s_form_go_through_the_loops(chain: ModuleType)
     steps = y[:, None] + 1e-30j * np.eye(2 * N)
     expected = chain.rhs_many(0.0, steps, params).imag / 1e-30
     assert_allclose(chain.jacobian(0.0, y, params), expected, rtol=1e-8, atol=1e-8)
-    z = chain.hamiltonian_state(y, params)
-    assert_allclose(chain.lagrangian_state(z, params), y, rtol=1e-11)
+    z = chain.hamiltonian_state(0.0, y, params)
+    assert_allclose(chain.lagrangian_state(0.0, z, params), y, rtol=1e-11)
     moved = y + 1e-30j * np.array(chain.rhs(0.0, y, params))
-    slopes = np.asarray(chain.hamiltonian_state_many(moved, params)).imag / 1e-30
+    slopes = np.asarray(chain.hamiltonian_state_many(0.0, moved, params)).imag / 1e-30
     assert_allclose(chain.rhs_hamiltonian(0.0, z, params), slopes, rtol=1e-9, atol=1e-9)
     form = Form(chain, "variational", params)
     rates = form.rhs(0.0, form.inside(0.0, np.array([*y, *np.ones(2 * N)])))
@@ -116,17 +116,19 @@ def test_what_sympys_mechanics_derives_is_what_is_generated() -> None:
 
 
 def test_the_way_is_timed_with_the_loosest_tolerance_that_is_good_enough() -> None:
-    found = way._way("a program", 0.1, 0.2, lambda tol: lambda: np.add(way.FINAL, 20 * tol))
+    found = pipeline._way(
+        "a program", 0.1, 0.2, lambda tol: lambda: np.add(pipeline.FINAL, 20 * tol)
+    )
     assert found.global_error == pytest.approx(2e-10, rel=1e-3)
     assert (found.derivation, found.preparation) == (0.1, 0.2)
     with pytest.raises(ArithmeticError, match="a program does not come within 1e-09"):
-        way._way("a program", 0.1, 0.2, lambda _: lambda: np.add(way.FINAL, 1e-8))
+        pipeline._way("a program", 0.1, 0.2, lambda _: lambda: np.add(pipeline.FINAL, 1e-8))
 
 
 def test_the_way_here_and_with_scipy_ends_where_it_should() -> None:
-    ours = way._way("holonomic", *way._ours(dp, chain_in_c))
-    scipy = way._way("SciPy", *way._scipy(dp, chain_in_c))
-    assert 0 < max(ours.global_error, scipy.global_error) < way.ERROR
-    lines = list(way.told([ours, scipy]))
+    ours = pipeline._way("holonomic", *pipeline._ours(dp, chain_in_c))
+    scipy = pipeline._way("SciPy", *pipeline._scipy(dp, chain_in_c))
+    assert 0 < max(ours.global_error, scipy.global_error) < pipeline.ERROR
+    lines = list(pipeline.told([ours, scipy]))
     assert lines[2].endswith(" 1.0 x")
     assert len({len(line) for line in lines[2:]}) == 1

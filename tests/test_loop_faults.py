@@ -10,14 +10,15 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from handwritten import handwritten
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
-from solvers.crossing import Crossing
-from solvers.ensemble import ensemble
-from solvers.integration import integrate
-from solvers.prepared import NotFinishedError, prepare
-from solvers.solution import Interrupted, Solution, Status
+from solvers.integration.ensemble import ensemble
+from solvers.integration.events import Crossing
+from solvers.integration.integrate import integrate
+from solvers.integration.prepare import NotFinishedError, prepare
+from solvers.integration.solution import Interrupted, Solution, Status
 
 BACKENDS = ("python", "compiled")
 FORMS = ("lagrangian", "hamiltonian", "rational")
@@ -27,15 +28,10 @@ def written_by_hand(folder: Path, slopes: str) -> ModuleType:
     """A module with one number of state, y, and its slope in C."""
     (folder / "hand.h").write_text(
         "static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,\n"
-        "    HOLONOMIC_REAL *result, const HOLONOMIC_REAL *params)\n"
+        "    const HOLONOMIC_REAL *params, HOLONOMIC_REAL *result)\n"
         f"{{ result[0] = {slopes}; (void)t; (void)state; (void)params; }}\n"
     )
-    module = ModuleType("hand")
-    vars(module).update(
-        __file__=str(folder / "hand.py"), COORDINATES=(), rhs=None, STATE=("y",),
-        PARAMETERS=("p",), DEFAULTS=(1.0,),
-    )  # fmt: skip
-    return module
+    return handwritten("hand", ("y",), __file__=str(folder / "hand.py"))
 
 
 @pytest.mark.parametrize("lanes", [1, 20])

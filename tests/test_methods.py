@@ -13,11 +13,11 @@ from mpmath import fdot, mpf, workdps
 from mpmath import log as mplog
 from mpmath import sin as mpsin
 
-from solvers.catalogue import UnknownMethodError, load, names
-from solvers.order_conditions import density, order, trees
-from solvers.stepper import Rhs, Stepper
-from solvers.surd import Surd
-from solvers.tableau import Tableau
+from solvers.runge_kutta.catalogue import UnknownMethodError, load, names
+from solvers.runge_kutta.order_conditions import density, order, trees
+from solvers.runge_kutta.stepper import Rhs, Stepper
+from solvers.runge_kutta.surd import Surd
+from solvers.runge_kutta.tableau import Tableau
 
 #: Order, embedded order, stages, and whether the last stage is the next step's first: as published.
 PUBLISHED = {

@@ -10,26 +10,26 @@ import pytest
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
-from solvers.cli import generated_module
-from solvers.horizon import beyond_horizon
-from solvers.integration import integrate
-from solvers.models import full as full_equations
-from solvers.models import quadrature as by_quadrature
-from solvers.models import rest as at_rest
-from solvers.models import small as by_modes
-from solvers.models.full import NotAccurateError, TooLongError, full
-from solvers.models.ladder import RUNGS, Choice, choice
-from solvers.models.light import light
-from solvers.models.model import Asked, OutsideDomainError
-from solvers.models.pendulum import pendulum
-from solvers.models.quadrature import orbit, quadrature
-from solvers.models.rest import rest
-from solvers.models.small import small
-from solvers.models.way import Way, cheapest
+from solvers.app.modules import load as load_module
+from solvers.equations.normal_modes import mode_spread
+from solvers.integration.integrate import integrate
+from solvers.integration.predictability import beyond_horizon
 from solvers.references.taylor import taylor
+from solvers.scenes.models import equilibrium as at_rest
+from solvers.scenes.models import full_equations as full_equations
+from solvers.scenes.models import normal_modes as by_modes
+from solvers.scenes.models import quadrature as by_quadrature
+from solvers.scenes.models.equilibrium import rest
+from solvers.scenes.models.full_equations import NotAccurateError, TooLongError, full
+from solvers.scenes.models.light_masses import light
+from solvers.scenes.models.method_choice import Way, cheapest
+from solvers.scenes.models.model import Asked, OutsideDomainError
+from solvers.scenes.models.normal_modes import small
+from solvers.scenes.models.pendulum import pendulum
+from solvers.scenes.models.quadrature import orbit, quadrature
+from solvers.scenes.models.selection import RUNGS, Choice, choice
 from solvers.scenes.scene import MODELS, Scene
 from solvers.scenes.shipped import find
-from solvers.stability.modes import mode_spread
 
 Array = np.ndarray
 
@@ -241,7 +241,7 @@ def test_estimates_are_not_for_free(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_full_equations_are_checked_by_another_method() -> None:
-    scene = find("report", generated_module)
+    scene = find("report", load_module)
     motion = Asked(dp, scene.params, scene.y0, scene.duration, scene.wanted)
     found = chosen(scene).model
     error = worst(motion, found)
@@ -254,7 +254,7 @@ def test_the_full_equations_are_checked_by_another_method() -> None:
 
 
 def test_where_numbers_have_too_few_digits_series_have_more() -> None:
-    scene = find("long", generated_module)
+    scene = find("long", load_module)
     found = chosen(scene)
     assert found.model.way.method == "taylor"
     assert "at best where 1e-09 was asked" in found.declined["ordinary numbers"]
@@ -266,23 +266,21 @@ def test_where_numbers_have_too_few_digits_series_have_more() -> None:
 
 
 def test_the_choice_can_be_named_instead() -> None:
-    still = find("rest", generated_module)
+    still = find("rest", load_module)
     assert chosen(still).model.name == "rest"
     assert chosen(replace(still, model="full")).model.name == "full equations"
-    named = chosen(replace(find("report", generated_module), method="rk4", step=0.01)).model
+    named = chosen(replace(find("report", load_module), method="rk4", step=0.01)).model
     assert (named.way.method, named.setting) == ("rk4", 0.01)
     assert worst(named.asked, named) < named.error_estimate < 3 * worst(named.asked, named)
     for method in ("rk4", "gauss3"):  # steps that are fixed are found, too
-        fixed = chosen(
-            replace(find("report", generated_module), method=method, accuracy=1e-6)
-        ).model
+        fixed = chosen(replace(find("report", load_module), method=method, accuracy=1e-6)).model
         assert worst(fixed.asked, fixed) <= fixed.error_estimate <= 1e-6
     # a small model that is not good enough can be looked at, with its error
-    wide = replace(find("single", generated_module), y0=(0.1, 0.0), model="normal modes")
+    wide = replace(find("single", load_module), y0=(0.1, 0.0), model="normal modes")
     linear = chosen(wide).model
     assert linear.name == "normal modes"
     assert wide.accuracy < worst(asked(sp, wide.y0, 10.0), linear) < linear.error_estimate
-    absent = replace(find("one_bob", generated_module), model="full")
+    absent = replace(find("one_bob", load_module), model="full")
     with pytest.raises(OutsideDomainError, match="theta2 moves no mass"):
         chosen(absent)
 
@@ -325,7 +323,7 @@ def test_what_takes_too_long_is_refused_at_once() -> None:
 
 
 def test_a_model_is_taken_when_its_error_is_below_what_is_asked_and_not_before() -> None:
-    scene = find("small", generated_module)
+    scene = find("small", load_module)
     estimate = chosen(scene).model.error_estimate
     for share, name in ((1.01, "normal modes"), (0.99, "full equations")):
         assert chosen(replace(scene, accuracy=share * estimate)).model.name == name
@@ -351,7 +349,7 @@ def test_every_rung_is_taken_by_a_scene_that_ships() -> None:
         "flea": "pendulum", "weightless": "quadrature", "report": "full equations",
     }  # fmt: skip
     for name, model in expected.items():
-        found = chosen(find(name, generated_module))
+        found = chosen(find(name, load_module))
         assert found.model.name == model
         # each smaller model says why not
         order = [*RUNGS, "full equations"]
@@ -365,7 +363,7 @@ def test_the_cheapest_way_is_what_was_measured() -> None:
     assert way.seconds > 0
     assert mode_spread(dp, dp.DEFAULTS) == pytest.approx(1 + 2**0.5)
     # where one mode is three hundred times as fast, implicit methods win for large errors
-    stiff = find("stiff_spring", generated_module)
+    stiff = find("stiff_spring", load_module)
     assert mode_spread(ep, stiff.params) == pytest.approx(319, rel=0.01)
     assert cheapest(ep, stiff.params, 1e-2).method.startswith(("gauss", "radau"))
     assert cheapest(ep, ep.DEFAULTS, 1e-2).method not in ("gauss3", "radau3")

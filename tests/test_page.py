@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from browser import Player, at_rest, played
 
-from solvers.page import page
-from solvers.page.track import Track
+from solvers.player import page
+from solvers.player.track import Track
 
 BOBS, ROD = ((0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00)), (0x4A, 0x52, 0x59)
 # runs take the colours after those of their masses

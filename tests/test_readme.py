@@ -15,28 +15,29 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from derive import load, names
-from derive.assignments import assignments
-from derive.functions import contents
-from solvers.answers.answer import answer
-from solvers.cli import generated_module, main
-from solvers.failures import drift
-from solvers.failures.chaos import lyapunov
-from solvers.failures.separatrix import upright
-from solvers.failures.stiffness import crossover, study
-from solvers.failures.studies import CHAOTIC
-from solvers.pictures import png
+from derive.codegen.assignments import assignments
+from derive.codegen.functions import contents
+from solvers.app.cli import main
+from solvers.app.modules import load as load_module
+from solvers.app.verdict.evidence import Evidence, Setting
+from solvers.app.verdict.objectives import objectives
+from solvers.io.figures import png
 from solvers.scenes.reading import KEYS, scene
+from solvers.scenes.run import answer
 from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
-from solvers.stability.critical import CriticalStep
-from solvers.sweeps.drawn import drawn
+from solvers.studies.failure_modes import drift
+from solvers.studies.failure_modes.chaos import lyapunov
+from solvers.studies.failure_modes.separatrix import upright
+from solvers.studies.failure_modes.stiffness import crossover, study
+from solvers.studies.failure_modes.studies import CHAOTIC
+from solvers.studies.stability.critical_step import CriticalStep
 from solvers.sweeps.job import STATUSES
+from solvers.sweeps.plots.figure import drawn
 from solvers.sweeps.reading import find as find_sweep
 from solvers.sweeps.reading import names as sweeps
 from solvers.sweeps.reading_maps import KINDS
-from solvers.sweeps.running import sweep
-from solvers.verdict.evidence import Evidence, Setting
-from solvers.verdict.objectives import objectives
+from solvers.sweeps.run import sweep
 
 README_FOLDER = Path(__file__).parent.parent
 README = (README_FOLDER / "README.md").read_text(encoding="utf-8")
@@ -58,7 +59,7 @@ def test_snippets_run(snippet: str, tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_the_picture_is_what_the_sweep_draws(tmp_path: Path) -> None:
-    asked = find_sweep("flips", generated_module)
+    asked = find_sweep("flips", load_module)
     again = Image.open(BytesIO(png(drawn(sweep(asked, tmp_path)))))
     shown = Image.open(README_FOLDER / re.findall(r"!\[.*?\]\((.*?)\)", README)[0])
     assert shown.size == again.size
@@ -141,7 +142,7 @@ def test_calls_that_are_quoted_are_those_of_the_verdict() -> None:
 
 
 def test_every_command_that_is_shown_exists() -> None:
-    from solvers.cli import COMMANDS
+    from solvers.app.cli import COMMANDS
 
     assert set(re.findall(r"holonomic (\w+)", README)) <= {*COMMANDS}
     assert "double_pendulum" in names()
@@ -149,7 +150,7 @@ def test_every_command_that_is_shown_exists() -> None:
 
 def test_the_scene_that_is_shown_is_answered_with_what_is_beside_it() -> None:
     whole = "".join(TABLES[:2])
-    found = scene("my_scene", tomllib.loads(whole), generated_module)
+    found = scene("my_scene", tomllib.loads(whole), load_module)
     assert answer(found).is_met
     euler, moved = found.beside
     assert not answer(euler).is_met
@@ -162,7 +163,7 @@ def test_scenes_that_are_named_take_the_model_that_is_said() -> None:
     for row in table.splitlines()[2:]:
         model, *_, named = row.strip("| ").split(" | ")
         for name in re.findall(r"`(\w+)`", named):
-            assert answer(find(name, generated_module)).choice.model.name == model, name
+            assert answer(find(name, load_module)).choice.model.name == model, name
 
 
 def test_systems_have_the_coordinates_that_are_said() -> None:
@@ -181,7 +182,7 @@ def test_the_system_that_is_shown_is_derived_and_runs(tmp_path: Path) -> None:
     (tmp_path / "bead.toml").write_text(table("bead.toml"))
     text = 'system = "bead.toml"\nduration = 3\ninitial = { x = "10 cm" }\n'
     (tmp_path / "scene.toml").write_text(text)
-    found = answer(find(str(tmp_path / "scene.toml"), generated_module))
+    found = answer(find(str(tmp_path / "scene.toml"), load_module))
     assert found.is_met
     assert hasattr(found.scene.module, "power")
 
@@ -206,7 +207,7 @@ def test_keys_and_models_that_are_listed_are_all_that_there_are() -> None:
 
 def test_the_sweep_that_is_shown_runs_and_every_kind_is_listed(tmp_path: Path) -> None:
     (tmp_path / "my_sweep.toml").write_text(table("my_sweep.toml"))
-    asked = find_sweep(str(tmp_path / "my_sweep.toml"), generated_module)
+    asked = find_sweep(str(tmp_path / "my_sweep.toml"), load_module)
     found = sweep(asked, tmp_path / "out")
     assert found.maps["highest"].shape == (50, 40, 1, 2)
     assert found.count == {"finished": 2000}

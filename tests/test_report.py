@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from derive.expression import ExpressionError
-from derive.report.equation import Equation, Stated
-from derive.report.judgement import EQUATIONS, judged, named, verdict
-from derive.report.programs import programs
-from derive.statement import RELATION
-from solvers.order_conditions import order
+from derive.formulas.expression import ExpressionError
+from derive.verification.report.equation import Equation, Stated
+from derive.verification.report.judgement import EQUATIONS, judged, named, verdict
+from derive.verification.report.programs import programs
+from derive.verification.statement import RELATION
+from solvers.runge_kutta.order_conditions import order
 
 JUDGED = [equation for equation in EQUATIONS if isinstance(equation, Equation)]
 

@@ -15,15 +15,17 @@ import pytest
 from matplotlib.figure import Figure
 
 import generated.double_pendulum as dp
-from solvers.answers.answer import answer
-from solvers.answers.drawn import _labelled, drawn, usual
-from solvers.answers.seen import ABOVE, projected
-from solvers.answers.told import special_code, table, told
-from solvers.cli import generated_module, main, specialiser
-from solvers.commands.run import track
-from solvers.notation import symbol
+from solvers.app.cli import main
+from solvers.app.commands.run import track
+from solvers.app.modules import load as load_module
+from solvers.app.modules import specialiser
+from solvers.io.notation import symbol
 from solvers.references.taylor import taylor
+from solvers.scenes.geometry import ABOVE, projected
+from solvers.scenes.plots import _labelled, drawn, usual
+from solvers.scenes.run import answer
 from solvers.scenes.shipped import find
+from solvers.scenes.summary import special_code, table, told
 
 KEYS = {"model", "method", "form", "final_state", "accuracy_asked", "error_estimate", "why"}
 
@@ -41,7 +43,7 @@ def test_the_json_says_what_was_chosen_why_and_where_it_ends(
     assert (found["model"], found["method"], found["form"]) == (
         "full equations", "verner87", "rational",
     )  # fmt: skip
-    truth = taylor(dp, dp.DEFAULTS, find("report", generated_module).y0, [0, 5])[-1]
+    truth = taylor(dp, dp.DEFAULTS, find("report", load_module).y0, [0, 5])[-1]
     assert list(found["final_state"]) == [*dp.STATE]
     assert (
         np.abs(np.array(list(found["final_state"].values())) - truth).max()
@@ -82,7 +84,7 @@ def test_only_digits_that_can_be_trusted_are_printed(
 
 
 def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
-    scene = replace(find("small", generated_module), outputs=("theta1", "energy"), samples=5)
+    scene = replace(find("small", load_module), outputs=("theta1", "energy"), samples=5)
     found = answer(scene)
     lines = table(found).splitlines()
     assert lines[0] == "t [s],theta1 [rad],energy [J]"
@@ -96,12 +98,12 @@ def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["report", "tremor", "single", "weightless", "rest"])
 def test_a_motion_begins_exactly_where_the_scene_says(name: str) -> None:
-    scene = find(name, generated_module)
+    scene = find(name, load_module)
     assert answer(scene).y[:, 0].tolist() == [*scene.y0]
 
 
 def test_rods_and_springs_are_told_apart_by_their_lengths() -> None:
-    rods, spring = (track(answer(find(name, generated_module))) for name in ("report", "spring"))
+    rods, spring = (track(answer(find(name, load_module))) for name in ("report", "spring"))
     assert (rods.links, rods.springs) == (((-1, 0), (0, 1)), ())
     assert (spring.links, spring.springs) == ((), ((-1, 0),))
 
@@ -117,7 +119,7 @@ def test_what_keeps_its_distance_is_joined(
 ) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(f'system = "{system}"\nduration = 2\naccuracy = 1e-6\n[initial]\n{initial}\n')
-    seen = track(answer(find(str(path), generated_module)))
+    seen = track(answer(find(str(path), load_module)))
     assert list(seen.links) == rods
     assert not seen.springs
 
@@ -132,7 +134,7 @@ def test_space_is_seen_from_above_and_from_the_side() -> None:
 
 
 def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:
-    scene = replace(find("report", generated_module), code="specialised")
+    scene = replace(find("report", load_module), code="specialised")
     found = answer(scene, specialiser)
     assert found.choice.model.asked.module.PARAMETERS == ()
     assert "def rhs_rational(" in special_code(found).read_text()
@@ -193,7 +195,7 @@ def lines_of(figure: Figure) -> list[tuple[str, int]]:
 
 
 def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> None:
-    scene = find("report", generated_module)
+    scene = find("report", load_module)
     assert usual(answer(scene)) == (
         "theta1, theta2 over t", "theta1_dot over theta1", "theta2_dot over theta2",
         "theta2 over theta1", "theta2_dot over theta1_dot", "path", "energy",
@@ -207,7 +209,7 @@ def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> Non
     assert [panel.get_aspect() for panel in panels].count(1.0) == 1
     assert symbol("theta1_dot") == r"$\dot{\theta}_{1}$"
     assert (symbol("r"), symbol("t")) == ("$r$", "$t$")
-    without = answer(find("one_bob", generated_module))
+    without = answer(find("one_bob", load_module))
     assert usual(without) == ("theta1 over t", "theta1_dot over theta1", "path", "energy")
     # what is drawn is the motion
     angles = panels[0].lines
@@ -217,7 +219,7 @@ def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> Non
 def test_the_report_s_figures_are_drawn_with_what_is_known_of_them() -> None:
     for name, curves in (("figure_3_1", 4), ("figure_3_3", 2), ("figure_3_6", 1),
                          ("figure_4_2", 1), ("figure_4_5", 2)):  # fmt: skip
-        scene = find(name, generated_module)
+        scene = find(name, load_module)
         figure = drawn([answer(one) for one in (scene, *scene.beside)])
         (panel,) = figure.axes
         assert len(panel.lines) == curves
@@ -228,7 +230,7 @@ def test_the_report_s_figures_are_drawn_with_what_is_known_of_them() -> None:
 
 def test_progress_is_told_on_a_terminal_only_and_wiped_out(tmp_path: Path) -> None:
     command = [sys.executable, "-c", (
-        "import time\nfrom solvers.progress import Progress\n"
+        "import time\nfrom solvers.io.progress import Progress\n"
         "with Progress() as tell:\n    tell('working')\n    time.sleep(1.6)\nprint('done')"
     )]  # fmt: skip
     plain = subprocess.run(command, capture_output=True, check=True, text=True)

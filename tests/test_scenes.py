@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 import generated.double_pendulum as dp
-from solvers.cli import generated_module
-from solvers.quantity import QuantityError, quantity
-from solvers.said import InputError
+from solvers.app.modules import load as load_module
+from solvers.io.quantity import QuantityError, quantity
+from solvers.io.toml_input import InputError
 from solvers.scenes.checks import MassMatrixWarning
 from solvers.scenes.reading import read, scene
 from solvers.scenes.scene import Scene
@@ -21,7 +21,7 @@ PLAIN = {"system": "double_pendulum", "duration": 5, "initial": {"theta1": 1, "t
 
 
 def made(**changes: object) -> Any:
-    return scene("made", {**PLAIN, **changes}, generated_module)
+    return scene("made", {**PLAIN, **changes}, load_module)
 
 
 @pytest.mark.parametrize(("text", "unit", "value"), [
@@ -141,7 +141,7 @@ def test_what_makes_no_sense_is_refused_with_the_way_out(
 @pytest.mark.parametrize("key", ["system", "duration", "initial"])
 def test_what_is_missing_is_named(key: str) -> None:
     with pytest.raises(InputError, match=f"'{key}' is missing"):
-        scene("made", {k: v for k, v in PLAIN.items() if k != key}, generated_module)
+        scene("made", {k: v for k, v in PLAIN.items() if k != key}, load_module)
 
 
 def test_a_file_that_is_no_scene_is_refused_within_a_second(tmp_path: Path) -> None:
@@ -157,10 +157,10 @@ def test_a_file_that_is_no_scene_is_refused_within_a_second(tmp_path: Path) -> N
         path.write_bytes(content)
         before = time.perf_counter()
         with pytest.raises(InputError, match=words):
-            read(path, generated_module)
+            read(path, load_module)
         assert time.perf_counter() - before < 1
     with pytest.raises(InputError, match=r"none.toml: there is no such file"):
-        read(tmp_path / "none.toml", generated_module)
+        read(tmp_path / "none.toml", load_module)
 
 
 def test_a_scene_is_what_its_file_says(tmp_path: Path) -> None:
@@ -187,7 +187,7 @@ def test_a_scene_is_what_its_file_says(tmp_path: Path) -> None:
         label = "better"
         method = "verner98"
     """)
-    found = find(str(tmp_path / "mine.toml"), generated_module)
+    found = find(str(tmp_path / "mine.toml"), load_module)
     assert found.name == "mine"
     assert found.module is dp
     assert found.params == (1.0, 0.3, 2.0, 2.0, -1.0)
@@ -239,24 +239,24 @@ def test_a_nearly_singular_mass_matrix_is_told_with_its_coordinate() -> None:
 def test_shipped_scenes_are_found_and_all_make_sense() -> None:
     modules: set[ModuleType] = set()
     for name in names():
-        one = find(name, generated_module)
+        one = find(name, load_module)
         assert len(one.y0) == len(one.module.STATE)
         assert len(one.params) == len(one.module.PARAMETERS)
         assert one.note
         modules.add(one.module)
     assert len(modules) == 3
-    assert find("light_above", generated_module).params == (1.0, 3.0, 2.0, 2.0, 9.81)
+    assert find("light_above", load_module).params == (1.0, 3.0, 2.0, 2.0, 9.81)
     assert {f"figure_{n}_{k}" for n in (3, 4) for k in range(1, 7)} <= set(names())
     with pytest.raises(InputError, match=r"'reprot' is not one of .*did you mean 'report'"):
-        find("reprot", generated_module)
+        find("reprot", load_module)
 
 
 def test_the_report_s_programs_are_set_as_they_are_printed() -> None:
-    from derive.report.programs import PROSE, programs
+    from derive.verification.report.programs import PROSE, programs
 
     settings = {"report": PROSE, **{f"program_{k + 1}": p.scene for k, p in enumerate(programs())}}
     for name, printed in settings.items():
-        one = find(name, generated_module)
+        one = find(name, load_module)
         expected = [*printed.masses, *printed.lengths, printed.gravity]
         assert one.params == pytest.approx([float(x) for x in expected], rel=1e-15)
         start = [*printed.angles, *printed.velocities]

@@ -13,17 +13,17 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from derive import Derivation, load
-from derive.assignments import number
-from derive.functions import body, contents
-from derive.lagrangian_form import LagrangianForm
-from derive.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
-from derive.specialisation import specialised as folded
-from derive.system import System
-from solvers.cache import cache_folder
-from solvers.cli import generator_text, specialiser
-from solvers.integration import integrate
-from solvers.models.way import Way
-from solvers.specialised import needed, specialised
+from derive.codegen.assignments import number
+from derive.codegen.functions import body, contents
+from derive.codegen.lagrangian_form import LagrangianForm
+from derive.mechanics.specialisation import specialised as folded
+from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
+from derive.system.system import System
+from solvers.app.modules import generator_text, specialiser
+from solvers.equations.specialise import needed, specialised
+from solvers.integration.integrate import integrate
+from solvers.io.build_cache import cache_folder
+from solvers.scenes.models.method_choice import Way
 
 ROOT = Path(__file__).parent.parent
 REPORT = (np.pi / 2, np.pi, 0.0, 0.0)
@@ -53,7 +53,7 @@ def test_specialised_code_has_the_same_values(
     suffix = "" if form == "lagrangian" else f"_{form}"
     states = np.random.default_rng(4).uniform(0.2, 2.0, (20, len(module.STATE)))
     if form == "rational":
-        states = np.array([module.rational_state(y, params) for y in states.tolist()])
+        states = np.array([module.rational_state(0.0, y, params) for y in states.tolist()])
     for y in states.tolist():
         general = getattr(module, f"rhs{suffix}")(0.0, y, params)
         found = getattr(special, f"rhs{suffix}")(0.0, y, ())
@@ -66,7 +66,7 @@ def test_folded_numbers_are_exact_and_rounded_once() -> None:
     with mp.workdps(40):
         exact = [mpf(x) for x in ("1.3", "0.7", "1.1", "0.9", "9.81")]
         # the same equations with numbers of 40 digits: the rational form calls no function
-        rational = dp.rational_state(y, dp.DEFAULTS)
+        rational = dp.rational_state(0.0, y, dp.DEFAULTS)
         fine = dp.rhs_rational(0, [mpf(x) for x in rational], exact)
         found = specialiser(dp, (1.3, 0.7, 1.1, 0.9, 9.81), Way("verner87", "rational", ""))
         coarse = found.rhs_rational(0, rational, ())
@@ -97,7 +97,7 @@ def test_a_force_that_is_a_number_is_one_even_where_masses_have_a_common_factor(
 
 def test_a_changed_system_is_generated_anew() -> None:
     text = generator_text()
-    for name in ("systems/double_pendulum.py", "graph.py"):
+    for name in ("systems/double_pendulum.py", "codegen/graph.py"):
         assert (ROOT / "derive" / name).read_text() in text
 
 
@@ -145,7 +145,7 @@ def test_it_is_made_once_and_a_damaged_one_again() -> None:
 
     def generator(name, values, functions):
         made.append(name)
-        from derive.command import texts
+        from derive.commands.derive import texts
 
         return texts(Derivation(folded(load(name), values)), functions)
 

@@ -4,11 +4,11 @@ import pytest
 import sympy as sp
 
 from derive import Derivation, load, names
-from derive.expression import FUNCTIONS, parsed
-from derive.report.beside import PLACES, beside
-from derive.report.equation import Verdict
-from derive.report.judgement import EQUATIONS, named
-from derive.steps import steps
+from derive.formulas.expression import FUNCTIONS, parsed
+from derive.mechanics.steps import steps
+from derive.verification.report.beside import PLACES, beside
+from derive.verification.report.equation import Verdict
+from derive.verification.report.judgement import EQUATIONS, named
 
 
 def meant(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:

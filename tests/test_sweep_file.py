@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 from sweep_file import FILE, written
 
-from solvers.cli import generated_module, main
-from solvers.said import InputError
+from solvers.app.cli import main
+from solvers.app.modules import load as load_module
+from solvers.io.toml_input import InputError
 from solvers.sweeps.reading import find
 
 
@@ -59,7 +60,7 @@ def test_a_file_that_is_no_sweep_is_refused(
     assert text != FILE
     path = written(tmp_path, text)
     with pytest.raises(InputError, match=words) as refusal:
-        find(str(path), generated_module)
+        find(str(path), load_module)
     assert str(path) in str(refusal.value)
 
 
@@ -77,7 +78,7 @@ def test_a_table_that_is_none_is_refused(table: str, words: str, tmp_path: Path)
     begin, end = FILE.index("[axes]"), FILE.index("[maps")
     path = written(tmp_path, FILE[:begin] + 'axes = "starts.csv"\n' + FILE[end:])
     with pytest.raises(InputError, match=words):
-        find(str(path), generated_module)
+        find(str(path), load_module)
 
 
 def test_the_command_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:

@@ -20,14 +20,15 @@ import pytest
 from sweep_file import FILE, written
 
 import generated.double_pendulum as dp
-from solvers.cli import generated_module, main
-from solvers.sweeps import chunk, pool
+from solvers.app.cli import main
+from solvers.app.modules import load as load_module
+from solvers.sweeps import chunk_length, pool
 from solvers.sweeps.axes import Grid, Random
 from solvers.sweeps.folder import Folder, FolderError
 from solvers.sweeps.maps import Final, First
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find
-from solvers.sweeps.running import sofar, sweep
+from solvers.sweeps.run import sofar, sweep
 from solvers.sweeps.sweep import Sweep
 
 HOLONOMIC = str(Path(sys.executable).parent / "holonomic")
@@ -42,7 +43,7 @@ ASKED = Sweep(
 def many_chunks() -> Iterator[None]:
     """So small a sweep is cut into very few chunks, if they are held to be dear."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(chunk, "COST", 1e-5)
+        patch.setattr(chunk_length, "COST", 1e-5)
         yield
 
 
@@ -135,7 +136,7 @@ def test_a_cluster_that_loses_a_worker_does_the_same(
     with Client(address) as client:
         sweep(ASKED, tmp_path, pool=Pool(client.get_executor(), 2), tell=tell)
         (left,) = client.run(modules).values()  # the other worker is gone
-        assert "solvers.sweeps.work" in left
+        assert "solvers.sweeps.worker" in left
         assert not {"sympy", "derive", "matplotlib"} & {*left}
     assert held(tmp_path) == expected
 
@@ -158,11 +159,11 @@ def test_the_command_finds_a_cluster_by_its_address(
 def test_a_scheduler_that_is_not_there_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("solvers.commands.sweep.PATIENCE", 0.5)
+    monkeypatch.setattr("solvers.app.commands.sweep.PATIENCE", 0.5)
     argv = ["sweep", str(written(tmp_path)), "--output", str(tmp_path / "out"), "--scheduler"]
     assert main([*argv, "tcp://127.0.0.1:9"]) == 4
     assert "no scheduler answers at tcp://127.0.0.1:9" in capsys.readouterr().err
-    monkeypatch.setattr("solvers.cli._package", lambda _: None)
+    monkeypatch.setattr("solvers.app.cli._package", lambda _: None)
     assert main([*argv, "tcp://127.0.0.1:9"]) == 4
     assert "pip install 'holonomic[cluster]'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
@@ -334,7 +335,7 @@ def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path) -> None:
     subprocess.run([*command, str(tmp_path / "whole")], check=True, stdout=subprocess.DEVNULL)
     # files may not grow beyond a few chunks' size: the maps do not fit
     limited = f"import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (40000, 40000)); \
-import sys; from solvers.cli import main; sys.exit(main(['sweep', {str(path)!r}, '--output', \
+import sys; from solvers.app.cli import main; sys.exit(main(['sweep', {str(path)!r}, '--output', \
 {str(tmp_path / 'full')!r}]))"
     run = subprocess.run(
         [sys.executable, "-c", limited], capture_output=True, text=True, check=False
@@ -355,7 +356,7 @@ def test_interrupted_it_ends_at_once_and_goes_on_later(tmp_path: Path) -> None:
     command = [
         sys.executable,
         "-c",
-        "import signal, sys; from solvers.cli import main; "
+        "import signal, sys; from solvers.app.cli import main; "
         "signal.signal(signal.SIGINT, signal.default_int_handler); "
         f"sys.exit(main(['sweep', {str(path)!r}, '--output', {str(tmp_path / 'out')!r}]))",
     ]
@@ -375,7 +376,7 @@ def test_interrupted_it_ends_at_once_and_goes_on_later(tmp_path: Path) -> None:
 
 def test_a_half_done_sweep_can_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, out = written(tmp_path), tmp_path / "out"
-    asked = find(str(path), generated_module)
+    asked = find(str(path), load_module)
     with pytest.raises(RuntimeError):
         sweep(asked, out, pool=Pool(Failing(5, RuntimeError()), 1))
     before = held(out)

@@ -16,10 +16,10 @@ import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.henon_heiles as hh
 import generated.single_pendulum as single
-from solvers.cli import generated_module
-from solvers.crossing import Crossing
-from solvers.ensemble import ensemble
-from solvers.integration import integrate
+from solvers.app.modules import load as load_module
+from solvers.integration.ensemble import ensemble
+from solvers.integration.events import Crossing
+from solvers.integration.integrate import integrate
 from solvers.sweeps.axes import BLOCK, Grid, Random, Table
 from solvers.sweeps.job import STATUSES
 from solvers.sweeps.map import Map
@@ -35,7 +35,7 @@ from solvers.sweeps.maps import (
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import Results
-from solvers.sweeps.running import sweep
+from solvers.sweeps.run import sweep
 from solvers.sweeps.sweep import Sweep
 
 PI = np.pi
@@ -93,7 +93,7 @@ def test_no_flip_is_proved_away(tmp_path: Path) -> None:
 
 def test_uniform_rods_do_not_flip_where_heyl_says_so(tmp_path: Path) -> None:
     # J. S. Heyl (2008): below 3 cos θ1 + cos θ2 = 2, for uniform rods alike
-    asked = find("bar_flips", generated_module)
+    asked = find("bar_flips", load_module)
     axes = Grid({name: values[::8] for name, values in asked.axes.values.items()})
     found = swept(tmp_path, asked.module, axes, 1.0, asked.maps, values=asked.values)
     theta1, theta2 = np.meshgrid(*axes.values.values(), indexing="ij")
@@ -125,7 +125,7 @@ def test_a_system_cannot_use_the_words_of_sweeps(name: str, tmp_path: Path) -> N
         f'[[masses]]\nmass = "{name}"\nposition = ["x", "0"]\n'
     )
     with pytest.raises(ValueError, match=f"something called '{name}'"):
-        Sweep(generated_module(str(path)), Grid({"x": [1.0]}), {"end": Final(("x",))}, 1.0)
+        Sweep(load_module(str(path)), Grid({"x": [1.0]}), {"end": Final(("x",))}, 1.0)
 
 
 def test_ends_samples_and_extremes_are_those_of_single_motions(tmp_path: Path) -> None:
@@ -221,14 +221,14 @@ def test_energy_sets_a_velocity_or_says_that_it_cannot(tmp_path: Path) -> None:
     can = np.isfinite(found.maps["start"]).all(axis=1)
     assert 10 < can.sum() < 50
     assert (found.status[~can] == STATUSES.index("no such energy")).all()
-    energy = dp.energy_many(found.maps["start"][can].T, dp.DEFAULTS)
+    energy = dp.energy_many(0.0, found.maps["start"][can].T, dp.DEFAULTS)
     assert_allclose(energy, found.axes["energy"][can], atol=1e-6)
     assert (found.maps["start"][can, 2] >= 0).all()
     # where none was found, even the velocity that costs least is too dear
     for k in np.flatnonzero(~can):
         start = np.array([0.3, found.axes["theta2"][k], 0, found.axes["theta2_dot"][k]])
         rates = np.linspace(0, 20, 2001)
-        there = dp.energy_many([start[0] + 0 * rates, start[1], rates, start[3]], dp.DEFAULTS)
+        there = dp.energy_many(0.0, [start[0] + 0 * rates, start[1], rates, start[3]], dp.DEFAULTS)
         assert there.min() > found.axes["energy"][k]
 
 
@@ -272,7 +272,7 @@ def test_a_motion_that_fails_is_a_status_in_the_map(tmp_path: Path) -> None:
 
 
 def test_a_map_of_a_system_of_one_s_own_needs_its_texts_only(tmp_path: Path) -> None:
-    module = generated_module("chain_4")
+    module = load_module("chain_4")
     names = [f"theta{k}" for k in range(1, 5)]
     axes = Random(dict.fromkeys(names, (-1, 1)), 5, seed=0)
     found = swept(tmp_path, module, axes, 1.0, {"end": Final(("theta4",))})
@@ -358,7 +358,7 @@ def test_maps_open_as_one_dataset_with_names_and_units(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", names())
 def test_sweeps_that_ship_make_sense_and_are_plain_numpy_files(name: str, tmp_path: Path) -> None:
-    asked = find(name, generated_module)
+    asked = find(name, load_module)
     few = Grid(
         {key: values[:: max(1, len(values) // 4)] for key, values in asked.axes.values.items()}
     )
@@ -378,7 +378,7 @@ def test_a_table_may_be_a_file(tmp_path: Path) -> None:
         'system = "double_pendulum"\nduration = 1\naxes = "starts.csv"\n'
         '[maps.end]\nkind = "final"\nof = ["theta1"]\n'
     )
-    asked = find(str(tmp_path / "mine.toml"), generated_module)
+    asked = find(str(tmp_path / "mine.toml"), load_module)
     assert isinstance(asked.axes, Table)
     assert_allclose(asked.axes.values["theta1"], [PI / 2, 0.1])
     assert_allclose(asked.axes.values["theta2"], [PI / 2, -0.2])

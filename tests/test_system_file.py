@@ -9,13 +9,14 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, RigidBody, System, load
-from derive.command import main
-from derive.parts import SystemDefinitionError
-from derive.system_file import read_system
-from solvers.answers.answer import answer
-from solvers.answers.seen import energy_errors
-from solvers.cli import generated_module, specialiser
-from solvers.cli import main as holonomic
+from derive.commands.derive import main
+from derive.system.parts import SystemDefinitionError
+from derive.system.system_file import read_system
+from solvers.app.cli import main as holonomic
+from solvers.app.modules import load as load_module
+from solvers.app.modules import specialiser
+from solvers.scenes.geometry import energy_errors
+from solvers.scenes.run import answer
 from solvers.scenes.shipped import find
 
 BEAD = """
@@ -130,19 +131,19 @@ def test_a_file_becomes_a_module_and_is_checked_like_the_rest(
 def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
     written(tmp_path, BEAD, "bead")
     text = 'system = "bead.toml"\nduration = 5\naccuracy = 1e-7\n[initial]\nx = "50 cm"\n'
-    scene = find(str(written(tmp_path, text, "scene")), generated_module)
+    scene = find(str(written(tmp_path, text, "scene")), load_module)
     found = answer(scene)
     assert found.is_met
     assert found.choice.declined["rest"] == "the equations depend on time"
     special = answer(
-        find(str(written(tmp_path, 'code = "specialised"\n' + text, "special")), generated_module),
+        find(str(written(tmp_path, 'code = "specialised"\n' + text, "special")), load_module),
         specialiser,
     )
     assert special.choice.model.asked.module.PARAMETERS == ()
     assert abs(special.y - found.y).max() < 2e-7
     # a file that changes is another system
     written(tmp_path, BEAD.replace("value = 0.2", "value = 0.4"), "bead")
-    other = answer(find(str(tmp_path / "scene.toml"), generated_module))
+    other = answer(find(str(tmp_path / "scene.toml"), load_module))
     assert abs(other.y - found.y).max() > 1e-2
 
 
@@ -192,10 +193,10 @@ def test_friction_leaves_rest_and_the_full_equations_only(tmp_path: Path) -> Non
     text = PENDULUM.replace("[coordinates]", 'dissipation = "theta_dot**2/20"\n[coordinates]', 1)
     written(tmp_path, text, "damped")
     scene = 'system = "damped.toml"\nduration = 20\naccuracy = 1e-7\ninitial = { theta = 1 }\n'
-    found = answer(find(str(written(tmp_path, scene, "scene")), generated_module))
+    found = answer(find(str(written(tmp_path, scene, "scene")), load_module))
     assert found.choice.declined["pendulum"] == "energy is not kept"
     assert found.is_met
-    energy = found.scene.module.energy_many(found.y, found.scene.params)
+    energy = found.scene.module.energy_many(0.0, found.y, found.scene.params)
     assert energy[-1] < energy[0] - 1
     assert abs(energy_errors(found)).max() < 1e-5  # with what friction took given back
 
@@ -273,9 +274,7 @@ def test_words_cannot_become_code(change: tuple[str, str], words: str, tmp_path:
 def test_what_a_file_says_of_signs_is_part_of_its_module(tmp_path: Path) -> None:
     # two systems that print alike: roots of squares may be drawn where a sign is known
     text = PENDULUM.replace('unit = "m"', 'unit = "m", positive = false')
-    modules = [
-        generated_module(str(written(tmp_path, t, "one"))) for t in (PENDULUM, text, PENDULUM)
-    ]
+    modules = [load_module(str(written(tmp_path, t, "one"))) for t in (PENDULUM, text, PENDULUM)]
     assert modules[0].__name__ == modules[2].__name__ != modules[1].__name__
     assert modules[0].POSITIVE != modules[1].POSITIVE
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from browser import at_rest, played
 
-from solvers.page.page import Page
-from solvers.page.track import MOST_SAMPLES, Track
+from solvers.player.page import Page
+from solvers.player.track import MOST_SAMPLES, Track
 
 
 @pytest.fixture(scope="module")

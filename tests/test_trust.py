@@ -10,12 +10,12 @@ import pytest
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
-from solvers.crossing import Crossing
-from solvers.ensemble import ensemble
-from solvers.horizon import HorizonWarning
-from solvers.integration import integrate
+from solvers.integration.ensemble import ensemble
+from solvers.integration.events import Crossing
+from solvers.integration.integrate import integrate
+from solvers.integration.predictability import HorizonWarning
+from solvers.integration.solution import Status
 from solvers.references.taylor import taylor
-from solvers.solution import Status
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
 

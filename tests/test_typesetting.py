@@ -10,9 +10,10 @@ from xml.etree import ElementTree
 import pytest
 import sympy as sp
 
-from derive import Derivation, typesetting
-from derive.report.judgement import EQUATIONS
-from derive.typesetting import Formula
+from derive import Derivation
+from derive.formulas import typesetting
+from derive.formulas.typesetting import Formula
+from derive.verification.report.judgement import EQUATIONS
 
 #: Names of the report, and how they are written by hand: letter, dots, indices.
 LETTERS = {

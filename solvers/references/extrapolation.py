@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from solvers.equations.module import GeneratedModule
 
 Array = NDArray[np.float64]
 Long = NDArray[np.longdouble]
@@ -21,7 +22,7 @@ COLUMNS = 9
 
 
 def extrapolated(
-    module: ModuleType,
+    module: GeneratedModule,
     params: Sequence[float],
     y0: Sequence[float],
     times: ArrayLike,

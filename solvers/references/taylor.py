@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from decimal import Decimal, localcontext
-from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers import stated
-from solvers.forms import Form, fastest_form
+from solvers.equations.forms import Form, fastest_form
+from solvers.equations.module import GeneratedModule
 from solvers.references.series import Series, Tape
 
 Array = NDArray[np.float64]
@@ -25,7 +24,7 @@ GUARD = 6
 
 
 def taylor(
-    module: ModuleType,
+    module: GeneratedModule,
     params: Sequence[float],
     y0: Sequence[float],
     times: ArrayLike,
@@ -101,7 +100,9 @@ class _Motion:
         In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact.
     """
 
-    def __init__(self, module: ModuleType, params: Sequence[float], y0: Sequence[float]) -> None:
+    def __init__(
+        self, module: GeneratedModule, params: Sequence[float], y0: Sequence[float]
+    ) -> None:
         form = Form(module, fastest_form(module), (0.0,) * len(module.PARAMETERS))
         self._half = len(module.COORDINATES)
         self._tape: Tape = []
@@ -128,8 +129,8 @@ class _Motion:
         self.begin(start)
 
     @staticmethod
-    def _refusal(module: ModuleType, why: str) -> NoSeriesError:
-        system = stated.system(module)
+    def _refusal(module: GeneratedModule, why: str) -> NoSeriesError:
+        system = module.SYSTEM
         return NoSeriesError(
             f"{system} has no Taylor series, since its equations {why}: ordinary numbers have to "
             "do; ask for less accuracy or a shorter duration"

@@ -5,17 +5,13 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Sequence
-from math import isfinite
-from types import ModuleType
 
 import numpy as np
 
-from solvers.catalogue import UnknownMethodError, load
-from solvers.forms import FORMS, has_form
-from solvers.near import near
-from solvers.quantity import shown
-from solvers.request import SCIPY
-from solvers.timed import evaluated
+from solvers.equations.module import GeneratedModule
+from solvers.io.quantity import shown
+from solvers.io.suggestion import near
+from solvers.runge_kutta.catalogue import SCIPY, UnknownMethodError, load
 
 #: Samples that fit into memory, and the finest accuracy.
 MOST_SAMPLES, FINEST = 1_000_001, 1e-13
@@ -28,7 +24,7 @@ class MassMatrixWarning(UserWarning):
     """The mass matrix is nearly singular: digits are lost."""
 
 
-def check_masses(module: ModuleType, params: Sequence[float], y0: Sequence[float]) -> None:
+def check_masses(module: GeneratedModule, params: Sequence[float], y0: Sequence[float]) -> None:
     """Refuse coordinates that hardly move mass: those that are absent do not move any.
 
     Parameters
@@ -51,7 +47,7 @@ def check_masses(module: ModuleType, params: Sequence[float], y0: Sequence[float
     n = len(module.COORDINATES)
     worst, weakest = 0.0, ""
     for place in (y0, [y0[0]] * n + [0.0] * n):  # where it begins; and all aligned
-        M = np.array(evaluated(module, "mass_matrix", 0.0, place, params))
+        M = np.array(module.mass_matrix(0.0, place, params))
         if not np.isfinite(M).all():
             raise ValueError("the mass matrix is not finite: numbers are too large")
         alive = np.flatnonzero(np.diag(M))
@@ -71,7 +67,7 @@ def check_masses(module: ModuleType, params: Sequence[float], y0: Sequence[float
 
 
 def check_method(
-    module: ModuleType, method: object, form: object, step: float | None, duration: float
+    module: GeneratedModule, method: object, form: object, step: float | None, duration: float
 ) -> None:
     """Refuse a method, form and step that do not go together.
 
@@ -91,8 +87,8 @@ def check_method(
     ValueError
         With what is allowed.
     """
-    if form is not None and not (form in FORMS[:3] and has_form(module, form)):
-        known = [name for name in FORMS[:3] if has_form(module, name)]
+    known = [name for name in module.FORMS if name != "variational"]
+    if form is not None and form not in known:
         raise ValueError(f"form = {str(form)[:50]!r} must be one of {', '.join(known)}")
     if step is not None and method is None:
         raise ValueError(f'step = {step} s needs a method: name one, such as method = "rk4"')
@@ -190,24 +186,6 @@ def check_samples(value: object) -> None:
         )
 
 
-def check_positive(**numbers: float | None) -> None:
-    """Refuse numbers that are not positive, or not finite.
-
-    Parameters
-    ----------
-    **numbers : float or None
-        By name; None is left out.
-
-    Raises
-    ------
-    ValueError
-        With the name of the first.
-    """
-    for name, number in numbers.items():
-        if number is not None and not (isfinite(number) and number > 0):
-            raise ValueError(f"{name} = {number} must be positive")
-
-
 def check_accuracy(accuracy: float) -> None:
     """Refuse what numbers cannot resolve.
 
@@ -225,7 +203,7 @@ def check_accuracy(accuracy: float) -> None:
         raise ValueError(f"accuracy = {accuracy} is below {FINEST}, what numbers resolve")
 
 
-def check_params(module: ModuleType, params: Sequence[float]) -> None:
+def check_params(module: GeneratedModule, params: Sequence[float]) -> None:
     """Refuse negative masses, lengths and stiffnesses.
 
     Parameters

@@ -6,12 +6,12 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from math import pi
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from solvers import said
-from solvers.quantity import shown
-from solvers.said import InputError
+from solvers.equations.module import GeneratedModule
+from solvers.io import toml_input
+from solvers.io.quantity import shown
+from solvers.io.toml_input import InputError
 from solvers.scenes.checks import check_samples
 from solvers.scenes.scene import Scene
 
@@ -33,7 +33,7 @@ KEYS = (
 )  # fmt: skip
 
 
-def read(path: Path, module: Callable[[str], ModuleType]) -> Scene:
+def read(path: Path, module: Callable[[str], GeneratedModule]) -> Scene:
     """The scene in a file.
 
     Parameters
@@ -55,7 +55,7 @@ def read(path: Path, module: Callable[[str], ModuleType]) -> Scene:
     OSError
         When the file cannot be read.
     """
-    return said.read(
+    return toml_input.read(
         path, lambda table: scene(path.stem, table, lambda name: module(_from_here(path, name)))
     )
 
@@ -65,7 +65,7 @@ def _from_here(path: Path, name: str) -> str:
     return str(path.parent / name) if name.endswith(".toml") else name
 
 
-def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleType]) -> Scene:
+def scene(name: str, table: Mapping[str, Any], module: Callable[[str], GeneratedModule]) -> Scene:
     """The scene that a table says.
 
     Parameters
@@ -89,12 +89,12 @@ def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleTyp
     ValueError
         When values make no sense together.
     """
-    said.check_keys("a scene", table, KEYS)
+    toml_input.check_keys("a scene", table, KEYS)
     missing = [key for key in NEEDED if key not in table]
     if missing:
         raise InputError(f"{missing[0]!r} is missing: a scene needs {', '.join(NEEDED)}")
     try:
-        equations = module(said.text("system", table["system"]))
+        equations = module(toml_input.text("system", table["system"]))
     except LookupError as error:
         raise InputError(f"system = {table['system'][:50]!r}: {error.args[0]}") from error
     if "samples" in table:
@@ -105,21 +105,21 @@ def scene(name: str, table: Mapping[str, Any], module: Callable[[str], ModuleTyp
     if len(others) > MOST:
         raise InputError(f"[[beside]] are {len(others)}: up to {MOST} can be shown")
     for key in ("initial", "parameters"):
-        said.table(key, table.get(key, {}))
+        toml_input.table(key, table.get(key, {}))
     beside = tuple(_beside(equations, name, table, other) for other in others)
     title = str(equations.__doc__).partition(":")[0].partition(".")[0]
     return _scene(equations, name, {"title": title, **table}, beside)
 
 
 def _beside(
-    module: ModuleType, name: str, table: Mapping[str, Any], other: Mapping[str, Any]
+    module: GeneratedModule, name: str, table: Mapping[str, Any], other: Mapping[str, Any]
 ) -> Scene:
-    said.check_keys("[[beside]]", other, DIFFERS, KEYS)
+    toml_input.check_keys("[[beside]]", other, DIFFERS, KEYS)
     label = ", ".join(_difference(key, value) for key, value in other.items())
     # another way of integrating owes nothing to this one
     kept = {key: table[key] for key in table if key not in WAY or not WAY & set(other)}
     for key in ("initial", "parameters"):
-        said.table(key, other.get(key, {}))
+        toml_input.table(key, other.get(key, {}))
         kept[key] = table.get(key, {}) | other.get(key, {})
     changed = {key: other[key] for key in other if key not in ("initial", "parameters")}
     return _scene(module, name, {**kept, "label": label, **changed}, ())
@@ -134,12 +134,14 @@ def _difference(key: str, value: object) -> str:
 
 
 def _scene(
-    module: ModuleType, name: str, table: Mapping[str, Any], beside: tuple[Scene, ...]
+    module: GeneratedModule, name: str, table: Mapping[str, Any], beside: tuple[Scene, ...]
 ) -> Scene:
-    given: dict[str, Any] = {key: said.text(key, table[key]) for key in TEXTS if key in table}
-    given |= {key: said.texts(key, table[key], MOST) for key in LISTS if key in table}
+    given: dict[str, Any] = {key: toml_input.text(key, table[key]) for key in TEXTS if key in table}
+    given |= {key: toml_input.texts(key, table[key], MOST) for key in LISTS if key in table}
     given |= {
-        key: said.number(key, table[key], unit) for key, unit in NUMBERS.items() if key in table
+        key: toml_input.number(key, table[key], unit)
+        for key, unit in NUMBERS.items()
+        if key in table
     }
     if given.get("outputs") == ():
         raise InputError("outputs = [] asks for nothing: leave it out to be given the state")
@@ -154,20 +156,20 @@ def _scene(
     )
 
 
-def _parameters(module: ModuleType, table: object) -> tuple[float, ...]:
+def _parameters(module: GeneratedModule, table: object) -> tuple[float, ...]:
     values = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
     for key, value in _table("parameters", table, module.PARAMETERS).items():
         if value == ABSENT and key in module.POSITIVE:
             values[key] = 0.0
         elif key in module.POSITIVE:
             way = f'; if it is not there write {key} = "{ABSENT}"' if value == 0 else ""
-            values[key] = said.positive(f"parameters.{key}", value, module.UNITS[key], way)
+            values[key] = toml_input.positive(f"parameters.{key}", value, module.UNITS[key], way)
         else:
-            values[key] = said.number(f"parameters.{key}", value, module.UNITS[key])
+            values[key] = toml_input.number(f"parameters.{key}", value, module.UNITS[key])
     return tuple(values.values())
 
 
-def _initial(module: ModuleType, table: object) -> tuple[float, ...]:
+def _initial(module: GeneratedModule, table: object) -> tuple[float, ...]:
     given = _table("initial", table, module.STATE)
     missing = [q for q in module.COORDINATES if q not in given]
     if missing:
@@ -180,11 +182,11 @@ def _initial(module: ModuleType, table: object) -> tuple[float, ...]:
                 "degrees are meant",
                 stacklevel=2,
             )
-    return tuple(said.number(f"initial.{name}", given.get(name, 0.0), module.UNITS[name])
+    return tuple(toml_input.number(f"initial.{name}", given.get(name, 0.0), module.UNITS[name])
                  for name in module.STATE)  # fmt: skip
 
 
 def _table(key: str, value: object, known: Sequence[str]) -> dict[str, Any]:
-    found = said.table(key, value)
-    said.check_keys(f"[{key}]", found, known, KEYS)
+    found = toml_input.table(key, value)
+    toml_input.check_keys(f"[{key}]", found, known, KEYS)
     return found

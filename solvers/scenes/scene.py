@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers import request
+from solvers.equations.module import GeneratedModule
+from solvers.integration import validation
 from solvers.scenes import checks
 
 #: Usual samples: so many a second, and at least and at most so many.
@@ -45,7 +45,7 @@ class Scene:
     model : str or None
         One of `MODELS`; by default the smallest that is good enough.
     method, form : str or None
-        Method of integration, one of ``solvers.catalogue.names()`` or of SciPy's, and form of the
+        Method of integration, one of those that ship or of SciPy's, and form of the
         equations, ``lagrangian``, ``hamiltonian`` or ``rational``; by default the cheapest.
     step : float or None
         A fixed step in s instead of one that is controlled.
@@ -85,7 +85,7 @@ class Scene:
     ValueError: ...
     """
 
-    module: ModuleType
+    module: GeneratedModule
     params: tuple[float, ...]
     y0: tuple[float, ...]
     duration: float
@@ -107,11 +107,11 @@ class Scene:
     def __post_init__(self) -> None:
         known = self.module.STATE
         for field, names in (("params", self.module.PARAMETERS), ("y0", known)):
-            numbers = request.numbers(field, getattr(self, field), names).tolist()
+            numbers = validation.numbers(field, getattr(self, field), names).tolist()
             object.__setattr__(self, field, tuple(numbers))
         object.__setattr__(self, "outputs", tuple(self.outputs) or known)
         object.__setattr__(self, "label", self.label or self.title)
-        checks.check_positive(duration=self.duration, accuracy=self.accuracy, step=self.step)
+        validation.check_positive(duration=self.duration, accuracy=self.accuracy, step=self.step)
         checks.check_accuracy(self.accuracy)
         checks.check_params(self.module, self.params)
         checks.check_masses(self.module, self.params, self.y0)

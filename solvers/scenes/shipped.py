@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
 
-from solvers import said
+from solvers.equations.module import GeneratedModule
+from solvers.io import toml_input
 from solvers.scenes.reading import read
 from solvers.scenes.scene import Scene
 
@@ -15,10 +15,10 @@ FILES = Path(__file__).parent / "files"
 
 def names() -> tuple[str, ...]:
     """Names of all scenes that ship, in alphabetical order."""
-    return said.names(FILES)
+    return toml_input.names(FILES)
 
 
-def find(name: str, module: Callable[[str], ModuleType]) -> Scene:
+def find(name: str, module: Callable[[str], GeneratedModule]) -> Scene:
     """The scene of this name, or in this file.
 
     Parameters
@@ -35,7 +35,7 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Scene:
 
     Raises
     ------
-    solvers.said.InputError
+    solvers.io.toml_input.InputError
         When there is none, or it makes no sense.
     OSError
         When the file cannot be read.
@@ -47,4 +47,4 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Scene:
     UserWarning
         When an initial angle without a unit is more than a turn, so that degrees may be meant.
     """
-    return read(said.path("scene", name, FILES), module)
+    return read(toml_input.path("scene", name, FILES), module)

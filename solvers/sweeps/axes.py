@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers import request
+from solvers.integration import validation
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -65,7 +65,7 @@ class Grid(_Listed):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        request.count("the number of motions", prod(self.shape), 1)
+        validation.count("the number of motions", prod(self.shape), 1)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -133,8 +133,8 @@ class Random:
     seed: int
 
     def __post_init__(self) -> None:
-        request.count("count", self.count, 1)
-        request.count("seed", self.seed, 0)
+        validation.count("count", self.count, 1)
+        validation.count("seed", self.seed, 0)
         limits = {name: (float(low), float(high)) for name, (low, high) in self.limits.items()}
         _columns(limits)
         object.__setattr__(self, "limits", limits)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from types import ModuleType
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from solvers.timed import evaluated
+from solvers.equations.module import GeneratedModule
 
 Array: TypeAlias = NDArray[np.float64]
 Places: TypeAlias = Sequence[Mapping[str, float]]
@@ -21,13 +20,13 @@ ROUNDING = 1e-12
 STARTS, LOWER = 16, 1e-9
 
 
-def energies(module: ModuleType, state: Array, params: Sequence[Array]) -> Array:
+def energies(module: GeneratedModule, state: Array, params: Sequence[Array]) -> Array:
     """Energies in J of states in rows, at the beginning."""
     zero = np.zeros(len(state))
-    return np.asarray(evaluated(module, "energy_many", zero, state.T, params)) + zero
+    return np.asarray(module.energy_many(zero, state.T, params)) + zero
 
 
-def barrier(module: ModuleType, places: Places, params: Sequence[Array], n: int) -> Array:
+def barrier(module: GeneratedModule, places: Places, params: Sequence[Array], n: int) -> Array:
     """The energy in J of the lowest of some places at rest, for each of `n` motions."""
     tops = []
     for place in places:
@@ -39,7 +38,7 @@ def barrier(module: ModuleType, places: Places, params: Sequence[Array], n: int)
 
 
 def is_below(
-    module: ModuleType, places: Places, state: Array, params: Sequence[Array]
+    module: GeneratedModule, places: Places, state: Array, params: Sequence[Array]
 ) -> NDArray[np.bool_]:
     """Which states have less energy than the lowest of the places; rounding decides nothing."""
     top, own = barrier(module, places, params, len(state)), energies(module, state, params)
@@ -47,7 +46,7 @@ def is_below(
 
 
 def lower_place(
-    module: ModuleType, watched: Mapping[str, Sequence[float]], places: Places,
+    module: GeneratedModule, watched: Mapping[str, Sequence[float]], places: Places,
     params: Sequence[float],
 ) -> dict[str, float]:  # fmt: skip
     """A place where a watched coordinate has its value, below all of `places`; empty if none is.

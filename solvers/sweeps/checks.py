@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import isfinite
-from types import ModuleType
 
-from solvers.near import near
+from solvers.equations.module import GeneratedModule, has_function
+from solvers.io.suggestion import near
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.barrier import lower_place
 from solvers.sweeps.map import Map
@@ -24,7 +24,7 @@ LONGEST = 50
 Values = Mapping[str, float | str]
 
 
-def check_names(module: ModuleType, axes: Axes, values: Values) -> None:
+def check_names(module: GeneratedModule, axes: Axes, values: Values) -> None:
     """Refuse names that are not there, are there twice or are missing, and wrong numbers.
 
     Parameters
@@ -68,7 +68,7 @@ def check_names(module: ModuleType, axes: Axes, values: Values) -> None:
             raise ValueError(f"{name} = {low} must be positive, in {module.UNITS[name]}")
 
 
-def check_energy(module: ModuleType, given: Sequence[str], values: Values) -> None:
+def check_energy(module: GeneratedModule, given: Sequence[str], values: Values) -> None:
     """Refuse an energy that sets nothing, and velocities that are set by none.
 
     Parameters
@@ -99,7 +99,9 @@ def check_energy(module: ModuleType, given: Sequence[str], values: Values) -> No
         )
 
 
-def check_maps(module: ModuleType, axes: Axes, maps: Mapping[str, Map], values: Values) -> None:
+def check_maps(
+    module: GeneratedModule, axes: Axes, maps: Mapping[str, Map], values: Values
+) -> None:
     """Refuse maps without a proper name, and what they ask of the system in vain.
 
     Parameters
@@ -142,14 +144,14 @@ def check_maps(module: ModuleType, axes: Axes, maps: Mapping[str, Map], values: 
             raise ValueError(f"map {name} watches nothing: name values by component")
         one.events(module)
         climbs = isinstance(one, First) and bool(one.barrier)
-        if (climbs or isinstance(one, EnergyError)) and hasattr(module, "power"):
+        if (climbs or isinstance(one, EnergyError)) and has_function(module, "power"):
             raise ValueError(f"map {name}: of this system the energy is not kept")
         if isinstance(one, First) and one.barrier:
             _check_barrier(module, axes, name, one, values)
 
 
 def _check_barrier(
-    module: ModuleType, axes: Axes, name: str, one: First, values: Values
+    module: GeneratedModule, axes: Axes, name: str, one: First, values: Values
 ) -> None:  # fmt: skip
     for watched in one.of:
         if watched not in module.COORDINATES:

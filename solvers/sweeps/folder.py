@@ -25,7 +25,7 @@ import numpy as np
 from numpy.lib.format import dtype_to_descr, write_array_header_1_0
 from numpy.typing import NDArray
 
-from solvers.written import placed, written
+from solvers.io.atomic_write import placed, written
 
 MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 1
 #: Hexadecimal digits of a digest in a file's name.

@@ -10,14 +10,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
-from solvers import stated
-from solvers.made import made
-from solvers.native import header
-from solvers.solution import Status
+from solvers.equations.module import GeneratedModule, header
+from solvers.equations.module_cache import made
+from solvers.integration.solution import Status
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import First
@@ -40,17 +38,17 @@ class Source:
     texts: tuple[tuple[str, str], ...] = ()
 
     @classmethod
-    def of(cls, module: ModuleType) -> Source:
+    def of(cls, module: GeneratedModule) -> Source:
         """The source of a module that is loaded here."""
         if module.__name__.startswith("generated."):
             return cls(module.__name__)
         files = filter(None, (Path(str(module.__file__)), header(module)))
         texts = tuple((path.name, path.read_text(encoding="utf-8")) for path in files)
-        return cls(stated.system(module), texts)
+        return cls(module.SYSTEM, texts)
 
 
 @lru_cache
-def loaded(source: Source) -> ModuleType:
+def loaded(source: Source) -> GeneratedModule:
     """The module; each process loads it once."""
     if not source.texts:
         return import_module(source.name)

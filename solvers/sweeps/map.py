@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.crossing import Crossing
-from solvers.solution import Ensemble
-from solvers.timed import evaluated
+from solvers.equations.module import GeneratedModule
+from solvers.integration.events import Crossing
+from solvers.integration.solution import Ensemble
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -34,7 +33,7 @@ class Found:
         Which of the ensemble's events are those of the map in question.
     """
 
-    module: ModuleType
+    module: GeneratedModule
     starts: Array
     params: list[Array]
     motions: Ensemble
@@ -42,7 +41,7 @@ class Found:
 
     def energies(self, t: Array | float, y: Array) -> Array:
         """Energies in J of states in rows."""
-        return np.asarray(evaluated(self.module, "energy_many", t, y.T, self.params))
+        return np.asarray(self.module.energy_many(t, y.T, self.params))
 
 
 class Map:
@@ -68,12 +67,12 @@ class Map:
         """How many occurrences of each event it needs."""
         return 1
 
-    def unit(self, module: ModuleType) -> str:
+    def unit(self, module: GeneratedModule) -> str:
         """Unit of the numbers; empty if they differ in it."""
         found = {module.UNITS[name] for name in self.components}
         return found.pop() if len(found) == 1 else ""
 
-    def events(self, module: ModuleType) -> list[Crossing]:
+    def events(self, module: GeneratedModule) -> list[Crossing]:
         """What must be watched."""
         return []
 

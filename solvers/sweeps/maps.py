@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import ModuleType
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.crossing import Crossing, Extremum
+from solvers.equations.module import GeneratedModule
+from solvers.integration.events import Crossing, Extremum
 from solvers.sweeps.map import Found, Map
 
 Array: TypeAlias = NDArray[np.float64]
@@ -40,11 +40,11 @@ class First(Map):
         """What is watched, and what places are told by."""
         return (*self.of, *(name for place in self.barrier for name in place))
 
-    def unit(self, module: ModuleType) -> str:
+    def unit(self, module: GeneratedModule) -> str:
         """Unit of a time."""
         return "s"
 
-    def events(self, module: ModuleType) -> list[Crossing]:
+    def events(self, module: GeneratedModule) -> list[Crossing]:
         """A crossing for each value."""
         return [
             Crossing(module, name, value) for name, values in self.of.items() for value in values
@@ -115,7 +115,7 @@ class Extremes(Final):
         """The coordinates, and which is which."""
         return (self.of, ("smallest", "largest"))
 
-    def events(self, module: ModuleType) -> list[Crossing]:
+    def events(self, module: GeneratedModule) -> list[Crossing]:
         """The zeros of the velocities."""
         return [Extremum(module, f"{name}_dot") for name in self.of]
 
@@ -182,7 +182,7 @@ class Section(Samples):
         """What is kept."""
         return self.of
 
-    def events(self, module: ModuleType) -> list[Crossing]:
+    def events(self, module: GeneratedModule) -> list[Crossing]:
         """The crossing."""
         return [Crossing(module, self.where, self.value, self.direction)]
 
@@ -202,7 +202,7 @@ class Lyapunov(Map):
     Meccanica 15 (1980) 9-20).
     """
 
-    def unit(self, module: ModuleType) -> str:
+    def unit(self, module: GeneratedModule) -> str:
         """Unit of a rate."""
         return "1/s"
 
@@ -225,7 +225,7 @@ class EnergyError(Map):
     ()
     """
 
-    def unit(self, module: ModuleType) -> str:
+    def unit(self, module: GeneratedModule) -> str:
         """Unit of an energy."""
         return "J"
 
@@ -236,5 +236,5 @@ class EnergyError(Map):
         return found.energies(motions.t, motions.y[:, :n]) - before
 
 
-def _places(module: ModuleType, names: tuple[str, ...]) -> list[int]:
+def _places(module: GeneratedModule, names: tuple[str, ...]) -> list[int]:
     return [module.STATE.index(name) for name in names]

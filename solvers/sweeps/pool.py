@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers import request
-from solvers.ensemble import stop
+from solvers.integration import validation
+from solvers.integration.ensemble import stop
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.job import Job
-from solvers.sweeps.work import work
+from solvers.sweeps.worker import work
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Pool:
 
     def __post_init__(self) -> None:
         if self.workers is not None:
-            request.count("workers", self.workers, 1)
+            validation.count("workers", self.workers, 1)
 
     @property
     def size(self) -> int:

@@ -6,14 +6,14 @@ import csv
 from collections.abc import Callable, Mapping
 from math import prod
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from solvers import said
-from solvers.near import near
-from solvers.said import InputError
+from solvers.equations.module import GeneratedModule
+from solvers.io import toml_input
+from solvers.io.suggestion import near
+from solvers.io.toml_input import InputError
 from solvers.sweeps.axes import Axes, Grid, Random, Table
 from solvers.sweeps.checks import ENERGY, FROM_ENERGY
 from solvers.sweeps.reading_maps import kept
@@ -30,10 +30,10 @@ LONGEST, MOST = 10**7, 10**11
 
 def names() -> tuple[str, ...]:
     """Names of all sweeps that ship, in alphabetical order."""
-    return said.names(FILES)
+    return toml_input.names(FILES)
 
 
-def find(name: str, module: Callable[[str], ModuleType]) -> Sweep:
+def find(name: str, module: Callable[[str], GeneratedModule]) -> Sweep:
     """The sweep of this name, or in this file.
 
     Parameters
@@ -50,96 +50,101 @@ def find(name: str, module: Callable[[str], ModuleType]) -> Sweep:
 
     Raises
     ------
-    solvers.said.InputError
+    solvers.io.toml_input.InputError
         When there is none, or it makes no sense.
     OSError
         When the file, or the table that it names, cannot be read.
     """
-    path = said.path("sweep", name, FILES)
-    return said.read(path, lambda table: _sweep(path, table, module))
+    path = toml_input.path("sweep", name, FILES)
+    return toml_input.read(path, lambda table: _sweep(path, table, module))
 
 
-def _sweep(path: Path, table: Mapping[str, Any], module: Callable[[str], ModuleType]) -> Sweep:
-    said.check_keys("a sweep", table, KEYS)
+def _sweep(path: Path, table: Mapping[str, Any], module: Callable[[str], GeneratedModule]) -> Sweep:
+    toml_input.check_keys("a sweep", table, KEYS)
     missing = [key for key in NEEDED if key not in table]
     if missing:
         raise InputError(f"{missing[0]!r} is missing: a sweep needs {', '.join(NEEDED)}")
-    name = said.text("system", table["system"])
+    name = toml_input.text("system", table["system"])
     try:
         equations = module(str(path.parent / name) if name.endswith(".toml") else name)
     except LookupError as error:
         raise InputError(f"system = {name[:50]!r}: {error.args[0]}") from error
     way: dict[str, Any] = {
-        key: said.number(key, table[key], "1") for key in ("rtol", "atol") if key in table
+        key: toml_input.number(key, table[key], "1") for key in ("rtol", "atol") if key in table
     }
     if "method" in table:
-        way["method"] = said.text("method", table["method"])
+        way["method"] = toml_input.text("method", table["method"])
     if "max_steps" in table:
-        way["max_steps"] = said.whole("max_steps", table["max_steps"], 1, MOST)
+        way["max_steps"] = toml_input.whole("max_steps", table["max_steps"], 1, MOST)
     title = str(equations.__doc__).partition(":")[0].partition(".")[0]
     return Sweep(
         equations,
         _axes(path, equations, table),
         {
-            key: kept(f"maps.{key}", equations, said.table(f"maps.{key}", one))
-            for key, one in said.table("maps", table["maps"]).items()
+            key: kept(f"maps.{key}", equations, toml_input.table(f"maps.{key}", one))
+            for key, one in toml_input.table("maps", table["maps"]).items()
         },
-        said.number("duration", table["duration"], "s"),
+        toml_input.number("duration", table["duration"], "s"),
         _values(equations, table),
         name=path.stem,
-        title=said.text("title", table.get("title", title)),
+        title=toml_input.text("title", table.get("title", title)),
         **way,
     )
 
 
-def _values(module: ModuleType, table: Mapping[str, Any]) -> dict[str, float | str]:
+def _values(module: GeneratedModule, table: Mapping[str, Any]) -> dict[str, float | str]:
     """What does not vary."""
     values: dict[str, float | str] = {}
     known = {"initial": (*module.STATE, ENERGY), "parameters": module.PARAMETERS}
     for part, names in known.items():
-        given = said.table(part, table.get(part, {}))
-        said.check_keys(f"[{part}]", given, names, KEYS)
+        given = toml_input.table(part, table.get(part, {}))
+        toml_input.check_keys(f"[{part}]", given, names, KEYS)
         for key, value in given.items():
             is_free = value == FROM_ENERGY and key in module.STATE
             values[key] = (
-                FROM_ENERGY if is_free else said.number(f"{part}.{key}", value, unit(module, key))
+                FROM_ENERGY
+                if is_free
+                else toml_input.number(f"{part}.{key}", value, unit(module, key))
             )
     return values
 
 
-def _axes(path: Path, module: ModuleType, table: Mapping[str, Any]) -> Axes:
+def _axes(path: Path, module: GeneratedModule, table: Mapping[str, Any]) -> Axes:
     if isinstance(table["axes"], str):
         if "random" in table:
             raise InputError("axes are a table, and random is given: leave one of them out")
         return _from_file(path.parent / table["axes"], module)
-    axes = said.table("axes", table["axes"])
-    said.check_keys("[axes]", axes, (*module.STATE, *module.PARAMETERS, ENERGY), KEYS)
+    axes = toml_input.table("axes", table["axes"])
+    toml_input.check_keys("[axes]", axes, (*module.STATE, *module.PARAMETERS, ENERGY), KEYS)
     is_grid = "random" not in table
     ends, counts = {}, {}
     for name, value in axes.items():
-        key, given = f"axes.{name}", said.table(f"axes.{name}", value)
+        key, given = f"axes.{name}", toml_input.table(f"axes.{name}", value)
         needed = ("from", "to", "count") if is_grid else ("from", "to")
-        said.check_keys(key, given, needed)
+        toml_input.check_keys(key, given, needed)
         missing = [part for part in needed if part not in given]
         if missing:
             raise InputError(f"{key}.{missing[0]} is missing: give {', '.join(needed)}")
         low, high = (
-            said.number(f"{key}.{end}", given[end], unit(module, name)) for end in ("from", "to")
+            toml_input.number(f"{key}.{end}", given[end], unit(module, name))
+            for end in ("from", "to")
         )
         ends[name] = low, high
-        counts[name] = said.whole(f"{key}.count", given["count"], 1, LONGEST) if is_grid else 0
+        counts[name] = (
+            toml_input.whole(f"{key}.count", given["count"], 1, LONGEST) if is_grid else 0
+        )
     if is_grid and prod(counts.values()) > MOST:
         raise InputError(f"[axes] have {prod(counts.values()):,} motions: up to {MOST:,} are "
                          "possible")  # fmt: skip
     if is_grid:
         return Grid({name: np.linspace(*ends[name], counts[name]) for name in axes})
-    drawn = said.table("random", table["random"])
-    said.check_keys("random", drawn, ("count", "seed"))
-    count = said.whole("random.count", drawn.get("count"), 1, MOST)
-    return Random(ends, count, said.whole("random.seed", drawn.get("seed", 0), 0, 2**63))
+    drawn = toml_input.table("random", table["random"])
+    toml_input.check_keys("random", drawn, ("count", "seed"))
+    count = toml_input.whole("random.count", drawn.get("count"), 1, MOST)
+    return Random(ends, count, toml_input.whole("random.seed", drawn.get("seed", 0), 0, 2**63))
 
 
-def _from_file(path: Path, module: ModuleType) -> Table:
+def _from_file(path: Path, module: GeneratedModule) -> Table:
     """A table with names in its first line, and numbers in their units below."""
     if path.suffix != ".csv":
         raise InputError(f"axes = {path.name!r} must be a table that ends in .csv, or be written "
@@ -158,13 +163,13 @@ def _from_file(path: Path, module: ModuleType) -> Table:
     columns = zip(*rows[1:], strict=True)
     return Table({
         name: np.array([
-            said.number(f"{path.name}: {name}", value, unit(module, name)) for value in column
+            toml_input.number(f"{path.name}: {name}", value, unit(module, name)) for value in column
         ])
         for name, column in zip(names, columns, strict=True)
     })  # fmt: skip
 
 
-def unit(module: ModuleType, name: str) -> str:
+def unit(module: GeneratedModule, name: str) -> str:
     """The unit of what may vary or be given."""
     if name == ENERGY:
         return "J"

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from types import ModuleType
 from typing import Any
 
-from solvers import said
-from solvers.near import near
-from solvers.quantity import shown
-from solvers.said import InputError
+from solvers.equations.module import GeneratedModule
+from solvers.io import toml_input
+from solvers.io.quantity import shown
+from solvers.io.suggestion import near
+from solvers.io.toml_input import InputError
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import (
     EnergyError,
@@ -27,7 +27,7 @@ DIRECTIONS = {"both": 0, "up": 1, "down": -1}
 MOST = 10**6
 
 
-def kept(key: str, module: ModuleType, given: Given) -> Map:
+def kept(key: str, module: GeneratedModule, given: Given) -> Map:
     """The map that a table says.
 
     Parameters
@@ -46,7 +46,7 @@ def kept(key: str, module: ModuleType, given: Given) -> Map:
 
     Raises
     ------
-    solvers.said.InputError
+    solvers.io.toml_input.InputError
         When it makes no sense.
     """
     if "kind" not in given:
@@ -58,30 +58,32 @@ def kept(key: str, module: ModuleType, given: Given) -> Map:
             f"{key}.kind = {shown(kind)}{hint} must be one of {', '.join(map(repr, KINDS))}"
         )
     known, meaning = KINDS[kind]
-    said.check_keys(key, given, ("kind", *known))
+    toml_input.check_keys(key, given, ("kind", *known))
     return meaning(key, module, given)
 
 
-def _first(key: str, module: ModuleType, given: Given) -> First:
-    watched = said.table(f"{key}.of", given.get("of", {}))
-    said.check_keys(f"{key}.of", watched, module.STATE)
+def _first(key: str, module: GeneratedModule, given: Given) -> First:
+    watched = toml_input.table(f"{key}.of", given.get("of", {}))
+    toml_input.check_keys(f"{key}.of", watched, module.STATE)
     values = {
         name: tuple(
-            said.number(f"{key}.of.{name}", one, module.UNITS[name]) for one in _list(value)
+            toml_input.number(f"{key}.of.{name}", one, module.UNITS[name]) for one in _list(value)
         )
         for name, value in watched.items()
     }
     places = []
     for place in _list(given.get("barrier", [])):
-        said.check_keys(f"{key}.barrier", said.table(f"{key}.barrier", place), module.COORDINATES)
+        toml_input.check_keys(
+            f"{key}.barrier", toml_input.table(f"{key}.barrier", place), module.COORDINATES
+        )
         places.append({
-            q: said.number(f"{key}.barrier.{q}", value, module.UNITS[q])
+            q: toml_input.number(f"{key}.barrier.{q}", value, module.UNITS[q])
             for q, value in place.items()
         })  # fmt: skip
     return First(values, tuple(places))
 
 
-def _section(key: str, module: ModuleType, given: Given) -> Section:
+def _section(key: str, module: GeneratedModule, given: Given) -> Section:
     where, direction = given.get("where"), given.get("direction", "both")
     if not isinstance(where, str) or where not in module.STATE:
         raise InputError(f"{key}.where = {shown(where)} must be one of {', '.join(module.STATE)}")
@@ -89,14 +91,14 @@ def _section(key: str, module: ModuleType, given: Given) -> Section:
         raise InputError(
             f"{key}.direction = {shown(direction)} must be one of {', '.join(DIRECTIONS)}"
         )
-    value = said.number(f"{key}.value", given.get("value", 0.0), module.UNITS[where])
+    value = toml_input.number(f"{key}.value", given.get("value", 0.0), module.UNITS[where])
     of, count = _of(key, module, given), _count(key, given)
     return Section(of, count, where, value, DIRECTIONS[direction])
 
 
-def _of(key: str, module: ModuleType, given: Given) -> tuple[str, ...]:
+def _of(key: str, module: GeneratedModule, given: Given) -> tuple[str, ...]:
     """Components of the state."""
-    of = said.texts(f"{key}.of", _list(given.get("of", [])), len(module.STATE))
+    of = toml_input.texts(f"{key}.of", _list(given.get("of", [])), len(module.STATE))
     if not of or len({*of}) < len(of):
         raise InputError(f"{key}.of = {list(of)} must name components, each of them once")
     for name in of:
@@ -109,7 +111,7 @@ def _of(key: str, module: ModuleType, given: Given) -> tuple[str, ...]:
 
 
 def _count(key: str, given: Given) -> int:
-    return said.whole(f"{key}.count", given.get("count"), 1, MOST)
+    return toml_input.whole(f"{key}.count", given.get("count"), 1, MOST)
 
 
 def _list(value: object) -> list[Any]:
@@ -118,7 +120,7 @@ def _list(value: object) -> list[Any]:
 
 
 #: What a map of each kind is told, and what it becomes.
-KINDS: dict[str, tuple[tuple[str, ...], Callable[[str, ModuleType, Given], Map]]] = {
+KINDS: dict[str, tuple[tuple[str, ...], Callable[[str, GeneratedModule, Given], Map]]] = {
     "first": (("of", "barrier"), _first),
     "final": (("of",), lambda key, module, given: Final(_of(key, module, given))),
     "extremes": (("of",), lambda key, module, given: Extremes(_of(key, module, given))),

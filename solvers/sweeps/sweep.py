@@ -6,13 +6,12 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from solvers import request, stated
-from solvers.catalogue import load, names
-from solvers.native import header
-from solvers.scenes.checks import check_positive
+from solvers.equations.forms import fastest_form
+from solvers.equations.module import GeneratedModule, header
+from solvers.integration import validation
+from solvers.runge_kutta.catalogue import load, names
 from solvers.sweeps import checks
 from solvers.sweeps.axes import Axes, motions
 from solvers.sweeps.map import Map
@@ -38,9 +37,9 @@ class Sweep:
         Velocities that are not named are 0, parameters have their default. One velocity may
         be ``"energy"``: it is 0 or more, and as large as the energy demands.
     method : str, optional
-        One of ``solvers.catalogue.names()`` that estimates its error.
+        One of ``solvers.runge_kutta.catalogue.names()`` that estimates its error.
     rtol, atol : float, optional
-        Tolerances of each step, as in `solvers.ensemble.ensemble`.
+        Tolerances of each step, as in `solvers.integration.ensemble.ensemble`.
     max_steps : int, optional
         How many steps a motion may take.
     name, title : str, optional
@@ -50,7 +49,7 @@ class Sweep:
     ------
     ValueError
         When something makes no sense; the message says what is allowed.
-    solvers.catalogue.UnknownMethodError
+    solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
 
     Examples
@@ -63,7 +62,7 @@ class Sweep:
     6
     """
 
-    module: ModuleType
+    module: GeneratedModule
     axes: Axes
     maps: Mapping[str, Map]
     duration: float
@@ -76,7 +75,7 @@ class Sweep:
     title: str = "a sweep"
 
     def __post_init__(self) -> None:
-        check_positive(duration=self.duration)
+        validation.check_positive(duration=self.duration)
         if not load(self.method).b_hat:
             able = ", ".join(name for name in names() if load(name).b_hat)
             raise ValueError(
@@ -85,7 +84,7 @@ class Sweep:
         checks.check_names(self.module, self.axes, self.values)
         checks.check_energy(self.module, self.given, self.values)
         checks.check_maps(self.module, self.axes, self.maps, self.values)
-        request.problem(
+        validation.problem(
             self.module, (0.0, self.duration), (0.0,) * len(self.start), self.module.DEFAULTS,
             self.method, self.form, self.rtol, self.atol, None, None, (), self.max_steps,
         )  # fmt: skip
@@ -100,7 +99,7 @@ class Sweep:
         """The form of the equations: small changes are followed where a map needs them."""
         if any(isinstance(one, Lyapunov) for one in self.maps.values()):
             return "variational"
-        return "rational" if hasattr(self.module, "rhs_rational") else "lagrangian"
+        return fastest_form(self.module)
 
     @property
     def start(self) -> tuple[str, ...]:
@@ -123,7 +122,7 @@ class Sweep:
         """All that decides what its numbers are, as JSON knows it."""
         generated = header(self.module) or Path(str(self.module.__file__))
         return {
-            "system": stated.system(self.module),
+            "system": self.module.SYSTEM,
             "equations": hashlib.sha256(generated.read_bytes()).hexdigest(),
             "duration": self.duration,
             "values": dict(sorted(self.values.items())),

@@ -1,0 +1,1 @@
+"""Code generation: from derived equations to Python and C."""

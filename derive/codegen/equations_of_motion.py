@@ -1,0 +1,146 @@
+"""What every form of the equations of motion starts from, as nodes of one graph.
+
+Derivatives are taken of nodes, and those of solutions reuse the factorisation of the mass
+matrix, from ∂(M⁻¹ b) = M⁻¹ (∂b - ∂M M⁻¹ b). Nothing is inverted and nothing is simplified.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import sympy as sp
+
+from derive.codegen.differentiation import Differentiation
+from derive.codegen.factorisation import Solver, factorisation
+from derive.codegen.graph import Graph, Node
+from derive.codegen.rational import angles
+from derive.codegen.translation import Translation
+from derive.mechanics.derivation import Derivation
+
+
+class Mechanics:
+    """Energies, places and states as outputs of generated functions.
+
+    Each method returns its outputs flat, in C order of the shape that
+    `derive.codegen.functions` gives them.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        Whose values become nodes.
+    """
+
+    def __init__(self, derivation: Derivation) -> None:
+        self._derivation, self._system = derivation, derivation.system
+        self._graph = Graph()
+        self._node = Translation(self._graph)
+        self._derivative = Differentiation(self._graph)
+        self._n = range(len(self._system.q))
+        self._q, self._qdot, self._p = (
+            self._nodes(symbols) for symbols in (self._system.q, self._system.qdot, self._system.p)
+        )
+        self._variables = [variable.name for variable in derivation.variables]
+
+    def _nodes(self, expressions: Sequence[sp.Expr] | sp.Matrix) -> list[Node]:
+        return [self._node(expression) for expression in expressions]
+
+    @cached_property
+    def _inertia(self) -> list[list[Node]]:
+        matrix = self._derivation.inertia
+        return [self._nodes(matrix.row(i)) for i in range(matrix.rows)]
+
+    @cached_property
+    def _potential(self) -> Node:
+        return self._node(self._derivation.potential_energy)
+
+    @cached_property
+    def _applied(self) -> list[Node]:
+        return self._nodes(self._system.applied)
+
+    @cached_property
+    def _factorisation(self) -> Solver:
+        return factorisation(self._graph, [[self._inertia[i][j] for j in self._n] for i in self._n])
+
+    def _rates(self, velocities: Sequence[Node]) -> list[Node]:
+        """Rates of all variables where those of the coordinates are `velocities`."""
+        return [*velocities, *self._nodes(self._derivation.rates[len(velocities) :])]
+
+    @property
+    def mass_matrix(self) -> list[Node]:
+        """M."""
+        return [self._inertia[i][j] for i in self._n for j in self._n]
+
+    @property
+    def positions(self) -> list[Node]:
+        """Positions r of all masses, one after the other."""
+        return self._nodes([r for mass in self._system.masses for r in mass.position])
+
+    @property
+    def energy(self) -> list[Node]:
+        """½ q̇ᵀ M q̇ + U of (q, q̇)."""
+        return [self._node(self._derivation.energy)]
+
+    @property
+    def power(self) -> list[Node]:
+        """The rate of the energy."""
+        return [self._node(self._derivation.power)]
+
+    @property
+    def hamiltonian_state(self) -> list[Node]:
+        """Coordinates q and momenta p = M q̇ + b."""
+        return [*self._q, *self._nodes(self._derivation.momenta)]
+
+    @cached_property
+    def _known_by(self) -> dict[Node, list[int]]:
+        """Which variables an entry of M̄ depends on: of a long chain's entries two."""
+        return {
+            entry: [k for k, name in enumerate(self._variables)
+                    if name in self._derivative.leaves(entry)]
+            for row in self._inertia for entry in row
+        }  # fmt: skip
+
+    @cached_property
+    def angles(self) -> tuple[sp.Symbol, ...]:
+        """Coordinates that energies and forces know through sine and cosine only.
+
+        Or the positions, of one that energies and forces do not know.
+        """
+        felt = [*self._known_by, self._potential, *self._applied]
+        names = self._only_as_angles(felt) | (
+            self._only_as_angles(self.positions)
+            - frozenset().union(*map(self._derivative.leaves, felt))
+        )
+        return tuple(q for q in self._system.q if q.name in names)
+
+    def _only_as_angles(self, nodes: Sequence[Node]) -> frozenset[str]:
+        known = frozenset().union(*map(self._derivative.leaves, nodes))
+        return angles(nodes, known & {q.name for q in self._system.q})
+
+    @property
+    def rational_state(self) -> list[Node]:
+        """(sin q, cos q) for every angle, other coordinates, and q̇."""
+        places: list[sp.Expr] = []
+        for q in self._system.q:
+            places += [sp.sin(q), sp.cos(q)] if q in self.angles else [q]
+        return [*self._nodes(places), *self._qdot]
+
+    def _shifted(self, variable: sp.Symbol, vector: Sequence[Node]) -> list[Node]:
+        """(∂M/∂variable) vector."""
+        return [
+            self._graph.sum(
+                [(self._derivative(row[j], variable.name) * vector[j], 1) for j in self._n]
+            )
+            for row in self._inertia[: len(vector)]
+        ]
+
+    @property
+    def equilibrium(self) -> list[Node]:
+        """Coordinates q₀ at rest; none if no rest is known."""
+        return self._nodes(self._derivation.rest or ())
+
+    @property
+    def linear(self) -> list[Node]:
+        """M₀, then K."""
+        linearisation = self._derivation.linearisation()
+        return self._nodes([*linearisation.mass_matrix, *linearisation.stiffness_matrix])

@@ -1,0 +1,136 @@
+"""Symmetric elimination, written out operation by operation where the matrix is small.
+
+M = c S U D Uᵀ S with U unit upper triangular, D diagonal, S the diagonal of
+those factors that rows and columns have in common (lengths, mostly), and c the
+number that all entries have. It runs
+from the last coordinate to the first, since in a chain the last mass moves
+with the fewest others: its entries are the shortest and cancel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import reduce
+from math import gcd, lcm
+from typing import Protocol
+
+from derive.codegen.graph import Graph, Node
+
+#: From this size on a loop is as quick as straight-line code, which grows with its cube.
+LARGE = 16
+
+#: A multiplier of more factors than this gets a name, a shorter one is written out.
+SHORT = 3
+
+
+class Solver(Protocol):
+    """A matrix M, ready to solve M x = b."""
+
+    def solve(self, right: Sequence[Node]) -> list[Node]:
+        """The solution x of M x = `right`."""
+        ...
+
+
+def factorisation(graph: Graph, matrix: Sequence[Sequence[Node]]) -> Solver:
+    """A symmetric positive definite matrix, taken apart as its size asks for."""
+    return (Loops if len(matrix) >= LARGE else Factorisation)(graph, matrix)
+
+
+class Loops:
+    """L D Lᵀ by loops: the module has functions that take a matrix apart and solve with it."""
+
+    def __init__(self, graph: Graph, matrix: Sequence[Sequence[Node]]) -> None:
+        self._graph = graph
+        self._factors = graph.factors(entry for i, row in enumerate(matrix) for entry in row[i:])
+
+    def solve(self, right: Sequence[Node]) -> list[Node]:
+        """The solution x of M x = `right`."""
+        return self._graph.solution(self._factors, right)
+
+
+class Factorisation:
+    """U D Uᵀ of a symmetric positive definite matrix of nodes.
+
+    Attributes
+    ----------
+    pivots : list of Node
+        The entries of D; all are positive where the matrix is positive definite.
+    """
+
+    def __init__(self, graph: Graph, matrix: Sequence[Sequence[Node]]) -> None:
+        n = len(matrix)
+        self._scale = _common_scale(graph, matrix)
+        self._content = content = _content(matrix)
+        self._rows = rows = [
+            [matrix[i][j] / (self._scale[i] * self._scale[j] * content) for j in range(n)]
+            for i in range(n)
+        ]
+        self._graph = graph
+        self.pivots = [graph.node(0)] * n
+        self._inverses = [graph.node(0)] * n
+        self._multipliers: dict[tuple[int, int], Node] = {}
+        for k in reversed(range(n)):
+            self.pivots[k] = graph.let(rows[k][k])
+            coupled = [i for i in range(k) if not rows[i][k].is_number(0)]
+            self._inverses[k] = self._inverse(self.pivots[k], bool(coupled))
+            for i in coupled:
+                multiplier = rows[i][k] * self._inverses[k]
+                short = len(multiplier.factors()) <= SHORT
+                self._multipliers[i, k] = multiplier if short else graph.let(multiplier)
+            for i in coupled:
+                for j in (j for j in coupled if j >= i):
+                    rows[i][j] = rows[i][j] - self._multipliers[i, k] * rows[j][k]
+                    rows[j][i] = rows[i][j]
+
+    def _inverse(self, pivot: Node, is_shared: bool) -> Node:
+        inverse = self._graph.power(pivot, -1)
+        # one division instead of several, where nothing cancels
+        return self._graph.let(inverse) if is_shared and pivot.kind == "let" else inverse
+
+    def solve(self, right: Sequence[Node]) -> list[Node]:
+        """The solution x of M x = `right`."""
+        n = len(right)
+        y = [
+            self._graph.spread(node / scale, 1 / self._content)
+            for node, scale in zip(right, self._scale, strict=True)
+        ]
+        for k in reversed(range(n)):
+            y[k] = y[k] * self._inverses[k]
+            for i in range(k):
+                if (i, k) in self._multipliers:
+                    y[i] = y[i] - self._rows[i][k] * y[k]
+        x: list[Node] = []
+        for k in range(n):
+            known = [
+                (x[i] * self._multipliers[i, k], -1)
+                for i in range(k)
+                if (i, k) in self._multipliers
+            ]
+            x.append(self._graph.let(self._graph.sum([(y[k], 1), *known])))
+        return [node / scale for node, scale in zip(x, self._scale, strict=True)]
+
+
+def _content(matrix: Sequence[Sequence[Node]]) -> Fraction:
+    """The largest number of which all entries are whole multiples."""
+    numbers = [abs(entry.scaled()[0]) for row in matrix for entry in row]
+    return Fraction(
+        reduce(gcd, (number.numerator for number in numbers)),
+        reduce(lcm, (number.denominator for number in numbers)),
+    )
+
+
+def _common_scale(graph: Graph, matrix: Sequence[Sequence[Node]]) -> list[Node]:
+    """Factors s of each row such that s_i s_j divides every entry (i, j)."""
+    scales = [
+        {f: p // 2 for f, p in row[i].powers().items() if p > 1} for i, row in enumerate(matrix)
+    ]
+    for i, row in enumerate(matrix):
+        for j, entry in enumerate(row):
+            if not entry.is_number(0):
+                scales[i] = {
+                    f: p
+                    for f, p in scales[i].items()
+                    if entry.powers().get(f, 0) >= p + scales[j].get(f, 0)
+                }
+    return [graph.product(scale.items()) for scale in scales]

@@ -1,0 +1,97 @@
+"""A system in words: what the docstring of its generated module says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from textwrap import indent
+
+import sympy as sp
+
+from derive.codegen.functions import Contents, Form
+from derive.mechanics.derivation import Derivation
+from derive.system.system import System
+
+#: Unit of the momentum conjugate to a coordinate of this unit.
+MOMENTUM_UNIT = {"rad": "J s", "m": "kg m/s"}
+
+#: With more coordinates than this, equations fill pages.
+READABLE = 4
+
+STATES: dict[Form, str] = {
+    "lagrangian": "State y = (q, qdot)",
+    "hamiltonian": "State y = (q, p), in functions of the Hamiltonian form",
+    "rational": "State y in functions of the rational form",
+    "variational": "State y of `rhs_variational`: where the motion is, and a small change of it",
+}
+
+
+def units(system: System) -> dict[str, str]:
+    """Unit of everything that has a name."""
+    rows = {parameter.symbol.name: parameter.unit for parameter in system.parameters}
+    for coordinate, qdot, p in zip(system.coordinates, system.qdot, system.p, strict=True):
+        rows[coordinate.symbol.name] = coordinate.unit
+        rows[qdot.name] = f"{coordinate.unit}/s"
+        rows[p.name] = MOMENTUM_UNIT.get(coordinate.unit, f"J s/({coordinate.unit})")
+        for changed in (coordinate.symbol.name, qdot.name):
+            rows[f"delta_{changed}"] = rows[changed]
+        rows[f"sin_{coordinate.symbol.name}"] = rows[f"cos_{coordinate.symbol.name}"] = "1"
+    return rows
+
+
+def summary(contents: Contents) -> str:
+    """Coordinates, states, parameters, positions, Lagrangian and equations of motion."""
+    system, derivation = contents.system, contents.derivation
+    unit = units(system)
+    return "\n\n".join(
+        _section(title, lines)
+        for title, lines in {
+            "Coordinates q": (f"{c.symbol} [{c.unit}]: {c.meaning}" for c in system.coordinates),
+            **{
+                title: (f"{name} [{unit[name]}]" for name in contents.states[form])
+                for form, title in STATES.items()
+                if form in contents.states
+            },
+            "Parameters params": (
+                f"{p.symbol} [{p.unit}] {'> 0' if p.symbol.is_positive else 'real'}, "
+                f"default {p.default}: {p.meaning}"
+                for p in system.parameters
+            ),
+            "Masses and their positions": (mass.words for mass in system.masses),
+            **_equations(derivation),
+        }.items()
+    )
+
+
+def _equations(derivation: Derivation) -> dict[str, list[str]]:
+    """The Lagrangian and the equations of motion, of a system in which people can read them."""
+    if len(derivation.system.q) > READABLE:
+        return {}
+    return {
+        "Lagrangian": [f"L = {_text(derivation.lagrangian)}"],
+        "Equations of motion": [f"{_text(residual)} = 0" for residual in derivation.euler_lagrange],
+    }
+
+
+def broken_sum(text: str, width: int) -> str:
+    """A long expression over several lines, broken before a sign outside brackets."""
+    lines, depth, start = [""], 0, 0
+    for i, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        last = i + 1 == len(text)
+        if last or (depth == 0 and letter == " " and text[i + 1] in "+-"):
+            piece = text[start:] if last else text[start:i]
+            if lines[-1] and len(lines[-1]) + len(piece) > width:
+                lines.append(piece.lstrip())
+            else:
+                lines[-1] += piece
+            start = i
+    return "\n".join(lines)
+
+
+def _text(expression: sp.Expr) -> str:
+    return sp.sstr(expression, order="lex")
+
+
+def _section(title: str, lines: Iterable[str]) -> str:
+    broken = (indent(broken_sum(line, 84), " " * 8)[4:] for line in lines)
+    return "\n".join([f"{title}:", *broken])

@@ -1,0 +1,1 @@
+"""Commands that derive, list and verify systems."""

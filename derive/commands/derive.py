@@ -1,0 +1,146 @@
+"""``holonomic derive``: write the generated modules, or check that they are up to date."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from shlex import quote
+
+from derive.codegen.translation import UnsupportedFunctionError
+from derive.codegen.tree import Difference, Tree
+from derive.codegen.writing import texts
+from derive.mechanics.derivation import Derivation
+from derive.system.catalogue import UnknownSystemError, load, names
+from derive.system.parts import SystemDefinitionError
+from derive.system.system import System
+from derive.system.system_file import read_system
+
+EXAMPLE = """\
+examples:
+  holonomic derive                                  all systems, into the package `generated`
+  holonomic derive double_pendulum --output build   one system, as build/double_pendulum.py, .h
+  holonomic derive my_system.toml --output build    your own system
+  holonomic derive --check                          exit 1 if a file is not what this writes
+"""
+
+PACKAGE = '''"""Equations of motion as code, one module a system; see ``holonomic derive``."""
+
+
+__all__ = [
+{names}
+]
+'''
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run the command and return its exit code: 0, 1 (differences), 2 (input), 4 (files)."""
+    arguments = _parser().parse_args(argv)
+    try:
+        tree = planned(arguments.systems, arguments.output)
+        return _check(tree, arguments) if arguments.check else _write(tree)
+    except (UnknownSystemError, SystemDefinitionError, UnsupportedFunctionError) as error:
+        print(f"holonomic derive: {error}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        print(
+            f"holonomic derive: cannot write {error.filename}: {error.strerror}; "
+            "name a folder that can be written to with --output",
+            file=sys.stderr,
+        )
+        return 4
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="holonomic derive",
+        description="Derive systems from their positions; write Python modules and C headers.",
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "systems",
+        nargs="*",
+        metavar="SYSTEM",
+        help=f"one of {', '.join(names())}, or a TOML file of your own; default: all",
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit 1 and show what differs"
+    )
+    parser.add_argument(
+        "--output", type=Path, metavar="DIR", help="folder to write to; default: `generated`"
+    )
+    return parser
+
+
+def _write(tree: Tree) -> int:
+    written = tree.write()
+    kept = len(tree.texts) - len(written)
+    for path in written:
+        print(f"wrote {path}")
+    if kept:
+        print(f"{_files(kept)} in {tree.folder} already up to date")
+    for path in tree.orphans():
+        print(f"nothing generates {path}; remove it with: {_removal(path)}")
+    return 0
+
+
+def planned(systems: list[str], output: Path | None) -> Tree:
+    """What the folder should hold after the command."""
+    files: dict[str, str] = {}
+    for name in systems or names():
+        system = system_of(name)
+        if output is None and name not in names():
+            raise SystemDefinitionError(
+                f"{name} does not ship: say where to write its module, with --output DIR"
+            )
+        files |= texts(Derivation(system))
+    if output is not None:
+        return Tree(output, files, complete=False)
+    modules = "\n".join(f'    "{name}",' for name in names())
+    files |= {"__init__.py": PACKAGE.format(names=modules), "py.typed": ""}
+    return Tree(_package_folder(), files, complete=not systems)
+
+
+def system_of(name: str) -> System:
+    """The system of this name, or in this file where it ends in ``.toml``."""
+    return read_system(Path(name)) if name.endswith(".toml") else load(name)
+
+
+def _package_folder() -> Path:
+    spec = find_spec("generated")
+    if spec is None or not spec.submodule_search_locations:
+        return Path(__file__).parent.parent / "generated"
+    return Path(spec.submodule_search_locations[0])
+
+
+def _check(tree: Tree, arguments: argparse.Namespace) -> int:
+    differences = tree.differences()
+    for difference in differences:
+        print(f"{difference.path}: {difference.reason}")
+        print(difference.diff, end="")
+        print(f"  mend it with: {_mending(difference, arguments)}")
+    if not differences:
+        print(f"{_files(len(tree.texts))} in {tree.folder} as holonomic derive writes them")
+    return 1 if differences else 0
+
+
+def _files(count: int) -> str:
+    return "1 file" if count == 1 else f"{count} files"
+
+
+def _removal(path: Path) -> str:
+    return f"rm {'-r ' if path.is_dir() else ''}{quote(str(path))}"
+
+
+def _mending(difference: Difference, arguments: argparse.Namespace) -> str:
+    if difference.reason == "orphan":
+        return _removal(difference.path)
+    stem = difference.path.stem
+    systems = [name for name in arguments.systems or names() if Path(name).stem == stem]
+    output = ["--output", quote(str(arguments.output))] if arguments.output else []
+    return " ".join(["holonomic", "derive", *systems, *output])

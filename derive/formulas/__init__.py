@@ -1,0 +1,1 @@
+"""Formulas: parsing text safely, zero tests, and typesetting."""

@@ -1,0 +1,1 @@
+"""Mechanics: from positions to the Lagrangian and the equations of motion."""

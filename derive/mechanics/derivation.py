@@ -1,0 +1,340 @@
+"""From positions to motion, one textbook step after the other.
+
+Every step is a plain SymPy value: print it, compare it, or let a notebook set
+it as LaTeX. Time is one more coordinate that the Jacobians of the positions
+know, one whose velocity is 1: M̄ = Σ m J̄ᵀJ̄ with J̄ = ∂r/∂(q, t) holds the mass
+matrix, and beside it what moving pivots do. Everything after it follows from
+M̄, the potential and the applied forces alone (L. D. Landau, E. M. Lifshitz,
+Mechanics, § 5 and § 40; C. Lanczos, The Variational Principles of Mechanics,
+chapter VI, for time as a coordinate).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import TypeAlias
+
+import sympy as sp
+
+from derive.mechanics.independence import check_independence
+from derive.mechanics.linearisation import Linearisation, beyond_springs, linearised, resting
+from derive.mechanics.reduction import collected, reduced
+from derive.system.parts import SystemDefinitionError, formula
+from derive.system.symbols import TIME
+from derive.system.system import System
+
+Matrix: TypeAlias = sp.ImmutableDenseMatrix
+HALF = sp.Rational(1, 2)
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """The mechanics of `system`, derived when asked for.
+
+    Parameters
+    ----------
+    system : System
+        Positions, masses and potential.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When a coordinate moves no mass, or moves the masses only as others do, or has no
+        inertia that is a positive number.
+
+    Notes
+    -----
+    Velocities, accelerations and momenta are symbols of their own
+    (``system.qdot``, ``system.qddot``, ``system.p``), not functions of time.
+
+    Examples
+    --------
+    >>> from derive import load
+    >>> single = Derivation(load("single_pendulum"))
+    >>> single.lagrangian
+    g*l*m*cos(theta) + l**2*m*theta_dot**2/2
+    >>> single.accelerations[0]
+    -g*sin(theta)/l
+    """
+
+    system: System
+
+    def __post_init__(self) -> None:
+        check_independence(self.system, self.mass_matrix)
+
+    @cached_property
+    def position_jacobians(self) -> tuple[Matrix, ...]:
+        """J = ∂r/∂q of each mass, one row a component, one column a coordinate."""
+        q = self.system.q
+        return tuple(Matrix(mass.position).jacobian(q) for mass in self.system.masses)
+
+    @cached_property
+    def velocities(self) -> tuple[Matrix, ...]:
+        """Velocity J q̇ + ∂r/∂t of each mass, a column of two or three components."""
+        qdot = Matrix(self.system.qdot)
+        return tuple(
+            jacobian * qdot + Matrix(mass.position).diff(TIME)
+            for jacobian, mass in zip(self.position_jacobians, self.system.masses, strict=True)
+        )
+
+    @cached_property
+    def variables(self) -> tuple[sp.Symbol, ...]:
+        """Coordinates, time where positions depend on it, and lengths whose reactions are asked."""
+        positions = sp.Tuple(*(r for m in self.system.masses for _, r in m.motions))
+        time = (TIME,) if TIME in positions.free_symbols else ()
+        return (*self.system.q, *time, *self.system.reactions)
+
+    @cached_property
+    def rates(self) -> tuple[sp.Expr, ...]:
+        """Rates of change of the variables: q̇, 1 for time, 0 for what is held."""
+        n = len(self.system.q)
+        others = (sp.S.One if variable == TIME else sp.S.Zero for variable in self.variables[n:])
+        return (*self.system.qdot, *others)
+
+    @cached_property
+    def inertia(self) -> Matrix:
+        """M̄ = Σ m J̄ᵀJ̄ over all variables, symmetric; the mass matrix is its upper left part."""
+        motions = [motion for mass in self.system.masses for motion in mass.motions]
+
+        @cache
+        def slope(place: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+            # the places of a chain share most of their terms
+            if place.is_Add:
+                return sp.Add(*(slope(term, variable) for term in place.args))
+            return _derivative(place, variable)
+
+        tangents = [
+            [tuple(slope(r, v) for r in place) for v in self.variables] for _, place in motions
+        ]
+        dots: dict[object, sp.Expr] = {}
+
+        def entry(i: int, j: int) -> sp.Expr:
+            # masses below one joint share their dot products: reduce each product once
+            inertias: dict[sp.Expr, sp.Expr] = {}
+            for (inertia, _), tangent in zip(motions, tangents, strict=True):
+                pair = (tangent[i], tangent[j])
+                if pair not in dots:
+                    products = (a * b for a, b in zip(*pair, strict=True))
+                    dots[pair] = sp.factor_terms(reduced(sp.Add(*products)))
+                inertias[dots[pair]] = inertias.get(dots[pair], sp.S.Zero) + inertia
+            return sp.Add(*(total * dot for dot, total in inertias.items()))
+
+        n = len(self.variables)
+        upper = {(i, j): entry(i, j) for i in range(n) for j in range(i, n)}
+        return Matrix(n, n, lambda i, j: upper[min(i, j), max(i, j)])
+
+    @cached_property
+    def mass_matrix(self) -> Matrix:
+        """M(q, t), symmetric, n × n."""
+        n = len(self.system.q)
+        return self.inertia[:n, :n]
+
+    @cached_property
+    def kinetic_energy(self) -> sp.Expr:
+        """T = ½ q̇ᵀ M q̇, and with moving pivots what is linear in q̇ and free of it."""
+        return self._quadratic(len(self.variables))
+
+    def _quadratic(self, n: int) -> sp.Expr:
+        """½ vᵀ M̄ v of the first n variables."""
+        v, M = self.rates, self.inertia
+        return sp.Add(
+            *(M[i, i] * v[i] ** 2 / 2 for i in range(n)),
+            *(M[i, j] * v[i] * v[j] for i in range(n) for j in range(i + 1, n)),
+        )
+
+    @cached_property
+    def potential_energy(self) -> sp.Expr:
+        """V(q, t), one term for each function of the coordinates."""
+        return collected(self.system.potential_energy, *self.system.q)
+
+    @cached_property
+    def lagrangian(self) -> sp.Expr:
+        """L = T - V."""
+        return self.kinetic_energy - self.potential_energy
+
+    @cached_property
+    def effective_potential(self) -> sp.Expr:
+        """U(q, t) = V - T₀, with T₀ the kinetic energy of what moves though q̇ is 0."""
+        at_rest = dict.fromkeys(self.system.qdot, 0)
+        return self.potential_energy - self.kinetic_energy.subs(at_rest)
+
+    @cached_property
+    def energy(self) -> sp.Expr:
+        """Jacobi's integral q̇·∂L/∂q̇ - L: T + V where no position depends on time."""
+        return self._quadratic(len(self.system.q)) + self.effective_potential
+
+    @cached_property
+    def power(self) -> sp.Expr:
+        """Rate of the energy: work of the applied forces, and -∂L/∂t."""
+        work = (f * v for f, v in zip(self.system.applied, self.system.qdot, strict=True))
+        return sp.Add(*work) - self.lagrangian.diff(TIME)
+
+    @cached_property
+    def momenta(self) -> Matrix:
+        """Momenta p = ∂L/∂q̇ = M q̇ + b, a column; b is there where positions depend on time."""
+        return self.mass_matrix * Matrix(self.system.qdot) + self.drift
+
+    @cached_property
+    def drift(self) -> Matrix:
+        """Momenta b that are there though q̇ is 0, a column: Σ m Jᵀ ∂r/∂t."""
+        n, others = len(self.system.q), len(self.variables) - len(self.system.q)
+        return self.inertia[:n, n:] * Matrix(others, 1, self.rates[n:])
+
+    @cached_property
+    def forcing(self) -> Matrix:
+        """f(q, q̇, t) of M q̈ = f, a column: what is left of the Euler–Lagrange equations.
+
+        f_i = -Σ_jk Γ_ijk v_j v_k - ∂V/∂q_i + Q_i, with v the rates of all variables and
+        Γ_ijk Christoffel's symbols of the first kind of M̄.
+        """
+        return Matrix(
+            [
+                collected(
+                    applied - self._inertial(i) - self.potential_energy.diff(q),
+                    *self.system.q,
+                    *self.system.qdot,
+                )
+                for i, (q, applied) in enumerate(
+                    zip(self.system.q, self.system.applied, strict=True)
+                )
+            ]
+        )
+
+    def _inertial(self, i: int) -> sp.Expr:
+        """Σ Γ_ijk v_j v_k for the variable i."""
+        v, n = self.rates, len(self.variables)
+        return sp.Add(
+            *(
+                self._christoffel(i, j, k) * v[j] * v[k] * (1 if j == k else 2)
+                for j in range(n)
+                for k in range(j, n)
+            )
+        )
+
+    def _christoffel(self, i: int, j: int, k: int) -> sp.Expr:
+        """½ (∂M̄_ij/∂q_k + ∂M̄_ik/∂q_j - ∂M̄_jk/∂q_i)."""
+        q, M = self.variables, self.inertia
+        return HALF * (
+            _derivative(M[i, j], q[k]) + _derivative(M[i, k], q[j]) - _derivative(M[j, k], q[i])
+        )
+
+    @cached_property
+    def euler_lagrange(self) -> Matrix:
+        """Residuals d/dt ∂L/∂q̇ - ∂L/∂q - Q, a column; the motion makes them zero."""
+        return self.mass_matrix * Matrix(self.system.qddot) - self.forcing
+
+    @cached_property
+    def reactions(self) -> Matrix:
+        """Forces that hold the lengths asked for, a column: a rod's tension, positive if it pulls.
+
+        The multiplier of the constraint that a length l stays: with l free, it is what has
+        to be applied, -(d/dt ∂L/∂l̇ - ∂L/∂l) where l̇ and l̈ are 0. In q, q̇ and q̈.
+        """
+        first = len(self.variables) - len(self.system.reactions)
+        qddot = Matrix(self.system.qddot)
+        return Matrix(
+            [
+                -(self.inertia[i, : len(qddot)] * qddot)[0]
+                - self._inertial(i)
+                - self.potential_energy.diff(self.variables[i])
+                for i in range(first, len(self.variables))
+            ]
+        )
+
+    @cached_property
+    def _adjugate_and_determinant(self) -> tuple[Matrix, sp.Expr]:
+        # for reading only: the adjugate grows as n!, generated code solves M w = p instead
+        return self.mass_matrix.adjugate(), sp.factor_terms(reduced(self.mass_matrix.det()))
+
+    def _divided_by_mass(self, column: Matrix) -> Matrix:
+        adjugate, determinant = self._adjugate_and_determinant
+        state = self.system.q + self.system.qdot + self.system.p
+        return (adjugate * column).applyfunc(
+            lambda entry: sp.factor_terms(collected(entry, *state)) / determinant
+        )
+
+    @cached_property
+    def accelerations(self) -> Matrix:
+        """q̈ = M⁻¹ f, a column."""
+        return self._divided_by_mass(self.forcing)
+
+    @cached_property
+    def hamiltonian(self) -> sp.Expr:
+        """H(q, p, t) = ½ (p - b)ᵀ M⁻¹ (p - b) + U: the energy, as a function of the momenta."""
+        adjugate, determinant = self._adjugate_and_determinant
+        p = Matrix(self.system.p) - self.drift
+        numerator = collected((p.T * adjugate * p)[0, 0], *self.system.q, *self.system.p)
+        return sp.factor_terms(numerator) / (2 * determinant) + self.effective_potential
+
+    @cached_property
+    def hamilton_equations(self) -> tuple[Matrix, Matrix]:
+        """(q̇, ṗ) = (∂H/∂p, -∂H/∂q + Q), two columns; without applied forces, canonical."""
+        velocities = self._divided_by_mass(Matrix(self.system.p) - self.drift)
+        known = dict(zip(self.system.qdot, velocities, strict=True))
+        slopes = (
+            force.subs(known) - self.hamiltonian.diff(q)
+            for q, force in zip(self.system.q, self.system.applied, strict=True)
+        )
+        return velocities, Matrix(list(slopes))
+
+    def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
+        """Small motions about an equilibrium.
+
+        Parameters
+        ----------
+        equilibrium : sequence of sympy.Expr, optional
+            Coordinates at rest; by default the system's own equilibrium, or zeros.
+
+        Returns
+        -------
+        Linearisation
+            With M₀ and K, n × n.
+
+        Raises
+        ------
+        SystemDefinitionError
+            When a force is left at that place, or their number is wrong; when time, applied
+            forces or a rotation of the frame leave more than masses and springs.
+        """
+        return linearised(
+            self.system, self.mass_matrix, self.effective_potential, self.drift,
+            self._place(equilibrium),
+        )  # fmt: skip
+
+    @cached_property
+    def is_sprung(self) -> bool:
+        """Whether small motions are those of masses and springs alone."""
+        parts = self.mass_matrix, self.effective_potential, self.drift
+        return not any(beyond_springs(self.system, *parts).values())
+
+    @cached_property
+    def rest(self) -> tuple[sp.Expr, ...] | None:
+        """The system's equilibrium, or zeros if it stays there; None if none is known.
+
+        Raises
+        ------
+        SystemDefinitionError
+            When a force is left at the equilibrium that the system gives.
+        """
+        place = self._place(None)
+        try:
+            resting(self.system, self.effective_potential, self.drift, place)
+        except SystemDefinitionError:
+            if self.system.equilibrium is not None:
+                raise
+            return None
+        return place
+
+    def _place(self, equilibrium: Sequence[sp.Expr] | None) -> tuple[sp.Expr, ...]:
+        if equilibrium is None:
+            equilibrium = self.system.equilibrium
+        if equilibrium is None:
+            equilibrium = (sp.S.Zero,) * len(self.system.q)
+        return tuple(map(formula, equilibrium))
+
+
+def _derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+    """∂expression/∂symbol, at once where the symbol is not in it."""
+    return expression.diff(symbol) if symbol in expression.free_symbols else sp.S.Zero

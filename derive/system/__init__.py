@@ -1,0 +1,1 @@
+"""Mechanical systems: their parts, symbols, files and catalogue."""

@@ -1,0 +1,1 @@
+"""Verification of hand derivations, equation by equation."""

@@ -1,0 +1,105 @@
+"""The derivation beside the report: each step, the report's own lines, and what they are worth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from html import escape
+
+from derive.formulas.typesetting import Formula
+from derive.mechanics.derivation import Derivation
+from derive.mechanics.steps import Step, steps
+from derive.verification.report.equation import Verdict
+
+#: Where the report takes each step.
+PLACES = {
+    "Positions": "eq47 eq48 eq49 eq50",
+    "Velocities": "eq51 eq52 eq53 eq54",
+    "Energies": "eq55 eq56",
+    "Lagrangian": "eq57",
+    "Euler–Lagrange equations": "eq33 eq34 eq64 eq65",
+    "Mass matrix": "eq68 eq69 eq70 eq101 eq102 eq103 eq104",
+    "Momenta": "eq58 eq59",
+    "Hamiltonian": "eq75 eq82",
+    "Hamilton's equations": "eq80 eq81 A21 A22 eq83 eq84",
+}
+
+#: How steps and verdicts look; colours are the page's own, if it has any.
+STYLE = """\
+.step { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 30rem), 1fr));
+  gap: 0.25rem 2.5rem; }
+.formula { margin: 0.3rem 0; padding-left: 1.5rem; text-indent: -1.5rem; line-height: 1.9;
+  overflow-x: auto; overflow-y: hidden; }
+.formula math { text-indent: 0; padding: 0.15em 0;
+  font-family: "Latin Modern Math", "STIX Two Math", "Cambria Math", "DejaVu Math TeX Gyre", math; }
+.line { margin: 0.3rem 0; padding-left: 0.75rem; border-left: 0.2rem solid #009e73; }
+.line.misprint { border-color: #d55e00; }
+.line.definition, .line.context { border-color: #8a8f94; }
+.line p { margin: 0; font-size: 0.875rem; color: var(--faint, #57606a); }
+.verified .word { color: #00805d; } .misprint .word { color: #c25000; }
+.misprint .printed { opacity: 0.75; }
+"""
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A step, and the report's lines beside it; notebooks show both.
+
+    Attributes
+    ----------
+    step : Step
+        Ours.
+    verdicts : tuple of Verdict
+        On the report's lines.
+    """
+
+    step: Step
+    verdicts: tuple[Verdict, ...]
+
+    @property
+    def html(self) -> str:
+        """Two columns, which stand below each other where there is little room."""
+        ours = "".join(formula.html for formula in self.step.formulas)
+        theirs = "".join(map(line, self.verdicts))
+        return f'<div class="step"><div>{ours}</div><div>{theirs}</div></div>'
+
+    @property
+    def section(self) -> str:
+        """The same with its title and words."""
+        return f"<h3>{self.step.title}</h3><p>{self.step.words}</p>{self.html}"
+
+    def _repr_html_(self) -> str:
+        return f"<style>{STYLE}</style>{self.section}"
+
+
+def beside(
+    derivation: Derivation, verdict: Callable[[str], Verdict]
+) -> Iterator[Beside]:  # fmt: skip
+    """Every step of the double pendulum's derivation, with the report's lines.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        Of the double pendulum.
+    verdict : callable
+        Gives the verdict on an equation of the report by its id.
+
+    Yields
+    ------
+    Beside
+        From the positions to Hamilton's equations.
+    """
+    for step in steps(derivation):
+        yield Beside(step, tuple(map(verdict, PLACES[step.title].split())))
+
+
+def line(verdict: Verdict) -> str:
+    """A line of the report as HTML: what is printed, and what should be there."""
+    number = f"({verdict.id.removeprefix('eq')})"
+    note = f" – {escape(verdict.note)}" if verdict.note else ""
+    return (
+        f'<div class="line {verdict.verdict}"><p>{number} <span class="word">{verdict.verdict}'
+        f'</span>{note}</p><div class="printed">{Formula(verdict.printed).html}</div>'
+        + (f"<p>should be</p>{Formula(verdict.correction).html}" if verdict.correction else "")
+        + "</div>"
+    )

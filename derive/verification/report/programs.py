@@ -1,0 +1,237 @@
+"""The report's three Mathematica programs: what each solves, and what would stop it.
+
+The formulas are retyped in the language of `derive.formulas.expression`; of the programs'
+text only the lines that a finding rests on are quoted, with dots for what is
+beside the point. The report is known through character recognition, so that a
+bracket may have been lost on the way.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import asdict, dataclass, replace
+
+import sympy as sp
+
+from derive.formulas.expression import parsed
+from derive.formulas.zero import vanishes
+from derive.verification.report.contexts import double_pendulum
+
+OPENING = {"]": "[", "}": "{", ")": "("}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Masses in kg, lengths in m, gravity in m/s^2, start in rad and rad/s, duration in s."""
+
+    masses: tuple[sp.Expr, ...]
+    lengths: tuple[sp.Expr, ...]
+    gravity: sp.Expr
+    angles: tuple[sp.Expr, ...]
+    velocities: tuple[sp.Expr, ...]
+    duration: sp.Expr
+
+    def differences(self, other: Scene) -> tuple[str, ...]:
+        """In words, what is not as in `other`."""
+        mine, theirs = asdict(self), asdict(other)
+        return tuple(
+            f"{name}: {sp.sstr(mine[name])} instead of {sp.sstr(theirs[name])}"
+            for name in mine
+            if mine[name] != theirs[name]
+        )
+
+
+#: What chapters 3 to 5 say of all programs. They name no velocities; program 1 starts at rest.
+PROSE = Scene(
+    masses=(sp.S(1), sp.S(1)),
+    lengths=(sp.S(2), sp.S(2)),
+    gravity=sp.Rational("9.81"),
+    angles=(sp.pi / 2, sp.pi),
+    velocities=(sp.S(0), sp.S(0)),
+    duration=sp.S(5),
+)
+
+
+@dataclass(frozen=True)
+class Program:
+    """What was found about a program.
+
+    Attributes
+    ----------
+    id, title : str
+        Its number, and its place in the report.
+    solves : str
+        The equations that its formulas amount to.
+    scene : Scene
+        What it sets them to.
+    stops : tuple of str
+        What keeps it from running as printed.
+    differs : tuple of str
+        Where it is at odds with the prose, or with itself.
+    """
+
+    id: str
+    title: str
+    solves: str
+    scene: Scene
+    stops: tuple[str, ...]
+    differs: tuple[str, ...]
+
+
+def programs() -> list[Program]:
+    """The findings on all three programs, computed."""
+    return [_first(), _second(), _third()]
+
+
+def _first() -> Program:
+    equations = (
+        "2*theta1_ddot + theta2_ddot*cos(theta1 - theta2)"
+        " + theta2_dot**2*sin(theta1 - theta2) + 2*9.81*sin(theta1)",
+        "theta2_ddot + theta1_ddot*cos(theta1 - theta2)"
+        " - theta1_dot**2*sin(theta1 - theta2) + 9.81*sin(theta2)",
+    )
+    call = "NDSolve[ { ..., theta2'[0] == 0, {theta1[t], theta2[t], t}, {t, 0, 5} ]"
+    length = _length_solved(equations)
+    scene = replace(PROSE, lengths=(length, length))
+    return Program(
+        "program1",
+        "Appendix B, figure 1: Lagrangian",
+        f"the Euler-Lagrange equations of equal masses on rods of {length} m",
+        scene,
+        (
+            _bracket_fault(call),
+            *(
+                ["it asks NDSolve for the time itself as an unknown"]
+                if _asks_for_time(call)
+                else []
+            ),
+        ),
+        scene.differences(PROSE),
+    )
+
+
+def _second() -> Program:
+    # the Lagrangian from its positions, s (sin phi, -cos phi) and the same again
+    x1, y1 = "(l1*sin(phi1))", "(-l1*cos(phi1))"
+    x2, y2 = f"({x1} + l2*sin(phi2))", f"({y1} - l2*cos(phi2))"
+    lagrangian = (
+        f"m1/2*(ddt({x1})**2 + ddt({y1})**2) + m2/2*(ddt({x2})**2 + ddt({y2})**2)"
+        f" - g*(m1*{y1} + m2*{y2})"
+    )
+    right = double_pendulum(moving=False).judged(f"L = {lagrangian}").holds
+    text = "sol = First[NDSolve[...]]; x1[t] := Sin[phi1[t]] /. sol2; ... Plot[... /. sol, ...]"
+    scene = replace(PROSE, velocities=(sp.pi, 2 * sp.pi))
+    return Program(
+        "program2",
+        "Appendix B, figure 2: Euler-Lagrangian",
+        f"the Euler-Lagrange equations of {'the right' if right else 'a wrong'} Lagrangian",
+        scene,
+        (),
+        (
+            *scene.differences(PROSE),
+            *(
+                f"the bobs' coordinates need {name}, which is never assigned; no plot uses them"
+                for name in _missing(text)
+            ),
+            "these coordinates leave out the lengths: they would belong to rods of 1 m",
+            "its last plot is phi2 over phi1, not a path of the bobs",
+        ),
+    )
+
+
+def _third() -> Program:
+    f3 = (
+        "(-g*(2*m1 + m1)*sin(theta1) - m2*g*sin(theta1 - 2*theta2)"
+        " - 2*sin(theta1 - theta2)*m2*(theta2_dot**2*l2"
+        " + theta1_dot**2*l1*cos(theta1 - theta2)))"
+        "/(l1*(2*m1 + m2 - m2*cos(2*theta1 - 2*theta2)))"
+    )
+    f4 = (
+        "2*sin(theta1 - theta2)*(theta1_dot**2*l1*(m1 + m2) + g*(m1 + m2)*cos(theta1)"
+        " + theta2_dot**2*l2*m2*cos(theta1 - theta2))"
+        "/(l2*(2*m1 + m2 - m2*cos(2*theta1 - 2*theta2)))"
+    )
+    loop = (
+        "f1[t_, ...] := y; f2[t_, ...] := v; f3[t_, ...] := ...; f4[t_, ...] := ...; Do["
+        " {f1, k1, l1, m1} = Map[#][t, ...] &, {f1, f2, f3, f4}];"
+        " {f2, k2, l2, m2} = Map[#][..., x + h/2 * j1, ...] &, {f1, f2, f3, f4}];"
+        " {f3, k3, l3, m3} = Map[#][..., x + h/2 * j2, ...] &, {f1, f2, f3, f4}];"
+        " {f4, k4, l4, m4} = Map[#][..., x + h * j3, ...] &, {f1, f2, f3, f4}];"
+        " x = x + h * (j1 + 2 * j2 + 2 * j3 + j4) / 6; ... {...}], {i, 1, n}]"
+    )
+    assigned = re.findall(r"\{(\w+), \w+, \w+, \w+\} =", loop)
+    functions = set(re.findall(r"(\w+)\[t_", loop))
+    needed = sorted(set(re.findall(r"\bj\d", loop)) - set(assigned))
+    scene = replace(PROSE, angles=(sp.S(0), -sp.pi / 4), duration=sp.S(50))
+    return Program(
+        "program3",
+        "Appendix B, figures 3 and 4: Runge-Kutta",
+        f"accelerations: the first {_agreement('theta1_ddot', f3)}, "
+        f"the second {_agreement('theta2_ddot', f4)}; "
+        "5000 steps of the classical fourth-order rule, h = 0.01 s",
+        scene,
+        (
+            _bracket_fault(loop),
+            f"it assigns to its functions {', '.join(n for n in assigned if n in functions)}",
+            f"it never assigns to {', '.join(needed)}, which it needs",
+        ),
+        (
+            *scene.differences(PROSE),
+            "it has the fourth-order rule only, and eight plots of that one run: if the figures "
+            "RK1 to RK4 are methods of these orders, no program makes three of them",
+        ),
+    )
+
+
+def _length_solved(equations: tuple[str, ...]) -> sp.Expr:
+    """The common length of the rods for which `equations` are those of the derivation."""
+    scope = double_pendulum(moving=False).scope
+    length = sp.Symbol("length", positive=True)
+    values = {scope[f"m{i}"]: m for i, m in enumerate(PROSE.masses, 1)}
+    values |= {scope["l1"]: length, scope["l2"]: length, scope["g"]: PROSE.gravity}
+    lengths = [
+        set(sp.solve(parsed(text, scope) - sp.expand(scope[name].subs(values) / length**2), length))
+        for text, name in zip(equations, ("E1", "E2"), strict=True)
+    ]
+    (common,) = set.intersection(*lengths)
+    return common
+
+
+def _agreement(name: str, formula: str) -> str:
+    """How the accelerations of the derivation and a program's formula agree."""
+    context = double_pendulum(moving=True)
+    if context.judged(f"{name} = {formula}").holds:
+        return "is right"
+    derived = context.substitutions[-1][context.scope[name]]
+    difference = parsed(formula, context.scope) - derived
+    equal = vanishes(difference.subs(context.scope["m2"], context.scope["m1"]))
+    return (
+        "is right for equal masses only (2 m1 + m1 stands for 2 m1 + m2)" if equal else "is wrong"
+    )
+
+
+def _asks_for_time(call: str) -> bool:
+    """Whether the variable of the last list, the range, is also one of the unknowns."""
+    *_, unknowns, interval = re.findall(r"{([^{}]*)}", call)
+    return interval.split(",")[0] in unknowns.replace(" ", "").split(",")
+
+
+def _bracket_fault(text: str) -> str:
+    """The first bracket of `text` that does not match, in words."""
+    opened: list[tuple[str, int]] = []
+    for place, letter in enumerate(text):
+        if letter in OPENING.values():
+            opened.append((letter, place))
+        elif letter in OPENING:
+            if not opened:
+                return f"a {letter!r} too many, after: ...{text[:place][-40:]}"
+            bracket, start = opened.pop()
+            if bracket != OPENING[letter]:
+                return f"the {bracket!r} after {text[:start].strip()!r} is never closed"
+    return f"the {opened[-1][0]!r} at place {opened[-1][1]} is never closed" if opened else ""
+
+
+def _missing(text: str) -> list[str]:
+    """Names of solutions that are used, as in ``/. name``, and never assigned."""
+    used = sorted(set(re.findall(r"/\. (\w+)", text)))
+    return [name for name in used if not re.search(rf"\b{name} =", text)]

@@ -1,0 +1,13 @@
+from solvers.app.modules import build as build
+from solvers.app.modules import load as load
+from solvers.integration.ensemble import ensemble as ensemble
+from solvers.integration.events import Crossing as Crossing
+from solvers.integration.events import Extremum as Extremum
+from solvers.integration.integrate import integrate as integrate
+from solvers.integration.ode_solver import ode_solver as ode_solver
+from solvers.integration.prepare import prepare as prepare
+from solvers.integration.solution import Ensemble as Ensemble
+from solvers.integration.solution import Solution as Solution
+from solvers.integration.solution import Status as Status
+from solvers.scenes.scene import Scene as Scene
+from solvers.sweeps.run import sweep as sweep

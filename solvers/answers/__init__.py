@@ -1,1 +1,0 @@
-"""Scenes answered: by which model, with which motion, as text and as pictures."""

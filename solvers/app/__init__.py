@@ -1,0 +1,1 @@
+"""Application: the command line, the demonstration, and the verdict on the report."""

@@ -1,0 +1,98 @@
+"""What deriving a chain of pendulums costs, here and with SymPy's own mechanics."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+from sympy.core.cache import clear_cache
+from sympy.physics.mechanics import (
+    LagrangesMethod,
+    Lagrangian,
+    Particle,
+    Point,
+    ReferenceFrame,
+    dynamicsymbols,
+)
+
+from derive.codegen.c_backend import header
+from derive.codegen.functions import contents
+from derive.codegen.python_backend import module
+from derive.mechanics.derivation import Derivation
+from derive.system.catalogue import load
+
+
+def chain(n: int, form: str = "") -> tuple[float, float, str, str]:
+    """Seconds to derive and to emit a right-hand side of n pendulums, and both texts."""
+    clear_cache()  # SymPy remembers what it has computed
+    begin = time.perf_counter()
+    generated = contents(Derivation(load(f"chain_{n}")), (f"rhs{form}",))
+    derived = time.perf_counter()
+    python, c = module(generated), header(generated)
+    return derived - begin, time.perf_counter() - derived, python, c
+
+
+@dataclass(frozen=True)
+class Mechanics:
+    """A chain of pendulums by SymPy's own mechanics.
+
+    Attributes
+    ----------
+    mass_matrix, forcing : sympy.Matrix
+        Of the equations of first order: coordinates, then speeds.
+    coordinates, speeds : sequence
+        Functions of time.
+    constants : sequence of sympy.Symbol
+        Masses, lengths and g.
+    """
+
+    mass_matrix: sp.Matrix
+    forcing: sp.Matrix
+    coordinates: Sequence[Any]
+    speeds: Sequence[Any]
+    constants: Sequence[sp.Symbol]
+
+    @property
+    def rates(self) -> list[sp.Expr]:
+        """The equations, solved."""
+        return list(self.mass_matrix.LUsolve(self.forcing))
+
+
+def mechanics(n: int) -> Mechanics:
+    """Derive a chain of n pendulums, as SymPy's documentation does."""
+    method, q, constants = _lagranges_method(n)
+    speeds = dynamicsymbols(f"u1:{n + 1}")
+    named = dict(zip((angle.diff() for angle in q), speeds, strict=True))
+    mass_matrix, forcing = (m.subs(named) for m in (method.mass_matrix_full, method.forcing_full))
+    return Mechanics(mass_matrix, forcing, q, speeds, constants)
+
+
+def lagranges_method(n: int) -> float:
+    """Seconds until SymPy's ``LagrangesMethod`` and ``lambdify`` have M and f of n pendulums."""
+    clear_cache()
+    begin = time.perf_counter()
+    method, q, constants = _lagranges_method(n)
+    state = (q, [angle.diff() for angle in q], *constants)
+    sp.lambdify(state, (method.mass_matrix, method.forcing), cse=True)
+    return time.perf_counter() - begin
+
+
+def _lagranges_method(n: int) -> tuple[LagrangesMethod, list[Any], tuple[sp.Symbol, ...]]:
+    q, g = dynamicsymbols(f"theta1:{n + 1}"), sp.Symbol("g")
+    m, lengths = sp.symbols(f"m1:{n + 1}"), sp.symbols(f"l1:{n + 1}")
+    frame, pivot = ReferenceFrame("N"), Point("O")
+    pivot.set_vel(frame, 0)
+    x, y, bobs = sp.S.Zero, sp.S.Zero, []
+    for k in range(n):
+        x, y = x + lengths[k] * sp.sin(q[k]), y - lengths[k] * sp.cos(q[k])
+        place = pivot.locatenew(f"P{k}", x * frame.x + y * frame.y)
+        place.set_vel(frame, place.pos_from(pivot).dt(frame))
+        bob = Particle(f"bob{k}", place, m[k])
+        bob.potential_energy = m[k] * g * y
+        bobs.append(bob)
+    method = LagrangesMethod(Lagrangian(frame, *bobs), q)
+    method.form_lagranges_equations()
+    return method, q, (*m, *lengths, g)

@@ -1,0 +1,123 @@
+"""Generated modules by name, from a system file, or from a system; built when they do not ship."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING
+
+from solvers.equations.module import GeneratedModule
+from solvers.equations.module_cache import made
+from solvers.equations.specialise import needed, specialised
+from solvers.scenes.models.method_choice import Way
+
+if TYPE_CHECKING:
+    from derive import System
+
+#: The systems of modules that were built in this process, by the module's name.
+_systems: dict[str, System] = {}
+
+
+def load(name: str) -> GeneratedModule:
+    """The generated module of a system that ships, or of a system file.
+
+    Parameters
+    ----------
+    name : str
+        Name of a system, such as ``double_pendulum``, or of a member of a family, such as
+        ``chain_5``; or the path of a system file that ends in ``.toml``.
+
+    Returns
+    -------
+    module
+        As ``generated.double_pendulum``; what does not ship is kept in the user's cache.
+
+    Raises
+    ------
+    LookupError
+        When no system has this name.
+    ValueError
+        When the file does not exist or does not describe a system.
+    derive.codegen.translation.UnsupportedFunctionError
+        When its equations contain a power that generated code does not have, such as
+        ``x**(5/4)``.
+    OSError
+        When the module cannot be written to the cache.
+
+    Examples
+    --------
+    >>> chain = load("chain_4")
+    >>> chain.COORDINATES
+    ('theta1', 'theta2', 'theta3', 'theta4')
+    """
+    import generated
+
+    if name in {module.name for module in iter_modules(generated.__path__)}:
+        return import_module(f"generated.{name}")
+    from derive.commands.derive import system_of
+    from derive.system.catalogue import UnknownSystemError
+
+    try:
+        return build(system_of(name))
+    except UnknownSystemError as error:
+        raise LookupError(str(error)) from error
+
+
+def build(system: System) -> GeneratedModule:
+    """The generated module of a system, written to the user's cache if it is not there yet.
+
+    Parameters
+    ----------
+    system : derive.System
+        A mechanical system.
+
+    Returns
+    -------
+    module
+        Its equations of motion as functions, with the C header beside the module.
+
+    Raises
+    ------
+    derive.codegen.translation.UnsupportedFunctionError
+        When its equations contain a power that generated code does not have.
+    OSError
+        When the module cannot be written to the cache.
+    """
+    from derive import Derivation
+    from derive.codegen.writing import texts
+
+    # symbols of one name may differ in what they may be
+    assumptions = [(s.name, sorted(s.assumptions0.items())) for s in (*system.q, *system.params)]
+    key = f"{system!r}{assumptions}{generator_text()}"
+    module = made(system.name, key, lambda: texts(Derivation(system)))
+    _systems[module.__name__] = system
+    return module
+
+
+def specialiser(module: GeneratedModule, params: Sequence[float], way: Way) -> GeneratedModule:
+    """A module with these parameters folded in, and the functions that a method choice needs."""
+
+    def generator(
+        name: str, values: Mapping[str, float], functions: Sequence[str]
+    ) -> dict[str, str]:
+        from derive import Derivation
+        from derive.codegen.writing import texts
+        from derive.commands.derive import system_of
+        from derive.mechanics.specialisation import specialised
+
+        system = _systems.get(module.__name__) or system_of(name)
+        return texts(Derivation(specialised(system, values)), functions)
+
+    # the name of a module from the cache contains a digest of its system
+    version = module.__name__ + generator_text()
+    return specialised(module, params, needed(way.method, way.form), generator, version)
+
+
+@cache
+def generator_text() -> str:
+    """The source text of the generator: another text writes other modules."""
+    folder = Path(__file__).parents[2] / "derive"
+    return "".join(source.read_text(encoding="utf-8") for source in sorted(folder.rglob("*.py")))

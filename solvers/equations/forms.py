@@ -1,0 +1,184 @@
+"""Forms of the equations of motion: the state outside is always (q, q̇), inside it may differ.
+
+Of the variational form, both hold a small change of that state, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from solvers.equations.module import (
+    GeneratedModule,
+    function,
+    has_function,
+    named,
+    state_names,
+)
+
+Array = NDArray[np.float64]
+
+
+class Form:
+    """One form of a generated module's equations, with fixed parameters.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    name : str
+        ``lagrangian``, ``hamiltonian``, ``rational`` or ``variational``.
+    params : sequence of float or ndarray
+        In the order of ``module.PARAMETERS``; arrays if motions differ in them.
+
+    Attributes
+    ----------
+    function : callable
+        The generated right-hand side, of a time, a state as numbers, and parameters.
+    state, ordinary : tuple of str
+        What the state is made of, inside and outside.
+
+    Raises
+    ------
+    ValueError
+        When the module has no such form.
+    """
+
+    def __init__(self, module: GeneratedModule, name: str, params: Sequence[Any]) -> None:
+        if name not in module.FORMS:
+            raise ValueError(f"form {name!r}: {module.SYSTEM} has {', '.join(module.FORMS)}")
+        self.name, self.module, self.params = name, module, tuple(params)
+        self.function = function(module, named("rhs", name))
+        jacobian = named("jacobian", name)
+        self._jacobian = function(module, jacobian) if has_function(module, jacobian) else None
+        self.state: tuple[str, ...] = module.STATES[name]
+        self.ordinary = state_names(module, name)
+        # where angles stand outside, and their sines inside; the same for all that stays as it is
+        self.turning = [
+            (k, self.state.index(f"sin_{q}"))
+            for k, q in enumerate(module.COORDINATES)
+            if f"sin_{q}" in self.state
+        ]
+        self.kept = [
+            (k, self.state.index(part))
+            for k, part in enumerate(self.ordinary)
+            if part in self.state
+        ]
+
+    @property
+    def angles(self) -> list[tuple[int, int]]:
+        """For each angle known by sine and cosine: where in the state its sine and velocity are."""
+        half = len(self.module.COORDINATES)
+        rates = dict(self.kept)
+        return [(i, rates[half + k]) for k, i in self.turning]
+
+    def where(self, component: str) -> tuple[bool, int] | None:
+        """Which angle an ordinary component is, or else which number of this state."""
+        k = self.ordinary.index(component)
+        turning = [angle for angle, _ in self.turning]
+        if k in turning:
+            return True, turning.index(k)
+        return (False, dict(self.kept)[k]) if k in dict(self.kept) else None
+
+    @property
+    def has_jacobian(self) -> bool:
+        """Whether implicit methods can solve their stages in this form."""
+        return self._jacobian is not None
+
+    def rhs(self, t: float, z: Array) -> Array:
+        """The right-hand side."""
+        return np.array(self.function(t, z, self.params))
+
+    def jacobian(self, t: float, z: Array) -> Array:
+        """Its Jacobian."""
+        assert self._jacobian is not None
+        return np.array(self._jacobian(t, z, self.params))
+
+    def inside(self, t: float, y: Array) -> Array:
+        """The state of this form that belongs to the ordinary state `y` at time `t`."""
+        if self.name == "hamiltonian":
+            return np.array(function(self.module, "hamiltonian_state")(t, y, self.params))
+        return self._regrouped(y[np.newaxis])[0]
+
+    def _regrouped(self, y: Array) -> Array:
+        z = np.empty((len(y), len(self.state)))
+        for k, i in self.kept:
+            z[:, i] = y[:, k]
+        for k, i in self.turning:
+            z[:, i], z[:, i + 1] = np.sin(y[:, k]), np.cos(y[:, k])
+        return z
+
+    def settled(self, z: Array) -> Array:
+        """`z` with sin² + cos² = 1 restored to rounding."""
+        z = z.copy()
+        for _, i in self.turning:
+            z[i : i + 2] /= np.hypot(z[i], z[i + 1])
+        return z
+
+    def outside(self, t: float, z: Array, before: Array, elapsed: float) -> Array:
+        """The ordinary state of `z` at time `t`.
+
+        Turns of angles that are known by sine and cosine only are counted from the
+        state `before`, `elapsed` seconds ago, with the mean of both velocities.
+
+        Parameters
+        ----------
+        t : float
+            In s.
+        z : ndarray of shape (inside,)
+            A state of this form.
+        before : ndarray of shape (state,)
+            An ordinary state not long before.
+        elapsed : float
+            Time since then in s, negative backwards.
+
+        Returns
+        -------
+        ndarray of shape (state,)
+            In the order of ``ordinary``; rad, m, rad/s and m/s.
+        """
+        if self.name == "hamiltonian":
+            return np.array(function(self.module, "lagrangian_state")(t, z, self.params))
+        y = np.empty_like(before)
+        for k, i in self.kept:
+            y[k] = z[i]
+        half = len(self.module.COORDINATES)
+        for k, i in self.turning:
+            angle = np.arctan2(z[i], z[i + 1])
+            expected = before[k] + elapsed * (before[half + k] + y[half + k]) / 2
+            y[k] = angle + 2 * np.pi * np.round((expected - angle) / (2 * np.pi))
+        return y
+
+    def inside_many(self, t: ArrayLike, y: Array) -> tuple[Array, Array]:
+        """As `inside`, of states (n, state); and the turns of angles, shape (n, angles)."""
+        if self.name == "hamiltonian":
+            return self._many("hamiltonian_state_many", t, y), np.empty((len(y), 0))
+        z = self._regrouped(y)
+        wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.turning]
+        turns = np.reshape(wrapped, (len(self.turning), len(y))).T / (2 * np.pi)
+        return z, np.round(turns)
+
+    def _many(self, name: str, t: ArrayLike, states: Array) -> Array:
+        """A function of the module over states in rows; what is not a number stays so."""
+        params = [np.asarray(p, float) for p in self.params]
+        with np.errstate(all="ignore"):
+            return np.asarray(function(self.module, name)(t, states.T, params)).T
+
+    def outside_many(self, t: ArrayLike, z: Array, turns: Array) -> Array:
+        """The ordinary states, shape (n, state), of `z` and `turns` as `inside_many` gives them."""
+        if self.name == "hamiltonian":
+            return self._many("lagrangian_state_many", t, z)
+        y = np.empty((len(z), len(self.ordinary)))
+        for k, i in self.kept:
+            y[:, k] = z[:, i]
+        for (k, i), whole in zip(self.turning, turns.T, strict=True):
+            y[:, k] = np.arctan2(z[:, i], z[:, i + 1]) + 2 * np.pi * whole
+        return y
+
+
+def fastest_form(module: GeneratedModule) -> str:
+    """The form that a compiled loop runs fastest."""
+    return "rational" if "rational" in module.FORMS else "lagrangian"

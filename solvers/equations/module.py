@@ -1,0 +1,159 @@
+"""The contract between generated modules and solvers: what every generated module has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol, cast
+
+from numpy.typing import ArrayLike, NDArray
+
+Numbers = Iterable[float]
+Arrays = Sequence[Any] | NDArray[Any]
+Array = NDArray[Any]
+
+
+class GeneratedModule(Protocol):
+    """A module written by ``holonomic derive``, such as ``generated.double_pendulum``.
+
+    Functions take ``(t, y, params)``; those of the parameters alone take ``(params)``. With
+    ``_many`` after its name a function takes arrays whose first axis is the state. The functions
+    below exist for every system; for others see `has_function`.
+
+    Attributes
+    ----------
+    SYSTEM : str
+        Name of the system.
+    COORDINATES, STATE, PARAMETERS : tuple of str
+        Names of the coordinates, of the components of a state (q, q̇), and of the parameters.
+    STATES : dict of str to tuple of str
+        Names of the components of ``y`` in each form of the equations.
+    FORMS : tuple of str
+        The forms that exist: ``lagrangian`` and maybe ``hamiltonian``, ``rational``,
+        ``variational``.
+    DEFAULTS : tuple of float
+        Default values of the parameters.
+    POSITIVE : tuple of str
+        Parameters that must be positive.
+    UNITS : dict of str to str
+        Unit of every coordinate, state component and parameter.
+    OPERATIONS : dict of str to pair of int
+        For every function the operations of a call, and how many of these depend on parameters
+        alone. Its keys are the functions that exist.
+    CALLS_FUNCTIONS : tuple of str
+        Functions that call the mathematical library, and so cannot take vectors in C.
+    TIMED : tuple of str
+        Functions whose value depends on time.
+    """
+
+    __name__: str
+
+    @property
+    def __file__(self) -> str | None: ...
+    @property
+    def SYSTEM(self) -> str: ...
+    @property
+    def COORDINATES(self) -> tuple[str, ...]: ...
+    @property
+    def STATE(self) -> tuple[str, ...]: ...
+    @property
+    def STATES(self) -> Mapping[str, tuple[str, ...]]: ...
+    @property
+    def FORMS(self) -> tuple[str, ...]: ...
+    @property
+    def PARAMETERS(self) -> tuple[str, ...]: ...
+    @property
+    def DEFAULTS(self) -> tuple[float, ...]: ...
+    @property
+    def POSITIVE(self) -> tuple[str, ...]: ...
+    @property
+    def UNITS(self) -> Mapping[str, str]: ...
+    @property
+    def OPERATIONS(self) -> Mapping[str, tuple[int, int]]: ...
+    @property
+    def CALLS_FUNCTIONS(self) -> tuple[str, ...]: ...
+    @property
+    def TIMED(self) -> tuple[str, ...]: ...
+
+    def rhs(self, t: float, y: Numbers, params: Numbers) -> tuple[float, ...]: ...
+    def rhs_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
+    def jacobian(self, t: float, y: Numbers, params: Numbers) -> tuple[tuple[float, ...], ...]: ...
+    def jacobian_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
+    def energy(self, t: float, y: Numbers, params: Numbers) -> float: ...
+    def energy_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
+    def mass_matrix(
+        self, t: float, y: Numbers, params: Numbers
+    ) -> tuple[tuple[float, ...], ...]: ...
+    def mass_matrix_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
+    def positions(self, t: float, y: Numbers, params: Numbers) -> tuple[tuple[float, ...], ...]: ...
+    def positions_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
+    def hamiltonian_state(self, t: float, y: Numbers, params: Numbers) -> tuple[float, ...]: ...
+    def hamiltonian_state_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
+    def rhs_hamiltonian(self, t: float, y: Numbers, params: Numbers) -> tuple[float, ...]: ...
+    def rhs_hamiltonian_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
+    def lagrangian_state(self, t: float, y: Numbers, params: Numbers) -> tuple[float, ...]: ...
+    def lagrangian_state_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
+    def params(self, **values: float) -> tuple[float, ...]: ...
+    def __hash__(self) -> int: ...
+
+
+def has_function(module: GeneratedModule, name: str) -> bool:
+    """Whether a generated module has the function `name`, and so ``name_many``."""
+    return name in module.OPERATIONS
+
+
+def function(module: GeneratedModule, name: str) -> Callable[..., Any]:
+    """The function `name` of a generated module.
+
+    Parameters
+    ----------
+    module : GeneratedModule
+        A generated module.
+    name : str
+        A key of ``module.OPERATIONS``, or one of these with ``_many`` after it.
+
+    Returns
+    -------
+    callable
+        The function.
+
+    Raises
+    ------
+    ValueError
+        When the module does not have it.
+    """
+    if not has_function(module, name.removesuffix("_many")):
+        raise ValueError(
+            f"{module.SYSTEM} has no function {name!r}; it has {', '.join(module.OPERATIONS)}"
+        )
+    return cast("Callable[..., Any]", getattr(module, name))
+
+
+def named(stem: str, form: str) -> str:
+    """The name of a function in a form: ``rhs`` in Lagrange's form, else ``rhs_rational`` etc."""
+    return stem if form == "lagrangian" else f"{stem}_{form}"
+
+
+def operations_on_state(module: GeneratedModule, name: str) -> int:
+    """Operations of a call, without those on parameters alone, which are done once a run."""
+    total, on_parameters = module.OPERATIONS[name]
+    return total - on_parameters
+
+
+def depends_on_time(module: GeneratedModule) -> bool:
+    """Whether the equations of motion do."""
+    return "rhs" in module.TIMED
+
+
+def header(module: GeneratedModule) -> Path | None:
+    """The C header beside a generated module; None where there is no such file."""
+    if module.__file__ is None:
+        return None
+    path = Path(module.__file__).with_suffix(".h")
+    return path if path.is_file() else None
+
+
+def state_names(module: GeneratedModule, form: str) -> tuple[str, ...]:
+    """Names of an ordinary state: (q, q̇), and of the variational form a small change of it."""
+    changes = [f"delta_{name}" for name in module.STATE]
+    return (*module.STATE, *(changes if form == "variational" else ()))

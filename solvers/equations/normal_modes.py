@@ -1,0 +1,94 @@
+"""The modes of a system: how it oscillates about rest, and frozen along a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+
+from solvers.equations.module import GeneratedModule, function, has_function
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Small oscillations about a stable equilibrium: M₀ ẍ + K x = 0.
+
+    Attributes
+    ----------
+    mass_matrix, stiffness_matrix : ndarray of shape (n, n)
+        M₀ and K.
+    frequencies : ndarray of shape (n,)
+        ω in rad/s, ascending; the eigenvalues of the equations of motion are ±iω.
+    shapes : ndarray of shape (n, n)
+        A column for each mode, with unit mass: shapesᵀ M₀ shapes = 1.
+    """
+
+    mass_matrix: Array
+    stiffness_matrix: Array
+    frequencies: Array
+    shapes: Array
+
+    @classmethod
+    def at_rest(cls, module: GeneratedModule, params: Sequence[float]) -> Modes:
+        """The modes about the equilibrium that the module's ``linear`` is written for.
+
+        Parameters
+        ----------
+        module : module
+            A generated module.
+        params : sequence of float
+            In the order of ``module.PARAMETERS``.
+
+        Returns
+        -------
+        Modes
+            From slow to fast.
+
+        Raises
+        ------
+        ValueError
+            When the module knows no equilibrium, or it is not stable, or a mode has no mass.
+        """
+        name = module.SYSTEM
+        if not has_function(module, "linear"):
+            raise ValueError(f"{name} has no equilibrium: small motions have no modes")
+        mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
+        squares, shapes = eigh(stiffness_matrix, mass_matrix)
+        if squares[0] <= 0:
+            raise ValueError(f"{name} does not oscillate about rest with {params}: "
+                             f"squared frequencies are {squares}")  # fmt: skip
+        return cls(mass_matrix, stiffness_matrix, np.sqrt(squares), shapes)
+
+    @property
+    def matrix(self) -> Array:
+        """A of y' = A y for y = (x, ẋ)."""
+        n = len(self.frequencies)
+        acceleration = -np.linalg.solve(self.mass_matrix, self.stiffness_matrix)
+        return np.block([[np.zeros((n, n)), np.eye(n)], [acceleration, np.zeros((n, n))]])
+
+    def size(self, y: Array) -> float:
+        """√(2 energy) of y = (x, ẋ) in small motion."""
+        x, velocity = np.split(y, 2)
+        twice = velocity @ self.mass_matrix @ velocity + x @ self.stiffness_matrix @ x
+        return float(np.sqrt(twice))
+
+
+def along(
+    module: GeneratedModule, params: Sequence[float], states: Array
+) -> NDArray[np.complex128]:
+    """Eigenvalues of the Lagrangian form linearised at each of `states`, shape (n, state)."""
+    return np.array([np.linalg.eigvals(np.array(module.jacobian(0.0, y, params))) for y in states])
+
+
+def mode_spread(module: GeneratedModule, params: Sequence[float]) -> float:
+    """How many times as fast as the slowest mode about rest the fastest is; 1 if none is known."""
+    try:
+        frequencies = Modes.at_rest(module, params).frequencies
+    except ValueError:
+        return 1.0
+    return float(frequencies[-1] / frequencies[0])

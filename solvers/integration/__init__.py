@@ -1,0 +1,1 @@
+"""Integration of equations of motion: one motion, many motions, and prepared loops."""

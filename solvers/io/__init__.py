@@ -1,0 +1,1 @@
+"""Input and output: TOML files, quantities, atomic writes, caches, figures and progress."""

@@ -1,0 +1,46 @@
+"""Names of a package that are imported when they are first used."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+
+def attach(
+    package: str, stub: Path
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """``__getattr__``, ``__dir__`` and ``__all__`` of a package, read from its stub file.
+
+    The stub (``__init__.pyi``) is what editors and type checkers read, so that the names of a
+    package and their homes are written once.
+
+    Parameters
+    ----------
+    package : str
+        Name of the package.
+    stub : pathlib.Path
+        Its stub: lines such as ``from derive.system.parts import PointMass as PointMass``.
+
+    Returns
+    -------
+    getattr, dir : callable
+        What the package calls ``__getattr__`` and ``__dir__``.
+    all : list of str
+        The names.
+    """
+    homes = {
+        alias.name: str(node.module)
+        for node in ast.parse(stub.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+
+    def lookup(name: str) -> Any:
+        if name not in homes:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        return getattr(import_module(homes[name]), name)
+
+    return lookup, lambda: sorted(homes), sorted(homes)

@@ -1,0 +1,1 @@
+"""Runge–Kutta methods: tableaus, order conditions, stability functions, steps and step control."""

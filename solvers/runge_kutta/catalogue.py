@@ -1,0 +1,50 @@
+"""The methods that ship with holonomic, found by their files' names."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from pkgutil import iter_modules
+
+from solvers.io.suggestion import near
+from solvers.runge_kutta import methods
+from solvers.runge_kutta.tableau import Tableau
+
+#: Methods of SciPy's ``solve_ivp``.
+SCIPY = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
+
+
+class UnknownMethodError(ValueError):
+    """No method has this name; the message lists those that exist."""
+
+
+def names() -> tuple[str, ...]:
+    """Names of all methods, in alphabetical order."""
+    return tuple(sorted(module.name for module in iter_modules(methods.__path__)))
+
+
+@cache
+def load(name: str) -> Tableau:
+    """The method called `name`.
+
+    Parameters
+    ----------
+    name : str
+        One of `names`, such as ``verner87``; SciPy's methods are none of them.
+
+    Returns
+    -------
+    Tableau
+
+    Raises
+    ------
+    UnknownMethodError
+        When no file is called so.
+    """
+    if name not in names():
+        raise UnknownMethodError(
+            f"no method is called {name[:50]!r}{near(name, names())}; known are: "
+            f"{', '.join(names())}"
+        )
+    tableau: Tableau = import_module(f"solvers.runge_kutta.methods.{name}").tableau
+    return tableau

@@ -1,0 +1,13 @@
+"""The explicit midpoint rule, order 2.
+
+C. Runge, Ueber die numerische Aufloesung von Differentialgleichungen, Mathematische Annalen 46
+(1895) 167-178.
+"""
+
+from solvers.runge_kutta.tableau import Tableau
+
+tableau = Tableau.explicit(
+    "Explicit midpoint",
+    rows="1/2",
+    b="0 1",
+)

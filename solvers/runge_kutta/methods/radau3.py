@@ -1,0 +1,22 @@
+"""Radau IIA with three stages: order 5, stiffly accurate, L-stable.
+
+E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, table IV.5.6.
+"""
+
+from fractions import Fraction
+
+from solvers.runge_kutta.surd import Surd
+from solvers.runge_kutta.tableau import Tableau
+
+r = Surd.root(6)
+last = ((16 - r) / 36, (16 + r) / 36, Fraction(1, 9) + 0 * r)
+
+tableau = Tableau(
+    "Radau IIA, 3 stages",
+    A=(
+        ((88 - 7 * r) / 360, (296 - 169 * r) / 1800, (-2 + 3 * r) / 225),
+        ((296 + 169 * r) / 1800, (88 + 7 * r) / 360, (-2 - 3 * r) / 225),
+        last,
+    ),
+    b=last,
+)

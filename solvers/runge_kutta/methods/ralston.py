@@ -1,0 +1,13 @@
+"""Ralston's method: of the two-stage rules of order 2, the one with the least error bound.
+
+A. Ralston, Runge-Kutta methods with minimum error bounds, Mathematics of Computation 16 (1962)
+431-437.
+"""
+
+from solvers.runge_kutta.tableau import Tableau
+
+tableau = Tableau.explicit(
+    "Ralston",
+    rows="2/3",
+    b="1/4 3/4",
+)

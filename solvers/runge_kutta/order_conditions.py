@@ -1,0 +1,137 @@
+"""The order of a Runge–Kutta method, by rooted trees.
+
+A method has order p when Σ b Φ(τ) = 1/γ(τ) for every rooted tree τ with at most
+p nodes (J. C. Butcher, Numerical Methods for Ordinary Differential Equations,
+section 315; E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential
+Equations I, theorem II.2.13). Exact coefficients must fulfil them exactly;
+published decimals to what their last digits leave open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from functools import cache
+from itertools import combinations_with_replacement
+from math import prod
+from typing import Any, TypeAlias
+
+#: A coefficient: Fraction, Surd or Decimal, of one kind in a method.
+Number: TypeAlias = Any
+Tree = tuple["Tree", ...]  # a root's branches, in descending order of size
+
+#: Digits that computations with rounded decimals carry.
+WORKING_DIGITS = 110
+
+
+def order(A: Sequence[Sequence[Number]], b: Sequence[Number], most: int = 12) -> int:
+    """The order of the method with stage matrix `A` and weights `b`, at most `most`.
+
+    The nodes are taken to be the row sums of A.
+
+    Parameters
+    ----------
+    A : sequence of sequences
+        Stage matrix, stages × stages, of exact numbers (`fractions.Fraction`,
+        `solvers.runge_kutta.surd.Surd`) or of decimals with all their published digits.
+    b : sequence
+        Weights, stages of them, of the same kind.
+    most : int
+        Trees with more nodes are not looked at.
+
+    Returns
+    -------
+    int
+        0 if the weights do not even add up to 1.
+
+    Raises
+    ------
+    ValueError
+        When `A` is not stages × stages.
+    TypeError
+        When fractions and decimals stand beside each other.
+    """
+    with localcontext() as context:
+        context.prec = WORKING_DIGITS
+        conditions = _Conditions(A, b)
+        for p in range(1, most + 1):
+            if not all(map(conditions.hold, trees(p))):
+                return p - 1
+    return most
+
+
+@cache
+def trees(size: int) -> tuple[Tree, ...]:
+    """All rooted trees with `size` nodes; there are 1, 1, 2, 4, 9, 20, 48, 115, ... of them."""
+    return tuple(_forests(size - 1, size - 1))
+
+
+def _forests(nodes: int, largest: int) -> Iterator[Tree]:
+    """Multisets of trees with `nodes` nodes together, none larger than `largest`."""
+    if nodes == 0:
+        yield ()
+    for size in range(min(nodes, largest), 0, -1):
+        for count in range(nodes // size, 0, -1):
+            for chosen in combinations_with_replacement(trees(size), count):
+                for rest in _forests(nodes - size * count, size - 1):
+                    yield chosen + rest
+
+
+@cache
+def _nodes(tree: Tree) -> int:
+    return 1 + sum(map(_nodes, tree))
+
+
+@cache
+def density(tree: Tree) -> int:
+    """γ: the product of the sizes of all subtrees that hang from a node."""
+    return _nodes(tree) * prod(map(density, tree))
+
+
+class _Conditions:
+    """The order conditions of one method, with what trees have in common computed once."""
+
+    def __init__(self, A: Sequence[Sequence[Number]], b: Sequence[Number]) -> None:
+        self._A, self._b = A, b
+        self._zero = b[0] - b[0]
+        self._stage_weights: dict[Tree, list[Number]] = {}
+        decimals = [x for x in (*(x for row in A for x in row), *b) if isinstance(x, Decimal)]
+        self._digits = max((_digits(x) for x in decimals), default=0)
+        self._magnitudes = (
+            _Conditions([[abs(x) for x in row] for row in A], [abs(x) for x in b])
+            if any(x < 0 for x in decimals)
+            else self
+        )
+
+    def weight(self, tree: Tree) -> Number:
+        """Σ b Φ(tree)."""
+        return sum((w * x for w, x in zip(self._b, self._at_stages(tree), strict=True)), self._zero)
+
+    def hold(self, tree: Tree) -> bool:
+        """Whether the condition of `tree` is fulfilled."""
+        if not self._digits:
+            return bool(self.weight(tree) == Fraction(1, density(tree)))
+        residual = abs(self.weight(tree) - Decimal(1) / density(tree))
+        # every factor is rounded in its last digit, of which one or two may be lost in print
+        last_digit = Decimal(10) ** (2 - self._digits)
+        return bool(residual <= 2 * _nodes(tree) * last_digit * self._magnitudes.weight(tree))
+
+    def _at_stages(self, tree: Tree) -> list[Number]:
+        """Φ of each stage: the product over branches of A Φ(branch)."""
+        if tree not in self._stage_weights:
+            weights = [self._zero + 1] * len(self._b)
+            for branch in tree:
+                inner = self._at_stages(branch)
+                weights = [
+                    w * sum((a * x for a, x in zip(row, inner, strict=True) if a), self._zero)
+                    for w, row in zip(weights, self._A, strict=True)
+                ]
+            self._stage_weights[tree] = weights
+        return self._stage_weights[tree]
+
+
+def _digits(number: Decimal) -> int:
+    """Significant digits as printed; quotients, which fill the working digits, aside."""
+    digits = len(number.as_tuple().digits)
+    return digits if digits < WORKING_DIGITS else 0

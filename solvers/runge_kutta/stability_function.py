@@ -1,0 +1,122 @@
+"""What a step does to y' = λy: it multiplies y by R(hλ), a rational function known exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from functools import cached_property
+from math import factorial, sqrt
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solvers.runge_kutta.sturm import first_fall
+from solvers.runge_kutta.surd import Surd
+from solvers.runge_kutta.tableau import Tableau
+
+Polynomial = tuple[Fraction, ...]  # coefficients of z⁰, z¹, …
+
+
+@dataclass(frozen=True)
+class StabilityFunction:
+    """R(z) = numerator / denominator.
+
+    Parameters
+    ----------
+    numerator, denominator : tuple of Fraction
+        Coefficients of z⁰, z¹, ….
+
+    Examples
+    --------
+    >>> from solvers.runge_kutta.catalogue import load
+    >>> function = StabilityFunction.of(load("rk4"))
+    >>> [str(c) for c in function.numerator]
+    ['1', '1', '1/2', '1/6', '1/24']
+    >>> round(function.imaginary_stability_interval, 6)
+    2.828427
+    """
+
+    numerator: Polynomial
+    denominator: Polynomial
+
+    @classmethod
+    def of(cls, tableau: Tableau) -> StabilityFunction:
+        """The stability function of a method.
+
+        Where coefficients are published as rounded decimals, those of R up to the
+        method's order are 1/k! nevertheless, since its order is proved.
+
+        Parameters
+        ----------
+        tableau : Tableau
+            The method's coefficients.
+
+        Returns
+        -------
+        StabilityFunction
+            With a constant denominator 1 for explicit methods.
+        """
+        numerator, denominator = ([_fraction(x) for x in part] for part in
+                                  tableau.stability_function)  # fmt: skip
+        if isinstance(tableau.b[0], Decimal):
+            for k in range(tableau.order + 1):
+                numerator[k] = Fraction(1, factorial(k))
+        return cls(tuple(numerator), tuple(denominator))
+
+    def __call__(self, z: ArrayLike) -> Any:
+        """R(z) for complex z, in floating-point numbers."""
+        numerator, denominator = (
+            np.polyval([float(c) for c in reversed(part)], np.asarray(z))
+            for part in (self.numerator, self.denominator)
+        )
+        return numerator / denominator
+
+    @cached_property
+    def real_stability_interval(self) -> float:
+        """The largest x with |R| ≤ 1 on [-x, 0]; infinity if there is no largest."""
+        P, Q = (_reflected(part) for part in (self.numerator, self.denominator))
+        return first_fall(_difference(_product(Q, Q), _product(P, P)))
+
+    @cached_property
+    def imaginary_stability_interval(self) -> float:
+        """The largest y with |R| ≤ 1 on [-iy, iy]; infinity if there is no largest."""
+        # |Q(iy)|² - |P(iy)|² is a polynomial in y²
+        P, Q = (_square_on_imaginary_axis(part) for part in (self.numerator, self.denominator))
+        return sqrt(first_fall(_difference(Q, P)))
+
+
+def _fraction(number: Fraction | Surd | Decimal) -> Fraction:
+    if isinstance(number, Surd):
+        assert number.b == 0  # conjugate stages: R has rational coefficients
+        return number.a
+    if isinstance(number, Decimal):
+        # rounded at its publication: what is below 30 digits means nothing
+        return Fraction(round(Fraction(number) * 10**30), 10**30)
+    return Fraction(number)
+
+
+def _reflected(p: Polynomial) -> Polynomial:
+    return tuple(c if k % 2 == 0 else -c for k, c in enumerate(p))
+
+
+def _product(p: Sequence[Fraction], q: Sequence[Fraction]) -> Polynomial:
+    result = [Fraction(0)] * (len(p) + len(q) - 1)
+    for i, a in enumerate(p):
+        for j, b in enumerate(q):
+            result[i + j] += a * b
+    return tuple(result)
+
+
+def _difference(p: Polynomial, q: Polynomial) -> Polynomial:
+    size = max(len(p), len(q))
+    padded = ([*part, *[Fraction(0)] * (size - len(part))] for part in (p, q))
+    return tuple(a - b for a, b in zip(*padded, strict=True))
+
+
+def _square_on_imaginary_axis(p: Polynomial) -> Polynomial:
+    """|p(iy)|² = p(z) p(-z) at z = iy, as a polynomial in y²."""
+    even = _product(p, _reflected(p))[::2]  # in z², and z² = -y²
+    return _reflected(even)

@@ -1,0 +1,188 @@
+"""A Runge–Kutta method is its coefficients; everything else follows from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from functools import cached_property
+
+from solvers.runge_kutta.order_conditions import WORKING_DIGITS, Number, order
+
+#: A decimal with more digits than this is a rounded one, a shorter one is meant exactly.
+LONG = 20
+#: Coefficients of R(z) below this come from rounded decimals: they stand for 0.
+ROUNDING = 1e-25
+
+
+@dataclass(frozen=True)
+class Tableau:
+    """Coefficients A, b and, for methods that estimate their error, b_hat.
+
+    Nothing is checked here: `order` and the like say what the coefficients are worth.
+
+    Parameters
+    ----------
+    title : str
+        What people call the method.
+    A : tuple of tuples
+        Stage matrix, stages × stages.
+    b : tuple
+        Weights of the solution, one a stage.
+    b_hat : tuple, optional
+        Weights of the embedded solution.
+    b_low : tuple, optional
+        Weights of a second embedded solution of lower order, for methods that combine
+        two estimates of their error.
+
+    Notes
+    -----
+    Coefficients are exact (`fractions.Fraction`, `solvers.runge_kutta.surd.Surd`) or, where a
+    method is published in decimals only, `decimal.Decimal` with all their digits.
+    The nodes c are the row sums of A.
+
+    Examples
+    --------
+    >>> heun = Tableau.explicit("Heun", rows="1", b="1/2 1/2")
+    >>> heun.order, heun.stages
+    (2, 2)
+    """
+
+    title: str
+    A: tuple[tuple[Number, ...], ...]
+    b: tuple[Number, ...]
+    b_hat: tuple[Number, ...] = ()
+    b_low: tuple[Number, ...] = ()
+
+    @classmethod
+    def explicit(
+        cls, title: str, rows: str, b: str, b_hat: str = "", b_low: str = ""
+    ) -> Tableau:  # fmt: skip
+        """A tableau from text: numbers between spaces, rows of later stages between semicolons.
+
+        Numbers are fractions such as ``1/6`` or decimals, and are meant exactly; if a decimal among
+        those of A and b has more than `LONG` characters, all become `decimal.Decimal`.
+
+        Parameters
+        ----------
+        title : str
+            What people call the method.
+        rows : str
+            Rows of A from the second stage on, each left of its diagonal; empty for one stage.
+        b : str
+            Weights of the solution, one a stage.
+        b_hat, b_low : str, optional
+            Weights of embedded solutions.
+
+        Returns
+        -------
+        Tableau
+            With zeros from the diagonal on.
+
+        Raises
+        ------
+        ValueError
+            When a text is no number.
+        ArithmeticError
+            When a number is divided by zero; or a text is no number where all become decimals.
+        """
+        lines = [[], *(row.split() for row in rows.split(";") if row.strip())]
+        numbers = [*(number for line in lines for number in line), *b.split()]
+        rounded = any(len(number) > LONG and "/" not in number for number in numbers)
+        read = _decimal if rounded else Fraction
+        A = [[read(n) for n in line] + [read("0")] * (len(lines) - len(line)) for line in lines]
+        weights = (tuple(map(read, text.split())) for text in (b, b_hat, b_low))
+        return cls(title, tuple(map(tuple, A)), *weights)
+
+    @property
+    def stages(self) -> int:
+        """Number of stages."""
+        return len(self.b)
+
+    @cached_property
+    def c(self) -> tuple[Number, ...]:
+        """Nodes: the row sums of A."""
+        with localcontext() as context:
+            context.prec = WORKING_DIGITS
+            return tuple(sum(row[1:], row[0]) for row in self.A)
+
+    @cached_property
+    def order(self) -> int:
+        """Order of the solution, by its order conditions."""
+        return order(self.A, self.b)
+
+    @cached_property
+    def embedded_order(self) -> int:
+        """Order of the embedded solution; 0 without one."""
+        return order(self.A, self.b_hat) if self.b_hat else 0
+
+    @cached_property
+    def error_order(self) -> int:
+        """Order of the error estimate, 0 without one; of two combined, see `Controller.norm`."""
+        if self.b_low:
+            return 2 * self.embedded_order - order(self.A, self.b_low)
+        return min(self.order, self.embedded_order)
+
+    @cached_property
+    def error_weights(self) -> tuple[tuple[Number, ...], ...]:
+        """The weights b - b_hat of the error estimate, and b - b_low of a second one."""
+        with localcontext() as context:
+            context.prec = WORKING_DIGITS
+            return tuple(
+                tuple(b - e for b, e in zip(self.b, embedded, strict=True))
+                for embedded in (self.b_hat, self.b_low)
+                if embedded
+            )
+
+    @property
+    def is_explicit(self) -> bool:
+        """Whether each stage needs earlier ones only."""
+        return all(a == 0 for i, row in enumerate(self.A) for a in row[i:])
+
+    @property
+    def is_fsal(self) -> bool:
+        """Whether the last stage is the first of the next step: its row is b, and b ends in 0."""
+        return self.is_explicit and self.stages > 1 and self.A[-1] == self.b
+
+    @cached_property
+    def stability_function(self) -> tuple[tuple[Number, ...], tuple[Number, ...]]:
+        """R(z) as coefficients of z⁰, z¹, … of its numerator and of its denominator.
+
+        A step of y' = λy multiplies y by R(hλ) = det(I - z (A - 1bᵀ)) / det(I - z A)
+        with z = hλ (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
+        proposition IV.3.2).
+        """
+        shifted = [[a - b for a, b in zip(row, self.b, strict=True)] for row in self.A]
+        with localcontext() as context:
+            context.prec = WORKING_DIGITS
+            numerator, denominator = map(_determinant_of_identity_minus, (shifted, self.A))
+        # a stage that b leaves out adds no power of z
+        degree = max((k for k, x in enumerate(numerator) if abs(float(x)) > ROUNDING), default=0)
+        return numerator[: degree + 1], denominator
+
+
+def _decimal(text: str) -> Decimal:
+    above, _, below = text.partition("/")
+    with localcontext() as context:
+        context.prec = WORKING_DIGITS
+        return Decimal(above) / Decimal(below or 1)
+
+
+def _determinant_of_identity_minus(matrix: Sequence[Sequence[Number]]) -> tuple[Number, ...]:
+    """Coefficients of det(I - z B) in z, by Faddeev and LeVerrier's recursion."""
+    n = len(matrix)
+    zero = matrix[0][0] - matrix[0][0]
+    coefficients = [zero + 1]
+    power = [[zero] * n for _ in range(n)]
+    for k in range(1, n + 1):
+        for i in range(n):
+            power[i][i] = power[i][i] + coefficients[-1]
+        power = [
+            [sum((row[m] * power[m][j] for m in range(n)), zero) for j in range(n)]
+            for row in matrix
+        ]
+        coefficients.append(-sum((power[i][i] for i in range(n)), zero) / k)
+    while len(coefficients) > 1 and coefficients[-1] == 0:
+        coefficients.pop()
+    return tuple(coefficients)

@@ -1,0 +1,1 @@
+"""Studies of methods: work-precision, stability, failure modes and benchmarks."""

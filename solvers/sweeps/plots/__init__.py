@@ -1,0 +1,1 @@
+"""Plots of sweeps: images, lines, points and their labels."""

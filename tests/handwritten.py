@@ -1,0 +1,17 @@
+"""Modules written by hand that keep the contract of generated ones."""
+
+from types import ModuleType
+
+
+def handwritten(name: str, state: tuple[str, ...], parameters: tuple[str, ...] = ("p",),
+                **attributes: object) -> ModuleType:  # fmt: skip
+    """A module with one form of equations, Lagrange's, and the attributes that are given."""
+    module = ModuleType(name)
+    contract = {
+        "__file__": None, "SYSTEM": name, "COORDINATES": (), "STATE": state,
+        "FORMS": ("lagrangian",), "STATES": {"lagrangian": state}, "PARAMETERS": parameters,
+        "DEFAULTS": (1.0,) * len(parameters), "POSITIVE": (), "TIMED": (), "CALLS_FUNCTIONS": (),
+        "OPERATIONS": {"rhs": (0, 0)}, "UNITS": {}, "rhs": None,
+    }  # fmt: skip
+    vars(module).update(contract | attributes)
+    return module
