@@ -70,7 +70,8 @@ def ensemble(
         What to watch.
     occurrences : int, optional
         How many occurrences of each event to keep, counted from the beginning; of an
-        `solvers.Extremum` the two with the smallest and the largest value, so that it must be 2 or more.
+        `solvers.Extremum` the two with the smallest and the largest value, so that it must
+        be 2 or more.
     max_steps : int, optional
         After so many steps a motion stops with what it has.
     backend : {"compiled", "python"}, optional

@@ -177,7 +177,7 @@ def _run(
 
 def _cheapest(
     module: GeneratedModule, params: Sequence[float], start: Sequence[float], slow: int,
-    truth: float,     method: str,
+    truth: float, method: str,
 ) -> tuple[Measured, float] | None:  # fmt: skip
     """The first run that is accurate enough, from cheap to dear, and its error."""
     settings = (
