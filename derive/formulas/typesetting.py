@@ -1,7 +1,7 @@
 """Formulas set as mathematics: MathML, which browsers and notebooks show without help.
 
-A formula is read as `derive.formulas.expression` reads it, but nothing is computed, so that it stays
-as it was written. Every side of an equation and every term of a sum is a piece of its own
+A formula is parsed as `derive.formulas.expression` parses it, but nothing is computed, so that it
+stays as it was written. Every side of an equation and every term of a sum is a piece of its own
 that a narrow screen may put on the next line.
 """
 
