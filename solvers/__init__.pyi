@@ -1,7 +1,7 @@
 from solvers.app.modules import build as build
 from solvers.app.modules import load as load
 from solvers.integration.ensemble import ensemble as ensemble
-from solvers.integration.events import Crossing as Crossing
+from solvers.integration.events import Event as Event
 from solvers.integration.events import Extremum as Extremum
 from solvers.integration.integrate import integrate as integrate
 from solvers.integration.ode_solver import ode_solver as ode_solver

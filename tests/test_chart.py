@@ -14,7 +14,7 @@ from solvers.app.cli import main
 from solvers.app.commands import chart as command
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form
-from solvers.integration.timing import measured, work_at
+from solvers.integration.timing import timed_run, work_at
 from solvers.io.figures import save
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.scenes.shipped import find
@@ -87,7 +87,7 @@ def test_curves_measure_the_error_beside_the_reference(truth: Reference) -> None
         late[0].setting["h"] / late[-1].setting["h"]
     )
     assert order == pytest.approx(4, abs=0.5)
-    run = measured(dp, dp.DEFAULTS, REPORT.y0, 5.0, method="rk4", form="lagrangian",
+    run = timed_run(dp, dp.DEFAULTS, REPORT.y0, 5.0, method="rk4", form="lagrangian",
                    backend="compiled", h=rk4[-1].setting["h"])  # fmt: skip
     assert run
     assert np.abs(run.end - truth.end).max() == rk4[-1].global_error
@@ -105,7 +105,7 @@ def test_every_method_form_and_backend_is_charted() -> None:
 
 def test_a_run_that_means_nothing_is_no_point(truth: Reference) -> None:
     judge = judged(find("report", load_module), truth)
-    run = measured(dp, dp.DEFAULTS, REPORT.y0, 5.0, method="rk4", form="lagrangian",
+    run = timed_run(dp, dp.DEFAULTS, REPORT.y0, 5.0, method="rk4", form="lagrangian",
                    backend="compiled", h=0.1)  # fmt: skip
     assert run
     assert judge({"h": 0.1}, run.work_seconds, run.work_rhs, run.end)

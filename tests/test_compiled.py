@@ -20,7 +20,7 @@ from solvers.integration.compiled.kernel import STATUSES, Batch, Kernel, kernel
 from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.native import equations
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Crossing
+from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.solution import Status
@@ -81,7 +81,7 @@ def test_what_a_motion_is_depends_on_no_other_motion_and_no_thread() -> None:
     rng = np.random.default_rng(2)
     params = dp.DEFAULTS * rng.uniform(0.5, 1.5, (n, 5))
     options = {
-        "events": [Crossing(dp, "theta1", pi), Crossing(dp, "theta2", -pi, terminal=True)],
+        "events": [Event(dp, "theta1", pi), Event(dp, "theta2", -pi, terminal=True)],
         "t_eval": np.linspace(0, 3, 7), "occurrences": 2,
     }  # fmt: skip
     for method in ("verner87", "tsit54"):
@@ -102,9 +102,9 @@ def test_what_a_motion_is_depends_on_no_other_motion_and_no_thread() -> None:
 @pytest.mark.parametrize("form", FORMS)
 def test_lanes_find_the_events_and_samples_of_the_reference(form: str) -> None:
     starts, times = scatter(20, 3), np.linspace(0, 3, 31)
-    events = [Crossing(dp, "theta1", 0.5, direction=1), Crossing(dp, "theta2", pi, terminal=True)]
+    events = [Event(dp, "theta1", 0.5, direction=1), Event(dp, "theta2", pi, terminal=True)]
     if form != "hamiltonian":
-        events.append(Crossing(dp, "theta1_dot", 1.0))
+        events.append(Event(dp, "theta1_dot", 1.0))
     options = {"form": form, "events": events, "t_eval": times, "rtol": 1e-11, "atol": 1e-13}
     found = ensemble(dp, (0, 3), starts, dp.DEFAULTS, occurrences=9, **options)
     expected = ensemble(dp, (0, 3), starts, dp.DEFAULTS, occurrences=9, backend="python", **options)
@@ -123,7 +123,7 @@ def test_lanes_find_the_events_and_samples_of_the_reference(form: str) -> None:
 
 
 def test_a_motion_and_the_same_motion_in_lanes_have_the_same_history() -> None:
-    events = [Crossing(sp, "theta", 0.0)]
+    events = [Event(sp, "theta", 0.0)]
     alone = integrate(sp, (0, 30), (2.0, 0.0), sp.DEFAULTS, events=events, rtol=1e-10)
     many = ensemble(sp, (0, 30), [(2.0, 0.0)] * 3, sp.DEFAULTS, events=events, rtol=1e-10,
                     occurrences=50)  # fmt: skip
@@ -136,7 +136,7 @@ def test_a_motion_and_the_same_motion_in_lanes_have_the_same_history() -> None:
 
 
 def test_more_steps_and_events_than_there_is_room_for_are_collected_in_turns() -> None:
-    events = Crossing(sp, "theta_dot", 0.0)
+    events = Event(sp, "theta_dot", 0.0)
     found = integrate(
         sp, (0, 500), (1.0, 0.1), sp.DEFAULTS, method="rk4", h=0.02, events=events, energy=True
     )
@@ -202,7 +202,7 @@ def test_sine_and_cosine_stay_on_the_circle_over_long_runs(
         capacity=200_000, occurrences=0, pauses=False,
     )  # fmt: skip
     batch.restart()
-    batch.go()
+    batch.run()
     sine, cosine = batch.rows["z"][0, : batch.motions["rows"][0], :2].T
     assert len(sine) == 1000 / h + 1
     assert np.abs(sine**2 + cosine**2 - 1).max() < 1e-15
@@ -264,7 +264,7 @@ def test_time_does_not_drift_over_a_million_steps() -> None:
 def bits(form: str, method: str, *, lanes: bool) -> bytes:
     """What a reproducible loop, built now, makes of some motions with events and samples."""
     built = Kernel(dp, form, method, lanes=lanes, compensated=True, reproducible=True)
-    events, times = [Crossing(dp, "theta1", 0.3)], np.linspace(0, 3, 7)
+    events, times = [Event(dp, "theta1", 0.3)], np.linspace(0, 3, 7)
     problem = validation.problem(
         dp, (0.0, 3.0), REPORT, dp.DEFAULTS, method, form, 1e-9, 1e-9, None, times, events, 10**6
     )
@@ -272,7 +272,7 @@ def bits(form: str, method: str, *, lanes: bool) -> bytes:
         built, problem, problem.form, scatter(40), capacity=7, occurrences=3, pauses=False
     )
     batch.restart()
-    batch.go()
+    batch.run()
     assert (batch.motions["status"] == STATUSES.index(Status.FINISHED)).all()
     return b"".join(part.tobytes() for part in (batch.motions, batch.rows, batch.event_rows))
 

@@ -13,7 +13,7 @@ import generated.single_pendulum as sp
 from solvers.integration.compiled import compiler
 from solvers.integration.compiled.kernel import kernel
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Crossing
+from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare
 from solvers.integration.solution import Ensemble, Interrupted, Solution, Status
@@ -96,8 +96,8 @@ def test_what_c_does_not_know_runs_in_python() -> None:
         ({"events": passes}, "an event is a Python function"),
         ({"atol": [1e-9, 1e-9], "form": "lagrangian"}, "atol differs"),
         ({"method": "DOP853"}, "SciPy's"),
-        ({"events": [Crossing(sp, "theta", k) for k in range(9)]}, "more than 8 events"),
-        ({"events": Crossing(sp, "theta_dot", 0.0), "form": "hamiltonian"}, "does not hold"),
+        ({"events": [Event(sp, "theta", k) for k in range(9)]}, "more than 8 events"),
+        ({"events": Event(sp, "theta_dot", 0.0), "form": "hamiltonian"}, "does not hold"),
     ):
         with pytest.raises(ValueError, match=reason):
             integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, backend="compiled", **options)

@@ -12,7 +12,7 @@ from scipy.special import ellipk
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Crossing, Extremum
+from solvers.integration.events import Event, Extremum
 from solvers.integration.integrate import integrate
 from solvers.integration.solution import Status
 
@@ -84,7 +84,7 @@ def test_crossings_say_what_they_cannot_be() -> None:
         (("theta1", 0.0, 2), "direction = 2"),
     ):
         with pytest.raises(ValueError, match=message):
-            Crossing(dp, *arguments)
+            Event(dp, *arguments)
 
 
 def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
@@ -93,7 +93,7 @@ def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
     params = np.array([[1.0, m, 1.0, 1.0, 9.81] for m in (0.3, 1.0, 3.0)])
     found = [
         ensemble(dp, (0, 2), starts, params, form=form, rtol=1e-11,
-                 events=Crossing(dp, "theta1", -0.5), t_eval=[1.0])
+                 events=Event(dp, "theta1", -0.5), t_eval=[1.0])
         for form in ("hamiltonian", "lagrangian")
     ]  # fmt: skip
     assert found[0].occurred[:, 0].tolist()[0] == 0
@@ -103,7 +103,7 @@ def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
 
 
 def test_extremes_have_two_rows_however_many_other_events_have() -> None:
-    events = [Extremum(dp, "theta1_dot"), Crossing(dp, "theta1", 0.0)]
+    events = [Extremum(dp, "theta1_dot"), Event(dp, "theta1", 0.0)]
     found = [
         ensemble(dp, (0, 12), [[1.0, 0.5, 0.0, 0.0]], dp.DEFAULTS, events=events, occurrences=5,
                  rtol=1e-11, backend=backend)

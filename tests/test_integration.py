@@ -12,7 +12,7 @@ import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.integration.integrate import integrate
 from solvers.integration.ode_solver import ode_solver
-from solvers.integration.predictability import HorizonWarning
+from solvers.integration.predictability import PredictabilityWarning
 from solvers.integration.solution import Status
 from solvers.runge_kutta.catalogue import load, names
 
@@ -203,7 +203,7 @@ def test_angles_come_back_unwrapped_from_the_rational_form() -> None:
 
 
 def test_the_rational_form_keeps_sine_and_cosine_together() -> None:
-    with pytest.warns(HorizonWarning):  # its energy means something all the same
+    with pytest.warns(PredictabilityWarning):  # its energy means something all the same
         found = integrate(
             dp, (0, 50), (2.0, 1.0, 0.0, 0.0), dp.DEFAULTS, form="rational", rtol=1e-6
         )

@@ -15,7 +15,7 @@ from handwritten import handwritten
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Crossing
+from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.solution import Interrupted, Solution, Status
@@ -82,7 +82,7 @@ def test_a_motion_that_begins_on_an_event_has_not_passed_it(backend: str) -> Non
         for velocity in (1.0, -1.0):
             found = integrate(
                 sp, (0, 0.01), (angle, velocity), sp.DEFAULTS, backend=backend, form="rational",
-                events=Crossing(sp, "theta", angle, terminal=True),
+                events=Event(sp, "theta", angle, terminal=True),
             )  # fmt: skip
             assert found.status is Status.FINISHED, (angle, velocity)
 
@@ -93,12 +93,12 @@ def test_an_event_at_the_very_end_of_a_step_is_found_once(tmp_path: Path) -> Non
     for direction in (0, 1):
         found = integrate(
             module, (0, 1), [0.0], (1.0,), method="midpoint", h=0.25, backend="compiled",
-            events=Crossing(module, "y", 0.5, direction),
+            events=Event(module, "y", 0.5, direction),
         )  # fmt: skip
         assert found.t_events[0] == pytest.approx([0.5], abs=1e-14)
     down = integrate(
         module, (0, 1), [0.0], (1.0,), method="midpoint", h=0.25, backend="compiled",
-        events=Crossing(module, "y", 0.5, -1),
+        events=Event(module, "y", 0.5, -1),
     )  # fmt: skip
     assert not down.t_events[0].size
 
@@ -108,7 +108,7 @@ def test_what_comes_after_the_end_of_a_motion_within_its_last_step_does_not_coun
 ) -> None:
     module = written_by_hand(tmp_path, "params[0]")
     events = [
-        Crossing(module, "y", value, terminal=end)
+        Event(module, "y", value, terminal=end)
         for value, end in ((0.7, True), (0.6, True), (0.8, True), (0.65, False), (0.55, False))
     ]
     found = integrate(
@@ -135,7 +135,7 @@ def test_steps_that_fail_now_and_then_do_not_end_a_run(tmp_path: Path) -> None:
 
 def test_an_event_is_found_in_a_few_tries() -> None:
     run = partial(integrate, sp, (0, 20), (1.0, 0.0), sp.DEFAULTS, backend="compiled", rtol=1e-10)
-    plain, watched = run(), run(events=Crossing(sp, "theta", 0.5))
+    plain, watched = run(), run(events=Event(sp, "theta", 0.5))
     tries = (watched.nfev - plain.nfev) / 13 / len(watched.t_events[0])
     assert len(watched.t_events[0]) > 10
     assert tries < 9
@@ -147,7 +147,7 @@ def test_a_step_whose_inside_cannot_be_computed_is_taken_back_whole(tmp_path: Pa
     module = written_by_hand(tmp_path, hole)
     found = integrate(
         module, (0, 5), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", t_eval=[0.1, 0.21],
-        events=Crossing(module, "y", 0.4, terminal=True),
+        events=Event(module, "y", 0.4, terminal=True),
     )  # fmt: skip
     assert found.status is Status.NOT_FINITE
     assert (found.t.size, found.t_events[0].size, found.end[0]) == (0, 0, 0.0)
@@ -158,14 +158,14 @@ def test_an_event_is_located_where_rounding_blurs_its_sign(backend: str) -> None
     found = integrate(
         sp, (-1, -3), (17.880152717337147, -0.3221897508884375), sp.DEFAULTS, t_eval=[],
         form="lagrangian", rtol=1e-8, atol=1e-10, backend=backend,
-        events=Crossing(sp, "theta_dot", -1.3767516817975083),
+        events=Event(sp, "theta_dot", -1.3767516817975083),
     )  # fmt: skip
     assert found.t_events[0] == pytest.approx([-1.28150329, -2.06916657], abs=1e-8)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_of_events_at_the_same_time_the_first_in_the_list_counts(backend: str) -> None:
-    stops, passes = (Crossing(sp, "theta", 0.2, terminal=end) for end in (True, False))
+    stops, passes = (Event(sp, "theta", 0.2, terminal=end) for end in (True, False))
     for events, expected in (
         ([stops, stops, passes], [1, 0, 0]), ([passes, stops, passes], [1, 1, 0]),
     ):  # fmt: skip
@@ -259,13 +259,13 @@ def test_an_ensemble_of_nothing_or_over_no_time_is_what_it_should_be() -> None:
     for arguments, message in (
         ({"workers": 1.5}, "workers = 1.5"), ({"workers": "2"}, "workers = '2'"),
         ({"occurrences": 1.5}, "occurrences = 1.5"),
-        ({"events": Crossing(dp, "theta1", 0.0)}, "is not of generated.single_pendulum"),
+        ({"events": Event(dp, "theta1", 0.0)}, "is not of generated.single_pendulum"),
         ({"method": None}, "no method is called 'None'"),
     ):  # fmt: skip
         with pytest.raises(ValueError, match=message):
             ensemble(sp, (0, 1), [(1.0, 0.0)], sp.DEFAULTS, **arguments)
     with pytest.raises(ValueError, match="must be a finite number"):
-        Crossing(sp, "theta", "a")
+        Event(sp, "theta", "a")
 
 
 def test_a_prepared_run_names_what_it_refuses() -> None:
@@ -291,6 +291,6 @@ def test_a_prepared_run_names_what_it_refuses() -> None:
 def test_angles_of_pi_are_events_on_either_side() -> None:
     spinning = ensemble(
         sp, (0, 3), [(0.0, 9.0), (0.0, -9.0)], sp.DEFAULTS, occurrences=9,
-        events=[Crossing(sp, "theta", turn * pi) for turn in (-3, -1, 1, 3)],
+        events=[Event(sp, "theta", turn * pi) for turn in (-3, -1, 1, 3)],
     )  # fmt: skip
     assert spinning.occurred.tolist() == [[0, 0, 1, 1], [1, 1, 0, 0]]

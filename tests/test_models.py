@@ -13,7 +13,7 @@ import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
 from solvers.equations.normal_modes import mode_spread
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import beyond_horizon
+from solvers.integration.predictability import ignore_predictability
 from solvers.references.taylor import taylor
 from solvers.scenes.models import equilibrium as at_rest
 from solvers.scenes.models import full_equations as full_equations
@@ -88,7 +88,7 @@ def judged(scene: Scene) -> tuple[str, float, float]:
     """Model, error in parts of what was asked, and in parts of the estimate."""
     found = chosen(scene).model
     motion = Asked(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
-    with beyond_horizon():
+    with ignore_predictability():
         fine = integrate(
             scene.module, (0, scene.duration), scene.y0, scene.params, method="verner98",
             rtol=3e-14, atol=1e-16, t_eval=motion.looks, max_steps=10**7,
@@ -204,7 +204,7 @@ def test_one_degree_of_freedom_is_a_quadrature(module, params, y0) -> None:
     # at any time, and far away at no further cost
     later = asked(module, y0, 1000.0, params)
     end = quadrature(later).states(np.array([1000.0]))
-    with beyond_horizon():
+    with ignore_predictability():
         run = integrate(module, (0, 1000), y0, params, method="verner98", rtol=1e-13, atol=1e-14)
     assert np.abs(end - run.y[:, -1]).max() < 1e-6
 

@@ -18,7 +18,7 @@ import generated.henon_heiles as hh
 import generated.single_pendulum as single
 from solvers.app.modules import load as load_module
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Crossing
+from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.sweeps.axes import BLOCK, Grid, Random, Table
 from solvers.sweeps.job import STATUSES
@@ -192,7 +192,7 @@ def test_changes_may_grow_beyond_all_numbers(tmp_path: Path) -> None:
     start = [[0, 1, 0, 0, *[0.5] * 4]]
     for backend, t in (("python", 100.0), ("compiled", 100.0), ("compiled", 2000.0)):
         one = ensemble(hh, (0, t), start, (), form="variational", backend=backend,
-                       t_eval=[50.0], events=Crossing(hh, "y", 2.0))  # fmt: skip
+                       t_eval=[50.0], events=Event(hh, "y", 2.0))  # fmt: skip
         assert one.growth[0] == pytest.approx(t - np.log(2) / 2, abs=1e-6)
         assert np.log(one.samples[0, 5, 0] * 2) == pytest.approx(50, abs=1e-6)
     found = swept(tmp_path, hh, Grid({"y": [1.0]}), t, {"exponent": Lyapunov()}, values={"x": 0.0})

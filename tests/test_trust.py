@@ -11,9 +11,9 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Crossing
+from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import HorizonWarning
+from solvers.integration.predictability import PredictabilityWarning
 from solvers.integration.solution import Status
 from solvers.references.taylor import taylor
 
@@ -55,10 +55,10 @@ def test_methods_that_no_step_makes_stable_are_judged_by_what_grows_over_the_run
 
 def test_a_chaotic_run_beyond_its_horizon_warns() -> None:
     start = (3.0, 3.0, 0.0, 0.0)
-    with pytest.warns(HorizonWarning, match="beyond t = ") as caught:
+    with pytest.warns(PredictabilityWarning, match="beyond t = ") as caught:
         rough = integrate(dp, (0, 60), start, dp.DEFAULTS, rtol=1e-6, atol=1e-6, t_eval=TIMES)
     horizon = float(str(caught[0].message).split()[3])
-    with pytest.warns(HorizonWarning) as again:
+    with pytest.warns(PredictabilityWarning) as again:
         fine = integrate(dp, (0, 60), start, dp.DEFAULTS, rtol=1e-13, atol=1e-13, t_eval=TIMES,
                          method="verner98")  # fmt: skip
     # errors grow at one rate, more or less
@@ -75,7 +75,7 @@ def test_a_chaotic_run_beyond_its_horizon_warns() -> None:
 def test_the_horizon_does_not_depend_on_how_long_the_run_is(tolerance: float) -> None:
     found = []
     for duration in (50.0, 300.0, 2000.0, 3e4):
-        with pytest.warns(HorizonWarning) as caught:
+        with pytest.warns(PredictabilityWarning) as caught:
             integrate(dp, (0, duration), REPORT, dp.DEFAULTS, rtol=tolerance, atol=tolerance,
                       t_eval=[duration], max_steps=10**8)  # fmt: skip
         found.append(float(str(caught[0].message).split()[3]))
@@ -89,9 +89,9 @@ def test_the_horizon_does_not_depend_on_how_long_the_run_is(tolerance: float) ->
 
 
 def test_the_horizon_is_known_backwards_and_up_to_an_event() -> None:
-    with pytest.warns(HorizonWarning, match="beyond t = -"):
+    with pytest.warns(PredictabilityWarning, match="beyond t = -"):
         integrate(dp, (0, -60), REPORT, dp.DEFAULTS, rtol=1e-6)
-    late = Crossing(dp, "theta1", 0.0, terminal=True)
+    late = Event(dp, "theta1", 0.0, terminal=True)
     early = integrate(dp, (0, 1e6), REPORT, dp.DEFAULTS, rtol=1e-6, events=late, max_steps=10**8)
     assert early.status is Status.EVENT
     assert 0 < early.end[0] < 5

@@ -11,7 +11,7 @@ from solvers.equations.forms import fastest_form
 from solvers.equations.module import header
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import MOST_EVENTS, STATUSES, Batch, Kernel, kernel
-from solvers.integration.events import Crossing, Extremum
+from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Outcome, Problem
 from solvers.runge_kutta.tableau import Tableau
 
@@ -37,10 +37,8 @@ def obstacle(problem: Problem) -> str:
     if header(problem.form.module) is None:
         return "there is no C header beside the module"
     for event in problem.events:
-        if not isinstance(event, Crossing):
-            return (
-                "an event is a Python function; solvers.integration.events.Crossing is known in C"
-            )
+        if not isinstance(event, Event):
+            return "an event is a Python function; solvers.integration.events.Event is known in C"
         kept = [event.coordinate] if isinstance(event, Extremum) else []
         for name in (event.name, *kept):
             if problem.form.where(name) is None:
@@ -119,7 +117,7 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     while status is None:
         batch.restart(PATIENCE)
         try:
-            batch.go()
+            batch.run()
         finally:  # an interruption is heard when C returns: keep what C has done
             status = STATUSES[batch.motions["status"][0]]
             _collect(batch, problem, outcome)

@@ -14,7 +14,7 @@ from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, state_names
 from solvers.integration import compiled_loop, python_loop, scipy_loop, validation
 from solvers.integration.compiled.kernel import STATUSES, Batch
-from solvers.integration.events import Crossing, Extremum
+from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.solution import Ensemble, Interrupted, Status
 from solvers.runge_kutta.tableau import Tableau
@@ -34,7 +34,7 @@ def ensemble(
     atol: float = 1e-12,
     h: float | None = None,
     t_eval: ArrayLike | None = None,
-    events: Crossing | Sequence[Crossing] = (),
+    events: Event | Sequence[Event] = (),
     occurrences: int = 1,
     max_steps: int = 1_000_000,
     backend: str | None = None,
@@ -66,7 +66,7 @@ def ensemble(
         A fixed step in s; methods without error estimate need one.
     t_eval : array_like of shape (times,), optional
         Times in s at which states are wanted, none by default.
-    events : Crossing or sequence of Crossing, optional
+    events : Event or sequence of Event, optional
         What to watch.
     occurrences : int, optional
         How many occurrences of each event to keep, counted from the beginning; of an
@@ -118,7 +118,7 @@ def ensemble(
         raise ValueError(
             f"params has {len(constants)} rows: give one, or one for each of {len(starts)} motions"
         )
-    watched = [events] if isinstance(events, Crossing) else events
+    watched = [events] if isinstance(events, Event) else events
     extremes = any(isinstance(event, Extremum) for event in watched)
     occurrences = validation.count("occurrences", occurrences, 2 if extremes else 1)
     threads = len(os.sched_getaffinity(0)) if workers is None else workers
@@ -176,7 +176,7 @@ def _run(batch: Batch, workers: int) -> None:
     _running.append(batch.stop)
     try:
         with ThreadPoolExecutor(workers) as pool:
-            threads = [pool.submit(batch.go) for _ in range(workers)]
+            threads = [pool.submit(batch.run) for _ in range(workers)]
             try:
                 wait(threads)
             except KeyboardInterrupt:
@@ -209,7 +209,7 @@ def _run_one_by_one(
         params = constants[k % len(constants)].tolist()
         form = Form(problem.form.module, problem.form.name, params)
         one = replace(problem, start=start, form=form)
-        outcome = Outcome.begun(one)
+        outcome = Outcome.at_start(one)
         try:
             rung.run(one, outcome)
         finally:

@@ -14,7 +14,7 @@ from solvers.io.suggestion import near
 
 
 @dataclass(frozen=True)
-class Crossing:
+class Event:
     """A coordinate or velocity crosses a value; angles are unwrapped, so that π is not -π.
 
     Parameters
@@ -38,7 +38,7 @@ class Crossing:
     Examples
     --------
     >>> import generated.double_pendulum as dp
-    >>> flip = Crossing(dp, "theta2", 3.14159, terminal=True)
+    >>> flip = Event(dp, "theta2", 3.14159, terminal=True)
     >>> round(flip(0.0, [0.0, 3.0, 0.0, 0.0]), 5)
     -0.14159
     """
@@ -64,7 +64,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Extremum(Crossing):
+class Extremum(Event):
     """A velocity vanishes; of all these places those are kept where its coordinate is extreme.
 
     Ensembles keep two occurrences, with the smallest and the largest value; an integration of
@@ -77,7 +77,7 @@ class Extremum(Crossing):
     name : str
         A velocity, such as ``theta1_dot``.
     value, direction, terminal
-        As in `Crossing`; a velocity vanishes at 0.
+        As in `Event`; a velocity vanishes at 0.
 
     Raises
     ------

@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.integration import compiled_loop, python_loop, scipy_loop, validation
-from solvers.integration.predictability import HorizonWarning, horizon
-from solvers.integration.problem import Event, Outcome, Problem
+from solvers.integration.predictability import PredictabilityWarning, predictable_until
+from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Interrupted, Solution, Status
-from solvers.integration.step_stability import unstable
+from solvers.integration.step_stability import step_instability
 from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ def integrate(
     atol: ArrayLike = 1e-12,
     h: float | None = None,
     t_eval: ArrayLike | None = None,
-    events: Event | Sequence[Event] = (),
+    events: EventFunction | Sequence[EventFunction] = (),
     energy: bool = False,
     max_steps: int = 1_000_000,
     backend: str | None = None,
@@ -74,7 +74,7 @@ def integrate(
         ``event(t, y)`` changes its sign where the event occurs; of several changes
         within one step one is found. It may have the attributes ``terminal`` (true: the
         integration ends there) and ``direction`` (1: only upwards, -1: only downwards).
-        ``solvers.integration.events.Crossing`` makes events that compiled loops know.
+        ``solvers.integration.events.Event`` makes events that compiled loops know.
     energy : bool, optional
         Whether to return the energy at these times.
     max_steps : int, optional
@@ -104,7 +104,7 @@ def integrate(
 
     Warns
     -----
-    solvers.integration.predictability.HorizonWarning
+    solvers.integration.predictability.PredictabilityWarning
         When errors of the size of the tolerances outgrow the motion before its end.
     UserWarning
         When no compiler could build the loop, and it runs in Python.
@@ -128,7 +128,7 @@ def integrate(
     problem, program = compiled_loop.choice(
         asked, form, where, method, lanes=False, compensated=compensated
     )
-    outcome = Outcome.begun(problem)
+    outcome = Outcome.at_start(problem)
     try:
         if program:
             compiled_loop.run(problem, outcome, program)
@@ -143,11 +143,11 @@ def integrate(
 
 def _judged(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
     """The solution, with what its trajectory is worth."""
-    complaint = unstable(problem, failed=outcome.status is Status.NOT_FINITE)
+    complaint = step_instability(problem, failed=outcome.status is Status.NOT_FINITE)
     if complaint:
         outcome.status = Status.UNSTABLE
     until = (
-        horizon(problem, outcome.end[0])
+        predictable_until(problem, outcome.end[0])
         if outcome.status in (Status.FINISHED, Status.EVENT)
         else inf
     )
@@ -156,7 +156,7 @@ def _judged(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
             f"beyond t = {until:.4g} this trajectory means nothing: there errors of "
             f"{problem.tolerance:.1g} have grown as large as it; "
             "tighten rtol and atol, or ask for energies and statistics only",
-            HorizonWarning,
+            PredictabilityWarning,
             stacklevel=3,
         )
     return _solution(problem, outcome, energy, complaint)

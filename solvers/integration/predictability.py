@@ -29,18 +29,18 @@ LARGE = 0.05
 POWER = 1.5
 
 
-class HorizonWarning(UserWarning):
+class PredictabilityWarning(UserWarning):
     """A trajectory is longer than its errors allow."""
 
 
 @contextmanager
-def beyond_horizon() -> Iterator[None]:
+def ignore_predictability() -> Iterator[None]:
     """Where runs are meant to be longer than their errors allow: no warning.
 
     Yields
     ------
     None
-        In a ``with`` block, within which `HorizonWarning` is not shown.
+        In a ``with`` block, within which `PredictabilityWarning` is not shown.
 
     Notes
     -----
@@ -48,11 +48,11 @@ def beyond_horizon() -> Iterator[None]:
     meanwhile.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", HorizonWarning)
+        warnings.simplefilter("ignore", PredictabilityWarning)
         yield
 
 
-def horizon(problem: Problem, end: float) -> float:
+def predictable_until(problem: Problem, end: float) -> float:
     """The time before `end` from which on usual errors have grown as large as the motion.
 
     That is when a small change of the start, by the variational equations, has grown by
@@ -106,7 +106,7 @@ def horizon(problem: Problem, end: float) -> float:
     status = None
     while status is None:
         batch.restart()
-        batch.go()
+        batch.run()
         status = STATUSES[batch.motions["status"][0]]
         rows = batch.rows[0, : batch.motions["rows"][0]]
         batch.motions["rows"] = 0

@@ -16,7 +16,7 @@ from solvers.runge_kutta.tableau import Tableau
 Array = NDArray[np.float64]
 #: The shortest step, in parts of the time's last digit: below it a shorter step rounds to itself.
 SHORTEST = 10
-Event = Callable[[float, Array], float]
+EventFunction = Callable[[float, Array], float]
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Problem:
     rtol: float
     atol: Array
     samples: Array | None
-    events: list[Event]
+    events: list[EventFunction]
     max_steps: int
 
     @property
@@ -111,7 +111,7 @@ class Outcome:
     backend: str = "python"
 
     @classmethod
-    def begun(cls, problem: Problem) -> Outcome:
+    def at_start(cls, problem: Problem) -> Outcome:
         """Nothing but the beginning."""
         nothing: tuple[list[list[float]], list[list[Array]]] = (
             [[] for _ in problem.events],

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from solvers.integration.problem import Event, Outcome, Problem
+from solvers.integration.problem import EventFunction, Outcome, Problem
 
 Array = NDArray[np.float64]
 
@@ -114,7 +114,7 @@ class Record:
         return happened
 
 
-def _root(event: Event, state: Callable[[float], Array], t: float, end: float) -> float:
+def _root(event: EventFunction, state: Callable[[float], Array], t: float, end: float) -> float:
     """Where `event` changes its sign, or the next time after it: a new start is past the event."""
 
     def value(time: float) -> float:

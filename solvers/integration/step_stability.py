@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 TOLERABLE, UNSTABLE = 10.0, 1e3
 
 
-def unstable(problem: Problem, failed: bool) -> str:
+def step_instability(problem: Problem, failed: bool) -> str:
     """What is wrong with the step of a run, with the last good time and the longest good step.
 
     Empty if nothing is, if steps are controlled, or if the module has no Jacobian. The

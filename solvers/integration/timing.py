@@ -26,7 +26,7 @@ SECONDS = 0.01
 
 
 @dataclass(frozen=True)
-class Measured:
+class TimedRun:
     """What a run costs.
 
     Attributes
@@ -45,10 +45,10 @@ class Measured:
     end: Array
 
 
-def measured(
+def timed_run(
     module: GeneratedModule, params: Sequence[float], y0: Sequence[float], duration: float,
     *, method: str, form: str, backend: str, rtol: float = 0.0, h: float | None = None,
-) -> Measured | None:  # fmt: skip
+) -> TimedRun | None:  # fmt: skip
     """Run and time a motion from time 0; None if it does not reach its end.
 
     Parameters
@@ -66,7 +66,7 @@ def measured(
 
     Returns
     -------
-    Measured or None
+    TimedRun or None
 
     Raises
     ------
@@ -87,7 +87,7 @@ def measured(
             end = run(span, y0)
         except NotFinishedError:
             return None
-        return Measured(median_seconds(lambda: run(span, y0)), run.nfev, run.steps, np.array(end))
+        return TimedRun(median_seconds(lambda: run(span, y0)), run.nfev, run.steps, np.array(end))
     problem = validation.problem(
         module, span, y0, params, method, form, rtol, rtol, h, span[1:], (), MOST_STEPS
     )
@@ -98,11 +98,11 @@ def measured(
         return None
     _, rows = outcome.rows()
     seconds = first if first > SECONDS else median_seconds(lambda: _outcome(problem))
-    return Measured(seconds, outcome.nfev, outcome.steps, rows[-1])
+    return TimedRun(seconds, outcome.nfev, outcome.steps, rows[-1])
 
 
 def _outcome(problem: Problem) -> Outcome:
-    outcome = Outcome.begun(problem)
+    outcome = Outcome.at_start(problem)
     rung = python_loop if isinstance(problem.method, Tableau) else scipy_loop
     rung.run(problem, outcome)
     return outcome

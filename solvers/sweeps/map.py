@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration.events import Crossing
+from solvers.integration.events import Event
 from solvers.integration.solution import Ensemble
 
 Array: TypeAlias = NDArray[np.float64]
@@ -72,7 +72,7 @@ class Map:
         found = {module.UNITS[name] for name in self.components}
         return found.pop() if len(found) == 1 else ""
 
-    def events(self, module: GeneratedModule) -> list[Crossing]:
+    def events(self, module: GeneratedModule) -> list[Event]:
         """What must be watched."""
         return []
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration.events import Crossing, Extremum
+from solvers.integration.events import Event, Extremum
 from solvers.sweeps.map import Found, Map
 
 Array: TypeAlias = NDArray[np.float64]
@@ -44,11 +44,9 @@ class First(Map):
         """Unit of a time."""
         return "s"
 
-    def events(self, module: GeneratedModule) -> list[Crossing]:
+    def events(self, module: GeneratedModule) -> list[Event]:
         """A crossing for each value."""
-        return [
-            Crossing(module, name, value) for name, values in self.of.items() for value in values
-        ]
+        return [Event(module, name, value) for name, values in self.of.items() for value in values]
 
     def values(self, found: Found) -> Array:
         """The time of the first event, NaN where none occurred."""
@@ -115,7 +113,7 @@ class Extremes(Final):
         """The coordinates, and which is which."""
         return (self.of, ("smallest", "largest"))
 
-    def events(self, module: GeneratedModule) -> list[Crossing]:
+    def events(self, module: GeneratedModule) -> list[Event]:
         """The zeros of the velocities."""
         return [Extremum(module, f"{name}_dot") for name in self.of]
 
@@ -182,9 +180,9 @@ class Section(Samples):
         """What is kept."""
         return self.of
 
-    def events(self, module: GeneratedModule) -> list[Crossing]:
+    def events(self, module: GeneratedModule) -> list[Event]:
         """The crossing."""
-        return [Crossing(module, self.where, self.value, self.direction)]
+        return [Event(module, self.where, self.value, self.direction)]
 
     def values(self, found: Found) -> Array:
         """The states at the crossings."""

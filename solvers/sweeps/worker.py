@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
-from solvers.integration.predictability import beyond_horizon
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.solution import Ensemble, Status
 from solvers.sweeps.initial_states import begun
 from solvers.sweeps.job import CODES, Job, loaded
@@ -77,7 +77,7 @@ def integrated(job: Job, module: GeneratedModule, starts: Array, params: list[Ar
     maps = job.maps.values()
     is_over = job.only_first is not None
     events = [replace(event, terminal=is_over) for one in maps for event in one.events(module)]
-    with beyond_horizon():
+    with ignore_predictability():
         motions = ensemble(
             module, (0.0, job.duration), starts,
             np.stack(params, axis=1) if params else np.empty((1, 0)),

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import beyond_horizon
+from solvers.integration.predictability import ignore_predictability
 from solvers.references.extrapolation import extrapolated
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import load
@@ -125,7 +125,7 @@ class Evidence:
             setting = {"rtol": 10.0**-k, "atol": 10.0**-k} if controlled else {
                 "h": scene.duration / (10 * 2**k)
             }  # fmt: skip
-            with beyond_horizon():
+            with ignore_predictability():
                 run = integrate(
                     self._module, (0.0, scene.duration), scene.y0, scene.params, method=method,
                     form="lagrangian", t_eval=[scene.duration], **setting,

@@ -14,7 +14,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.native import equations
-from solvers.integration.events import Crossing, Extremum
+from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import SHORTEST, Problem
 from solvers.integration.solution import Status
 from solvers.runge_kutta.catalogue import load
@@ -170,7 +170,7 @@ class Batch:
         self, kernel: Kernel, problem: Problem, form: Form, starts: Array,
         *, capacity: int, occurrences: int, pauses: bool,
     ) -> None:  # fmt: skip
-        n, events = len(starts), cast("list[Crossing]", problem.events)
+        n, events = len(starts), cast("list[Event]", problem.events)
         self._kernel, self.form = kernel, form
         self.motions = np.zeros(n, kernel.trajectory)
         self.motions["t"], self.motions["t_end"] = problem.span
@@ -194,10 +194,10 @@ class Batch:
         )  # fmt: skip
 
     def restart(self, patience: float = 0.0) -> None:
-        """Let the next `go` begin with the first motion; it returns after `patience` seconds."""
+        """Let the next `run` begin with the first motion; it returns after `patience` seconds."""
         self.task.next, self.task.patience = 0, patience
 
-    def go(self) -> None:
+    def run(self) -> None:
         """Go on with motions that are not done; several threads may do so at once."""
         self._kernel.run(self.task)
 
@@ -219,7 +219,7 @@ class Batch:
         return self.motions["trials"].astype(np.int64) * (not self._kernel.is_explicit)
 
 
-def _event(form: Form, crossing: Crossing, pauses: bool) -> tuple[float | int, ...]:
+def _event(form: Form, crossing: Event, pauses: bool) -> tuple[float | int, ...]:
     # a motion that pauses has room for every occurrence
     extremes = isinstance(crossing, Extremum) and not pauses
     watched = form.where(crossing.name)

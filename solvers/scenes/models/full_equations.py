@@ -12,7 +12,7 @@ import numpy as np
 from solvers.equations.forms import fastest_form
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import beyond_horizon
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import prepare
 from solvers.integration.solution import Status
 from solvers.integration.timing import median_seconds
@@ -135,7 +135,7 @@ def run(asked: Asked, way: Way, setting: float, t: Array) -> Array:
 
 def _integrated(asked: Asked, way: Way, setting: float, t: Array | None) -> tuple[Array, Array]:
     """Times and states: at `t`, or at the end of every step."""
-    with beyond_horizon():
+    with ignore_predictability():
         found = integrate(
             asked.module, (0.0, asked.duration), asked.y0, asked.params, method=way.method,
             form=way.form, t_eval=t, max_steps=MOST_STEPS, **options(way, setting),

@@ -23,7 +23,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration import validation
 from solvers.integration.compiled.kernel import Batch, kernel
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Crossing
+from solvers.integration.events import Event
 from solvers.studies.benchmarks import peers
 from solvers.sweeps.axes import Random
 from solvers.sweeps.barrier import is_below
@@ -64,7 +64,7 @@ def ours(
     module: GeneratedModule, method: str, tolerance: float, workers: int, state: Array
 ) -> Array:
     """By our ensemble."""
-    events = [Crossing(module, e.name, e.value, terminal=True) for e in FLIP.events(module)]
+    events = [Event(module, e.name, e.value, terminal=True) for e in FLIP.events(module)]
     found = ensemble(module, (0, END), state, module.DEFAULTS, method=method, rtol=tolerance,
                      atol=tolerance, events=events, workers=workers)  # fmt: skip
     return _first(found.t_events[:, :, 0])
@@ -72,7 +72,7 @@ def ours(
 
 def scalar(module: GeneratedModule, method: str, tolerance: float, state: Array) -> Array:
     """By our compiled loop with one motion at a time."""
-    events = [Crossing(module, e.name, e.value, terminal=True) for e in FLIP.events(module)]
+    events = [Event(module, e.name, e.value, terminal=True) for e in FLIP.events(module)]
     program = kernel(module, "rational", method, lanes=False, compensated=False,
                      reproducible=False)  # fmt: skip
     problem = validation.problem(
@@ -82,7 +82,7 @@ def scalar(module: GeneratedModule, method: str, tolerance: float, state: Array)
     batch = Batch(program, problem, Form(module, "rational", module.DEFAULTS), state,
                   capacity=0, occurrences=1, pauses=False)  # fmt: skip
     batch.restart()
-    batch.go()
+    batch.run()
     there = batch.motions["occurred"][:, : len(events)] > 0
     return _first(np.where(there, batch.event_rows["t"][:, :, 0], np.nan))
 

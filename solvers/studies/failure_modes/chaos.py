@@ -14,7 +14,7 @@ from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import beyond_horizon
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import prepare
 from solvers.references.taylor import taylor
 
@@ -145,7 +145,7 @@ def separation(
     n = truth.shape[1]
     near = truth[0] + OFFSET * np.eye(n)[0]
     distance = np.linalg.norm(taylor(module, params, near.tolist(), t, DIGITS) - truth, axis=1)
-    with beyond_horizon():
+    with ignore_predictability():
         carried = integrate(
             module, (0, t[-1]), [*truth[0], *(near - truth[0])], params, form="variational",
             rtol=1e-12, atol=1e-30, t_eval=t,
@@ -188,7 +188,7 @@ def horizons(
     found = []
     for method in methods:
         for tolerance in TOLERANCES:
-            with beyond_horizon():
+            with ignore_predictability():
                 run = integrate(
                     module, (0, t[-1]), truth[0], params, method=method, rtol=tolerance,
                     atol=tolerance, t_eval=t, energy=True,
@@ -233,7 +233,7 @@ def statistics(
     t = np.linspace(0, duration, int(2 * duration) + 1)
     found = []
     for options in runs:
-        with beyond_horizon():
+        with ignore_predictability():
             run = integrate(
                 module, (0, duration), y0, params, t_eval=t, energy=True, max_steps=10**8, **options
             )

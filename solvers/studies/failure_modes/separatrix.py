@@ -9,7 +9,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Crossing
+from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.references.elliptic import pendulum as exact
 
@@ -121,8 +121,8 @@ def falls(module: GeneratedModule) -> list[Fall]:
     _, length, gravity = module.DEFAULTS
     omega = sqrt(gravity / length)
     events = [
-        Crossing(module, "theta", pi, terminal=True),
-        Crossing(module, "theta_dot", 0.0, terminal=True),
+        Event(module, "theta", pi, terminal=True),
+        Event(module, "theta_dot", 0.0, terminal=True),
     ]
     found = []
     for method in METHODS:
@@ -177,7 +177,7 @@ def upright(module: GeneratedModule) -> Upright:
     offset = 1.2246467991473532e-16  # sin of that float, which is π minus it
     run = ensemble(
         module, (0, 100), [(pi, 0.0)], module.DEFAULTS, method="verner98", rtol=1e-13, atol=1e-30,
-        events=[Crossing(module, "theta", angle, terminal=True) for angle in (pi / 2, 3 * pi / 2)],
+        events=[Event(module, "theta", angle, terminal=True) for angle in (pi / 2, 3 * pi / 2)],
     )  # fmt: skip
     predicted = log(8 * np.tan(pi / 8) / offset) / omega
     return Upright(offset, float(predicted), float(run.t[0]))

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, function
-from solvers.integration.timing import measured
+from solvers.integration.timing import timed_run
 from solvers.references.series import Series
 from solvers.references.taylor import sine_and_cosine, taylor
 
@@ -98,7 +98,7 @@ def floor(pendulum: GeneratedModule, params: Sequence[float], form: str) -> floa
     """The least error of the end of a motion that begins with aligned rods."""
     truth = taylor(pendulum, params, START, [0, DURATION], digits=18)[-1]
     runs = (
-        measured(pendulum, params, START, DURATION, method="verner98", form=form,
+        timed_run(pendulum, params, START, DURATION, method="verner98", form=form,
                  backend="compiled", rtol=tolerance)
         for tolerance in TOLERANCES
     )  # fmt: skip

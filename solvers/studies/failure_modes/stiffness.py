@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
-from solvers.integration.timing import Measured, measured
+from solvers.integration.timing import TimedRun, timed_run
 from solvers.runge_kutta.catalogue import load
 
 Array = NDArray[np.float64]
@@ -168,8 +168,8 @@ def crossover(costs: Sequence[Cost], family: str, work: str) -> float:
 def _run(
     module: GeneratedModule, params: Sequence[float], start: Sequence[float], method: str,
     **setting: float,
-) -> Measured | None:  # fmt: skip
-    return measured(
+) -> TimedRun | None:  # fmt: skip
+    return timed_run(
         module, params, start, DURATION, method=method, form="lagrangian", backend="compiled",
         **setting,
     )  # fmt: skip
@@ -178,7 +178,7 @@ def _run(
 def _cheapest(
     module: GeneratedModule, params: Sequence[float], start: Sequence[float], slow: int,
     truth: float, method: str,
-) -> tuple[Measured, float] | None:  # fmt: skip
+) -> tuple[TimedRun, float] | None:  # fmt: skip
     """The first run that is accurate enough, from cheap to dear, and its error."""
     settings = (
         [{"rtol": tol} for tol in TOLERANCES]

@@ -10,7 +10,7 @@ import numpy as np
 
 from solvers.equations.energy import energy_error
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import beyond_horizon
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.timing import least_pair
 from solvers.runge_kutta.catalogue import load
 from solvers.scenes.scene import Scene
@@ -179,7 +179,7 @@ def _along(scene: Scene, curve: Curve, setting: dict[str, float]) -> float:
     options: dict[str, Any] = {"h": setting["h"]} if "h" in setting else {
         "rtol": setting["rtol"], "atol": setting["rtol"]
     }  # fmt: skip
-    with beyond_horizon():
+    with ignore_predictability():
         run = integrate(
             module, (0, scene.duration), scene.y0, params, method=curve.method, form=curve.form,
             t_eval=np.linspace(0, scene.duration, LOOKS), energy=True, max_steps=10**8, **options,

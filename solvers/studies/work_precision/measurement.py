@@ -11,7 +11,7 @@ from solvers.equations.energy import energy_error
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import NoCompilerError
-from solvers.integration.timing import measured
+from solvers.integration.timing import timed_run
 from solvers.runge_kutta.catalogue import SCIPY, load, names
 from solvers.scenes.scene import Scene
 from solvers.studies.work_precision.curve import Curve, Point
@@ -91,7 +91,7 @@ def _points(
     method, form, backend = combination
     judge = judged(scene, truth)
     for setting in _settings(method, backend, scene.duration):
-        run = measured(
+        run = timed_run(
             scene.module, scene.params, scene.y0, scene.duration,
             method=method, form=form, backend=backend, **setting,
         )  # fmt: skip
