@@ -57,7 +57,7 @@ def cases(module: ModuleType, form: str) -> list[tuple[list[float], list[float]]
         params = [generator.uniform(0.2, 3) for _ in module.PARAMETERS]
         if form != "parameters":
             equations = Form(module, form, params)
-            y = equations.inside(0.0, np.array(y[: len(equations.ordinary)])).tolist()
+            y = equations.from_ordinary(0.0, np.array(y[: len(equations.ordinary)])).tolist()
         found.append((y, params))
     return found
 

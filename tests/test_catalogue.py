@@ -198,11 +198,11 @@ def test_other_forms_are_the_same_motion(module: ModuleType) -> None:
         change = np.arange(1.0, 2 * n + 1)
         direction = module.rhs_many(t, np.array(y) + 1e-30j * change, params).imag / 1e-30
         form = Form(module, "variational", params)
-        rates = form.rhs(t, form.inside(t, np.array([*y, *change])))
+        rates = form.rhs(t, form.from_ordinary(t, np.array([*y, *change])))
         assert_allclose(rates[-2 * n :], direction, rtol=1e-8, atol=1e-9)
         if "rational" in module.FORMS:
             rational = Form(module, "rational", params)
-            rates = rational.rhs(t, rational.inside(t, np.array(y)))
+            rates = rational.rhs(t, rational.from_ordinary(t, np.array(y)))
             assert_allclose(rates[-n:], module.rhs(t, y, params)[n:], rtol=1e-9, atol=1e-10)
 
 
@@ -233,7 +233,7 @@ def test_arrays_give_what_single_states_give(module: ModuleType) -> None:
             state = y
             if name in ("rhs_rational", "rhs_variational"):
                 form = Form(module, name.removeprefix("rhs_"), params)
-                state = form.inside(t, np.resize(y, len(form.ordinary))).tolist()
+                state = form.from_ordinary(t, np.resize(y, len(form.ordinary))).tolist()
             given = {"t": t, "y": state, "params": params}
             alone = np.array(one(*(given[key] for key in takes)))
             given = {"t": np.full(3, t), "y": np.tile(np.array(state)[:, None], 3),

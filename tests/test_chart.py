@@ -206,7 +206,7 @@ def test_energy_that_is_not_kept_is_no_case(truth: Reference) -> None:
 
 def test_other_programs_join_when_they_are_there(truth: Reference) -> None:
     # the state of the fastest form; sine and cosine give back their angle
-    end = Form(dp, "rational", dp.DEFAULTS).inside(0.0, truth.end)
+    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
 
     class Package(ModuleType):
         @staticmethod

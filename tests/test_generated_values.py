@@ -178,9 +178,11 @@ def test_variational_equations_carry_a_small_change_along(module: ModuleType) ->
     for y, params in states(module):
         change = generator.normal(size=n)
         form = Form(module, "variational", params)
-        rates = form.rhs(0.0, form.inside(0.0, np.concatenate([y, change])))
+        rates = form.rhs(0.0, form.from_ordinary(0.0, np.concatenate([y, change])))
         motion = Form(module, "rational", params)
-        assert tuple(rates[:-n]) == pytest.approx(motion.rhs(0.0, motion.inside(0.0, np.array(y))))
+        assert tuple(rates[:-n]) == pytest.approx(
+            motion.rhs(0.0, motion.from_ordinary(0.0, np.array(y)))
+        )
         # the derivative of the Lagrangian form in this direction, exact by a complex step
         expected = module.rhs_many(0.0, np.array(y) + 1e-30j * change, params).imag / 1e-30
         scale = np.abs(np.array(module.jacobian(0.0, y, params)) * change).max()
@@ -200,7 +202,7 @@ def test_arrays_of_states_give_what_single_states_give(module: ModuleType) -> No
         if name in ("rhs_rational", "rhs_variational"):
             forms = [Form(module, name.removeprefix("rhs_"), params) for _, params in cases]
             cases = [
-                (form.inside(0.0, np.resize(y, len(form.ordinary))), params)
+                (form.from_ordinary(0.0, np.resize(y, len(form.ordinary))), params)
                 for form, (y, params) in zip(forms, cases, strict=True)
             ]
         y = np.array([y for y, _ in cases]).T

@@ -54,7 +54,9 @@ def test_loops_solve_the_textbook_equations(chain: ModuleType) -> None:
         many = chain.rhs_many(0.0, np.tile(y[:, None], 4), params)
         assert_allclose(many[N:, 2], expected, rtol=1e-11)
         rational = Form(chain, "rational", params)
-        assert_allclose(rational.rhs(0.0, rational.inside(0.0, y))[-N:], expected, rtol=1e-11)
+        assert_allclose(
+            rational.rhs(0.0, rational.from_ordinary(0.0, y))[-N:], expected, rtol=1e-11
+        )
 
 
 def test_derivatives_and_hamilton_s_form_go_through_the_loops(chain: ModuleType) -> None:
@@ -68,7 +70,7 @@ def test_derivatives_and_hamilton_s_form_go_through_the_loops(chain: ModuleType)
     slopes = np.asarray(chain.hamiltonian_state_many(0.0, moved, params)).imag / 1e-30
     assert_allclose(chain.rhs_hamiltonian(0.0, z, params), slopes, rtol=1e-9, atol=1e-9)
     form = Form(chain, "variational", params)
-    rates = form.rhs(0.0, form.inside(0.0, np.array([*y, *np.ones(2 * N)])))
+    rates = form.rhs(0.0, form.from_ordinary(0.0, np.array([*y, *np.ones(2 * N)])))
     assert_allclose(rates[-2 * N :], expected @ np.ones(2 * N), rtol=1e-8, atol=1e-8)
     assert not hasattr(chain, "jacobian_hamiltonian")
 

@@ -112,7 +112,7 @@ def exact(number: Fraction | Decimal) -> mpf:
 def one_step(name: str, rhs: Rhs, y: list[float], jacobian: Rhs | None = None) -> np.ndarray:
     """A step of length 1 from t = 0, by the running stepper."""
     stepper, start = Stepper(load(name), rhs, jacobian), np.array(y)
-    return stepper.step(0.0, start, 1.0, stepper.slope(0.0, start))[0]
+    return stepper.step(0.0, start, 1.0, stepper.derivative(0.0, start))[0]
 
 
 @pytest.mark.parametrize("name", names())

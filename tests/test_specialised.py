@@ -20,7 +20,7 @@ from derive.mechanics.specialisation import specialised as folded
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.system import System
 from solvers.app.modules import generator_text, specialiser
-from solvers.equations.specialise import needed, specialised
+from solvers.equations.specialise import required_functions, specialised_module
 from solvers.integration.integrate import integrate
 from solvers.io.build_cache import cache_folder
 from solvers.scenes.models.method_choice import Way
@@ -117,10 +117,10 @@ def test_what_is_folded_in_costs_nothing_and_what_is_zero_vanishes() -> None:
 
 
 def test_only_what_a_scene_needs_is_there() -> None:
-    assert needed("verner87", "rational") == ("rhs_rational",)
-    assert needed("gauss2", "lagrangian") == ("rhs", "jacobian")
-    assert needed("radau3", "hamiltonian")[-1] == "jacobian_hamiltonian"
-    assert needed("LSODA", "lagrangian") == ("rhs",)
+    assert required_functions("verner87", "rational") == ("rhs_rational",)
+    assert required_functions("gauss2", "lagrangian") == ("rhs", "jacobian")
+    assert required_functions("radau3", "hamiltonian")[-1] == "jacobian_hamiltonian"
+    assert required_functions("LSODA", "lagrangian") == ("rhs",)
     special = specialiser(dp, dp.DEFAULTS, Way("verner87", "rational", ""))
     functions = {name for name in vars(special) if callable(getattr(special, name))}
     assert {f for f in functions if f.startswith("rhs")} == {"rhs_rational", "rhs_rational_many"}
@@ -150,7 +150,7 @@ def test_it_is_made_once_and_a_damaged_one_again() -> None:
         return texts(Derivation(folded(load(name), values)), functions)
 
     def get(version: str = "1") -> ModuleType:
-        return specialised(dp, dp.DEFAULTS, ("rhs",), generator, version)
+        return specialised_module(dp, dp.DEFAULTS, ("rhs",), generator, version)
 
     first, second = get(), get()
     assert first.rhs(0.0, REPORT, ()) == second.rhs(0.0, REPORT, ())

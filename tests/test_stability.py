@@ -15,13 +15,13 @@ import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.app.cli import main
 from solvers.app.commands import stability as command
-from solvers.equations.normal_modes import Modes, along
+from solvers.equations.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
 from solvers.integration.solution import Status
 from solvers.runge_kutta.catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import Stepper
-from solvers.runge_kutta.sturm import first_fall
+from solvers.runge_kutta.sturm import nonnegative_interval
 from solvers.studies.failure_modes.studies import SMALL
 from solvers.studies.stability import critical_step as critical_step_module
 from solvers.studies.stability.critical_step import CriticalStep, critical_step, limit
@@ -40,7 +40,7 @@ def test_a_step_of_the_linear_test_equation_multiplies_by_the_stability_function
         matrix = np.array([[z.real, -z.imag], [z.imag, z.real]])
         stepper = Stepper(load(method), lambda _, y, A=matrix: A @ y, lambda _, y, A=matrix: A)
         start = np.array([1.0, 0.0])
-        end, _, _ = stepper.step(0.0, start, 1.0, stepper.slope(0.0, start))
+        end, _, _ = stepper.step(0.0, start, 1.0, stepper.derivative(0.0, start))
         assert complex(*end) == pytest.approx(complex(function(z)), rel=1e-12)
 
 
@@ -92,10 +92,10 @@ def test_intervals_end_where_the_stability_function_leaves_the_unit_circle(metho
 
 
 def test_a_fall_is_found_exactly_among_touches() -> None:
-    assert first_fall([F(1), F(-2), F(1)]) == inf  # (1 - x)²
-    assert first_fall([F(2), F(-5), F(4), F(-1)]) == 2.0  # (1 - x)² (2 - x)
-    assert first_fall([F(0), F(0), F(-1)]) == 0.0
-    assert first_fall([F(0)]) == first_fall([F(0), F(3)]) == inf
+    assert nonnegative_interval([F(1), F(-2), F(1)]) == inf  # (1 - x)²
+    assert nonnegative_interval([F(2), F(-5), F(4), F(-1)]) == 2.0  # (1 - x)² (2 - x)
+    assert nonnegative_interval([F(0), F(0), F(-1)]) == 0.0
+    assert nonnegative_interval([F(0)]) == nonnegative_interval([F(0), F(3)]) == inf
     generator = np.random.default_rng(0)
     for _ in range(100):
         roots = generator.integers(-6, 7, generator.integers(1, 7))
@@ -105,7 +105,7 @@ def test_a_fall_is_found_exactly_among_touches() -> None:
         middles = [(a + b) / 2 for a, b in zip(ends, [*ends[1:], ends[-1] + 2], strict=True)]
         values = [sign * np.prod([m - r for r in roots]) for m in middles]
         expected = next((a for a, value in zip(ends, values, strict=True) if value < 0), inf)
-        assert first_fall(p) == pytest.approx(expected, rel=1e-15)
+        assert nonnegative_interval(p) == pytest.approx(expected, rel=1e-15)
 
 
 def test_the_command_prints_every_method_and_where_methods_fail(
@@ -190,7 +190,7 @@ def test_modes_are_those_of_the_textbook() -> None:
     assert modes.shapes.T @ modes.mass_matrix @ modes.shapes == pytest.approx(np.eye(2), abs=1e-15)
     eigenvalues = np.sort_complex(np.linalg.eigvals(modes.matrix))
     assert np.abs(eigenvalues.real).max() < 1e-14
-    rest = along(dp, dp.DEFAULTS, np.zeros((1, 4)))[0]
+    rest = local_eigenvalues(dp, dp.DEFAULTS, np.zeros((1, 4)))[0]
     assert np.sort(rest.imag) == pytest.approx(np.sort(eigenvalues.imag))
     with pytest.raises(ValueError, match="does not oscillate"):
         Modes.at_rest(sp, (1.0, 2.0, -9.81))

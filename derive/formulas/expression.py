@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from solvers.io.suggestion import near
+from solvers.io.suggestion import did_you_mean
 
 Value: TypeAlias = sp.Expr | sp.MatrixBase
 Scope = Mapping[str, Any]
@@ -146,7 +146,7 @@ class _Evaluation:
     def _named(self, name: str, *, function: bool) -> Any:
         if name not in self._scope:
             raise ExpressionError(
-                f"unknown name {name[:50]!r}{near(name, self._scope)}; "
+                f"unknown name {name[:50]!r}{did_you_mean(name, self._scope)}; "
                 f"known are: {', '.join(sorted(self._scope))}"
             )
         value = self._scope[name]

@@ -13,7 +13,7 @@ from pkgutil import iter_modules
 from derive import systems
 from derive.system.parts import SystemDefinitionError
 from derive.system.system import System
-from solvers.io.suggestion import near
+from solvers.io.suggestion import did_you_mean
 
 #: The member of a family that is listed and shipped, and the largest that is derived.
 USUAL, LARGEST = 3, 100
@@ -87,7 +87,7 @@ def _file(name: str) -> tuple[str, int]:
         return f"{family[1]}_n", int(family[2])
     if name not in stems or name.endswith("_n"):
         raise UnknownSystemError(
-            f"no system is called {name[:50]!r}{near(name, names())}; "
+            f"no system is called {name[:50]!r}{did_you_mean(name, names())}; "
             f"known are: {', '.join(names())}, "
             f"and instead of {USUAL} any number up to {LARGEST}"
         )

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
-from solvers.io.suggestion import near
+from solvers.io.suggestion import did_you_mean
 
 #: Bytes of the largest file, and letters of the longest text.
 LARGEST, LONGEST = 500_000, 20_000
@@ -74,7 +74,7 @@ class Table:
         for key in values:
             if key not in known:
                 raise TableError(
-                    f"unknown key {key[:50]!r} in {name}{near(key, known)}; "
+                    f"unknown key {key[:50]!r} in {name}{did_you_mean(key, known)}; "
                     f"known are {', '.join(known)}"
                 )
 

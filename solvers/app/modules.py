@@ -10,8 +10,8 @@ from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
 from solvers.equations.module import GeneratedModule
-from solvers.equations.module_cache import made
-from solvers.equations.specialise import needed, specialised
+from solvers.equations.module_cache import cached_module
+from solvers.equations.specialise import required_functions, specialised_module
 from solvers.scenes.models.method_choice import Way
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def build(system: System) -> GeneratedModule:
     # symbols of one name may differ in what they may be
     assumptions = [(s.name, sorted(s.assumptions0.items())) for s in (*system.q, *system.params)]
     key = f"{system!r}{assumptions}{generator_text()}"
-    module = made(system.name, key, lambda: texts(Derivation(system)))
+    module = cached_module(system.name, key, lambda: texts(Derivation(system)))
     _systems[module.__name__] = system
     return module
 
@@ -113,7 +113,9 @@ def specialiser(module: GeneratedModule, params: Sequence[float], way: Way) -> G
 
     # the name of a module from the cache contains a digest of its system
     version = module.__name__ + generator_text()
-    return specialised(module, params, needed(way.method, way.form), generator, version)
+    return specialised_module(
+        module, params, required_functions(way.method, way.form), generator, version
+    )
 
 
 @cache

@@ -44,7 +44,7 @@ def energy_error(
     return (found - found[0]) / ((found[0] - rest if rest is not None else 0.0) or 1.0)
 
 
-def supplied(
+def supplied_energy(
     module: GeneratedModule, t: ArrayLike, y: ArrayLike, params: Sequence[float]
 ) -> NDArray[np.float64]:
     """Energy in J that forces, friction and what moves by itself have supplied so far.

@@ -57,12 +57,12 @@ class Form:
         self.state: tuple[str, ...] = module.STATES[name]
         self.ordinary = state_names(module, name)
         # where angles stand outside, and their sines inside; the same for all that stays as it is
-        self.turning = [
+        self.angle_columns = [
             (k, self.state.index(f"sin_{q}"))
             for k, q in enumerate(module.COORDINATES)
             if f"sin_{q}" in self.state
         ]
-        self.kept = [
+        self.shared_columns = [
             (k, self.state.index(part))
             for k, part in enumerate(self.ordinary)
             if part in self.state
@@ -72,16 +72,16 @@ class Form:
     def angles(self) -> list[tuple[int, int]]:
         """For each angle known by sine and cosine: where in the state its sine and velocity are."""
         half = len(self.module.COORDINATES)
-        rates = dict(self.kept)
-        return [(i, rates[half + k]) for k, i in self.turning]
+        rates = dict(self.shared_columns)
+        return [(i, rates[half + k]) for k, i in self.angle_columns]
 
-    def where(self, component: str) -> tuple[bool, int] | None:
+    def locate(self, component: str) -> tuple[bool, int] | None:
         """Which angle an ordinary component is, or else which number of this state."""
         k = self.ordinary.index(component)
-        turning = [angle for angle, _ in self.turning]
+        turning = [angle for angle, _ in self.angle_columns]
         if k in turning:
             return True, turning.index(k)
-        return (False, dict(self.kept)[k]) if k in dict(self.kept) else None
+        return (False, dict(self.shared_columns)[k]) if k in dict(self.shared_columns) else None
 
     @property
     def has_jacobian(self) -> bool:
@@ -97,7 +97,7 @@ class Form:
         assert self._jacobian is not None
         return np.array(self._jacobian(t, z, self.params))
 
-    def inside(self, t: float, y: Array) -> Array:
+    def from_ordinary(self, t: float, y: Array) -> Array:
         """The state of this form that belongs to the ordinary state `y` at time `t`."""
         if self.name == "hamiltonian":
             return np.array(function(self.module, "hamiltonian_state")(t, y, self.params))
@@ -105,20 +105,20 @@ class Form:
 
     def _regrouped(self, y: Array) -> Array:
         z = np.empty((len(y), len(self.state)))
-        for k, i in self.kept:
+        for k, i in self.shared_columns:
             z[:, i] = y[:, k]
-        for k, i in self.turning:
+        for k, i in self.angle_columns:
             z[:, i], z[:, i + 1] = np.sin(y[:, k]), np.cos(y[:, k])
         return z
 
-    def settled(self, z: Array) -> Array:
+    def normalised(self, z: Array) -> Array:
         """`z` with sin² + cos² = 1 restored to rounding."""
         z = z.copy()
-        for _, i in self.turning:
+        for _, i in self.angle_columns:
             z[i : i + 2] /= np.hypot(z[i], z[i + 1])
         return z
 
-    def outside(self, t: float, z: Array, before: Array, elapsed: float) -> Array:
+    def to_ordinary(self, t: float, z: Array, before: Array, elapsed: float) -> Array:
         """The ordinary state of `z` at time `t`.
 
         Turns of angles that are known by sine and cosine only are counted from the
@@ -143,22 +143,22 @@ class Form:
         if self.name == "hamiltonian":
             return np.array(function(self.module, "lagrangian_state")(t, z, self.params))
         y = np.empty_like(before)
-        for k, i in self.kept:
+        for k, i in self.shared_columns:
             y[k] = z[i]
         half = len(self.module.COORDINATES)
-        for k, i in self.turning:
+        for k, i in self.angle_columns:
             angle = np.arctan2(z[i], z[i + 1])
             expected = before[k] + elapsed * (before[half + k] + y[half + k]) / 2
             y[k] = angle + 2 * np.pi * np.round((expected - angle) / (2 * np.pi))
         return y
 
-    def inside_many(self, t: ArrayLike, y: Array) -> tuple[Array, Array]:
+    def from_ordinary_many(self, t: ArrayLike, y: Array) -> tuple[Array, Array]:
         """As `inside`, of states (n, state); and the turns of angles, shape (n, angles)."""
         if self.name == "hamiltonian":
             return self._many("hamiltonian_state_many", t, y), np.empty((len(y), 0))
         z = self._regrouped(y)
-        wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.turning]
-        turns = np.reshape(wrapped, (len(self.turning), len(y))).T / (2 * np.pi)
+        wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.angle_columns]
+        turns = np.reshape(wrapped, (len(self.angle_columns), len(y))).T / (2 * np.pi)
         return z, np.round(turns)
 
     def _many(self, name: str, t: ArrayLike, states: Array) -> Array:
@@ -167,14 +167,14 @@ class Form:
         with np.errstate(all="ignore"):
             return np.asarray(function(self.module, name)(t, states.T, params)).T
 
-    def outside_many(self, t: ArrayLike, z: Array, turns: Array) -> Array:
+    def to_ordinary_many(self, t: ArrayLike, z: Array, turns: Array) -> Array:
         """The ordinary states, shape (n, state), of `z` and `turns` as `inside_many` gives them."""
         if self.name == "hamiltonian":
             return self._many("lagrangian_state_many", t, z)
         y = np.empty((len(z), len(self.ordinary)))
-        for k, i in self.kept:
+        for k, i in self.shared_columns:
             y[:, k] = z[:, i]
-        for (k, i), whole in zip(self.turning, turns.T, strict=True):
+        for (k, i), whole in zip(self.angle_columns, turns.T, strict=True):
             y[:, k] = np.arctan2(z[:, i], z[:, i + 1]) + 2 * np.pi * whole
         return y
 

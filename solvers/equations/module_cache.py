@@ -10,13 +10,20 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
-from solvers.io.build_cache import PASSAGE, cache_folder, is_intact, placed, remove_abandoned, seal
+from solvers.io.build_cache import (
+    BUILD_PREFIX,
+    cache_folder,
+    is_intact,
+    move_into_place,
+    remove_abandoned,
+    write_digests,
+)
 
 #: Seconds after which what a killed process left behind is removed.
 ABANDONED = 600.0
 
 
-def made(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -> ModuleType:
+def cached_module(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -> ModuleType:
     """A module from the cache, or newly generated.
 
     Parameters
@@ -48,13 +55,13 @@ def made(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -> ModuleT
 
 def _write(folder: Path, place: Path, texts: Mapping[str, str]) -> None:
     remove_abandoned(folder, ABANDONED)
-    with tempfile.TemporaryDirectory(prefix=PASSAGE, dir=folder) as name:
+    with tempfile.TemporaryDirectory(prefix=BUILD_PREFIX, dir=folder) as name:
         ready = Path(name) / "ready"
         ready.mkdir(mode=0o700)
         for file, text in texts.items():
             (ready / file).write_text(text, encoding="utf-8")
-        seal(ready)
-        complaint = placed(ready, place, Path(name))
+        write_digests(ready)
+        complaint = move_into_place(ready, place, Path(name))
     if complaint:
         raise OSError(complaint)
 

@@ -78,7 +78,7 @@ class Modes:
         return float(np.sqrt(twice))
 
 
-def along(
+def local_eigenvalues(
     module: GeneratedModule, params: Sequence[float], states: Array
 ) -> NDArray[np.complex128]:
     """Eigenvalues of the Lagrangian form linearised at each of `states`, shape (n, state)."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from solvers.equations.module import GeneratedModule
-from solvers.equations.module_cache import made
+from solvers.equations.module_cache import cached_module
 from solvers.runge_kutta.catalogue import SCIPY, load
 
 #: What each form needs to be integrated in.
-NEEDED = {
+REQUIRED_FUNCTIONS = {
     "lagrangian": ("rhs",),
     "rational": ("rhs_rational",),
     "hamiltonian": ("rhs_hamiltonian", "hamiltonian_state", "lagrangian_state"),
@@ -19,14 +19,14 @@ NEEDED = {
 Generator = Callable[[str, Mapping[str, float], Sequence[str]], Mapping[str, str]]
 
 
-def needed(method: str, form: str) -> tuple[str, ...]:
+def required_functions(method: str, form: str) -> tuple[str, ...]:
     """Names of the functions that a method needs of a form: a Jacobian only if it is implicit."""
     jacobian = "jacobian" if form == "lagrangian" else f"jacobian_{form}"
     is_implicit = method not in SCIPY and not load(method).is_explicit
-    return (*NEEDED[form], *((jacobian,) if is_implicit else ()))
+    return (*REQUIRED_FUNCTIONS[form], *((jacobian,) if is_implicit else ()))
 
 
-def specialised(
+def specialised_module(
     module: GeneratedModule, params: Sequence[float], functions: Sequence[str],
     generator: Generator, version: str,
 ) -> GeneratedModule:  # fmt: skip
@@ -58,4 +58,4 @@ def specialised(
     name = module.SYSTEM
     values = dict(zip(module.PARAMETERS, map(float, params), strict=True))
     key = repr((name, values, tuple(functions), version))
-    return made(name, key, lambda: generator(name, values, functions))
+    return cached_module(name, key, lambda: generator(name, values, functions))

@@ -41,7 +41,7 @@ def obstacle(problem: Problem) -> str:
             return "an event is a Python function; solvers.integration.events.Event is known in C"
         kept = [event.coordinate] if isinstance(event, Extremum) else []
         for name in (event.name, *kept):
-            if problem.form.where(name) is None:
+            if problem.form.locate(name) is None:
                 return f"the {problem.form.name} form does not hold {name}"
     return ""
 
@@ -130,14 +130,14 @@ def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
     taken = 0 if problem.samples is None else sum(map(len, outcome.t))
     rows = batch.rows[0, taken : motion["rows"]]
     times = rows["t"] if problem.samples is None else problem.samples[taken : motion["rows"]]
-    states = batch.form.outside_many(rows["t"], rows["z"], rows["turns"])
+    states = batch.form.to_ordinary_many(rows["t"], rows["z"], rows["turns"])
     if len(states) and not outcome.t and times[0] == problem.span[0]:
         states[0] = problem.start  # as it was given, not as sine and cosine give it back
     occurred = [batch.event_rows[0, k, : motion["occurred"][k]] for k in events]
     places = [
-        list(batch.form.outside_many(rows["t"], rows["z"], rows["turns"])) for rows in occurred
+        list(batch.form.to_ordinary_many(rows["t"], rows["z"], rows["turns"])) for rows in occurred
     ]
-    place = batch.form.outside_many(
+    place = batch.form.to_ordinary_many(
         motion["t"], motion["z"][np.newaxis], motion["turns"][np.newaxis]
     )[0]
     outcome.t.append(times.copy())

@@ -245,7 +245,7 @@ def _passed(batch: Batch, there: NDArray[np.intp], rows: NDArray[np.void]) -> tu
     if any(np.size(parameter) > 1 for parameter in form.params):
         own = [np.broadcast_to(p, len(batch.motions))[there] for p in form.params]
         form = Form(form.module, form.name, own)
-    states = form.outside_many(rows["t"], rows["z"], rows["turns"])
+    states = form.to_ordinary_many(rows["t"], rows["z"], rows["turns"])
     if rows["scale"].size:
         n = states.shape[1] // 2
         with np.errstate(over="ignore"):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.io.suggestion import near
+from solvers.io.suggestion import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,10 @@ class Event:
 
     def __post_init__(self) -> None:
         if self.name not in self.module.STATE:
-            hint, known = near(str(self.name), self.module.STATE), ", ".join(self.module.STATE)
+            hint, known = (
+                did_you_mean(str(self.name), self.module.STATE),
+                ", ".join(self.module.STATE),
+            )
             raise ValueError(f"no component is called {self.name!r}{hint}; known are: {known}")
         if isinstance(self.value, bool) or not _is_finite(self.value):
             raise ValueError(f"value = {self.value!r} of {self.name} must be a finite number")

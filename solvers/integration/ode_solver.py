@@ -62,13 +62,13 @@ def ode_solver(method: str) -> type[OdeSolver]:
                     raise ValueError(f"{name} = {value} must be positive")
             self._stepper = Stepper(tableau, self.fun)
             self._control = Controller(tableau.error_order, relative, absolute)
-            self._slope = self._stepper.slope(self.t, self.y)
+            self._slope = self._stepper.derivative(self.t, self.y)
             self._longest = max_step
             self._shortest = SHORTEST * float(np.spacing(max(abs(t0), abs(t_bound))))
             self._size = first_step or max(
                 2 * self._shortest,
                 self._control.first_step(
-                    self._stepper.slope, t0, self.y, self._slope, t_bound - t0
+                    self._stepper.derivative, t0, self.y, self._slope, t_bound - t0
                 ),
             )
 
@@ -86,7 +86,7 @@ def ode_solver(method: str) -> type[OdeSolver]:
                     if not np.isfinite(norm):
                         raise NotFiniteError(f"the error at t = {self.t} is {error}")
                     if norm <= 1:
-                        following = self._stepper.slope(aim, end) if slope is None else slope
+                        following = self._stepper.derivative(aim, end) if slope is None else slope
                 except (NotFiniteError, NoConvergenceError):
                     self._size = size / 4
                     continue

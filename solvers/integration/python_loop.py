@@ -33,11 +33,11 @@ def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
     record = Record(problem, outcome)
     begin, end = problem.span
     direction = np.sign(end - begin)
-    t, z = begin, form.inside(begin, record.place)
+    t, z = begin, form.from_ordinary(begin, record.place)
     if t == end:
         return Status.FINISHED
     try:
-        first = stepper.slope(t, z)
+        first = stepper.derivative(t, z)
     except NotFiniteError:
         return Status.NOT_FINITE
     shortest = SHORTEST * float(np.spacing(max(abs(t), abs(end))))
@@ -46,7 +46,7 @@ def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
         assert problem.h is not None
         size = problem.h
     else:
-        guess = controller.first_step(stepper.slope, t, z, first, end - t)
+        guess = controller.first_step(stepper.derivative, t, z, first, end - t)
         size = max(guess, 2 * shortest)
     while t != end:
         if outcome.steps == problem.max_steps:
@@ -61,14 +61,14 @@ def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
         try:
             z_end, error, last = stepper.step(t, z, aim - t, first)
             norm = 0.0 if controller is None else controller.norm(error, z, z_end)
-            z_end = form.settled(z_end)
+            z_end = form.normalised(z_end)
             if not np.isfinite(z_end).all() or not np.isfinite(norm):
                 raise NotFiniteError("the state is not finite")
             stop = False
             if norm <= 1:
                 following = first if last is None else last
                 if last is None and aim != end:  # the end of the run needs no slope
-                    following = stepper.slope(aim, z_end)
+                    following = stepper.derivative(aim, z_end)
 
                 def inside(
                     time: float, t: float = t, z: Array = z, first: Array = first,
@@ -76,7 +76,7 @@ def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
                 ) -> Array:  # fmt: skip
                     if time == aim:
                         return z_end
-                    return form.settled(stepper.step(t, z, time - t, first)[0])
+                    return form.normalised(stepper.step(t, z, time - t, first)[0])
 
                 stop = record.advance(aim, inside)
         except (NotFiniteError, NoConvergenceError) as failure:

@@ -68,7 +68,7 @@ class Record:
         def between(time: float) -> Array:
             if time == t:
                 return self.place.copy()
-            return self.form.outside(time, inside(time), self.place, time - t)
+            return self.form.to_ordinary(time, inside(time), self.place, time - t)
 
         values = [event(end, between(end)) for event in self.events]
         happened = self._happened(t, end, values, between)

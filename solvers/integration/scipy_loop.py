@@ -39,8 +39,8 @@ def run(problem: Problem, outcome: Outcome) -> None:
     implicit = {"jac": jacobian} if takes_jacobian else {}
     try:
         solver = getattr(integrate, str(method))(
-            rhs, begin, form.inside(begin, record.place), end, rtol=problem.rtol, atol=problem.atol,
-            **implicit,
+            rhs, begin, form.from_ordinary(begin, record.place), end,
+            rtol=problem.rtol, atol=problem.atol, **implicit,
         )  # fmt: skip
         while solver.status == "running":
             if outcome.steps == problem.max_steps:
@@ -65,10 +65,10 @@ def _within(problem: Problem, solver: integrate.OdeSolver) -> Callable[[float], 
 
     def inside(time: float) -> Array:
         if time == solver.t:
-            return problem.form.settled(solver.y)
+            return problem.form.normalised(solver.y)
         if not dense:  # it may cost evaluations
             dense.append(solver.dense_output())
-        return problem.form.settled(dense[0](time))
+        return problem.form.normalised(dense[0](time))
 
     return inside
 

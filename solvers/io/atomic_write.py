@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import IO
 
 
-def written(path: Path, text: str | bytes) -> Path:
+def write_text(path: Path, text: str | bytes) -> Path:
     """Write a file beside its name first, then move it into place.
 
     Parameters
@@ -29,13 +29,13 @@ def written(path: Path, text: str | bytes) -> Path:
     OSError
         When it cannot be written; then nothing has changed.
     """
-    with placed(path) as file:
+    with replacing(path) as file:
         file.write(text.encode() if isinstance(text, str) else text)
     return path
 
 
 @contextmanager
-def placed(path: Path) -> Iterator[IO[bytes]]:
+def replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file to write to, which is moved into place when it is whole.
 
     Parameters

@@ -22,7 +22,7 @@ from pathlib import Path
 #: What the files of a finished folder hold, a line each.
 DIGESTS = "digests.sha256"
 #: Names of the folders in which files are made begin so.
-PASSAGE = "build-"
+BUILD_PREFIX = "build-"
 
 
 def cache_folder() -> Path:
@@ -70,7 +70,7 @@ def is_intact(place: Path) -> bool:
         return False
 
 
-def seal(ready: Path) -> None:
+def write_digests(ready: Path) -> None:
     """Write down what the files of a folder hold."""
     names = sorted(path.name for path in ready.iterdir())
     text = "".join(f"{digest}  {name}\n" for digest, name in _digests(ready, names))
@@ -81,7 +81,7 @@ def _digests(folder: Path, names: Sequence[str]) -> list[tuple[str, ...]]:
     return [(hashlib.sha256((folder / name).read_bytes()).hexdigest(), name) for name in names]
 
 
-def placed(ready: Path, place: Path, passage: Path) -> str:
+def move_into_place(ready: Path, place: Path, passage: Path) -> str:
     """Move a finished folder into place, unless another process was faster."""
     for attempt in range(3):
         try:
@@ -100,7 +100,7 @@ def placed(ready: Path, place: Path, passage: Path) -> str:
 
 def remove_abandoned(folder: Path, age: float) -> None:
     """Remove what killed makers left behind more than `age` seconds ago."""
-    for passage in folder.glob(f"{PASSAGE}*"):
+    for passage in folder.glob(f"{BUILD_PREFIX}*"):
         try:
             if time.time() - passage.stat().st_mtime > age:
                 shutil.rmtree(passage, ignore_errors=True)

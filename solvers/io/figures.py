@@ -10,7 +10,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from solvers.io.atomic_write import written
+from solvers.io.atomic_write import write_text
 
 #: Wong's palette, told apart by colour-blind eyes (Nature Methods 8, 441, 2011).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -71,7 +71,7 @@ def save(figure: Figure, path: str | Path) -> None:
     >>> line = panel.plot([0, 1], [0, 1])
     >>> save(figure, "line.png")
     """
-    written(Path(path), png(figure))
+    write_text(Path(path), png(figure))
 
 
 def png(figure: Figure) -> bytes:

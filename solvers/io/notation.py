@@ -35,6 +35,6 @@ def _tex(name: str) -> str:
     return f"{word}_{{{index}}}" if index else word
 
 
-def divided(words: str, unit: str) -> str:
+def axis_label(words: str, unit: str) -> str:
     """A quantity divided by its unit, which is a number."""
     return f"{words} / {f'({unit})' if '/' in unit else unit}"

@@ -30,7 +30,7 @@ class Progress:
 
     def __enter__(self) -> Progress:
         if sys.stderr.isatty():
-            self._thread = threading.Thread(target=self._tell, daemon=True)
+            self._thread = threading.Thread(target=self._report, daemon=True)
             self._thread.start()
         return self
 
@@ -42,7 +42,7 @@ class Progress:
         if self._thread:
             self._thread.join()
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         if self._stop.wait(FIRST):
             return
         while True:

@@ -53,7 +53,7 @@ class QuantityError(ValueError):
     """A text is no number, or its unit is of another kind."""
 
 
-def shown(value: object) -> str:
+def shortened(value: object) -> str:
     """What somebody wrote, in short."""
     try:
         return repr(value)[:50]
@@ -82,14 +82,14 @@ def quantity(value: object, unit: str) -> float:
         When it is no finite number, or of another kind.
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise QuantityError(f"{shown(value)} is no number: write a number in {unit}, or a text "
+        raise QuantityError(f"{shortened(value)} is no number: write a number in {unit}, or a text "
                             f'such as "1/2 {unit}"')  # fmt: skip
     if not isinstance(value, str):
         number = float(value) if abs(value) < 1e308 else inf
     else:
         number = _written(value, unit)
     if not isfinite(number):
-        raise QuantityError(f"{shown(value)} is not finite")
+        raise QuantityError(f"{shortened(value)} is not finite")
     return number
 
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from solvers.io.quantity import QuantityError, quantity, shown
-from solvers.io.suggestion import near
+from solvers.io.quantity import QuantityError, quantity, shortened
+from solvers.io.suggestion import did_you_mean
 
 #: Bytes of the largest file, and characters of the longest text.
 LARGEST, LONGEST = 100_000, 2000
@@ -53,7 +53,7 @@ def path(kind: str, name: str, folder: Path) -> Path:
     if name.endswith(".toml"):
         return Path(name)
     own = Path(f"{name}.toml")
-    hint = f" (did you mean '{own}'?)" if own.is_file() else near(name, known)
+    hint = f" (did you mean '{own}'?)" if own.is_file() else did_you_mean(name, known)
     raise InputError(
         f"{kind} {name[:80]!r} is not one of {', '.join(known)}{hint}; your own end in .toml"
     )
@@ -103,7 +103,9 @@ def check_keys(
     for key in given:
         if key not in known:
             hint = (
-                f": {key!r} belongs above the first [table]" if key in above else near(key, known)
+                f": {key!r} belongs above the first [table]"
+                if key in above
+                else did_you_mean(key, known)
             )
             raise InputError(f"{where} has no key {key[:50]!r}{hint}; known are {', '.join(known)}")
 
@@ -111,23 +113,23 @@ def check_keys(
 def table(key: str, value: object) -> dict[str, Any]:
     """A table."""
     if not isinstance(value, dict):
-        raise InputError(f"{key} = {shown(value)} must be a table: write [{key}]")
+        raise InputError(f"{key} = {shortened(value)} must be a table: write [{key}]")
     return value
 
 
 def text(key: str, value: object) -> str:
     """A printable text."""
     if not isinstance(value, str):
-        raise InputError(f"{key} = {shown(value)} must be text in quotes")
+        raise InputError(f"{key} = {shortened(value)} must be text in quotes")
     if len(value) > LONGEST or not all(c.isprintable() or c in "\n\t" for c in value):
-        raise InputError(f"{key} = {shown(value)} must be up to {LONGEST} printable characters")
+        raise InputError(f"{key} = {shortened(value)} must be up to {LONGEST} printable characters")
     return value
 
 
 def texts(key: str, value: object, most: int) -> tuple[str, ...]:
     """A list of texts."""
     if not isinstance(value, list):
-        raise InputError(f"{key} = {shown(value)} must be a list of texts in square brackets")
+        raise InputError(f"{key} = {shortened(value)} must be a list of texts in square brackets")
     if len(value) > most:
         raise InputError(f"{key} are {len(value)}: up to {most} are allowed")
     return tuple(text(key, item) for item in value)
@@ -154,5 +156,7 @@ def whole(key: str, value: object, least: int, most: int) -> int:
     if value is None:
         raise InputError(f"{key} is missing: give a whole number from {least} to {most}")
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise InputError(f"{key} = {shown(value)} must be a whole number from {least} to {most}")
+        raise InputError(
+            f"{key} = {shortened(value)} must be a whole number from {least} to {most}"
+        )
     return value

@@ -9,7 +9,7 @@ from html import escape
 from pathlib import Path
 from string import Template
 
-from solvers.io.atomic_write import written
+from solvers.io.atomic_write import write_text
 from solvers.player.document import document
 from solvers.player.track import Track
 
@@ -62,7 +62,7 @@ class Page:
         OSError
             When it cannot be written.
         """
-        written(path, self.html)
+        write_text(path, self.html)
 
     def _repr_html_(self) -> str:
         look = 'width="100%" height="760" style="border: 0"'

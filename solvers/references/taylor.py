@@ -116,11 +116,11 @@ class _Motion:
         except TypeError:  # of the function, which takes numbers only
             raise self._refusal(module, "call a function") from None
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
-        self._places = dict(form.kept)
+        self._places = dict(form.shared_columns)
         start = [Decimal(0)] * len(form.state)
-        for k, i in form.kept:
+        for k, i in form.shared_columns:
             start[i] = Decimal(float(y0[k]))
-        for angle, (k, i) in enumerate(form.turning):
+        for angle, (k, i) in enumerate(form.angle_columns):
             start[i], start[i + 1] = sine_and_cosine(Decimal(float(y0[k])))
             start.append(Decimal(float(y0[k])))
             self._places[k] = len(form.state) + angle

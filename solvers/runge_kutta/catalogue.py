@@ -6,7 +6,7 @@ from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 
-from solvers.io.suggestion import near
+from solvers.io.suggestion import did_you_mean
 from solvers.runge_kutta import methods
 from solvers.runge_kutta.tableau import Tableau
 
@@ -43,7 +43,7 @@ def load(name: str) -> Tableau:
     """
     if name not in names():
         raise UnknownMethodError(
-            f"no method is called {name[:50]!r}{near(name, names())}; known are: "
+            f"no method is called {name[:50]!r}{did_you_mean(name, names())}; known are: "
             f"{', '.join(names())}"
         )
     tableau: Tableau = import_module(f"solvers.runge_kutta.methods.{name}").tableau

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.runge_kutta.sturm import first_fall
+from solvers.runge_kutta.sturm import nonnegative_interval
 from solvers.runge_kutta.surd import Surd
 from solvers.runge_kutta.tableau import Tableau
 
@@ -78,14 +78,14 @@ class StabilityFunction:
     def real_stability_interval(self) -> float:
         """The largest x with |R| ≤ 1 on [-x, 0]; infinity if there is no largest."""
         P, Q = (_reflected(part) for part in (self.numerator, self.denominator))
-        return first_fall(_difference(_product(Q, Q), _product(P, P)))
+        return nonnegative_interval(_difference(_product(Q, Q), _product(P, P)))
 
     @cached_property
     def imaginary_stability_interval(self) -> float:
         """The largest y with |R| ≤ 1 on [-iy, iy]; infinity if there is no largest."""
         # |Q(iy)|² - |P(iy)|² is a polynomial in y²
         P, Q = (_square_on_imaginary_axis(part) for part in (self.numerator, self.denominator))
-        return sqrt(first_fall(_difference(Q, P)))
+        return sqrt(nonnegative_interval(_difference(Q, P)))
 
 
 def _fraction(number: Fraction | Surd | Decimal) -> Fraction:

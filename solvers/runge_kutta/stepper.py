@@ -56,7 +56,7 @@ class Stepper:
         self._tableau, self._rhs, self._jacobian = tableau, rhs, jacobian
         self.nfev = self.njev = 0
 
-    def slope(self, t: float, y: Array) -> Array:
+    def derivative(self, t: float, y: Array) -> Array:
         """The right-hand side, counted and found finite.
 
         Parameters
@@ -127,7 +127,7 @@ class Stepper:
         slopes = np.empty((len(self._b), len(y)))
         slopes[0] = first
         for i in range(1, len(self._b)):
-            slopes[i] = self.slope(t + self._c[i] * h, y + h * (self._A[i, :i] @ slopes[:i]))
+            slopes[i] = self.derivative(t + self._c[i] * h, y + h * (self._A[i, :i] @ slopes[:i]))
         return slopes
 
     def _implicit(self, t: float, y: Array, h: float, first: Array) -> Array:
@@ -142,10 +142,11 @@ class Stepper:
         rounding = CLOSE * (100 + np.abs(h * J).max())
         previous = np.inf
         for _ in range(ROUNDS):
-            places = y + h * (self._A @ slopes)
+            states = y + h * (self._A @ slopes)
             try:
                 values = np.array([
-                    self.slope(t + c * h, place) for c, place in zip(self._c, places, strict=True)
+                    self.derivative(t + c * h, state)
+                    for c, state in zip(self._c, states, strict=True)
                 ])  # fmt: skip
                 change = np.linalg.solve(matrix, (values - slopes).ravel()).reshape(stages, n)
             except (NotFiniteError, np.linalg.LinAlgError) as error:

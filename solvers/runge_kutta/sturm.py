@@ -13,7 +13,7 @@ Polynomial = Sequence[Fraction]  # coefficients of x⁰, x¹, …
 RESOLUTION = Fraction(1, 10**17)
 
 
-def first_fall(polynomial: Polynomial) -> float:
+def nonnegative_interval(polynomial: Polynomial) -> float:
     """The largest x such that `polynomial` ≥ 0 on [0, x]; infinity if it is so for all x ≥ 0.
 
     Roots are told apart by Sturm's theorem, so that one where the polynomial only touches

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
-from solvers.io.quantity import shown
-from solvers.io.suggestion import near
+from solvers.io.quantity import shortened
+from solvers.io.suggestion import did_you_mean
 from solvers.runge_kutta.catalogue import SCIPY, UnknownMethodError, load
 
 #: Samples that fit into memory, and the finest accuracy.
@@ -159,7 +159,8 @@ def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[
     for name in outputs:
         if name not in known:
             raise ValueError(
-                f"outputs name {name[:50]!r}{near(name, known)}: known are {', '.join(known)}"
+                f"outputs name {name[:50]!r}{did_you_mean(name, known)}: known are "
+                f"{', '.join(known)}"
             )
     if not set(outputs) & set(state):
         raise ValueError(
@@ -182,7 +183,7 @@ def check_samples(value: object) -> None:
     """
     if isinstance(value, bool) or not isinstance(value, int) or not 2 <= value <= MOST_SAMPLES:
         raise ValueError(
-            f"samples = {shown(value)} must be a whole number from 2 to {MOST_SAMPLES}"
+            f"samples = {shortened(value)} must be a whole number from 2 to {MOST_SAMPLES}"
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solvers.equations.energy import energy_error, supplied
+from solvers.equations.energy import energy_error, supplied_energy
 from solvers.scenes.run import Answer, energies
 
 #: Lengths that differ by less are those of rods.
@@ -84,5 +84,5 @@ def energy_errors(answer: Answer) -> np.ndarray:
     """Energy errors in parts of the energy above rest, shape (samples,)."""
     scene = answer.scene
     kept = energies(scene, answer.t, answer.y)
-    kept -= supplied(scene.module, answer.t, answer.y, scene.params)
+    kept -= supplied_energy(scene.module, answer.t, answer.y, scene.params)
     return energy_error(scene.module, scene.params, kept)

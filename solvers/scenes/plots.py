@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from solvers.io.figures import COLOURS, panels
-from solvers.io.notation import divided, symbol
+from solvers.io.notation import axis_label, symbol
 from solvers.scenes.checks import curves_of
 from solvers.scenes.geometry import energy_errors, links, places, projected
 from solvers.scenes.run import Answer
@@ -141,14 +141,14 @@ def _curves(
                    label=", ".join(filter(None, words)))  # fmt: skip
     if over == "t":
         panel.set_xlim(0, answer.t[-1])
-    panel.set(xlabel=divided(symbol(over), units[over]),
+    panel.set(xlabel=axis_label(symbol(over), units[over]),
               ylabel=_labelled(names, units))  # fmt: skip
 
 
 def _labelled(names: Sequence[str], units: Mapping[str, str]) -> str:
     """Names with their units; one unit for those that share it."""
     groups = groupby(names, units.__getitem__)
-    return ", ".join(divided(", ".join(map(symbol, group)), unit) for unit, group in groups)
+    return ", ".join(axis_label(", ".join(map(symbol, group)), unit) for unit, group in groups)
 
 
 def _path(panel: Axes, answer: Answer, colours: Sequence[str], style: str, label: str) -> None:

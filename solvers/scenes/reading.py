@@ -10,7 +10,7 @@ from typing import Any
 
 from solvers.equations.module import GeneratedModule
 from solvers.io import toml_input
-from solvers.io.quantity import shown
+from solvers.io.quantity import shortened
 from solvers.io.toml_input import InputError
 from solvers.scenes.checks import check_samples
 from solvers.scenes.scene import Scene
@@ -129,7 +129,7 @@ def _difference(key: str, value: object) -> str:
     """What differs, in words."""
     if isinstance(value, dict):
         return ", ".join(_difference(name, one) for name, one in value.items())
-    words = shown(value).strip("'")
+    words = shortened(value).strip("'")
     return words if key == "method" else f"{key} = {words}"
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 
 from solvers.equations.module import GeneratedModule, has_function
-from solvers.io.suggestion import near
+from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.barrier import lower_place
 from solvers.sweeps.map import Map
@@ -51,7 +51,7 @@ def check_names(module: GeneratedModule, axes: Axes, values: Values) -> None:
     for name in (*varied, *values):
         if name not in known:
             raise ValueError(
-                f"{name[:50]!r}{near(name, known)} cannot vary or be given: known are "
+                f"{name[:50]!r}{did_you_mean(name, known)} cannot vary or be given: known are "
                 f"{', '.join(known)}"
             )
     for name in varied:
@@ -135,8 +135,8 @@ def check_maps(
         for component in one.components:
             if component not in module.STATE:
                 raise ValueError(
-                    f"map {name} names {component[:50]!r}{near(component, module.STATE)}: known "
-                    f"are {', '.join(module.STATE)}"
+                    f"map {name} names {component[:50]!r}"
+                    f"{did_you_mean(component, module.STATE)}: known are {', '.join(module.STATE)}"
                 )
         if isinstance(one, Final) and not one.of:
             raise ValueError(f"map {name} keeps nothing: name some of {', '.join(module.STATE)}")

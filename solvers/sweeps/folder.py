@@ -25,7 +25,7 @@ import numpy as np
 from numpy.lib.format import dtype_to_descr, write_array_header_1_0
 from numpy.typing import NDArray
 
-from solvers.io.atomic_write import placed, written
+from solvers.io.atomic_write import replacing, write_text
 
 MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 1
 #: Hexadecimal digits of a digest in a file's name.
@@ -108,7 +108,7 @@ class Folder:
                 "format": FORMAT, "chunk": self._length, "motions": self._motions,
                 "asked": self._asked,
             }  # fmt: skip
-            written(place, json.dumps(manifest, indent=2, ensure_ascii=False) + "\n")
+            write_text(place, json.dumps(manifest, indent=2, ensure_ascii=False) + "\n")
         for place in [*self.path.iterdir(), *(self.path / CHUNKS).iterdir()]:
             is_damaged = CHUNK.fullmatch(place.name) and place not in self.done.values()
             if is_damaged or PASSAGE.fullmatch(place.name):
@@ -177,7 +177,7 @@ class Folder:
         np.save(file, motions, allow_pickle=False)
         digest = hashlib.sha256(file.getbuffer()).hexdigest()[:DIGITS]
         name = f"{chunk:0{len(str(self.chunks))}}-{digest}.npy"
-        self.done[chunk] = written(self.path / CHUNKS / name, file.getvalue())
+        self.done[chunk] = write_text(self.path / CHUNKS / name, file.getvalue())
 
     def gather(self, shape: tuple[int, ...]) -> None:
         """Put the maps together, a file each, of a sweep of this shape."""
@@ -187,7 +187,7 @@ class Folder:
                 "descr": dtype_to_descr(field.base), "fortran_order": False,
                 "shape": (*shape, *field.shape),
             }  # fmt: skip
-            with placed(self.path / f"{name}.npy") as file:
+            with replacing(self.path / f"{name}.npy") as file:
                 write_array_header_1_0(file, header)
                 for rows in self.rows(name):
                     file.write(np.ascontiguousarray(rows).tobytes())

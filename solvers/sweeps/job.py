@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, header
-from solvers.equations.module_cache import made
+from solvers.equations.module_cache import cached_module
 from solvers.integration.solution import Status
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.map import Map
@@ -52,7 +52,7 @@ def loaded(source: Source) -> GeneratedModule:
     """The module; each process loads it once."""
     if not source.texts:
         return import_module(source.name)
-    return made(source.name, repr(source.texts), lambda: dict(source.texts))
+    return cached_module(source.name, repr(source.texts), lambda: dict(source.texts))
 
 
 @dataclass(frozen=True)

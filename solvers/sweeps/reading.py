@@ -12,7 +12,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule
 from solvers.io import toml_input
-from solvers.io.suggestion import near
+from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import InputError
 from solvers.sweeps.axes import Axes, Grid, Random, Table
 from solvers.sweeps.checks import ENERGY, FROM_ENERGY
@@ -176,6 +176,6 @@ def unit(module: GeneratedModule, name: str) -> str:
     known = (*module.STATE, *module.PARAMETERS)
     if name not in known:
         raise InputError(
-            f"{name[:50]!r}{near(name, known)} is not one of {', '.join((*known, ENERGY))}"
+            f"{name[:50]!r}{did_you_mean(name, known)} is not one of {', '.join((*known, ENERGY))}"
         )
     return str(module.UNITS[name])

@@ -7,8 +7,8 @@ from typing import Any
 
 from solvers.equations.module import GeneratedModule
 from solvers.io import toml_input
-from solvers.io.quantity import shown
-from solvers.io.suggestion import near
+from solvers.io.quantity import shortened
+from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import InputError
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import (
@@ -53,9 +53,9 @@ def kept(key: str, module: GeneratedModule, given: Given) -> Map:
         raise InputError(f"{key}.kind is missing: give one of {', '.join(map(repr, KINDS))}")
     kind = given["kind"]
     if not isinstance(kind, str) or kind not in KINDS:
-        hint = near(kind, tuple(KINDS)) if isinstance(kind, str) else ""
+        hint = did_you_mean(kind, tuple(KINDS)) if isinstance(kind, str) else ""
         raise InputError(
-            f"{key}.kind = {shown(kind)}{hint} must be one of {', '.join(map(repr, KINDS))}"
+            f"{key}.kind = {shortened(kind)}{hint} must be one of {', '.join(map(repr, KINDS))}"
         )
     known, meaning = KINDS[kind]
     toml_input.check_keys(key, given, ("kind", *known))
@@ -86,10 +86,12 @@ def _first(key: str, module: GeneratedModule, given: Given) -> First:
 def _section(key: str, module: GeneratedModule, given: Given) -> Section:
     where, direction = given.get("where"), given.get("direction", "both")
     if not isinstance(where, str) or where not in module.STATE:
-        raise InputError(f"{key}.where = {shown(where)} must be one of {', '.join(module.STATE)}")
+        raise InputError(
+            f"{key}.where = {shortened(where)} must be one of {', '.join(module.STATE)}"
+        )
     if not isinstance(direction, str) or direction not in DIRECTIONS:
         raise InputError(
-            f"{key}.direction = {shown(direction)} must be one of {', '.join(DIRECTIONS)}"
+            f"{key}.direction = {shortened(direction)} must be one of {', '.join(DIRECTIONS)}"
         )
     value = toml_input.number(f"{key}.value", given.get("value", 0.0), module.UNITS[where])
     of, count = _of(key, module, given), _count(key, given)
@@ -104,7 +106,7 @@ def _of(key: str, module: GeneratedModule, given: Given) -> tuple[str, ...]:
     for name in of:
         if name not in module.STATE:
             raise InputError(
-                f"{key}.of names {name[:50]!r}{near(name, module.STATE)}: known are "
+                f"{key}.of names {name[:50]!r}{did_you_mean(name, module.STATE)}: known are "
                 f"{', '.join(module.STATE)}"
             )
     return of

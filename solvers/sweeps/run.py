@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.io.atomic_write import written
+from solvers.io.atomic_write import write_text
 from solvers.io.progress import Rate
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.chunk_length import chunk_length
@@ -134,4 +134,4 @@ def gathered(asked: Sweep, kept: Folder) -> None:
         for name, values in asked.axes.values.items():
             file = BytesIO()
             np.save(file, values, allow_pickle=False)
-            written(kept.path / f"{name}.npy", file.getvalue())
+            write_text(kept.path / f"{name}.npy", file.getvalue())

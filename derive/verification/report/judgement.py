@@ -15,7 +15,7 @@ from derive.verification.report.contexts import STRAY
 from derive.verification.report.equation import Equation, Stated, Verdict
 from derive.verification.report.method import NotRungeKuttaError, coefficients
 from derive.verification.statement import Context, Finding
-from solvers.io.suggestion import near
+from solvers.io.suggestion import did_you_mean
 
 #: Tells the order of the Runge–Kutta method with stage matrix A and weights b.
 OrderOf = Callable[[list[list[Fraction]], list[Fraction]], int]
@@ -68,7 +68,7 @@ def named(name: str) -> Equation | Stated:
         if equation.id == name:
             return equation
     known = [equation.id for equation in EQUATIONS]
-    raise LookupError(f"the report has no equation {name[:50]!r}{near(name, known)}")
+    raise LookupError(f"the report has no equation {name[:50]!r}{did_you_mean(name, known)}")
 
 
 @cache  # what stands beside a derivation is asked for again in the whole verdict

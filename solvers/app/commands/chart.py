@@ -9,7 +9,7 @@ from typing import Any
 
 from solvers.app.commands.options import options
 from solvers.equations.module import GeneratedModule
-from solvers.io.atomic_write import written
+from solvers.io.atomic_write import write_text
 from solvers.io.figures import save
 from solvers.io.json_values import jsonable
 from solvers.io.progress import Progress
@@ -85,7 +85,7 @@ def main(
             where = f"pictures: {', '.join(map(str, paths.values()))}"
             print(*told(charted), where, "", sep="\n", flush=True)
     if arguments.record:
-        written(RECORD, recorded(found))
+        write_text(RECORD, recorded(found))
     if arguments.json:
         print(json.dumps(jsonable(_figures(found, pictures)), indent=2))
     return 0

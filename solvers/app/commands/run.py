@@ -10,7 +10,7 @@ from typing import Any
 
 from solvers.app.commands.options import options
 from solvers.equations.module import GeneratedModule
-from solvers.io.atomic_write import written
+from solvers.io.atomic_write import write_text
 from solvers.io.figures import save
 from solvers.io.json_values import jsonable
 from solvers.io.progress import Progress
@@ -86,9 +86,9 @@ def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Pa
         "page": folder / f"{scene.name}.html",
     }
     save(drawn(answers), paths["picture"])
-    written(paths["table"], table(answers[0]))
+    write_text(paths["table"], table(answers[0]))
     for n, one in enumerate(answers[1:], 2):
-        paths[f"table {n}"] = written(folder / f"{scene.name}_{n}.csv", table(one))
+        paths[f"table {n}"] = write_text(folder / f"{scene.name}_{n}.csv", table(one))
     if code := special_code(answers[0]):
         paths["code"] = code
     words = [*scene.note.split(), *(sureness(one, named=len(answers) > 1) for one in answers)]

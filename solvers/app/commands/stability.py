@@ -11,7 +11,7 @@ import numpy as np
 
 from solvers.app.commands.options import options
 from solvers.equations.module import GeneratedModule
-from solvers.equations.normal_modes import Modes, along
+from solvers.equations.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import no_compiler
 from solvers.io.figures import save
@@ -144,5 +144,5 @@ def picture(one: Scene, steps: Sequence[CriticalStep]) -> Any:
     return regions(
         f"|R(hλ)| ≤ 1, small motions (dots) and the motion (grey) of {one.title}",
         steps, Modes.at_rest(module, params).frequencies,
-        along(module, params, motion.y.T).ravel(),
+        local_eigenvalues(module, params, motion.y.T).ravel(),
     )  # fmt: skip

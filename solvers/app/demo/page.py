@@ -8,7 +8,7 @@ from pathlib import Path
 
 from solvers.app.demo.html import table
 from solvers.app.demo.station import Station
-from solvers.io.atomic_write import written
+from solvers.io.atomic_write import write_text
 from solvers.player import page as motions
 from solvers.player.document import document
 
@@ -91,7 +91,7 @@ def write_demo(
     path: Path, stations: Mapping[str, Station], made: Mapping[str, str], style: str
 ) -> None:  # fmt: skip
     """Write the page beside its name first, and move it into place."""
-    written(path, page(stations, made, style))
+    write_text(path, page(stations, made, style))
 
 
 def _shown(stations: Mapping[str, Station]) -> list[str]:

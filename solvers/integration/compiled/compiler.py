@@ -17,12 +17,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from solvers.io.build_cache import (
-    PASSAGE,
+    BUILD_PREFIX,
     cache_folder,
     is_intact,
-    placed,
+    move_into_place,
     remove_abandoned,
-    seal,
+    write_digests,
 )
 
 #: ``-ffast-math`` would switch the whole process to flushing small numbers to zero.
@@ -122,7 +122,7 @@ def _processor() -> str:
 def _built(source: str, compiler: Sequence[str], flags: Sequence[str], place: Path) -> str:
     """Build into `place`; return what went wrong, if anything did."""
     remove_abandoned(place.parent, 10 * PATIENCE)
-    with tempfile.TemporaryDirectory(prefix=PASSAGE, dir=place.parent) as name:
+    with tempfile.TemporaryDirectory(prefix=BUILD_PREFIX, dir=place.parent) as name:
         passage = Path(name)
         (passage / "source.c").write_text(source, encoding="utf-8")
         command = [*compiler, *flags, "-shared", "-o", LIBRARY, "source.c", "-lm"]
@@ -134,8 +134,8 @@ def _built(source: str, compiler: Sequence[str], flags: Sequence[str], place: Pa
         ready = passage / "ready"
         ready.mkdir(mode=0o700)
         os.replace(passage / LIBRARY, ready / LIBRARY)
-        seal(ready)
-        return placed(ready, place, passage)
+        write_digests(ready)
+        return move_into_place(ready, place, passage)
 
 
 def _run(command: Sequence[str], folder: Path) -> str:

@@ -175,7 +175,7 @@ class Batch:
         self.motions = np.zeros(n, kernel.trajectory)
         self.motions["t"], self.motions["t_end"] = problem.span
         self.motions["shortest"] = SHORTEST * np.spacing(np.abs(problem.span).max())
-        self.motions["z"], self.motions["turns"] = form.inside_many(problem.span[0], starts)
+        self.motions["z"], self.motions["turns"] = form.from_ordinary_many(problem.span[0], starts)
         for k, parameter in enumerate(form.params):
             self.motions["params"][:, k] = parameter
         self.rows = np.zeros((n, capacity), kernel.row)
@@ -222,8 +222,8 @@ class Batch:
 def _event(form: Form, crossing: Event, pauses: bool) -> tuple[float | int, ...]:
     # a motion that pauses has room for every occurrence
     extremes = isinstance(crossing, Extremum) and not pauses
-    watched = form.where(crossing.name)
-    kept = form.where(crossing.coordinate) if isinstance(crossing, Extremum) else (False, 0)
+    watched = form.locate(crossing.name)
+    kept = form.locate(crossing.coordinate) if isinstance(crossing, Extremum) else (False, 0)
     assert watched is not None
     assert kept is not None
     value = crossing.value

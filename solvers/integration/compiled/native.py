@@ -66,9 +66,9 @@ def equations(module: GeneratedModule, form: str) -> Equations:
     text = place.read_text(encoding="utf-8")
     rhs, jacobian = (f"{place.stem}_{named(stem, form)}" for stem in ("rhs", "jacobian"))
     described = Form(module, form, (0.0,) * len(module.PARAMETERS))
-    enter = [f"z[{i}] = y[{k}];" for k, i in described.kept]
-    leave = [f"y[{k}] = z[{i}];" for k, i in described.kept]
-    for a, (k, i) in enumerate(described.turning):
+    enter = [f"z[{i}] = y[{k}];" for k, i in described.shared_columns]
+    leave = [f"y[{k}] = z[{i}];" for k, i in described.shared_columns]
+    for a, (k, i) in enumerate(described.angle_columns):
         wrapped = f"atan2(z[{i}], z[{i + 1}])"
         enter.append(f"z[{i}] = sin(y[{k}]); z[{i + 1}] = cos(y[{k}]);")
         enter.append(f"turns[{a}] = nearest_whole((y[{k}] - {wrapped})*(0.5/PI));")

@@ -78,7 +78,7 @@ def _points(
 
 def _ordinary(module: GeneratedModule, form: str, state: Array, truth: Reference) -> Array:
     """Coordinates and velocities; angles that are known up to whole turns are next to the truth."""
-    return Form(module, form, module.DEFAULTS).outside(0.0, state, truth.end, 0.0)
+    return Form(module, form, module.DEFAULTS).to_ordinary(0.0, state, truth.end, 0.0)
 
 
 def _heyoka(hy: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
@@ -165,7 +165,7 @@ def _numbalsoda(package: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
 
 def _fastest(scene: Scene) -> tuple[Form, Array]:
     form = Form(scene.module, fastest_form(scene.module), scene.params)
-    return form, form.inside(0.0, np.array(scene.y0))
+    return form, form.from_ordinary(0.0, np.array(scene.y0))
 
 
 #: Packages by name, and what of theirs is run.

@@ -8,7 +8,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 
-from solvers.io.notation import divided, symbol
+from solvers.io.notation import axis_label, symbol
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.map import Map
 from solvers.sweeps.maps import EnergyError, First, Lyapunov
@@ -24,13 +24,13 @@ def letter(name: str) -> str:
 
 def what(one: Map, name: str, part: str, unit: str) -> str:
     """What the numbers of a map are; `part` is the component they are of, if any."""
-    return divided(WORDS.get(type(one), symbol(part) if part else name), unit)
+    return axis_label(WORDS.get(type(one), symbol(part) if part else name), unit)
 
 
 def label(panel: Axes, axis: str, results: Results, name: str) -> None:
     """Label an axis of a panel along which something varies."""
     unit = results.unit(name)
-    panel.set(**{f"{axis}label": divided(letter(name), unit)})
+    panel.set(**{f"{axis}label": axis_label(letter(name), unit)})
     if unit == "rad" and np.pi < np.ptp(results.axes[name]) < 5 * np.pi:
         ticks = getattr(panel, f"{axis}axis")
         ticks.set_major_locator(MultipleLocator(np.pi / 2))

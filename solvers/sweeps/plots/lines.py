@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from solvers.io.figures import COLOURS
-from solvers.io.notation import divided, symbol
+from solvers.io.notation import axis_label, symbol
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.maps import Final, Samples, Section
 from solvers.sweeps.plots.colours import NOTHING, colours, is_direction, shown
@@ -81,4 +81,4 @@ def section(panel: Axes, *, results: Results, name: str, chosen: Any) -> None:
 
 
 def _component(results: Results, name: str) -> str:
-    return divided(symbol(name), results.asked.module.UNITS[name])
+    return axis_label(symbol(name), results.asked.module.UNITS[name])
