@@ -15,8 +15,6 @@ from derive.codegen.writing import texts
 from derive.mechanics.derivation import Derivation
 from derive.system.catalogue import UnknownSystemError, load, names
 from derive.system.parts import SystemDefinitionError
-from derive.system.system import System
-from derive.system.system_file import read_system
 
 EXAMPLE = """\
 examples:
@@ -93,7 +91,7 @@ def planned(systems: list[str], output: Path | None) -> Tree:
     """What the folder should hold after the command."""
     files: dict[str, str] = {}
     for name in systems or names():
-        system = system_of(name)
+        system = load(name)
         if output is None and name not in names():
             raise SystemDefinitionError(
                 f"{name} does not ship: say where to write its module, with --output DIR"
@@ -104,11 +102,6 @@ def planned(systems: list[str], output: Path | None) -> Tree:
     modules = "\n".join(f'    "{name}",' for name in names())
     files |= {"__init__.py": PACKAGE.format(names=modules), "py.typed": ""}
     return Tree(_package_folder(), files, complete=not systems)
-
-
-def system_of(name: str) -> System:
-    """The system of this name, or in this file where it ends in ``.toml``."""
-    return read_system(Path(name)) if name.endswith(".toml") else load(name)
 
 
 def _package_folder() -> Path:

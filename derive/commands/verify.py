@@ -5,14 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
-from pathlib import Path
 
-from derive.commands.derive import system_of
-from derive.system.tables import TableError
 from derive.verification.hand.equations import HandDerivation, judge
-
-#: Where the published equations of the systems that ship are.
-PUBLISHED = Path(__file__).parent.parent / "published"
 
 
 def verify(names: Sequence[str], *, as_json: bool) -> int:
@@ -21,7 +15,7 @@ def verify(names: Sequence[str], *, as_json: bool) -> int:
     Parameters
     ----------
     names : sequence of str
-        Paths that end in ``.toml``, and names of systems with published equations.
+        Paths that end in ``.toml``, and names of systems.
     as_json : bool
         Whether to print JSON instead of words.
 
@@ -33,15 +27,15 @@ def verify(names: Sequence[str], *, as_json: bool) -> int:
     Raises
     ------
     TableError
-        When a file is no hand derivation, or no published equations are called so.
+        When a file is no hand derivation, or a system has no published equations.
     ExpressionError
         When a parameter is set to what is no formula.
     UnknownSystemError
-        When a file is about a system that does not ship.
+        When a name, or the system that a file names, is not that of a system.
     SystemDefinitionError
         When a file is about a system whose own file is wrong.
     """
-    found = [judge(_place(name), system_of) for name in names]
+    found = [judge(name) for name in names]
     if as_json:
         print(json.dumps([asdict(one) for one in found], indent=2, ensure_ascii=False))
     else:
@@ -65,16 +59,3 @@ def told(hand: HandDerivation) -> Iterator[str]:
         rows |= {"in numbers": one.witness, "right": one.correction}
         if one.verdict in ("wrong", "unreadable"):
             yield from (f"      {title}: {text}" for title, text in rows.items() if text)
-
-
-def _place(name: str) -> Path:
-    if name.endswith(".toml"):
-        return Path(name)
-    place = PUBLISHED / f"{name}.toml"
-    if not place.is_file():
-        known = ", ".join(sorted(path.stem for path in PUBLISHED.glob("*.toml")))
-        raise TableError(
-            f"no published equations of {name[:50]!r} ship; those of {known} do; "
-            "your own end in .toml"
-        )
-    return place

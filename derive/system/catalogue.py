@@ -1,18 +1,23 @@
 """The systems that ship with holonomic, found by their files' names.
 
 A file whose name ends in ``_n`` holds a family: its ``system`` is a function of n, and
-``chain_5`` is its member of five.
+``chain_5`` is its member with n = 5. A file may also define ``PUBLISHED``: published equations of
+the system, as TOML text in the format of ``holonomic verify``.
 """
 
 from __future__ import annotations
 
 import re
 from importlib import import_module
+from os import PathLike, fspath
+from pathlib import Path
 from pkgutil import iter_modules
+from types import ModuleType
 
 from derive import systems
 from derive.system.parts import SystemDefinitionError
 from derive.system.system import System
+from derive.system.system_file import read_system
 from solvers.io.suggestion import did_you_mean
 
 #: The member of a family that is listed and shipped, and the largest that is derived.
@@ -20,22 +25,22 @@ USUAL, LARGEST = 3, 100
 
 
 class UnknownSystemError(ValueError):
-    """No system has this name; the message lists those that exist."""
+    """No system has this name; the message lists the names that exist."""
 
 
 def names() -> tuple[str, ...]:
-    """Names of all systems, in alphabetical order; of a family its usual member."""
-    stems = (module.name for module in iter_modules(systems.__path__))
-    return tuple(sorted(re.sub(r"_n\Z", f"_{USUAL}", stem) for stem in stems))
+    """Names of all systems, in alphabetical order; a family is listed as its usual member."""
+    return tuple(sorted(re.sub(r"_n\Z", f"_{USUAL}", stem) for stem in _stems()))
 
 
-def load(name: str) -> System:
-    """The system called `name`.
+def load(name: str | PathLike[str]) -> System:
+    """The system of this name, or in this TOML file.
 
     Parameters
     ----------
-    name : str
-        Such as ``double_pendulum``; of a family any member, such as ``chain_5``, up to `LARGEST`.
+    name : str or path
+        Name of a system, such as ``double_pendulum``; a member of a family, such as ``chain_5``,
+        up to `LARGEST`; or the path of a system file that ends in ``.toml``.
 
     Returns
     -------
@@ -44,9 +49,9 @@ def load(name: str) -> System:
     Raises
     ------
     UnknownSystemError
-        When no file is called so.
+        When no system has this name.
     SystemDefinitionError
-        When its file is wrong: what it says, or that its name and the system's differ.
+        When the file does not define a system, or defines one of another name.
 
     Examples
     --------
@@ -56,39 +61,56 @@ def load(name: str) -> System:
     >>> len(load("chain_7").coordinates)
     7
     """
-    stem, count = _file(name)
+    name = fspath(name)
+    if name.endswith(".toml"):
+        return read_system(Path(name))
+    stem, n = _file(name)
     try:
-        system = import_module(f"derive.systems.{stem}").system
-        if count:
-            system = system(count)
+        system = _module(stem).system
+        if n:
+            system = system(n)
     except Exception as error:
         raise SystemDefinitionError(
             f"{stem}.py does not define a system: {type(error).__name__}: {error}"
         ) from error
     if not isinstance(system, System) or system.name != name:
         raise SystemDefinitionError(
-            f"in {stem}.py, `system` must be a System with the file's name, "
-            f"not {getattr(system, 'name', system)!r}"
+            f"`system` in {stem}.py is {getattr(system, 'name', system)!r}: it must be a System "
+            f"with the name {name!r}"
         )
     return system
 
 
 def drawing(name: str) -> str:
-    """What a system looks like and where its equations are published: its file's docstring."""
-    stem, _ = _file(name)
-    return (import_module(f"derive.systems.{stem}").__doc__ or "").rstrip()
+    """The docstring of a system's file: a description, a drawing and a reference."""
+    return (_module(_file(name)[0]).__doc__ or "").rstrip()
+
+
+def published(name: str) -> str:
+    """Published equations of a system or of a member of its family, as TOML text; may be empty."""
+    stem, n = _file(name)
+    text: str = getattr(_module(stem), "PUBLISHED", "")
+    return text if n or not text else f'system = "{name}"{text}'
+
+
+def _stems() -> set[str]:
+    return {module.name for module in iter_modules(systems.__path__)}
+
+
+def _module(stem: str) -> ModuleType:
+    return import_module(f"derive.systems.{stem}")
 
 
 def _file(name: str) -> tuple[str, int]:
-    """The file of a system, and which member of a family it is, 0 for none."""
+    """The file of a system, and n of a member of a family, otherwise 0."""
     family = re.match(r"(\w+)_([1-9]\d{0,2})\Z", name)
-    stems = {module.name for module in iter_modules(systems.__path__)}
+    stems = _stems()
     if family and f"{family[1]}_n" in stems and int(family[2]) <= LARGEST:
         return f"{family[1]}_n", int(family[2])
     if name not in stems or name.endswith("_n"):
         raise UnknownSystemError(
-            f"no system is called {name[:50]!r}{did_you_mean(name, names())}; "
-            f"known are: {', '.join(names())}, "
-            f"and instead of {USUAL} any number up to {LARGEST}"
+            f"no system is called {name[:50]!r}{did_you_mean(name, names())}; known are "
+            f"{', '.join(names())}, with any number up to {LARGEST} instead of {USUAL}; the path "
+            "of a system file ends in .toml"
         )
     return name, 0

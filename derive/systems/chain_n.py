@@ -22,3 +22,25 @@ def system(n: int) -> System:
                     *(Parameter(s, "m", 1.0, "length of a rod") for s in l),
                     Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
         masses=[PointMass(m[k], (sum(xs[:k + 1]), sum(ys[:k + 1]))) for k in range(n)])
+
+
+PUBLISHED = r'''
+system = "chain_3"
+source = "textbooks: Σ μ l_j (cos(θi - θj) θj'' + sin(θi - θj) θj'²) + μ g sin θi = 0"
+note = "μ is the mass at or below the lower of the two joints. The common factor l_i is omitted."
+euler_lagrange = [
+"""M1*l1*theta1_ddot + M2*l2*(cos(theta1 - theta2)*theta2_ddot + sin(theta1 - theta2)*theta2_dot**2)
+ + m3*l3*(cos(theta1 - theta3)*theta3_ddot + sin(theta1 - theta3)*theta3_dot**2)
+ + M1*g*sin(theta1) = 0""",
+"""M2*l1*(cos(theta2 - theta1)*theta1_ddot + sin(theta2 - theta1)*theta1_dot**2) + M2*l2*theta2_ddot
+ + m3*l3*(cos(theta2 - theta3)*theta3_ddot + sin(theta2 - theta3)*theta3_dot**2)
+ + M2*g*sin(theta2) = 0""",
+"""m3*l1*(cos(theta3 - theta1)*theta1_ddot + sin(theta3 - theta1)*theta1_dot**2) + m3*l3*theta3_ddot
+ + m3*l2*(cos(theta3 - theta2)*theta2_ddot + sin(theta3 - theta2)*theta2_dot**2)
+ + m3*g*sin(theta3) = 0""",
+]
+
+[names]
+M1 = "m1 + m2 + m3"
+M2 = "m2 + m3"
+'''

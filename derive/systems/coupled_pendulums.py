@@ -1,4 +1,4 @@
-r"""Two equal pendulums side by side, their bobs joined by a spring that is relaxed at rest.
+r"""Two equal pendulums side by side, their bobs joined by a spring relaxed at equilibrium.
 
     +       +      A. P. French, Vibrations and Waves (1971), chapter 5
      \       \  l
@@ -21,3 +21,11 @@ system = System(
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[PointMass(m, (x1, y1)), PointMass(m, (d + x2, y2))], gravity=(0, -g),
     potential=k * (sqrt((d + x2 - x1)**2 + (y2 - y1)**2) - d)**2 / 2)
+
+PUBLISHED = r'''
+source = "Hooke's law for a spring between the bobs"
+note = "A. P. French, Vibrations and Waves (1971), chapter 5, treats small motions."
+potential_energy = """k/2*(sqrt(d**2 + 2*d*l*(sin(theta2) - sin(theta1)) \
++ 2*l**2*(1 - cos(theta1 - theta2))) - d)**2 - m*g*l*(cos(theta1) + cos(theta2))"""
+kinetic_energy = "m*l**2/2*(theta1_dot**2 + theta2_dot**2)"
+'''

@@ -23,3 +23,24 @@ system = System(
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[RigidBody(m1, (x1, y1), m1 * l1**2 / 12, theta1),
             RigidBody(m2, (x2, y2), m2 * l2**2 / 12, theta2)])
+
+PUBLISHED = r'''
+source = "Wikipedia, Double pendulum: two equal bars"
+note = "The source takes equal masses and lengths: m2 = m1, l2 = l1."
+lagrangian = """m*l**2/6*(theta2_dot**2 + 4*theta1_dot**2 + 3*theta1_dot*theta2_dot\
+*cos(theta1 - theta2)) + m*g*l/2*(3*cos(theta1) + cos(theta2))"""
+
+[equal]
+m2 = "m1"
+l2 = "l1"
+
+[names]
+m = "m1"
+l = "l1"
+
+[hamilton]
+theta1 = """6/(m*l**2)*(2*p_theta1 - 3*cos(theta1 - theta2)*p_theta2)
+ /(16 - 9*cos(theta1 - theta2)**2)"""
+theta2 = """6/(m*l**2)*(8*p_theta2 - 3*cos(theta1 - theta2)*p_theta1)
+ /(16 - 9*cos(theta1 - theta2)**2)"""
+'''

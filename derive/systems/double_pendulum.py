@@ -23,3 +23,13 @@ system = System(
                 Parameter(l1, "m", 2.0, "first length"), Parameter(l2, "m", 2.0, "second length"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[PointMass(m1, (x1, y1)), PointMass(m2, (x2, y2))], reactions=[l1, l2])
+
+PUBLISHED = r'''
+source = "L. D. Landau, E. M. Lifshitz, Mechanics, § 5, problem 1"
+lagrangian = """(m1 + m2)/2*l1**2*phi1_dot**2 + m2/2*l2**2*phi2_dot**2 \
++ m2*l1*l2*phi1_dot*phi2_dot*cos(phi1 - phi2) + (m1 + m2)*g*l1*cos(phi1) + m2*g*l2*cos(phi2)"""
+
+[names]
+phi1 = "theta1"
+phi2 = "theta2"
+'''

@@ -1,4 +1,4 @@
-r"""A point mass on a massless spring that can only stretch, turning in a vertical plane.
+r"""A point mass on a massless straight spring in a vertical plane.
 
     +             P. Lynch, Int. J. Non-Linear Mech. 37 (2002) 345
     |\
@@ -22,3 +22,16 @@ system = System(
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[PointMass(m, (r * sin(theta), -r * cos(theta)))], potential=k * (r - l)**2 / 2,
     gravity=(0, -g), equilibrium=(l + m * g / k, 0))
+
+PUBLISHED = r'''
+source = "Wikipedia, Elastic pendulum"
+lagrangian = """m/2*(x_dot**2 + (l0 + x)**2*theta_dot**2) - k*x**2/2 + g*m*(l0 + x)*cos(theta)"""
+
+[names]
+x = "r - l"
+l0 = "l"
+
+[accelerations]
+r = "(l0 + x)*theta_dot**2 - k/m*x + g*cos(theta)"
+theta = "-g/(l0 + x)*sin(theta) - 2*x_dot/(l0 + x)*theta_dot"
+'''

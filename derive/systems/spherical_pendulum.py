@@ -20,3 +20,11 @@ system = System(
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[PointMass(m, (l * sin(theta) * cos(phi), l * sin(theta) * sin(phi), -l * cos(theta)))],
 )
+
+PUBLISHED = r'''
+source = "L. D. Landau, E. M. Lifshitz, Mechanics, § 14, problem 1"
+energy = "m*l**2*(theta_dot**2 + sin(theta)**2*phi_dot**2)/2 - m*g*l*cos(theta)"
+
+[momenta]
+phi = "m*l**2*phi_dot*sin(theta)**2"
+'''

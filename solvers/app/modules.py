@@ -57,12 +57,11 @@ def load(name: str) -> GeneratedModule:
 
     if name in {module.name for module in iter_modules(generated.__path__)}:
         return import_module(f"generated.{name}")
-    from derive.commands.derive import system_of
-    from derive.system.catalogue import UnknownSystemError
+    from derive.system import catalogue
 
     try:
-        return build(system_of(name))
-    except UnknownSystemError as error:
+        return build(catalogue.load(name))
+    except catalogue.UnknownSystemError as error:
         raise LookupError(str(error)) from error
 
 
@@ -105,10 +104,10 @@ def specialiser(module: GeneratedModule, params: Sequence[float], way: Way) -> G
     ) -> dict[str, str]:
         from derive import Derivation
         from derive.codegen.writing import texts
-        from derive.commands.derive import system_of
         from derive.mechanics.specialisation import specialised
+        from derive.system import catalogue
 
-        system = _systems.get(module.__name__) or system_of(name)
+        system = _systems.get(module.__name__) or catalogue.load(name)
         return texts(Derivation(specialised(system, values)), functions)
 
     # the name of a module from the cache contains a digest of its system

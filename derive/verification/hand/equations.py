@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from derive.formulas.expression import FUNCTIONS, parsed
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.specialisation import substituted
+from derive.system.catalogue import load, published
 from derive.system.system import System
 from derive.system.tables import Table, TableError, read
 from derive.verification.hand.judgement import VALUES, Judgement, judged
@@ -40,15 +43,13 @@ class HandDerivation:
     judgements: tuple[Judgement, ...]
 
 
-def judge(path: Path, system_of: Callable[[str], System]) -> HandDerivation:
-    """Judge every equation in a file.
+def judge(source: str | Path) -> HandDerivation:
+    """Judge every equation in a file, or every published equation of a system.
 
     Parameters
     ----------
-    path : Path
-        A TOML file.
-    system_of : callable
-        Gives a system by its name, or by the path of its file.
+    source : str or path
+        The path of a TOML file, which ends in ``.toml``, or the name of a system that ships.
 
     Returns
     -------
@@ -61,10 +62,15 @@ def judge(path: Path, system_of: Callable[[str], System]) -> HandDerivation:
         When it is no such file, or names what a system has not.
     ExpressionError
         When a parameter is set to what is no formula.
+    UnknownSystemError
+        When no system has this name.
+    SystemDefinitionError
+        When the file of the system is wrong.
     """
-    table = Table(str(path), read(path), (*ABOUT, *EQUATIONS))
+    path = Path(source)
+    table = Table(str(path), _tables(str(source)), (*ABOUT, *EQUATIONS))
     name = table.text("system")
-    system = system_of(str(path.parent / name) if name.endswith(".toml") else name)
+    system = load(path.parent / name if name.endswith(".toml") else name)
     meaning = Meaning(Derivation(_equalled(table, system)), table.entries("names"))
     found = [
         judged(place, text, meaning, kind, key)
@@ -73,6 +79,15 @@ def judge(path: Path, system_of: Callable[[str], System]) -> HandDerivation:
     if not found:
         raise TableError(f"{path} has no equations: give some of {', '.join(EQUATIONS)}")
     return HandDerivation(name, table.text("source", ""), table.text("note", ""), tuple(found))
+
+
+def _tables(source: str) -> dict[str, Any]:
+    if source.endswith(".toml"):
+        return read(Path(source))
+    text = published(source)
+    if not text:
+        raise TableError(f"the file of system {source!r} has no published equations")
+    return tomllib.loads(text)
 
 
 def _equalled(table: Table, system: System) -> System:
