@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test notebooks derive bench lint types check clean
+.PHONY: help demo test docs derive bench lint types check clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -14,13 +14,10 @@ demo: .venv/base  ## set up and run the main job: derive, verify, generate, inte
 test: .venv/ready  ## set up and run the tests
 	$(BIN)/pytest --numprocesses auto --dist worksteal
 
-# pages that load nothing: formulas are MathML, so that no script has to set them
-notebooks: .venv/ready  ## run the notebooks and render them as pages, into out/notebooks
-	$(BIN)/jupyter nbconvert --execute --to html --output-dir out/notebooks --log-level ERROR \
-		--ExecutePreprocessor.extra_arguments=--log-level=ERROR \
-		--HTMLExporter.mathjax_url= --HTMLExporter.require_js_url= --HTMLExporter.jquery_url= \
-		notebooks/*.ipynb
-	@ls out/notebooks/*.html
+docs: .venv/docs  ## build the documentation site, into out/docs
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going --conf-dir notebooks/docs \
+		--doctree-dir out/docs-cache/doctrees . out/docs
+	@echo out/docs/index.html
 
 derive: .venv/base  ## write the generated modules anew
 	$(BIN)/holonomic derive
@@ -35,7 +32,7 @@ lint: .venv/ready  ## style and common mistakes
 types: .venv/ready  ## strict type check of the three packages
 	$(BIN)/mypy
 
-check: lint types test notebooks  ## everything that decides whether a change lands
+check: lint types test docs  ## everything that decides whether a change lands
 	$(BIN)/holonomic derive --check
 	$(BIN)/holonomic verify > /dev/null
 
@@ -54,6 +51,10 @@ PIP := PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install
 
 .venv/ready: .venv/base
 	$(PIP) '.[test]'
+	@touch $@
+
+.venv/docs: .venv/ready
+	$(PIP) '.[test,docs]'
 	@touch $@
 
 .venv/bench: .venv/ready

@@ -31,16 +31,18 @@ def attach(
     all : list of str
         The names.
     """
-    homes = {
-        alias.name: str(node.module)
-        for node in ast.parse(stub.read_text(encoding="utf-8")).body
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-    }
+    modules = homes(stub)
 
     def lookup(name: str) -> Any:
-        if name not in homes:
+        if name not in modules:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        return getattr(import_module(homes[name]), name)
+        return getattr(import_module(modules[name]), name)
 
-    return lookup, lambda: sorted(homes), sorted(homes)
+    return lookup, lambda: sorted(modules), sorted(modules)
+
+
+def homes(stub: Path) -> dict[str, str]:
+    """The module of every name that a stub file imports."""
+    tree = ast.parse(stub.read_text(encoding="utf-8"))
+    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
+    return {alias.name: str(node.module) for node in imports for alias in node.names}
