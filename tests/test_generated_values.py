@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 import sympy as sp
 from mpmath import mpf, workdps
+from mutation import Mutation, is_constant
 from numpy.testing import assert_allclose, assert_array_equal
-from planted import Planted, is_constant
 from scipy.integrate import solve_ivp
 
 from derive import Derivation
@@ -294,25 +294,23 @@ def test_both_forms_give_the_report_s_motion() -> None:
 @pytest.mark.parametrize("name", ["rhs", "rhs_hamiltonian", "energy", "energy_hamiltonian",
                                   "mass_matrix", "jacobian", "jacobian_hamiltonian",
                                   "equilibrium", "linear"])  # fmt: skip
-def test_every_mistake_planted_in_a_function_changes_its_values(
-    module: ModuleType, name: str
-) -> None:
+def test_every_mutation_of_a_function_changes_its_values(module: ModuleType, name: str) -> None:
     function = getattr(module, name)
     y, params = next(states(module))
     expected = np.ravel(called(function, y, params))
     source = ast.parse(inspect.getsource(function))
-    planted = 0
+    mutated = 0
     while True:
-        mistake = Planted(planted)
-        tree = mistake.visit(ast.parse(inspect.getsource(function)))
-        if mistake.seen <= planted:
+        mutation = Mutation(mutated)
+        tree = mutation.visit(ast.parse(inspect.getsource(function)))
+        if mutation.count <= mutated:
             break
         scope = dict(vars(module))
         code = compile(ast.fix_missing_locations(tree), name, "exec", flags=annotations)
         exec(code, scope)
         assert np.abs(np.ravel(called(scope[name], y, params)) - expected).max() > 1e-9
-        planted += 1
-    assert planted == operations(source)
+        mutated += 1
+    assert mutated == operations(source)
 
 
 def operations(tree: ast.AST) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from planted import Planted
+from mutation import Mutation
 
 from derive import Derivation, load, names
 from derive.system.catalogue import published
@@ -28,9 +28,9 @@ def test_published_equations_hold(name: str) -> None:
 def slips(text: str) -> Iterator[str]:
     place = 0
     while True:
-        slipped = Planted(place)
-        changed = slipped.visit(ast.parse(text, mode="eval"))
-        if slipped.seen <= place:
+        mutation = Mutation(place)
+        changed = mutation.visit(ast.parse(text, mode="eval"))
+        if mutation.count <= place:
             return
         yield ast.unparse(changed)
         place += 1

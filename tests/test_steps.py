@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from derive import Derivation, load, names
-from derive.formulas.expression import FUNCTIONS, parsed
+from derive.formulas.expression import FUNCTIONS, parse
 from derive.mechanics.steps import steps
 from derive.verification.report.beside import PLACES, beside
 from derive.verification.report.equation import Verdict
@@ -42,11 +42,11 @@ def test_every_formula_says_what_is_derived(name: str) -> None:
                 residuals.append(left)
                 continue
             said.add(left)
-            apart = sp.Matrix([parsed(right, scope)]) - sp.Matrix([values[left]])
+            apart = sp.Matrix([parse(right, scope)]) - sp.Matrix([values[left]])
             assert apart.expand().is_zero_matrix or sp.simplify(apart).is_zero_matrix, left
     assert said == {*values}
     *equations, product = residuals
-    assert [parsed(e, scope) for e in equations] == list(derivation.euler_lagrange)
+    assert [parse(e, scope) for e in equations] == list(derivation.euler_lagrange)
     assert product.startswith("M*[[")
 
 

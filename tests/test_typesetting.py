@@ -133,7 +133,7 @@ def test_what_is_derived_keeps_its_value(double: Derivation) -> None:
 
 
 def test_brackets_that_are_left_out_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(typesetting, "_within", lambda node, _: typesetting._set(node)[0])
+    monkeypatch.setattr(typesetting, "_operand", lambda node, _: typesetting._markup(node))
     wrong = [text for text in ARITHMETIC if any(not isclose(*pair) for pair in apart(text))]
     assert len(wrong) > 20
 

@@ -1,13 +1,14 @@
-"""Formulas from text, safely: an expression is read, never executed.
+"""Safe parsing of formulas: text is parsed and never executed.
 
-Python's own parser makes the syntax tree, and only the nodes listed here are
-turned into SymPy values; a name is looked up in the scope that the caller
-gives, and nowhere else. Sizes are limited before anything is computed.
+Python's parser builds the syntax tree. Only the nodes listed here become SymPy
+values, and names are looked up only in the scope that the caller passes. Sizes
+are limited before anything is computed.
 """
 
 from __future__ import annotations
 
 import ast
+import operator
 import re
 from collections.abc import Callable, Mapping
 from decimal import Decimal
@@ -20,25 +21,31 @@ from solvers.io.suggestion import did_you_mean
 Value: TypeAlias = sp.Expr | sp.MatrixBase
 Scope = Mapping[str, Any]
 
-#: What stands between the sides of a statement.
+#: The relations between the sides of a statement.
 RELATION = re.compile(r"(>=|<=|=|>|<)")
 
-#: What a formula may call, and the numbers that have names.
+#: The functions and constants available in every formula.
 FUNCTIONS: dict[str, Any] = {
-    "sin": sp.sin, "cos": sp.cos, "tan": sp.tan, "exp": sp.exp, "log": sp.log, "sqrt": sp.sqrt,
-    "pi": sp.pi,
-}  # fmt: skip
+    function.__name__: function for function in (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.sqrt)
+} | {"pi": sp.pi}
 
-#: Longest text that is read, largest exponent and most bits of a number: ample on paper.
-LONGEST, LARGEST_POWER, MOST_BITS = 20_000, 100, 256
+#: Limits: characters of a formula, absolute value of an exponent, bits of a number.
+MAX_LENGTH, MAX_EXPONENT, MAX_BITS = 20_000, 100, 256
+
+OPERATORS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
 
 
 class ExpressionError(ValueError):
-    """A text that is no formula; the message says which part, and what is allowed."""
+    """Invalid formula; the message names the invalid part and the allowed syntax."""
 
 
-def parsed(text: str, scope: Scope) -> Value:
-    """The value of the formula `text`, with names from `scope`.
+def parse(text: str, scope: Scope) -> Value:
+    """Parse the formula `text`, with names from `scope`.
 
     Numbers are exact (``1/2`` is one half, ``9.81`` is 981/100), ``(a, b)`` is a
     column and ``[[a, b], [c, d]]`` a matrix.
@@ -46,9 +53,9 @@ def parsed(text: str, scope: Scope) -> Value:
     Parameters
     ----------
     text : str
-        The formula, of at most `LONGEST` characters.
+        The formula, of at most `MAX_LENGTH` characters.
     scope : mapping of str to SymPy values and functions
-        All names that it may use, functions such as those in `FUNCTIONS` among them.
+        All names available to it, functions such as those in `FUNCTIONS` included.
 
     Returns
     -------
@@ -57,41 +64,41 @@ def parsed(text: str, scope: Scope) -> Value:
     Raises
     ------
     ExpressionError
-        For everything that is not arithmetic on known names and functions, and
-        for what has no finite value.
+        When `text` is not arithmetic on known names and functions, or has no finite value.
     """
-    return evaluated(tree(text), text.strip(), scope)
+    return evaluate(syntax_tree(text), text.strip(), scope)
 
 
-def tree(text: str) -> ast.expr:
-    """The syntax tree of a formula."""
-    if len(text) > LONGEST:
-        raise ExpressionError(f"a formula of {len(text)} characters: at most {LONGEST} are read")
+def syntax_tree(text: str) -> ast.expr:
+    """Return the syntax tree of a formula."""
+    if len(text) > MAX_LENGTH:
+        raise ExpressionError(f"a formula has {len(text)} characters; at most {MAX_LENGTH} allowed")
+    text = text.strip()
     for character in "#\n\\":
-        if character in text.strip():
+        if character in text:
             raise ExpressionError(f"{character!r} has no meaning in a formula: {text[:80]!r}")
     try:
-        return ast.parse(text.strip(), mode="eval").body
+        return ast.parse(text, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise ExpressionError(f"cannot read {text.strip()[:80]!r} as a formula: {error}") from None
+        raise ExpressionError(f"cannot parse {text[:80]!r} as a formula: {error}") from None
 
 
-def evaluated(node: ast.expr, text: str, scope: Scope) -> Value:
-    """The value of the syntax tree of `text`, or of a part of it."""
+def evaluate(node: ast.expr, text: str, scope: Scope) -> Value:
+    """Evaluate the syntax tree of `text`, or a part of it."""
     try:
-        value = _Evaluation(text, scope).value(node)
+        value = _Evaluator(text, scope).value(node)
     except ExpressionError:
         raise
     except RecursionError:
-        raise ExpressionError("a formula nested too deeply: name its parts") from None
-    except Exception as error:  # SymPy's many ways to refuse an operation
+        raise ExpressionError("the formula is nested too deeply: name its parts") from None
+    except Exception as error:  # SymPy raises many types for invalid operations
         raise ExpressionError(f"{text[:80]!r} cannot be computed: {error}") from None
     if value.has(sp.zoo, sp.nan, sp.oo):
         raise ExpressionError(f"{text[:80]!r} has no finite value: it divides by zero")
     return value
 
 
-class _Evaluation:
+class _Evaluator:
     def __init__(self, text: str, scope: Scope) -> None:
         self._text, self._scope = text, scope
 
@@ -99,82 +106,75 @@ class _Evaluation:
         value = self._value(node)
         if isinstance(value, sp.Rational):
             bits = max(abs(value.p).bit_length(), value.q.bit_length())
-            if bits > MOST_BITS:
-                raise ExpressionError(f"a number of {bits} bits: at most {MOST_BITS} are allowed")
+            if bits > MAX_BITS:
+                raise ExpressionError(f"a number has {bits} bits; at most {MAX_BITS} are allowed")
         return value
 
     def _value(self, node: ast.expr) -> Any:
         match node:
             case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-                # from its digits: a float would have rounded them
-                digits = Decimal(ast.get_source_segment(self._text, node) or "nan")
-                if abs(digits.adjusted()) > LARGEST_POWER:
-                    raise ExpressionError(f"{_shown(node)} is out of range: 1e-100 to 1e100")
-                return sp.Rational(*digits.as_integer_ratio())
+                return self._exact_number(node)
             case ast.Name(id=name):
-                return self._named(name, function=False)
+                return self._lookup(name, function=False)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return -self.value(operand)
             case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
                 return _power(self.value(base), self.value(exponent))
-            case ast.BinOp(left=left, op=operator, right=right) if type(operator) in OPERATORS:
-                return OPERATORS[type(operator)](self.value(left), self.value(right))
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+                return OPERATORS[type(op)](self.value(left), self.value(right))
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
-                function = self._named(name, function=True)
-                return function(*(self.value(argument) for argument in arguments))
+                return self._lookup(name, function=True)(*map(self.value, arguments))
             case ast.Tuple(elts=[_, *_] as items):
-                return sp.ImmutableDenseMatrix([self._number(item) for item in items])
+                return sp.ImmutableDenseMatrix(list(map(self._entry, items)))
             case ast.List(elts=[ast.List(elts=[_, *_] as first), *_] as rows) if all(
                 isinstance(row, ast.List) and len(row.elts) == len(first) for row in rows
             ):
                 entries = [item for row in rows if isinstance(row, ast.List) for item in row.elts]
                 shape = len(rows), len(first)
-                return sp.ImmutableDenseMatrix(*shape, list(map(self._number, entries)))
+                return sp.ImmutableDenseMatrix(*shape, list(map(self._entry, entries)))
             case ast.BinOp(op=ast.BitXor()):
-                raise ExpressionError(f"{_shown(node)}: write powers with **, not ^")
+                raise ExpressionError(f"{_quoted(node)}: write powers with **, not ^")
         raise ExpressionError(
-            f"{_shown(node)} is not allowed in a formula: use numbers, names, + - * / **, known "
+            f"{_quoted(node)} is not allowed in a formula: use numbers, names, + - * / **, known "
             "functions, (a, b) for a column and [[a, b], [c, d]] for a matrix"
         )
 
-    def _number(self, node: ast.expr) -> sp.Expr:
+    def _exact_number(self, node: ast.expr) -> sp.Rational:
+        # the source digits: the parsed float is already rounded
+        digits = Decimal(ast.get_source_segment(self._text, node) or "nan")
+        if abs(digits.adjusted()) > MAX_EXPONENT:
+            raise ExpressionError(f"{_quoted(node)} is out of range: 1e-100 to 1e100")
+        return sp.Rational(*digits.as_integer_ratio())
+
+    def _entry(self, node: ast.expr) -> sp.Expr:
         value = self.value(node)
         if isinstance(value, sp.MatrixBase):
-            raise ExpressionError(f"{_shown(node)} cannot be an entry: entries are numbers")
+            raise ExpressionError(f"{_quoted(node)} cannot be an entry: entries are numbers")
         return value
 
-    def _named(self, name: str, *, function: bool) -> Any:
+    def _lookup(self, name: str, *, function: bool) -> Any:
         if name not in self._scope:
-            raise ExpressionError(
-                f"unknown name {name[:50]!r}{did_you_mean(name, self._scope)}; "
-                f"known are: {', '.join(sorted(self._scope))}"
-            )
+            known = ", ".join(sorted(self._scope))
+            suggestion = did_you_mean(name, self._scope)
+            raise ExpressionError(f"unknown name {name[:50]!r}{suggestion}; known are: {known}")
         value = self._scope[name]
         if isinstance(value, sp.Expr | sp.MatrixBase) == function:
-            needs = "is no function; write a product with *" if function else "needs arguments"
-            raise ExpressionError(f"{name!r} {needs}")
+            reason = "is not a function; write products with *" if function else "needs arguments"
+            raise ExpressionError(f"{name!r} {reason}")
         return value
 
 
-OPERATORS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-}
-
-
-def _shown(node: ast.expr) -> str:
+def _quoted(node: ast.expr) -> str:
     return repr(ast.unparse(node)[:80])
 
 
 def _power(base: Value, exponent: Value) -> Value:
-    if not (isinstance(exponent, sp.Rational) and abs(exponent) <= LARGEST_POWER):
+    if not (isinstance(exponent, sp.Rational) and abs(exponent) <= MAX_EXPONENT):
         raise ExpressionError(
-            f"exponent {str(exponent)[:50]}: only numbers up to {LARGEST_POWER} are allowed"
+            f"exponent {str(exponent)[:50]}: only numbers up to {MAX_EXPONENT} are allowed"
         )
     if isinstance(base, sp.MatrixBase):
-        raise ExpressionError("a matrix has no powers here: write out the product")
-    if isinstance(base, sp.Rational) and base.p.bit_length() * abs(exponent) > MOST_BITS:
-        raise ExpressionError(f"{base}**{exponent} has more than {MOST_BITS} bits")
+        raise ExpressionError("powers of matrices are not supported: write out the product")
+    if isinstance(base, sp.Rational) and base.p.bit_length() * abs(exponent) > MAX_BITS:
+        raise ExpressionError(f"{base}**{exponent} has more than {MAX_BITS} bits")
     return base**exponent

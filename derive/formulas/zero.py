@@ -1,4 +1,4 @@
-"""Is an expression zero? Is it positive? Proved, not sampled.
+"""Exact tests for zero and for positive sign; proofs, not samples.
 
 A rational expression in sines, cosines and other symbols is brought to a
 polynomial over a product of polynomials, with cos² replaced by 1 - sin² for
@@ -17,8 +17,8 @@ from operator import mul
 import sympy as sp
 from sympy.polys.rings import PolyElement, PolyRing
 
-#: Largest power, and largest multiple of an angle, that is written out.
-MOST = 100
+#: Largest power, and largest multiple of an angle, that is expanded.
+MAX_MULTIPLE = 100
 
 
 def vanishes(expression: sp.Expr) -> bool:
@@ -36,26 +36,25 @@ def vanishes(expression: sp.Expr) -> bool:
     Raises
     ------
     NotImplementedError
-        When it is not, or has a power or a multiple of an angle above `MOST`.
+        When it is not, or has a power or a multiple of an angle above `MAX_MULTIPLE`.
     ZeroDivisionError
-        When it divides by what is identically zero.
+        When a denominator is identically zero.
     """
-    whole = _with_whole_angles(expression)
-    opened = whole.xreplace({wave: _opened(wave) for wave in _waves(whole)})
-    waves = _waves(opened)
-    generators = sorted({*opened.free_symbols, *waves}, key=sp.default_sort_key)
+    whole = _with_integer_angles(expression)
+    expanded = whole.xreplace({wave: _expanded(wave) for wave in _waves(whole)})
+    waves = _waves(expanded)
+    generators = sorted({*expanded.free_symbols, *waves}, key=sp.default_sort_key)
     ring = PolyRing(generators, sp.QQ, sp.lex)
     pairs = {
         ring.index(ring(wave)): ring(sp.sin(wave.args[0]))
         for wave in waves
         if isinstance(wave, sp.cos) and sp.sin(wave.args[0]) in waves
     }
-    return not _Reader(ring, pairs).fraction(opened).numerator
+    return not _Converter(ring, pairs).fraction(expanded).numerator
 
 
 def is_positive(expression: sp.Expr, *, strictly: bool) -> bool:
-    """Whether `expression` is seen to be positive, or not negative: as a sum of such terms."""
-    sign = "is_positive" if strictly else "is_nonnegative"
+    """Whether `expression` is proved positive, or not negative, as a sum of such terms."""
     numerator, denominator = sp.fraction(sp.together(expression))
     forms = [
         numerator,
@@ -65,9 +64,10 @@ def is_positive(expression: sp.Expr, *, strictly: bool) -> bool:
             for angle in {wave.args[0] for wave in _waves(numerator)}
         ),
     ]
+    factored = (sp.factor_terms(sp.expand(form)) for form in forms)
     return bool(
         denominator.is_positive
-        and any(getattr(sp.factor_terms(sp.expand(form)), sign) for form in forms)
+        and any(form.is_positive if strictly else form.is_nonnegative for form in factored)
     )
 
 
@@ -79,26 +79,26 @@ class _Fraction:
     denominator: dict[PolyElement, int] = field(default_factory=dict)
 
 
-class _Reader:
-    """Expressions as fractions over one ring, cos² replaced by 1 - sin² throughout."""
+class _Converter:
+    """Conversion of expressions to fractions over one ring, with cos² replaced by 1 - sin²."""
 
     def __init__(self, ring: PolyRing, sines: dict[int, PolyElement]) -> None:
         self._ring, self._sines = ring, sines
-        self._known: dict[sp.Expr, _Fraction] = {}
+        self._cache: dict[sp.Expr, _Fraction] = {}
 
     def fraction(self, expression: sp.Expr) -> _Fraction:
-        if expression not in self._known:
-            self._known[expression] = self._read(expression)
-        return self._known[expression]
+        if expression not in self._cache:
+            self._cache[expression] = self._convert(expression)
+        return self._cache[expression]
 
-    def _read(self, expression: sp.Expr) -> _Fraction:
+    def _convert(self, expression: sp.Expr) -> _Fraction:
         if expression.is_Rational or expression in self._ring.symbols:
             return _Fraction(self._ring(expression))
         if expression.is_Add:
             return self._sum([self.fraction(term) for term in expression.args])
         if expression.is_Mul:
             return reduce(self._product, map(self.fraction, expression.args))
-        if expression.is_Pow and expression.exp.is_Integer and abs(expression.exp) <= MOST:
+        if expression.is_Pow and expression.exp.is_Integer and abs(expression.exp) <= MAX_MULTIPLE:
             power = int(expression.exp)
             base = reduce(self._product, [self.fraction(expression.base)] * abs(power))
             return base if power > 0 else self._inverse(base)
@@ -127,10 +127,10 @@ class _Reader:
 
     def _inverse(self, a: _Fraction) -> _Fraction:
         if not a.numerator:
-            raise ZeroDivisionError("a denominator vanishes identically")
+            raise ZeroDivisionError("a denominator is identically zero")
         above = [factor for factor, power in a.denominator.items() for _ in range(power)]
         content, primitive = a.numerator.primitive()
-        # the parameters that all terms share are factors of their own: they often cancel
+        # common symbols become separate factors, because they often cancel
         shared = reduce(
             lambda m, n: tuple(map(min, m, n)), primitive.monoms(), primitive.monoms()[0]
         )
@@ -164,20 +164,20 @@ def _waves(expression: sp.Expr) -> set[sp.Expr]:
     return set(expression.atoms(sp.sin, sp.cos))
 
 
-def _with_whole_angles(expression: sp.Expr) -> sp.Expr:
-    """`expression` with its symbols stretched, so that no wave holds a fraction of one."""
+def _with_integer_angles(expression: sp.Expr) -> sp.Expr:
+    """Rescale the symbols of `expression` so that all multiples of angles are integers."""
     arguments = [sp.expand(wave.args[0]) for wave in _waves(expression)]
-    stretch = lcm(
+    scale = lcm(
         *(int(n.q) for a in arguments for n in a.as_coefficients_dict().values() if n.is_Rational)
     )
     symbols = {symbol for argument in arguments for symbol in argument.free_symbols}
-    if stretch > 1:
-        expression = expression.xreplace({symbol: stretch * symbol for symbol in symbols})
+    if scale > 1:
+        expression = expression.xreplace({symbol: scale * symbol for symbol in symbols})
     return expression.xreplace({w: w.func(sp.expand(w.args[0])) for w in _waves(expression)})
 
 
 @cache
-def _opened(wave: sp.Expr) -> sp.Expr:
-    if any(abs(n) > MOST for n in wave.args[0].as_coefficients_dict().values()):
-        raise NotImplementedError(f"cannot open {wave}: a multiple above {MOST}")
+def _expanded(wave: sp.Expr) -> sp.Expr:
+    if any(abs(n) > MAX_MULTIPLE for n in wave.args[0].as_coefficients_dict().values()):
+        raise NotImplementedError(f"cannot expand {wave}: it has a multiple above {MAX_MULTIPLE}")
     return sp.expand_trig(wave)

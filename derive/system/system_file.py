@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, ExpressionError, parsed
+from derive.formulas.expression import FUNCTIONS, ExpressionError, parse
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import Coordinate, Parameter, PointMass, RigidBody, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
@@ -142,7 +142,7 @@ def _symbol(name: str, system: str, *, positive: bool) -> sp.Symbol:
 
 def _value(place: str, text: str, scope: Mapping[str, Any]) -> sp.Expr:
     try:
-        value = parsed(text, scope)
+        value = parse(text, scope)
     except ExpressionError as error:
         raise TableError(f"{place}: {error}") from error
     if not isinstance(value, sp.Expr):

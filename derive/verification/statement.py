@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import RELATION, ExpressionError, Scope, Value, parsed
+from derive.formulas.expression import RELATION, ExpressionError, Scope, Value, parse
 from derive.formulas.zero import is_positive, vanishes
 
 INDEXED = re.compile(r"\b(\w+_)i\b")
@@ -109,7 +109,7 @@ class Context:
                 pieces = RELATION.split(INDEXED.sub(rf"\g<1>{index}", part))
                 if len(pieces) == 1:
                     raise ExpressionError(f"{part.strip()[:80]!r} states nothing: no =, <, >")
-                sides = [parsed(piece, scope) for piece in pieces[::2]]
+                sides = [parse(piece, scope) for piece in pieces[::2]]
                 for left, relation, right in zip(sides, pieces[1::2], sides[1:], strict=False):
                     larger, smaller = (right, left) if "<" in relation else (left, right)
                     found += [

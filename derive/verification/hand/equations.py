@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from derive.formulas.expression import FUNCTIONS, parsed
+from derive.formulas.expression import FUNCTIONS, parse
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.specialisation import substituted
 from derive.system.catalogue import load, published
@@ -97,7 +97,7 @@ def _equalled(table: Table, system: System) -> System:
     for name, text in table.entries("equal").items():
         if name not in symbols:
             raise TableError(f"equal.{name[:50]}: parameters are {', '.join(symbols)}")
-        values[symbols[name]] = parsed(text, symbols | FUNCTIONS)
+        values[symbols[name]] = parse(text, symbols | FUNCTIONS)
     return substituted(system, values)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, parsed
+from derive.formulas.expression import ExpressionError, parse
 from derive.verification.hand.meaning import Meaning
 from derive.verification.hand.terms import Slip, Written, scale, slip, written, wrong
 
@@ -56,7 +56,7 @@ def judged(place: str, text: str, meaning: Meaning, kind: str, key: str) -> Judg
 
 def _value(place: str, text: str, meaning: Meaning, right: sp.Expr, kind: str) -> Judgement:
     """A formula that is to be one of the derivation."""
-    value = parsed(text, meaning.scope)
+    value = parse(text, meaning.scope)
     if not isinstance(value, sp.Expr):
         raise ExpressionError(f"{text[:50]!r} is a column or matrix, not a number")
     system = meaning.system

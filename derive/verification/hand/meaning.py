@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, parsed
+from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
@@ -56,7 +56,7 @@ class Meaning:
         theirs: dict[str, Any] = {}
         for name, text in self.names.items():
             try:
-                value = parsed(text, own)
+                value = parse(text, own)
             except ValueError as error:
                 raise TableError(f"names.{name}: {error}") from error
             theirs[name] = value

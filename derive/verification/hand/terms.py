@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import Scope, evaluated, tree
+from derive.formulas.expression import Scope, evaluate, syntax_tree
 from derive.mechanics.reduction import collected, harmonics
 
 #: Coefficients, of parameters, by what they multiply, a function of the state.
@@ -55,9 +55,9 @@ def written(text: str, scope: Scope) -> list[Written]:
     text = text.strip()
     return [
         Written(
-            f"{'' if sign > 0 else '-'}{ast.unparse(node)}", sign * evaluated(node, text, scope)
+            f"{'' if sign > 0 else '-'}{ast.unparse(node)}", sign * evaluate(node, text, scope)
         )
-        for sign, node in _summands(tree(text), 1)
+        for sign, node in _summands(syntax_tree(text), 1)
     ]
 
 

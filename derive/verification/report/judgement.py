@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Value, parsed
+from derive.formulas.expression import ExpressionError, Value, parse
 from derive.verification.report import appendix, chapters, contexts
 from derive.verification.report.contexts import STRAY
 from derive.verification.report.equation import Equation, Stated, Verdict
@@ -187,10 +187,10 @@ def _defined(text: str, context: Context, known: dict[str, Value]) -> dict[str, 
     values: dict[str, Value] = {}
     for number, part in enumerate(text.split(";"), start=1):
         if "<" in part:
-            values[f"left_{number}"] = parsed(part.partition("<")[0], scope)
+            values[f"left_{number}"] = parse(part.partition("<")[0], scope)
             continue
         name, _, formula = (side.strip() for side in part.partition("="))
-        value = parsed(formula, scope)
+        value = parse(formula, scope)
         # alpha1 is also alpha_1, for statements about every index
         values |= {name: value, f"{name[:-1]}_{name[-1]}": value}
     return values

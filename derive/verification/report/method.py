@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derive.formulas.expression import parsed, tree
+from derive.formulas.expression import parse, syntax_tree
 
 STAGES = 4
 NAMES = ("t_i", "w_i", "h", *(f"m_{k + 1}" for k in range(STAGES)))
@@ -55,18 +55,18 @@ def _right(line: str, name: str) -> sp.Expr:
     left, _, right = line.partition("=")
     if left.strip() != name:
         raise NotRungeKuttaError(f"{line!r} should define {name}")
-    return parsed(right, SYMBOLS)
+    return parse(right, SYMBOLS)
 
 
 def _arguments(line: str, name: str) -> tuple[sp.Expr, sp.Expr]:
     left, _, right = line.partition("=")
-    match left.strip(), tree(right):
+    match left.strip(), syntax_tree(right):
         case str(found), ast.BinOp(
             left=ast.Name(id="h"),
             op=ast.Mult(),
             right=ast.Call(func=ast.Name(id="f"), args=[time, state], keywords=[]),
         ) if found == name:
-            return parsed(ast.unparse(time), SYMBOLS), parsed(ast.unparse(state), SYMBOLS)
+            return parse(ast.unparse(time), SYMBOLS), parse(ast.unparse(state), SYMBOLS)
     raise NotRungeKuttaError(f"{line!r} should read {name} = h*f(t, w)")
 
 

@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, replace
 
 import sympy as sp
 
-from derive.formulas.expression import parsed
+from derive.formulas.expression import parse
 from derive.formulas.zero import vanishes
 from derive.verification.report.contexts import double_pendulum
 
@@ -190,7 +190,7 @@ def _length_solved(equations: tuple[str, ...]) -> sp.Expr:
     values = {scope[f"m{i}"]: m for i, m in enumerate(PROSE.masses, 1)}
     values |= {scope["l1"]: length, scope["l2"]: length, scope["g"]: PROSE.gravity}
     lengths = [
-        set(sp.solve(parsed(text, scope) - sp.expand(scope[name].subs(values) / length**2), length))
+        set(sp.solve(parse(text, scope) - sp.expand(scope[name].subs(values) / length**2), length))
         for text, name in zip(equations, ("E1", "E2"), strict=True)
     ]
     (common,) = set.intersection(*lengths)
@@ -203,7 +203,7 @@ def _agreement(name: str, formula: str) -> str:
     if context.judged(f"{name} = {formula}").holds:
         return "is right"
     derived = context.substitutions[-1][context.scope[name]]
-    difference = parsed(formula, context.scope) - derived
+    difference = parse(formula, context.scope) - derived
     equal = vanishes(difference.subs(context.scope["m2"], context.scope["m1"]))
     return (
         "is right for equal masses only (2 m1 + m1 stands for 2 m1 + m2)" if equal else "is wrong"
