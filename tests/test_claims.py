@@ -10,8 +10,8 @@ from solvers.app.commands.chart import USUAL
 from solvers.app.verdict.claims import claims
 from solvers.app.verdict.evidence import Evidence, Setting
 from solvers.app.verdict.objectives import objectives, recommendations
-from solvers.studies.failure_modes.chaos import Mean
-from solvers.studies.failure_modes.plots import DRAW
+from solvers.studies.failure_modes.lyapunov import Mean
+from solvers.studies.failure_modes.study import studies
 
 EQUATIONS = {"verified": 119, "misprint": 23}
 PROSE = Setting(dp.DEFAULTS, (pi / 2, pi, 0.0, 0.0), 5.0)
@@ -50,7 +50,7 @@ def test_figures_that_verdicts_name_are_drawn_by_the_commands_they_name(
     drawn = {
         "chart": {f"{kind}_{name}.png" for kind in ("work_precision", "steps", "energy")
                   for name in USUAL},
-        "stability": {f"failures_{name}.png" for name in DRAW},
+        "stability": {f"failures_{study.name}.png" for study in studies()},
     }  # fmt: skip
     shown = {claim.figure for claim in claims(evidence) if claim.figure}
     assert len(shown) >= 4

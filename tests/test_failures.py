@@ -1,27 +1,38 @@
-"""Where methods fail: every study's numbers, and that they would notice if nothing failed."""
+"""Failure modes: each study's numbers, and that it would notice if nothing failed."""
 
 from dataclasses import replace
 from math import log, pi, sqrt
-from typing import Any
 
 import numpy as np
 import pytest
 
 import generated.double_pendulum as dp
-import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
+from solvers.app.modules import load
+from solvers.io.text_table import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
-from solvers.studies.failure_modes import (
-    chaos,
-    drift,
-    oscillation,
-    separatrix,
-    singular,
-    stiffness,
-    tolerances,
-)
-from solvers.studies.failure_modes.chaos import Mean
-from solvers.studies.failure_modes.studies import LONG_RUNS, SMALL, studies
+from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
+from solvers.studies.failure_modes.chaos import LONG_RUNS, Chaos, ChaosResults
+from solvers.studies.failure_modes.drift import CASES, EnergyDrift
+from solvers.studies.failure_modes.lyapunov import INDEPENDENT, Mean, lyapunov
+from solvers.studies.failure_modes.study import studies
+
+
+def test_each_file_that_defines_a_study_is_found() -> None:
+    names = [study.name for study in studies()]
+    assert names == ["chaos", "drift", "oscillation", "separatrix", "singular", "stiffness",
+                     "tolerances"]  # fmt: skip
+    full, small = studies(), studies(small=True)
+    assert sum(a != b for a, b in zip(full, small, strict=True)) == 5
+
+
+def test_tables_are_as_wide_as_their_cells() -> None:
+    rows = [("rk4", 0.5, "a"), ("verner98", float("nan"), None)]
+    assert list(text_table({"method": "", "h / s": ".3f", "x": ">"}, rows)) == [
+        "method    h / s  x",
+        "rk4       0.500  a",
+        "verner98      -  -",
+    ]
 
 
 @pytest.mark.parametrize(("method", "order"), [("rk1", 1), ("midpoint", 2)])
@@ -30,7 +41,7 @@ def test_euler_and_rk2_let_oscillations_grow_with_any_step(method: str, order: i
     for found in growths:
         assert found.measured > 0
         assert found.measured == pytest.approx(found.predicted, rel=1e-4)
-    # halving the step makes it smaller by a power of two, but never nothing
+    # halving the step reduces the growth by a power of two, but never to zero
     ratio = growths[0].measured / growths[1].measured
     assert ratio == pytest.approx(2 if order == 1 else 8, rel=0.2)
 
@@ -44,8 +55,9 @@ def test_rk3_and_rk4_grow_beyond_their_interval_and_not_within(method: str) -> N
         assert found.measured == pytest.approx(found.predicted, rel=1e-4)
 
 
-def test_stiff_scenes_make_explicit_steps_collapse_and_implicit_ones_not() -> None:
-    costs = stiffness.study(dp, ep, (30.0, 300.0), ("rk4", "verner87", "gauss2", "radau3"))
+def test_stiff_scenes_shorten_the_steps_of_explicit_methods_only() -> None:
+    methods = ("rk4", "verner87", "gauss2", "radau3")
+    costs = stiffness.Stiffness((30.0, 300.0), methods).run(load)
     for family in ("short second rod", "light first mass", "stiff spring"):
         steps = {(c.method, k): c.steps for c in costs if c.family == family
                  for k in (0, 1) if (c.ratio > 150) == bool(k)}  # fmt: skip
@@ -53,7 +65,7 @@ def test_stiff_scenes_make_explicit_steps_collapse_and_implicit_ones_not() -> No
             assert 6 < steps[method, 1] / steps[method, 0] < 16, (family, method)
         for method in ("gauss2", "radau3"):
             assert steps[method, 1] <= 1.5 * steps[method, 0], (family, method)
-    # where nothing is fast, nothing collapses: the study would show it
+    # without a fast mode the number of steps stays small
     light = {(c.method, k): c.steps for k, c in enumerate(costs) if c.family == "light second mass"}
     assert max(n for (m, _), n in light.items() if m == "rk4") < 100
     assert 30 < stiffness.crossover(costs, "short second rod", "work_rhs") < 100
@@ -77,19 +89,19 @@ def test_the_crossover_is_where_costs_are_equal() -> None:
 
 
 def test_energy_drifts_steadily_with_rk_and_stays_bounded_with_gauss() -> None:
-    cases = [case for case in drift.CASES if case[0] in ("rk4", "verner87", "gauss1", "gauss2")]
-    for found in drift.study(dp, 2000, cases):
+    cases = [case for case in CASES if case[0] in ("rk4", "verner87", "gauss1", "gauss2")]
+    for found in EnergyDrift(2000, tuple(cases)).run(load):
         if found.method.startswith("gauss"):
             assert abs(found.exponent) < 0.01
-            assert found.whole == pytest.approx(found.first, rel=0.05)
-            assert abs(found.rate) * 2000 < 0.1 * found.whole
+            assert found.largest_error == pytest.approx(found.early_error, rel=0.05)
+            assert abs(found.rate) * 2000 < 0.1 * found.largest_error
         else:
             assert found.exponent == pytest.approx(1.0, abs=0.1)
-            assert abs(found.rate) * 2000 == pytest.approx(found.whole, rel=0.2)
+            assert abs(found.rate) * 2000 == pytest.approx(found.largest_error, rel=0.2)
 
 
 def test_both_forms_lose_accuracy_as_the_mass_matrix_becomes_singular() -> None:
-    light, lighter = singular.study(dp, (1e-4, 1e-8))
+    light, lighter = singular.SingularMassMatrix((1e-4, 1e-8)).run(load)
     eps = np.finfo(float).eps
     for found in (light, lighter):
         assert found.condition == pytest.approx(4 / found.m1, rel=0.01)
@@ -108,32 +120,33 @@ def test_the_reference_for_accelerations_is_exact() -> None:
 
 def test_the_lyapunov_exponent_of_a_linear_saddle_is_its_rate() -> None:
     # about upright at rest the single pendulum grows by e^(omega t), exactly
-    found = chaos.lyapunov(sp, (1.0, 9.81, -9.81), (0.0, 0.0), 50)
+    found = lyapunov(sp, (1.0, 9.81, -9.81), (0.0, 0.0), 50)
     assert found.value == pytest.approx(1.0, rel=1e-7)
     assert found.error < 1e-7
     # and regular motion has none
-    regular = chaos.lyapunov(sp, sp.DEFAULTS, (1.0, 0.0), 20_000)
+    regular = lyapunov(sp, sp.DEFAULTS, (1.0, 0.0), 20_000)
     assert 0 <= regular.value < 1e-3
 
 
-def test_the_uncertainty_of_a_mean_is_what_repetition_shows() -> None:
+def test_the_standard_error_of_a_mean_is_that_of_repeated_means() -> None:
     generator = np.random.default_rng(1)
     walk = generator.normal(size=(200, 4000))
     for k in range(1, 4000):  # neighbours depend on each other
         walk[:, k] += 0.8 * walk[:, k - 1]
-    means = [Mean.of(row, 40 * chaos.INDEPENDENT) for row in walk]
+    means = [Mean.of(row, 40 * INDEPENDENT) for row in walk]
     spread = np.std([m.value for m in means])
     assert np.mean([m.error for m in means]) == pytest.approx(spread, rel=0.15)
 
 
 @pytest.fixture(scope="module")
-def chaotic() -> dict[str, Any]:
-    found: dict[str, Any] = studies(dp, sp, ep, SMALL)["chaos"]()
-    return found
+def chaotic() -> ChaosResults:
+    return Chaos.small().run(load)
 
 
-def test_a_small_difference_grows_as_the_variational_equations_say(chaotic: dict[str, Any]) -> None:
-    exponent, apart = chaotic["exponent"], chaotic["separation"]
+def test_a_small_difference_grows_as_variational_equations_predict(
+    chaotic: ChaosResults,
+) -> None:
+    exponent, apart = chaotic.exponent, chaotic.separation
     assert exponent.value == pytest.approx(0.883, abs=4 * exponent.error)
     small = apart.distance < 1e-5
     assert apart.distance[small] == pytest.approx(apart.predicted[small], rel=1e-3)
@@ -142,18 +155,18 @@ def test_a_small_difference_grows_as_the_variational_equations_say(chaotic: dict
 
 
 def test_trajectories_are_lost_at_the_predicted_horizon_and_energy_is_not(
-    chaotic: dict[str, Any],
+    chaotic: ChaosResults,
 ) -> None:
-    seen = [h for h in chaotic["horizons"] if h.seen < np.inf]
-    assert len(seen) >= 4
-    for found in seen:
-        assert found.predicted == log(1 / found.tolerance) / chaotic["exponent"].value
-        assert 0.6 < found.seen / found.predicted < 1.4
+    reached = [h for h in chaotic.horizons if h.measured < np.inf]
+    assert len(reached) >= 4
+    for found in reached:
+        assert found.predicted == log(1 / found.tolerance) / chaotic.exponent.value
+        assert 0.6 < found.measured / found.predicted < 1.4
         assert found.energy_error < 1000 * found.tolerance
 
 
-def test_beyond_the_horizon_means_agree_unless_energy_drifts(chaotic: dict[str, Any]) -> None:
-    *accurate, drifting = chaotic["statistics"]
+def test_beyond_the_horizon_means_agree_unless_energy_drifts(chaotic: ChaosResults) -> None:
+    *accurate, drifting = chaotic.statistics
     assert len(accurate) == len(LONG_RUNS) - 1
     for first in accurate:
         for second in accurate:
@@ -171,41 +184,43 @@ def test_errors_near_upright_grow_as_the_motion_amplifies_them() -> None:
     far, near = found[0], found[-1]
     assert near.amplification / far.amplification > 1e5
     for row in found:
-        # ten seconds are one fall from very near, several from afar
+        # ten seconds hold one fall from a small distance, several from a large one
         assert 0.99 < row.amplification / row.predicted < (1.01 if row.distance < 2e-3 else 6)
         assert row.error < 10 * separatrix.TOLERANCE * row.amplification
 
 
-def test_on_the_separatrix_every_run_turns_back_or_over_when_its_energy_says() -> None:
-    found = [fall for fall in separatrix.falls(sp) if abs(fall.defect) > 1e-13]
+def test_on_the_separatrix_runs_depart_when_their_energy_predicts() -> None:
+    found = [row for row in separatrix.departures(sp) if abs(row.defect) > 1e-13]
     assert len(found) > 8
-    for fall in found:
-        assert fall.seen == pytest.approx(fall.predicted, rel=1e-3)
-    assert {np.sign(fall.defect) for fall in found} == {-1.0, 1.0}
+    for row in found:
+        assert row.measured == pytest.approx(row.predicted, rel=1e-3)
+    assert {np.sign(row.defect) for row in found} == {-1.0, 1.0}
 
 
-def test_upright_a_pendulum_falls_when_pi_is_rounded() -> None:
+def test_a_pendulum_at_the_number_nearest_to_pi_falls() -> None:
     found = separatrix.upright(sp)
-    assert found.seen == pytest.approx(found.predicted, rel=1e-9)
-    assert 15 < found.seen < 20
+    assert found.measured == pytest.approx(found.predicted, rel=1e-9)
+    assert 15 < found.measured < 20
 
 
-def test_tolerances_lie_more_or_less(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_exceed_tolerances_as_the_motion_grows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(tolerances, "TOLERANCES", (1e-5, 1e-8))
     found = {
         (h.method, h.tolerance): h
-        for h in tolerances.study(dp, ("bs32", "dop853", "verner98", "LSODA"), 8)
+        for h in tolerances.Tolerances(("bs32", "dop853", "verner98", "LSODA"), 8).run(load)
     }
-    # where errors lie by orders of magnitude it is the motion that amplifies them
+    # the motion itself amplifies errors by orders of magnitude
     for row in found.values():
-        assert row.worst >= row.median > row.beside_motion
+        assert row.worst >= row.median > row.relative_to_growth
     assert found["LSODA", 1e-8].median > 5 * found["verner98", 1e-8].median
     assert found["bs32", 1e-8].median > 3
-    # a tolerance that is half as honest would be noticed
-    assert found["verner98", 1e-8].beside_motion < 0.5
+    # an error twice as large relative to the tolerance would fail
+    assert found["verner98", 1e-8].relative_to_growth < 0.5
 
 
-def test_the_growth_of_an_oscillation_is_the_stability_functions() -> None:
-    function = StabilityFunction.of(oscillation.load("rk4"))
+def test_the_predicted_growth_is_that_of_the_stability_function() -> None:
+    function = StabilityFunction.of(oscillation.load_method("rk4"))
     found = oscillation.growth(sp, "rk4", 10.0)
     assert found.predicted == pytest.approx(10 * log(abs(complex(function(0.2j * pi)))))

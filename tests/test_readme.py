@@ -12,7 +12,6 @@ import pytest
 from PIL import Image
 
 import generated.double_pendulum as dp
-import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from derive import load, names
 from derive.codegen.assignments import assignments
@@ -26,11 +25,11 @@ from solvers.scenes.reading import KEYS, scene
 from solvers.scenes.run import answer
 from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
-from solvers.studies.failure_modes import drift
-from solvers.studies.failure_modes.chaos import lyapunov
+from solvers.studies.failure_modes.chaos import CHAOTIC
+from solvers.studies.failure_modes.drift import EnergyDrift
+from solvers.studies.failure_modes.lyapunov import lyapunov
 from solvers.studies.failure_modes.separatrix import upright
-from solvers.studies.failure_modes.stiffness import crossover, study
-from solvers.studies.failure_modes.studies import CHAOTIC
+from solvers.studies.failure_modes.stiffness import Stiffness, crossover
 from solvers.studies.stability.critical_step import CriticalStep
 from solvers.sweeps.job import STATUSES
 from solvers.sweeps.plots.figure import drawn
@@ -118,20 +117,20 @@ def test_what_is_said_of_failures_is_true(report_steps: dict[str, CriticalStep])
     assert abs(found.value - exponent) < 4 * np.hypot(found.error, error)
     for tolerance, horizon in re.findall(r"(1e-\d+) means (\d+) s", prose):
         assert round(log(1 / float(tolerance)) / exponent) == int(horizon)
-    assert f"after {upright(sp).seen:.3f} s" in prose
-    light = study(dp, ep, (10.0, 30.0, 100.0), ("rk4", "verner87", "gauss2", "gauss3"))
+    assert f"after {upright(sp).measured:.3f} s" in prose
+    methods = ("rk4", "verner87", "gauss2", "gauss3")
+    light = Stiffness((10.0, 30.0, 100.0), methods).run(load_module)
     said = re.findall(r"frequencies of about (\d+), (\d+) and (\d+) on", prose)[0]
     for family, ratio in zip(("short second rod", "light first mass", "stiff spring"), said,
                              strict=True):  # fmt: skip
         assert crossover(light, family, "work_rhs") == pytest.approx(float(ratio), rel=0.25)
-    drifts = drift.study(dp, 1000, [("rk4", "lagrangian", 60), ("verner87", "lagrangian", 15),
-                                    ("gauss3", "hamiltonian", 20)])  # fmt: skip
-    rk4, verner, gauss = drifts
+    cases = ("rk4", "lagrangian", 60), ("verner87", "lagrangian", 15), ("gauss3", "hamiltonian", 20)
+    rk4, verner, gauss = EnergyDrift(1000, cases).run(load_module)
     rates = re.findall(
         r"at first (\S+) a period,.* gains (\S+) a period;.* within (\S+)\. -", prose
     )
     said = list(map(float, rates[0]))
-    assert said == pytest.approx([-rk4.rate, verner.rate, gauss.whole], rel=0.1)
+    assert said == pytest.approx([-rk4.rate, verner.rate, gauss.largest_error], rel=0.1)
 
 
 def test_calls_that_are_quoted_are_those_of_the_verdict() -> None:

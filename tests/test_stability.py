@@ -2,6 +2,7 @@
 
 import json
 from fractions import Fraction
+from functools import partial
 from math import inf, sqrt
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from solvers.runge_kutta.catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import Stepper
 from solvers.runge_kutta.sturm import nonnegative_interval
-from solvers.studies.failure_modes.studies import SMALL
+from solvers.studies.failure_modes.study import studies
 from solvers.studies.stability import critical_step as critical_step_module
 from solvers.studies.stability.critical_step import CriticalStep, critical_step, limit
 from solvers.studies.stability.plots import boundaries
@@ -136,16 +137,16 @@ def test_the_command_prints_every_method_and_where_methods_fail(
         path.name for path in tmp_path.iterdir()
     }
     # and all of it, in small
-    monkeypatch.setattr(command, "FULL", SMALL)
+    monkeypatch.setattr(command, "studies", partial(studies, small=True))
     assert main(["stability", "--output", str(tmp_path)]) == 0
     text = capsys.readouterr().out
     for line in ("Longest stable steps of the report's scene", "largest Lyapunov exponent 0.8",
-                 "implicit methods cost less from a ratio of", "Energy of the double pendulum over",
-                 "Aligned rods", "released upright", "Achieved over asked"):  # fmt: skip
+                 "implicit methods cost less from a ratio of", "Relative energy error",
+                 "Aligned rods", "released upright", "Achieved over requested"):  # fmt: skip
         assert line in text
     drawn = {path.name for path in tmp_path.iterdir()}
-    studies = {f"failures_{name}.png" for name in ("drift", "chaos", "tolerances")}
-    assert {"stability_report.png", *studies} <= drawn
+    plots = {f"failures_{name}.png" for name in ("drift", "chaos", "tolerances")}
+    assert {"stability_report.png", *plots} <= drawn
     with pytest.raises(SystemExit, match="2"):
         main(["stability", "repotr"])
     assert "did you mean 'report'" in capsys.readouterr().err

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -14,6 +15,8 @@ from solvers.io.atomic_write import write_text
 
 #: Wong's palette, told apart by colour-blind eyes (Nature Methods 8, 441, 2011).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+
+Value = TypeVar("Value")
 
 
 def panels(
@@ -48,6 +51,16 @@ def panels(
     axes = figure.subplots(rows, columns, squeeze=False)
     figure.suptitle(title)
     return figure, list(axes.flat)
+
+
+def coloured(values: Iterable[Value]) -> Iterator[tuple[Value, str]]:
+    """The first seven different values, each with a colour of its own."""
+    return zip(dict.fromkeys(values), COLOURS, strict=False)
+
+
+def legend_beside(axes: Axes, **options: Any) -> None:
+    """Add a legend to the right of the axes."""
+    axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(1, 1), **options)
 
 
 def save(figure: Figure, path: str | Path) -> None:

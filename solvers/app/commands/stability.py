@@ -19,9 +19,7 @@ from solvers.io.json_values import jsonable
 from solvers.io.progress import Progress
 from solvers.runge_kutta.catalogue import names
 from solvers.scenes.scene import Scene
-from solvers.studies.failure_modes.plots import draw
-from solvers.studies.failure_modes.studies import FULL, studies
-from solvers.studies.failure_modes.summary import TELL
+from solvers.studies.failure_modes.study import studies
 from solvers.studies.stability.critical_step import CriticalStep, critical_step
 from solvers.studies.stability.plots import regions
 
@@ -66,18 +64,16 @@ def main(argv: Sequence[str], module: Callable[[str], GeneratedModule]) -> int:
     if not arguments.scenes and (missing := no_compiler(module("single_pendulum"))):
         print(f"where methods fail is left out: {missing}", file=sys.stderr)
     elif not arguments.scenes:
-        double, single, elastic = (
-            module(f"{kind}_pendulum") for kind in ("double", "single", "elastic")
-        )
-        for name, study in studies(double, single, elastic, FULL).items():
-            with Progress() as tell:
-                tell(f"where methods fail: {name}")
-                result = study()
-                path = draw(name, result, arguments.output)
-            found["failures"][name] = result
+        for study in studies():
+            with Progress() as report:
+                report(f"where methods fail: {study.name}")
+                results = study.run(module)
+            path = arguments.output / f"failures_{study.name}.png"  # scenes have names, too
+            save(study.plot(results), path)
+            found["failures"][study.name] = results
             found["pictures"].append(str(path))
             if not arguments.json:
-                print(*TELL[name](result), f"picture: {path}", "", sep="\n", flush=True)
+                print(*study.summary(results), f"picture: {path}", "", sep="\n", flush=True)
     if arguments.json:
         print(json.dumps(jsonable(found), indent=2))
     return 0

@@ -17,7 +17,7 @@ from solvers.integration.predictability import ignore_predictability
 from solvers.references.extrapolation import extrapolated
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import load
-from solvers.studies.failure_modes.chaos import Mean, lyapunov
+from solvers.studies.failure_modes.lyapunov import Mean, lyapunov
 from solvers.studies.work_precision.measurement import REPORT
 
 Array = NDArray[np.float64]

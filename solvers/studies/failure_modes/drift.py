@@ -1,26 +1,33 @@
-"""Energy over very many periods: Runge–Kutta methods lose it, symplectic ones give it back."""
+"""Energy in long runs: Runge–Kutta methods lose it, symplectic methods keep it bounded."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from math import pi
+from operator import attrgetter
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
 from solvers.integration.integrate import integrate
+from solvers.io.figures import coloured, legend_beside, panels
+from solvers.io.text_table import text_table
+from solvers.studies.failure_modes.study import Load, Study
 
 Array = NDArray[np.float64]
+#: A method, a form, and steps per period of the slow mode.
+Case = tuple[str, str, int]
 
-#: Regular motion of the double pendulum, far from small: angles in rad, at rest.
+#: Start of a regular, nonlinear motion of the double pendulum: angles in rad, at rest.
 START = (0.5, 0.6, 0.0, 0.0)
-#: Methods, forms and steps per period of the slow mode.
-CASES = (
+CASES: tuple[Case, ...] = (
     ("rk4", "lagrangian", 60),
     ("dp54", "lagrangian", 40),
     ("verner87", "lagrangian", 15),
@@ -30,30 +37,30 @@ CASES = (
     ("gauss3", "hamiltonian", 20),
     ("gauss2", "lagrangian", 30),
 )
-#: Energy is looked at in so many blocks of so many periods, ever further apart.
+#: Energy is sampled in this many blocks, spaced logarithmically; and their length in periods.
 BLOCKS, LENGTH = 40, 3
 
 
 @dataclass(frozen=True)
 class Drift:
-    """What becomes of energy in a long run.
+    """Energy error of a long run.
 
     Attributes
     ----------
     method, form : str
-        What ran.
+        Method and form of the equations.
     steps_per_period : int
-        How long its steps are.
+        Period of the slow mode over step size.
     periods : ndarray of shape (samples,)
         Times in periods of the slow mode.
     energy_error : ndarray of shape (samples,)
-        In parts of the energy above rest.
+        Relative to the initial energy above that of the equilibrium.
     exponent : float
-        Of the error's growth with time: 1 is a steady drift, 0 none.
+        Power of time with which the largest error grows: 1 for a steady drift, 0 for none.
     rate : float
-        Drift a period, by a straight line through the whole run.
-    first, whole : float
-        Largest error in the first hundredth of the run, and in all of it.
+        Drift per period, from a straight line fitted to the whole run.
+    early_error, largest_error : float
+        Largest error in the first hundredth of the run, and in the whole run.
     """
 
     method: str
@@ -63,62 +70,84 @@ class Drift:
     energy_error: Array
     exponent: float
     rate: float
-    first: float
-    whole: float
+    early_error: float
+    largest_error: float
 
 
-def study(pendulum: GeneratedModule, periods: float, cases: Sequence[tuple[str, str, int]] = CASES,
-          ) -> list[Drift]:  # fmt: skip
-    """Energy errors of the double pendulum over so many periods of its slow mode.
-
-    Parameters
-    ----------
-    pendulum : module
-        The generated double pendulum.
-    periods : float
-        How many: more than `LENGTH` by one at least.
-    cases : sequence of tuple
-        Method, form and steps per period of each run.
-
-    Returns
-    -------
-    list of Drift
-        One for each of `cases`.
-
-    Raises
-    ------
-    ValueError
-        When a method or form does not exist, or there are too few periods.
-    KeyboardInterrupt
-        When the user interrupts; no further case is begun.
-    """
-    params = pendulum.DEFAULTS
+def drift(pendulum: GeneratedModule, periods: float, case: Case) -> Drift:
+    """Energy error of the double pendulum over a number of periods of its slow mode."""
+    params, (method, form, steps) = pendulum.DEFAULTS, case
     period = 2 * pi / Modes.at_rest(pendulum, params).frequencies[0]
+    h = period / steps
+    # blocks hold whole periods, so that oscillations of the error are sampled completely
+    blocks = np.logspace(0, np.log10(periods - LENGTH), BLOCKS) * steps
+    ends = np.unique(blocks.astype(np.int64)[:, None] + np.arange(LENGTH * steps))
+    solve = partial(integrate, method=method, form=form, h=h, energy=True, max_steps=10**9)
+    run = solve(pendulum, (0, periods * period), START, params, t_eval=h * np.array([0, *ends]))
+    assert run.energy is not None
+    error = energy_error(pendulum, params, run.energy)
+    t = run.t / period
+    largest = np.maximum.accumulate(np.abs(error))
+    late = t >= periods / 100
+    exponent = float(np.polyfit(np.log(t[late]), np.log(largest[late]), 1)[0])
+    rate = float(np.polyfit(t, error, 1)[0])
+    errors = float(largest[~late][-1]), float(largest[-1])
+    return Drift(method, form, steps, t, error, exponent, rate, *errors)
 
-    def drift(case: tuple[str, str, int]) -> Drift:
-        method, form, steps = case
-        h = period / steps
-        # ends of steps: blocks of a few periods, so that oscillations are seen whole
-        blocks = np.logspace(0, np.log10(periods - LENGTH), BLOCKS) * steps
-        ends = np.unique(blocks.astype(np.int64)[:, None] + np.arange(LENGTH * steps))
-        run = integrate(
-            pendulum, (0, periods * period), START, params, method=method, form=form, h=h,
-            t_eval=h * np.array([0, *ends]), energy=True, max_steps=10**9,
-        )  # fmt: skip
-        assert run.energy is not None
-        error = energy_error(pendulum, params, run.energy)
-        t = run.t / period
-        largest = np.maximum.accumulate(np.abs(error))
-        late = t >= periods / 100
-        exponent = np.polyfit(np.log(t[late]), np.log(largest[late]), 1)[0]
-        return Drift(
-            method, form, steps, t, error, float(exponent), float(np.polyfit(t, error, 1)[0]),
-            float(largest[~late][-1]), float(largest[-1]),
-        )  # fmt: skip
 
-    with ThreadPoolExecutor() as pool:
-        try:
-            return list(pool.map(drift, cases))
-        except KeyboardInterrupt:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+@dataclass(frozen=True)
+class EnergyDrift(Study[list[Drift]]):
+    """Energy errors of the double pendulum in long runs.
+
+    Attributes
+    ----------
+    periods : float
+        Length of each run in periods of the slow mode, more than 4.
+    cases : tuple of tuple
+        Method, form and steps per period of each run; at most seven methods.
+    """
+
+    periods: float = 1e5
+    cases: tuple[Case, ...] = CASES
+
+    @classmethod
+    def small(cls) -> EnergyDrift:
+        """The study over 1000 periods."""
+        return cls(1e3)
+
+    def run(self, load: Load) -> list[Drift]:
+        """Energy error of each case, computed in parallel."""
+        pendulum = load("double_pendulum")
+        with ThreadPoolExecutor() as pool:
+            try:
+                return list(pool.map(partial(drift, pendulum, self.periods), self.cases))
+            except KeyboardInterrupt:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+
+    def summary(self, results: list[Drift]) -> Iterator[str]:
+        """Largest errors, drift rates and exponents."""
+        periods = max(row.periods[-1] for row in results)
+        yield f"Relative energy error of the double pendulum over {periods:.3g} periods"
+        columns = {"method": "", "form": "", "steps/period": "d"}
+        columns |= {"first 1 %": ".1e", "whole run": ".1e", "drift/period": ".1e"}
+        columns |= {"exponent": ".2f"}
+        shown = "method", "form", "steps_per_period", "early_error", "largest_error"
+        yield from text_table(columns, map(attrgetter(*shown, "rate", "exponent"), results))
+
+    def plot(self, results: list[Drift]) -> Figure:
+        """Largest energy error so far over time, on logarithmic axes."""
+        title = "Energy in long runs: lost by Runge-Kutta methods, kept by symplectic methods"
+        figure, (axes,) = panels(title, size=(8, 5))
+        colours = dict(coloured(d.method for d in results))
+        for d in results:
+            axes.loglog(
+                d.periods[1:],
+                np.maximum.accumulate(np.abs(d.energy_error))[1:],
+                color=colours[d.method],
+                linestyle="-" if d.form == "hamiltonian" else "--",
+                label=f"{d.method}, {d.form}, {d.steps_per_period} steps per period",
+            )
+        axes.set(xlabel="periods of the slow mode", ylabel="largest energy error so far, relative")
+        legend_beside(axes, fontsize="small")
+        return figure

@@ -1,31 +1,39 @@
-"""Oscillations that grow: by Euler's method with any step, by others beyond a limit."""
+"""Growing oscillations: by Euler's method with any step, by other methods beyond a limit."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import astuple, dataclass
+from functools import partial
 from math import log, pi
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.integrate import integrate
-from solvers.runge_kutta.catalogue import load
+from solvers.io.figures import coloured, panels
+from solvers.io.text_table import text_table
+from solvers.runge_kutta.catalogue import load as load_method
 from solvers.runge_kutta.stability_function import StabilityFunction
+from solvers.studies.failure_modes.study import Load, Study
 
-#: Amplitude in rad: small enough to be linear, as far as is looked at.
+#: Initial angle in rad: small enough for linear motion.
 AMPLITUDE = 1e-6
+#: Steps per period of the methods whose oscillations always grow.
+STEPS_PER_PERIOD = (20.0, 100.0, 500.0, 2500.0)
 
 
 @dataclass(frozen=True)
 class Growth:
-    """What a method does to an oscillation.
+    """Growth of a small oscillation.
 
     Attributes
     ----------
     method : str
-        Which.
+        Name of the method.
     steps_per_period : float
-        How long its steps are.
+        Period over step size.
     predicted, measured : float
         Logarithm of the amplitude's growth over a period.
     """
@@ -37,46 +45,52 @@ class Growth:
 
 
 def growth(pendulum: GeneratedModule, method: str, steps_per_period: float) -> Growth:
-    """Growth of a small oscillation of the single pendulum, predicted from R(z), and run.
-
-    So many periods are run as make it grow a hundredfold, if it grows, but at most 1000.
-
-    Parameters
-    ----------
-    pendulum : module
-        The generated single pendulum.
-    method : str
-        One of ``solvers.runge_kutta.catalogue.names()``.
-    steps_per_period : float
-        How long its steps are.
-
-    Returns
-    -------
-    Growth
-    """
+    """Growth of a small oscillation of the single pendulum, predicted from R(z) and measured."""
     length, gravity = pendulum.DEFAULTS[1:]
     frequency = np.sqrt(gravity / length)
-    function = StabilityFunction.of(load(method))
+    function = StabilityFunction.of(load_method(method))
     factor = abs(complex(function(2j * pi / steps_per_period)))
     predicted = steps_per_period * log(factor)
+    # until the oscillation has grown a hundredfold, but 1000 periods at most
     steps = int(min(max(log(100) / max(log(factor), 1e-9), 50), 1000 * steps_per_period))
     h = 2 * pi / frequency / steps_per_period
-    run = integrate(
-        pendulum, (0, steps * h), (AMPLITUDE, 0.0), pendulum.DEFAULTS, method=method, h=h,
-        form="lagrangian", t_eval=[0.0, steps * h], max_steps=10**9,
-    )  # fmt: skip
+    y0, times = (AMPLITUDE, 0.0), [0.0, steps * h]
+    solve = partial(integrate, method=method, form="lagrangian", h=h, max_steps=10**9)
+    run = solve(pendulum, times, y0, pendulum.DEFAULTS, t_eval=times)
     sizes = np.hypot(frequency * run.y[0], run.y[1])
-    return Growth(
-        method, steps_per_period, predicted, float(np.log(sizes[-1] / sizes[0])) / steps
-        * steps_per_period,
-    )  # fmt: skip
+    measured = float(np.log(sizes[-1] / sizes[0])) / steps * steps_per_period
+    return Growth(method, steps_per_period, predicted, measured)
 
 
-def study(pendulum: GeneratedModule) -> list[Growth]:
-    """Euler and RK2 with ever shorter steps; RK3 and RK4 on both sides of their limit."""
-    always = (20.0, 100.0, 500.0, 2500.0)
-    cases = [(method, steps) for method in ("rk1", "midpoint") for steps in always]
-    for method in ("rk3", "rk4"):
-        limit = 2 * pi / StabilityFunction.of(load(method)).imaginary_stability_interval
-        cases += [(method, limit * factor) for factor in (1.02, 0.98)]
-    return [growth(pendulum, *case) for case in cases]
+@dataclass(frozen=True)
+class Oscillation(Study[list[Growth]]):
+    """Euler and RK2 with decreasing steps; RK3 and RK4 on both sides of their limit."""
+
+    def run(self, load: Load) -> list[Growth]:
+        """Growth for each method and number of steps."""
+        cases = [(method, steps) for method in ("rk1", "midpoint") for steps in STEPS_PER_PERIOD]
+        for method in ("rk3", "rk4"):
+            function = StabilityFunction.of(load_method(method))
+            limit = 2 * pi / function.imaginary_stability_interval
+            cases += [(method, limit * factor) for factor in (1.02, 0.98)]
+        return [growth(load("single_pendulum"), *case) for case in cases]
+
+    def summary(self, results: list[Growth]) -> Iterator[str]:
+        """Predicted and measured growth per period."""
+        yield "Small oscillations of the single pendulum: logarithm of the growth per period"
+        columns = {"method": "", "steps/period": ".4g", "predicted": ".4e", "measured": ".4e"}
+        yield from text_table(columns, map(astuple, results))
+
+    def plot(self, results: list[Growth]) -> Figure:
+        """Growth per period over the number of steps per period."""
+        title = "Small oscillations grow with every step of Euler's method and of RK2"
+        figure, (axes,) = panels(title, size=(7, 4.5))
+        for method, colour in coloured(("rk1", "midpoint")):
+            rows = [row for row in results if row.method == method]
+            steps = [row.steps_per_period for row in rows]
+            predicted, measured = [r.predicted for r in rows], [r.measured for r in rows]
+            axes.loglog(steps, predicted, color=colour, label=f"{method}, from R(z)")
+            axes.loglog(steps, measured, "o", color=colour, label=f"{method}, run")
+        axes.set(xlabel="steps per period", ylabel="logarithm of growth per period")
+        axes.legend(frameon=False)
+        return figure

@@ -1,40 +1,46 @@
-"""The single pendulum near its upright place, beside its exact solution."""
+"""The single pendulum near its upright equilibrium, compared with its exact solution."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import astuple, dataclass
+from functools import partial
 from math import log, pi, sqrt
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.references.elliptic import pendulum as exact
+from solvers.io.figures import COLOURS, panels
+from solvers.io.text_table import text_table
+from solvers.references.elliptic import pendulum as exact_solution
+from solvers.studies.failure_modes.study import Load, Study
 
-#: Distances from the upright place to begin with, in rad, and how long to look, in s.
+#: Initial distances from the upright equilibrium in rad, and the duration of the motion in s.
 DISTANCES, DURATION = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7), 10.0
-#: Method and tolerance with which sensitivity is shown.
+#: Method and tolerance of these motions.
 METHOD, TOLERANCE = "verner87", 1e-10
-#: Those that try to arrive.
+#: Methods and tolerances of motions on the separatrix.
 METHODS, TOLERANCES = ("dp54", "verner87", "verner98"), (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What becomes of small errors near the upright place.
+    """Growth of small errors near the upright equilibrium.
 
     Attributes
     ----------
     distance : float
-        Where the pendulum is released, in rad from upright.
+        Initial distance from upright in rad.
     predicted : float
-        By how much a small change of the start grows while the pendulum falls through once.
+        Growth of a small change of the start during one fall.
     amplification : float
-        The most that it grows, by the variational equations.
+        Largest growth, from the variational equations.
     error : float
-        The largest error of a run, in rad and rad/s.
+        Largest error of a run, in rad and rad/s.
     """
 
     distance: float
@@ -44,122 +50,90 @@ class Sensitivity:
 
 
 def sensitivity(module: GeneratedModule) -> list[Sensitivity]:
-    """Errors beside the exact solution, and how much the motion itself amplifies.
-
-    The fall from a distance δ takes ln(const/δ)/ω, so that a change of δ shifts it by
-    1/(ωδ) of time; angle and velocity change by at most 2ω and ω² in a second.
-
-    Parameters
-    ----------
-    module : module
-        The generated single pendulum.
-
-    Returns
-    -------
-    list of Sensitivity
-        One for each of `DISTANCES`.
-    """
-    _, length, gravity = module.DEFAULTS
+    """Errors of runs, and the growth of small errors in the motion itself."""
+    # the fall from a distance δ takes ln(const/δ)/ω, so that a change of δ shifts it by 1/(ωδ);
+    # angle and velocity change by at most 2ω and ω² in a second
+    _, length, gravity = params = module.DEFAULTS
     omega = sqrt(gravity / length)
     t = np.linspace(0, DURATION, 201)
-    found = []
+    solve = partial(integrate, method=METHOD, rtol=TOLERANCE, atol=TOLERANCE, t_eval=t)
+    results = []
     for distance in DISTANCES:
-        start = (pi - distance, 0.0)
-        run, carried = (
-            integrate(module, (0, DURATION), (*start, *change), module.DEFAULTS, method=METHOD,
-                      rtol=TOLERANCE, atol=TOLERANCE, form=form, t_eval=t)
-            for form, change in (("rational", ()), ("variational", (1.0, 0.0)))
-        )  # fmt: skip
-        truth = exact(length, gravity, start, t)
-        found.append(Sensitivity(
-            distance, max(2.0, omega) / distance, float(np.abs(carried.y[2:]).max()),
-            float(np.abs(run.y.T - truth).max()),
-        ))  # fmt: skip
-    return found
+        y0 = (pi - distance, 0.0)
+        run = solve(module, (0, DURATION), y0, params, form="rational")
+        carried = solve(module, (0, DURATION), (*y0, 1.0, 0.0), params, form="variational")
+        error = float(np.abs(run.y.T - exact_solution(length, gravity, y0, t)).max())
+        growth = float(np.abs(carried.y[2:]).max())
+        results.append(Sensitivity(distance, max(2.0, omega) / distance, growth, error))
+    return results
 
 
 @dataclass(frozen=True)
-class Fall:
-    """A pendulum that should stay or arrive upright, and does not.
+class Departure:
+    """The end of a motion that would approach the upright equilibrium on the separatrix.
 
     Attributes
     ----------
     method : str
-        Which.
+        Name of the method.
     tolerance : float
         Relative and absolute.
     defect : float
-        By what its energy misses that of the separatrix, k² - 1 when it turns or passes.
-    predicted, seen : float
-        When it turns back or passes, in s: by the exact solution of that energy, and run.
+        Relative energy error at the end, k² - 1: negative if the pendulum turns back.
+    predicted, measured : float
+        Time in s at which it turns back or passes the top: from the exact solution with that
+        energy, and from the run.
     """
 
     method: str
     tolerance: float
     defect: float
     predicted: float
-    seen: float
+    measured: float
 
 
-def falls(module: GeneratedModule) -> list[Fall]:
-    """From the bottom with just the speed that leads to the top, never to arrive.
-
-    With energy k² (1 on the separatrix) the quarter period is K(k²)/ω or K(1/k²)/(kω),
-    and K = ln(4/√|1 - k²|) for k close to 1 (NIST Digital Library of Mathematical
-    Functions, 19.12.1).
-
-    Parameters
-    ----------
-    module : module
-        The generated single pendulum.
-
-    Returns
-    -------
-    list of Fall
-        For each of `METHODS` one for each of `TOLERANCES`.
-    """
+def departures(module: GeneratedModule) -> list[Departure]:
+    """Motions from the bottom at the speed of the separatrix."""
+    # with energy k² (1 on the separatrix) the quarter period is K(k²)/ω or K(1/k²)/(kω), and
+    # K = ln(4/√|1 - k²|) for k close to 1 (NIST Digital Library of Mathematical Functions, 19.12.1)
     _, length, gravity = module.DEFAULTS
     omega = sqrt(gravity / length)
-    events = [
-        Event(module, "theta", pi, terminal=True),
-        Event(module, "theta_dot", 0.0, terminal=True),
-    ]
-    found = []
+    ends = (("theta", pi), ("theta_dot", 0.0))
+    events = [Event(module, name, value, terminal=True) for name, value in ends]
+    solve = partial(ensemble, module, (0, 100), [(0.0, 2 * omega)], module.DEFAULTS)
+    results = []
     for method in METHODS:
-        for tolerance in TOLERANCES:
-            run = ensemble(
-                module, (0, 100), [(0.0, 2 * omega)], module.DEFAULTS, method=method,
-                rtol=tolerance, atol=tolerance, form="lagrangian", events=events,
-            )  # fmt: skip
+        for tol in TOLERANCES:
+            run = solve(method=method, rtol=tol, atol=tol, form="lagrangian", events=events)
             t, (theta, rate) = run.t[0], run.y[0]
             defect = float((rate / (2 * omega)) ** 2 - np.cos(theta / 2) ** 2)
             predicted = log(4 / sqrt(abs(defect))) / omega
-            found.append(Fall(method, tolerance, defect, predicted, float(t)))
-    return found
+            results.append(Departure(method, tol, defect, predicted, float(t)))
+    return results
 
 
 @dataclass(frozen=True)
 class Upright:
-    """The upright equilibrium, as near as a number comes to it.
+    """Release at the floating-point number nearest to the upright equilibrium.
 
     Attributes
     ----------
     offset : float
-        By what the float misses π, in rad.
-    predicted, seen : float
-        When the pendulum has fallen to the horizontal, in s.
+        Difference between π and this number, in rad.
+    predicted, measured : float
+        Time in s at which the pendulum is horizontal.
     """
 
     offset: float
     predicted: float
-    seen: float
+    measured: float
 
 
 def upright(module: GeneratedModule) -> Upright:
-    """Released at rest at the float nearest to π.
+    """Release from rest at the floating-point number nearest to π.
 
-    At first the angle from upright is δ cosh ωt; when that is large beside δ and still
-    small, tan(angle/4) = (δ/8) e^(ωt), and it stays so: the horizontal is reached after
+    At first the angle from upright is δ cosh ωt. When it is large compared with δ and still
+    small, tan(angle/4) = (δ/8) e^(ωt), which remains valid: the pendulum is horizontal after
     ln(8 tan(π/8)/δ)/ω.
 
     Parameters
@@ -170,14 +144,60 @@ def upright(module: GeneratedModule) -> Upright:
     Returns
     -------
     Upright
-        With the times in s that the formula predicts and that a run by ``verner98`` sees.
+        With the predicted time and that of a run by ``verner98``, in s.
     """
-    _, length, gravity = module.DEFAULTS
+    _, length, gravity = params = module.DEFAULTS
     omega = sqrt(gravity / length)
-    offset = 1.2246467991473532e-16  # sin of that float, which is π minus it
-    run = ensemble(
-        module, (0, 100), [(pi, 0.0)], module.DEFAULTS, method="verner98", rtol=1e-13, atol=1e-30,
-        events=[Event(module, "theta", angle, terminal=True) for angle in (pi / 2, 3 * pi / 2)],
-    )  # fmt: skip
+    offset = 1.2246467991473532e-16  # sine of that number, which is π minus it
+    solve = partial(ensemble, method="verner98", rtol=1e-13, atol=1e-30)
+    events = [Event(module, "theta", angle, terminal=True) for angle in (pi / 2, 3 * pi / 2)]
+    run = solve(module, (0, 100), [(pi, 0.0)], params, events=events)
     predicted = log(8 * np.tan(pi / 8) / offset) / omega
     return Upright(offset, float(predicted), float(run.t[0]))
+
+
+@dataclass(frozen=True)
+class SeparatrixResults:
+    """Results of the three parts of the study."""
+
+    sensitivity: list[Sensitivity]
+    departures: list[Departure]
+    upright: Upright
+
+
+@dataclass(frozen=True)
+class Separatrix(Study[SeparatrixResults]):
+    """Release near upright and at upright, and motions on the separatrix."""
+
+    def run(self, load: Load) -> SeparatrixResults:
+        """Results for the single pendulum."""
+        module = load("single_pendulum")
+        return SeparatrixResults(sensitivity(module), departures(module), upright(module))
+
+    def summary(self, results: SeparatrixResults) -> Iterator[str]:
+        """Growth of errors, and times of departure."""
+        yield f"Single pendulum released near upright: growth of errors in {DURATION:g} s"
+        columns = {"distance/rad": ".0e", "one fall": ".1e", "motion": ".1e"}
+        columns[f"error of {METHOD}, rtol {TOLERANCE:g}"] = ".1e"
+        yield from text_table(columns, map(astuple, results.sensitivity))
+        yield "on the separatrix: the pendulum turns back (-) or passes the top (+) after a time"
+        columns = {"method": "", "tolerance": ".0e", "energy defect": "+.1e"}
+        columns |= {"predicted/s": ".3f", "measured/s": ".3f"}
+        yield from text_table(columns, map(astuple, results.departures))
+        fall = results.upright
+        yield (
+            f"released upright, {fall.offset:.1e} rad from pi: horizontal after "
+            f"{fall.measured:.6f} s (predicted {fall.predicted:.6f} s)"
+        )
+
+    def plot(self, results: SeparatrixResults) -> Figure:
+        """Growth of errors near upright."""
+        figure, (axes,) = panels("Single pendulum released near upright", size=(7, 4.5))
+        rows, blue = results.sensitivity, COLOURS[0]
+        distance, predicted = [row.distance for row in rows], [row.predicted for row in rows]
+        growth = [row.amplification for row in rows]
+        axes.loglog(distance, growth, "o", color=blue, label="growth of small errors within 10 s")
+        axes.loglog(distance, predicted, color=blue, label="frequency / distance: one fall")
+        axes.set(xlabel="distance from upright / rad", ylabel="factor")
+        axes.legend(frameon=False)
+        return figure

@@ -1,49 +1,54 @@
-"""A mass matrix that is nearly singular: the double pendulum with m1 → 0 and aligned rods.
+"""A nearly singular mass matrix: the double pendulum with m1 → 0 and aligned rods.
 
-There M has the condition number 4 m2/m1, about. Hamilton's form solves M q̇ = p for velocities:
-p is rounded, and the solution multiplies that. Lagrange's form solves M q̈ = f: the weight of
-m2 stands twice in what is left over for m1, and cancels.
+The condition number of M is about 4 m2/m1. Hamilton's form solves M q̇ = p for the velocities and
+amplifies the rounding of p. Lagrange's form solves M q̈ = f: the weight of m2 appears twice in
+the equation that remains for m1, and cancels.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple, dataclass
 from decimal import Decimal, localcontext
+from functools import partial
+from math import nan
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.timing import timed_run
+from solvers.io.figures import COLOURS, panels
+from solvers.io.text_table import text_table
 from solvers.references.series import Series
 from solvers.references.taylor import sine_and_cosine, taylor
+from solvers.studies.failure_modes.study import Load, Study
 
 Array = NDArray[np.float64]
 
+EPSILON = float(np.finfo(float).eps)
+#: Values of m1 in kg.
 MASSES = (1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
-#: Trajectories: start, duration in s, the lightest mass, and tolerances of which the best counts.
+#: Motions: start, duration in s, the least m1 in kg, and the tolerances.
 START, DURATION, LIGHTEST = (1.0, 1.0, 0.3, 0.3), 0.5, 1e-6
 TOLERANCES = (1e-8, 1e-10, 1e-11, 1e-12, 1e-13)
-#: Random states, with rods aligned within this angle in rad.
+#: Number of random states, and the largest angle between the rods in rad.
 STATES, ALIGNED = 100, 1e-9
 
 
 @dataclass(frozen=True)
-class Loss:
-    """Accuracy that is lost with one mass m1.
+class AccuracyLoss:
+    """Accuracy of both forms for one mass m1.
 
     Attributes
     ----------
     m1, condition : float
-        The mass in kg, and the condition number of M between unit rods, median.
-    acceleration : float
-        Relative error of Lagrange's accelerations, median.
-    velocity : float
-        Relative error of Hamilton's velocities, median.
+        The mass in kg, and the median condition number of M.
+    acceleration, velocity : float
+        Median relative errors of Lagrange's accelerations and of Hamilton's velocities.
     lagrangian, hamiltonian : float
-        Least error of a motion's end that the form can reach, in rad and rad/s; NaN where
-        it was not tried.
+        Least error of a motion's final state in each form, in rad and rad/s; NaN below `LIGHTEST`.
     """
 
     m1: float
@@ -54,52 +59,89 @@ class Loss:
     hamiltonian: float
 
 
-def study(pendulum: GeneratedModule, masses: Sequence[float] = MASSES) -> list[Loss]:
-    """Accuracy of both forms, for one evaluation and for a motion."""
-    return [_loss(pendulum, m1) for m1 in masses]
-
-
-def _loss(pendulum: GeneratedModule, m1: float) -> Loss:
+def accuracy_loss(pendulum: GeneratedModule, m1: float) -> AccuracyLoss:
+    """Accuracy of both forms of the double pendulum, for one evaluation and for a motion."""
     generator = np.random.default_rng(7)
     params = (m1, 1.0, 1.0, 1.0, 9.81)
-    conditions, accelerations, velocities = [], [], []
+    rows = []
     for _ in range(STATES):
         theta, gap = generator.uniform(-3, 3), generator.uniform(-ALIGNED, ALIGNED)
         y = np.array([theta, theta + gap, *generator.uniform(-2, 2, 2)])
-        conditions.append(np.linalg.cond(np.array(pendulum.mass_matrix(0.0, y, params))))
+        condition = np.linalg.cond(np.array(pendulum.mass_matrix(0.0, y, params)))
+        acceleration = np.array(pendulum.rhs(0.0, y, params))[2:]
+        z = pendulum.hamiltonian_state(0.0, y, params)
+        velocity = np.array(pendulum.rhs_hamiltonian(0.0, z, params))[:2]
         exact = exact_accelerations(pendulum, y, params)
-        found = np.array(pendulum.rhs(0.0, y, params))[2:]
-        accelerations.append(np.abs(found - exact).max() / np.abs(exact).max())
-        there = pendulum.hamiltonian_state(0.0, y, params)
-        back = np.array(pendulum.rhs_hamiltonian(0.0, there, params))[:2]
-        velocities.append(np.abs(back - y[2:]).max() / np.abs(y[2:]).max())
-    floors = (
-        [floor(pendulum, params, form) for form in ("lagrangian", "hamiltonian")]
-        if m1 >= LIGHTEST
-        else [float("nan")] * 2
-    )
-    medians = (float(np.median(v)) for v in (conditions, accelerations, velocities))
-    return Loss(m1, *medians, *floors)
+        errors = _relative_error(acceleration, exact), _relative_error(velocity, y[2:])
+        rows.append((condition, *errors))
+    medians = (float(np.median(values)) for values in zip(*rows, strict=True))
+    ends = [nan, nan]
+    if m1 >= LIGHTEST:
+        ends = [least_error(pendulum, params, form) for form in ("lagrangian", "hamiltonian")]
+    return AccuracyLoss(m1, *medians, *ends)
+
+
+def _relative_error(values: Array, exact: Array) -> float:
+    return float(np.abs(values - exact).max() / np.abs(exact).max())
 
 
 def exact_accelerations(module: GeneratedModule, y: Array, params: Sequence[float]) -> Array:
-    """Accelerations by the rational form in decimal numbers with 50 digits."""
+    """Accelerations from the rational form in decimal arithmetic with 50 digits."""
     with localcontext() as context:
         context.prec = 50
         half = len(y) // 2
         pairs = [sine_and_cosine(Decimal(float(x))) for x in y[:half]]
         state = [*(x for pair in pairs for x in pair), *map(Decimal, map(float, y[half:]))]
-        numbers = ([Series.number([], x) for x in values] for values in (state, params))
-        rates = function(module, "rhs_rational")(0.0, *numbers)
+        arguments = ([Series.number([], x) for x in values] for values in (state, params))
+        rates = function(module, "rhs_rational")(0.0, *arguments)
         return np.array([float(rate.at(0)) for rate in rates[-half:]])
 
 
-def floor(pendulum: GeneratedModule, params: Sequence[float], form: str) -> float:
-    """The least error of the end of a motion that begins with aligned rods."""
-    truth = taylor(pendulum, params, START, [0, DURATION], digits=18)[-1]
-    runs = (
-        timed_run(pendulum, params, START, DURATION, method="verner98", form=form,
-                 backend="compiled", rtol=tolerance)
-        for tolerance in TOLERANCES
-    )  # fmt: skip
-    return min(float(np.abs(run.end - truth).max()) for run in runs if run)
+def least_error(pendulum: GeneratedModule, params: Sequence[float], form: str) -> float:
+    """The least error with any tolerance at the end of a motion from aligned rods."""
+    exact = taylor(pendulum, params, START, [0, DURATION], digits=18)[-1]
+    solve = partial(timed_run, method="verner98", form=form, backend="compiled")
+    runs = (solve(pendulum, params, START, DURATION, rtol=tol) for tol in TOLERANCES)
+    return min(float(np.abs(run.end - exact).max()) for run in runs if run)
+
+
+@dataclass(frozen=True)
+class SingularMassMatrix(Study[list[AccuracyLoss]]):
+    """Accuracy of both forms as m1 decreases, in kg."""
+
+    masses: tuple[float, ...] = MASSES
+
+    @classmethod
+    def small(cls) -> SingularMassMatrix:
+        """The study with two masses."""
+        return cls((1.0, 1e-4))
+
+    def run(self, load: Load) -> list[AccuracyLoss]:
+        """Accuracy for each mass."""
+        return [accuracy_loss(load("double_pendulum"), m1) for m1 in self.masses]
+
+    def summary(self, results: list[AccuracyLoss]) -> Iterator[str]:
+        """Errors beside the condition number."""
+        yield "Aligned rods, m1 -> 0, m2 = 1 kg: errors of one evaluation and of a motion"
+        columns = {"m1/kg": ".0e", "condition": ".1e", "Lagrange qdd": ".1e", "Hamilton qd": ".1e"}
+        columns |= {"Lagrange end": ".1e", "Hamilton end": ".1e"}
+        yield from text_table(columns, map(astuple, results))
+
+    def plot(self, results: list[AccuracyLoss]) -> Figure:
+        """Errors over the mass."""
+        title = "Aligned rods, light first mass: loss of accuracy in both forms"
+        figure, (axes,) = panels(title, size=(7, 4.5))
+        m1 = [row.m1 for row in results]
+        for name, label, style, colour in (
+            ("acceleration", "Lagrange: accelerations", "o-", COLOURS[0]),
+            ("velocity", "Hamilton: velocities", "s-", COLOURS[1]),
+            ("lagrangian", "Lagrange: end of a motion", "o:", COLOURS[0]),
+            ("hamiltonian", "Hamilton: end of a motion", "s:", COLOURS[1]),
+        ):
+            errors = [getattr(row, name) or np.nan for row in results]
+            axes.loglog(m1, errors, style, color=colour, label=label)
+        bound = [EPSILON * row.condition for row in results]
+        axes.loglog(m1, bound, color="#888888", label="rounding × condition of M")
+        axes.set(xlabel="m1 / kg (m2 = 1 kg)", ylabel="error")
+        axes.legend(frameon=False)
+        return figure

@@ -1,49 +1,50 @@
-"""Stiff scenes: a fast mode that is at rest forces short steps on explicit methods."""
+"""Stiff scenes: a fast mode at rest forces explicit methods to take short steps."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
+from math import cos, isfinite
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.figure import Figure
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
 from solvers.integration.timing import TimedRun, timed_run
-from solvers.runge_kutta.catalogue import load
+from solvers.io.figures import coloured, legend_beside, panels
+from solvers.io.text_table import text_table
+from solvers.runge_kutta.catalogue import load as load_method
+from solvers.studies.failure_modes.study import Load, Study
 
-Array = NDArray[np.float64]
-
-#: How many times as fast as the slow mode the fast one is, about.
+#: Approximate ratios of the fast to the slow frequency.
 RATIOS = (3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
 EXPLICIT, IMPLICIT = ("rk4", "dp54", "verner87"), ("gauss2", "gauss3", "radau2", "radau3")
-#: With control, tolerances from loose to tight; else numbers of steps from few to many.
+#: Tolerances of methods with step control, and numbers of steps of the others, by rising cost.
 TOLERANCES, STEPS = 10.0 ** -np.arange(1, 9, 0.5), np.ceil(10 * 2 ** np.arange(0, 18, 0.5))
-#: Error of the slow coordinate at the end that is asked for, in rad, and duration in s.
-WANTED, DURATION = 1e-3, 6.0
-#: A scene of one family: parameters and start.
-Stiff = tuple[tuple[float, ...], tuple[float, ...]]
+#: Requested accuracy of the slow angle at the end, in rad, and the duration in s.
+ACCURACY, DURATION = 1e-3, 6.0
+#: Parameters and initial state of a motion.
+Motion = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 @dataclass(frozen=True)
 class Cost:
-    """The cheapest run of a method that is accurate enough.
+    """The cheapest run of a method that meets the requested accuracy.
 
     Attributes
     ----------
     family, method : str
-        Which scenes, and which method.
+        Family of scenes, and name of the method.
     ratio : float
-        Frequency of the fast mode over that of the slow one, about rest.
-    steps : int
-        How many it takes.
-    work_rhs : int
-        Right-hand sides.
+        Frequency of the fast mode over that of the slow mode, about the equilibrium.
+    steps, work_rhs : int
+        Number of steps, and of evaluations of the right-hand side.
     work_seconds : float
-        The time it takes, compiled.
+        Time of the compiled run.
     global_error : float
-        In rad.
+        Of the slow angle, in rad.
     """
 
     family: str
@@ -55,94 +56,144 @@ class Cost:
     global_error: float
 
 
-def short_second_rod(ratio: float) -> Stiff:
-    """Double pendulum, l2 = 2 l1/ratio²; at first the short rod hangs as if from a fixed place."""
+def short_second_rod(ratio: float) -> Motion:
+    """Double pendulum, l2 = 2 l1/ratio²; the short rod hangs at rest at first."""
     return (1.0, 1.0, 1.0, 2.0 / ratio**2, 9.81), (1.0, 1.0, 0.0, 0.0)
 
 
-def light_first_mass(ratio: float) -> Stiff:
-    """Double pendulum, m1 = 2 m2/ratio²: both rods are a string, and m1 a bead on it."""
+def light_first_mass(ratio: float) -> Motion:
+    """Double pendulum, m1 = 2 m2/ratio²: both rods form a string that carries a bead, m1."""
     return (2.0 / ratio**2, 1.0, 1.0, 1.0, 9.81), (1.0, 1.0, 0.0, 0.0)
 
 
-def light_second_mass(ratio: float) -> Stiff:
+def light_second_mass(ratio: float) -> Motion:
     """Double pendulum, m2 = m1/ratio²: no mode becomes fast."""
     return (1.0, 1.0 / ratio**2, 1.0, 1.0, 9.81), (1.0, 1.0, 0.0, 0.0)
 
 
-def stiff_spring(ratio: float) -> Stiff:
+def stiff_spring(ratio: float) -> Motion:
     """Elastic pendulum, k = ratio² m g/l, stretched by its weight."""
     stiffness = 9.81 * ratio**2
-    return (1.0, stiffness, 1.0, 9.81), (1.0 + 9.81 * np.cos(1.0) / stiffness, 1.0, 0.0, 0.0)
+    return (1.0, stiffness, 1.0, 9.81), (1.0 + 9.81 * cos(1.0) / stiffness, 1.0, 0.0, 0.0)
 
 
-def families(double: GeneratedModule, elastic: GeneratedModule) -> dict[str, tuple[
-    GeneratedModule, Callable[[float], Stiff], int
-]]:  # fmt: skip
-    """For each family its module, its scenes and which coordinate is the slow one."""
-    return {
-        "short second rod": (double, short_second_rod, 0),
-        "light first mass": (double, light_first_mass, 0),
-        "light second mass": (double, light_second_mass, 0),
-        "stiff spring": (elastic, stiff_spring, 1),
-    }
+#: Families by name: the system, motions by the ratio, and the index of the slow angle.
+FAMILIES: dict[str, tuple[str, Callable[[float], Motion], int]] = {
+    "short second rod": ("double_pendulum", short_second_rod, 0),
+    "light first mass": ("double_pendulum", light_first_mass, 0),
+    "light second mass": ("double_pendulum", light_second_mass, 0),
+    "stiff spring": ("elastic_pendulum", stiff_spring, 1),
+}
 
 
-def study(
-    double: GeneratedModule, elastic: GeneratedModule, ratios: Sequence[float] = RATIOS,
-    methods: Sequence[str] = (*EXPLICIT, *IMPLICIT),
-) -> list[Cost]:  # fmt: skip
-    """The cheapest accurate run of each method on each scene."""
-    found = []
-    for family, (module, scene, slow) in families(double, elastic).items():
-        for ratio in ratios:
-            params, start = scene(ratio)
-            frequencies = Modes.at_rest(module, params).frequencies
-            truth = reference(module, params, start, slow)
-            for method in methods:
-                cheapest = _cheapest(module, params, start, slow, truth, method)
-                if cheapest:
-                    run, error = cheapest
-                    found.append(Cost(
-                        family, method, float(frequencies[-1] / frequencies[0]),
-                        run.steps, run.work_rhs, run.work_seconds, error,
-                    ))  # fmt: skip
-    return found
+@dataclass(frozen=True)
+class StiffScene:
+    """A motion with a fast and a slow mode; `slow` is the index of the slow angle."""
+
+    module: GeneratedModule
+    params: tuple[float, ...]
+    y0: tuple[float, ...]
+    slow: int
+
+    @property
+    def ratio(self) -> float:
+        """Frequency of the fast mode over that of the slow mode, about the equilibrium."""
+        frequencies = Modes.at_rest(self.module, self.params).frequencies
+        return float(frequencies[-1] / frequencies[0])
+
+    def run(self, method: str, rtol: float = 0.0, h: float | None = None) -> TimedRun | None:
+        """The compiled run with a tolerance or a step."""
+        run = partial(timed_run, method=method, form="lagrangian", backend="compiled")
+        return run(self.module, self.params, self.y0, DURATION, rtol=rtol, h=h)
+
+    def reference(self) -> float:
+        """The slow angle at the end, on which an explicit and an implicit method agree."""
+        runs = self.run("verner98", rtol=1e-9), self.run("gauss3", h=DURATION / 3000)
+        ends = [float(run.end[self.slow]) for run in runs if run]
+        if len(ends) < 2 or not abs(ends[0] - ends[1]) < ACCURACY / 100:
+            raise ArithmeticError(f"the references of a stiff scene differ: {ends}")
+        return ends[0]
+
+    def cheapest(self, method: str, reference: float) -> tuple[TimedRun, float] | None:
+        """The cheapest run of sufficient accuracy, and its error."""
+        settings = [{"h": DURATION / n} for n in STEPS]
+        if load_method(method).b_hat:
+            settings = [{"rtol": tol} for tol in TOLERANCES]
+        for setting in settings:
+            run = self.run(method, **setting)
+            if run and (error := abs(run.end[self.slow] - reference)) < ACCURACY:
+                return run, float(error)
+        return None
 
 
-def reference(
-    module: GeneratedModule, params: Sequence[float], start: Sequence[float], slow: int
-) -> float:  # fmt: skip
-    """The slow coordinate at the end, by an explicit and by an implicit method.
+@dataclass(frozen=True)
+class Stiffness(Study[list[Cost]]):
+    """The cheapest sufficient run of each method on each scene."""
 
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    params, start : sequence of float
-        In the order of ``module.PARAMETERS`` and ``module.STATE``.
-    slow : int
-        Which coordinate is the slow one.
+    ratios: tuple[float, ...] = RATIOS
+    methods: tuple[str, ...] = (*EXPLICIT, *IMPLICIT)
 
-    Returns
-    -------
-    float
-        In rad, after `DURATION`.
+    @classmethod
+    def small(cls) -> Stiffness:
+        """The study with three ratios."""
+        return cls((3.0, 100.0, 300.0))
 
-    Raises
-    ------
-    AssertionError
-        When they differ by more than a hundredth of the error that is asked for, or one of
-        them does not reach the end.
-    """
-    ends = [
-        run.end[slow]
-        for method, setting in (("verner98", {"rtol": 1e-9}), ("gauss3", {"h": DURATION / 3000}))
-        if (run := _run(module, params, start, method, **setting))
-    ]
-    assert len(ends) == 2
-    assert abs(ends[0] - ends[1]) < WANTED / 100, ends
-    return float(ends[0])
+    def run(self, load: Load) -> list[Cost]:
+        """Costs of all methods that reach the requested accuracy."""
+        costs = []
+        for family, (system, motion, slow) in FAMILIES.items():
+            for ratio in self.ratios:
+                scene = StiffScene(load(system), *motion(ratio), slow)
+                reference = scene.reference()
+                for method in self.methods:
+                    if cheapest := scene.cheapest(method, reference):
+                        run, error = cheapest
+                        work = run.steps, run.work_rhs, run.work_seconds
+                        costs.append(Cost(family, method, scene.ratio, *work, error))
+        return costs
+
+    def summary(self, results: list[Cost]) -> Iterator[str]:
+        """The fastest explicit and implicit method at each ratio, and the crossovers."""
+        yield f"Stiff scenes: cheapest runs with the slow angle right to {ACCURACY:g} rad"
+        rows = []
+        families = list(dict.fromkeys(cost.family for cost in results))
+        scenes = {(cost.family, cost.ratio) for cost in results}
+        for family, ratio in sorted(scenes, key=lambda pair: (families.index(pair[0]), pair[1])):
+            cells = []
+            for kind in (EXPLICIT, IMPLICIT):
+                best = min(_select(results, family, ratio, kind), key=lambda c: c.work_seconds)
+                microseconds = 1e6 * best.work_seconds
+                cells.append(f"{best.steps} steps, {microseconds:.0f} us, {best.method}")
+            rows.append((family, ratio, *cells))
+        columns = {"family": "", "fast/slow": ".4g", " explicit": "", " implicit": ""}
+        yield from text_table(columns, rows)
+        for family in families:
+            ratios = [crossover(results, family, work) for work in ("work_rhs", "work_seconds")]
+            if all(map(isfinite, ratios)):
+                yield (
+                    f"{family}: implicit methods cost less from a ratio of {ratios[0]:.0f} on "
+                    f"(right-hand sides), {ratios[1]:.0f} (seconds)"
+                )
+            else:
+                yield f"{family}: implicit methods do not become cheaper"
+
+    def plot(self, results: list[Cost]) -> Figure:
+        """Cost over the ratio of frequencies, one panel per family."""
+        families = list(dict.fromkeys(cost.family for cost in results))
+        title = "Cost of a slow angle within 1e-3 rad after 6 s, beside a fast mode"
+        figure, axes = panels(title, columns=len(families), size=(13, 4))
+        for panel in axes[1:]:
+            panel.sharey(axes[0])
+        for panel, family in zip(axes, families, strict=True):
+            for method, colour in coloured(cost.method for cost in results):
+                rows = [c for c in results if (c.family, c.method) == (family, method)]
+                ratios, times = [c.ratio for c in rows], [1e3 * c.work_seconds for c in rows]
+                style = {"linestyle": "--" if method in EXPLICIT else "-", "color": colour}
+                panel.loglog(ratios, times, marker=".", label=method, **style)
+            panel.set(title=family, xlabel="fast over slow frequency", xlim=(0.7, 1e4))
+        axes[0].set_ylabel("time, compiled / ms")
+        legend_beside(axes[-1], title="explicit dashed")
+        return figure
 
 
 def crossover(costs: Sequence[Cost], family: str, work: str) -> float:
@@ -150,43 +201,21 @@ def crossover(costs: Sequence[Cost], family: str, work: str) -> float:
     ratios = sorted({cost.ratio for cost in costs if cost.family == family})
     gains = []
     for ratio in ratios:
-        best = {
-            kind: min(
-                (getattr(cost, work) for cost in costs
-                 if (cost.family, cost.ratio) == (family, ratio) and cost.method in kind),
+        least = [
+            min(
+                (getattr(cost, work) for cost in _select(costs, family, ratio, kind)),
                 default=np.inf,
             )
             for kind in (EXPLICIT, IMPLICIT)
-        }  # fmt: skip
-        gains.append(np.log(best[EXPLICIT] / best[IMPLICIT]))
+        ]
+        gains.append(np.log(least[0] / least[1]))
     k = next((k for k in range(len(gains)) if min(gains[k:]) > 0), 0)
     if k == 0:
         return float("nan")
     return float(np.exp(np.interp(0.0, gains[k - 1 : k + 1], np.log(ratios[k - 1 : k + 1]))))
 
 
-def _run(
-    module: GeneratedModule, params: Sequence[float], start: Sequence[float], method: str,
-    **setting: float,
-) -> TimedRun | None:  # fmt: skip
-    return timed_run(
-        module, params, start, DURATION, method=method, form="lagrangian", backend="compiled",
-        **setting,
-    )  # fmt: skip
-
-
-def _cheapest(
-    module: GeneratedModule, params: Sequence[float], start: Sequence[float], slow: int,
-    truth: float, method: str,
-) -> tuple[TimedRun, float] | None:  # fmt: skip
-    """The first run that is accurate enough, from cheap to dear, and its error."""
-    settings = (
-        [{"rtol": tol} for tol in TOLERANCES]
-        if load(method).b_hat
-        else [{"h": DURATION / n} for n in STEPS]
-    )
-    for setting in settings:
-        run = _run(module, params, start, method, **setting)
-        if run and abs(run.end[slow] - truth) < WANTED:
-            return run, float(abs(run.end[slow] - truth))
-    return None
+def _select(
+    costs: Sequence[Cost], family: str, ratio: float, methods: Sequence[str]
+) -> Iterator[Cost]:
+    return (c for c in costs if (c.family, c.ratio) == (family, ratio) and c.method in methods)

@@ -1,40 +1,41 @@
-"""Tolerances that lie: the error that is found, beside the one that was asked for."""
+"""Tolerances and errors: the achieved error relative to the requested error."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.figure import Figure
 
-from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
+from solvers.io.figures import coloured, legend_beside, panels
+from solvers.io.text_table import text_table
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import SCIPY
-
-Array = NDArray[np.float64]
+from solvers.studies.failure_modes.study import Load, Study
 
 METHODS = ("bs32", "dp54", "tsit54", "dop853", "verner87", "verner98", *SCIPY)
 TOLERANCES = (1e-4, 1e-7, 1e-10)
-#: Motions from rest at random angles with random parameters, and how long they are, in s.
-SCENES, DURATION = 24, 3.0
+#: Number of motions from rest at random angles with random parameters, and their duration in s.
+MOTIONS, DURATION = 24, 3.0
 
 
 @dataclass(frozen=True)
-class Honesty:
-    """Achieved over asked error of a method with one tolerance, over many scenes.
+class ToleranceAccuracy:
+    """Global error over tolerance of a method, for many motions.
 
     Attributes
     ----------
     method : str
-        Which; in capitals those of SciPy's.
+        Name of the method.
     tolerance : float
         Relative and absolute.
     median, worst : float
-        Of global error over tolerance.
-    beside_motion : float
+        Global error over tolerance.
+    relative_to_growth : float
         Median of the same over the growth of small errors in the motion itself.
     """
 
@@ -42,36 +43,69 @@ class Honesty:
     tolerance: float
     median: float
     worst: float
-    beside_motion: float
+    relative_to_growth: float
 
 
-def study(
-    pendulum: GeneratedModule, methods: Sequence[str], scenes: int
-) -> list[Honesty]:  # fmt: skip
-    """Global errors of double pendulums at the end, against Taylor series."""
-    generator = np.random.default_rng(3)
-    n = len(pendulum.STATE)
-    starts = np.zeros((scenes, n))
-    starts[:, : n // 2] = generator.uniform(-pi, pi, (scenes, n // 2))
-    params = np.array(pendulum.DEFAULTS) * generator.uniform(0.5, 1.5, (scenes, 5))
-    span = (0.0, DURATION)
-    truth = np.array([
-        taylor(pendulum, p, start, span, digits=18)[-1]
-        for start, p in zip(starts.tolist(), params.tolist(), strict=True)
-    ])  # fmt: skip
-    growth = np.max([
-        np.linalg.norm(ensemble(
-            pendulum, span, np.hstack([starts, np.tile(unit, (scenes, 1))]), params,
-            form="variational",
-        ).y[:, n:], axis=1)
-        for unit in np.eye(n)
-    ], axis=0)  # fmt: skip
-    found = []
-    for method in methods:
-        for tolerance in TOLERANCES:
-            ends = ensemble(pendulum, span, starts, params, method=method, rtol=tolerance,
-                            atol=tolerance).y  # fmt: skip
-            ratio = np.abs(ends - truth).max(axis=1) / tolerance
-            found.append(Honesty(method, tolerance, float(np.median(ratio)), float(ratio.max()),
-                                 float(np.median(ratio / growth))))  # fmt: skip
-    return found
+@dataclass(frozen=True)
+class Tolerances(Study[list[ToleranceAccuracy]]):
+    """Global errors of double pendulums, compared with Taylor series."""
+
+    methods: tuple[str, ...] = METHODS
+    motions: int = MOTIONS
+
+    @classmethod
+    def small(cls) -> Tolerances:
+        """The study with three methods and six motions."""
+        return cls(("dp54", "verner98", "RK45"), 6)
+
+    def run(self, load: Load) -> list[ToleranceAccuracy]:
+        """Accuracy of each method with each tolerance."""
+        pendulum = load("double_pendulum")
+        generator = np.random.default_rng(3)
+        count, n, span = self.motions, len(pendulum.STATE), (0.0, DURATION)
+        starts = np.zeros((count, n))
+        starts[:, : n // 2] = generator.uniform(-pi, pi, (count, n // 2))
+        params = np.array(pendulum.DEFAULTS) * generator.uniform(0.5, 1.5, (count, 5))
+        motions = zip(starts.tolist(), params.tolist(), strict=True)
+        exact = np.array([taylor(pendulum, p, y0, span, digits=18)[-1] for y0, p in motions])
+        offsets = (np.tile(unit, (count, 1)) for unit in np.eye(n))
+        solve = partial(ensemble, pendulum, span)
+        carried = [
+            solve(np.hstack([starts, offset]), params, form="variational").y[:, n:]
+            for offset in offsets
+        ]
+        growth = np.max([np.linalg.norm(change, axis=1) for change in carried], axis=0)
+        results = []
+        for method in self.methods:
+            for tol in TOLERANCES:
+                y = solve(starts, params, method=method, rtol=tol, atol=tol).y
+                ratio = np.abs(y - exact).max(axis=1) / tol
+                figures = np.median(ratio), ratio.max(), np.median(ratio / growth)
+                results.append(ToleranceAccuracy(method, tol, *map(float, figures)))
+        return results
+
+    def summary(self, results: list[ToleranceAccuracy]) -> Iterator[str]:
+        """Median and worst ratio of every method; SciPy's methods are in capitals."""
+        yield f"Achieved over requested error of double pendulums, {DURATION:g} s: median, worst"
+        columns = dict.fromkeys((f"tolerance {row.tolerance:.0e}" for row in results), ">")
+        cells: dict[str, list[str]] = {}
+        for row in results:
+            cells.setdefault(row.method, []).append(f"{row.median:.3g}, {row.worst:.3g}")
+        yield from text_table({"method": ""} | columns, ((m, *c) for m, c in cells.items()))
+
+    def plot(self, results: list[ToleranceAccuracy]) -> Figure:
+        """Median and worst ratio of every method."""
+        title = "Achieved over requested error: medians (dots) and worst of many motions"
+        figure, (axes,) = panels(title, size=(9, 4.5))
+        methods = list(dict.fromkeys(row.method for row in results))
+        for k, (tolerance, colour) in enumerate(coloured(row.tolerance for row in results)):
+            rows = [row for row in results if row.tolerance == tolerance]
+            x = [methods.index(row.method) + 0.15 * (k - 1) for row in rows]
+            medians = [row.median for row in rows]
+            axes.vlines(x, medians, [row.worst for row in rows], colour)
+            axes.plot(x, medians, "o", color=colour, label=f"tolerance {tolerance:.0e}")
+        axes.axhline(1, color="#888888")
+        axes.set(yscale="log", ylabel="error / tolerance", xticks=range(len(methods)))
+        axes.set_xticklabels(methods, rotation=45)
+        legend_beside(axes)
+        return figure
