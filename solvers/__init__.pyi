@@ -10,4 +10,17 @@ from solvers.integration.solution import Ensemble as Ensemble
 from solvers.integration.solution import Solution as Solution
 from solvers.integration.solution import Status as Status
 from solvers.scenes.scene import Scene as Scene
+from solvers.sweeps.axes import Grid as Grid
+from solvers.sweeps.axes import Random as Random
+from solvers.sweeps.axes import Table as Table
+from solvers.sweeps.maps.energy_error import EnergyError as EnergyError
+from solvers.sweeps.maps.extremes import Extremes as Extremes
+from solvers.sweeps.maps.final import Final as Final
+from solvers.sweeps.maps.first import First as First
+from solvers.sweeps.maps.lyapunov import Lyapunov as Lyapunov
+from solvers.sweeps.maps.samples import Samples as Samples
+from solvers.sweeps.maps.section import Section as Section
+from solvers.sweeps.pool import Pool as Pool
+from solvers.sweeps.run import partial_results as partial_results
 from solvers.sweeps.run import sweep as sweep
+from solvers.sweeps.sweep import Sweep as Sweep

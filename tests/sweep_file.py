@@ -14,7 +14,7 @@ of = ["theta1", "theta2"]
 """
 
 
-def written(folder: Path, text: str = FILE) -> Path:
+def write_sweep(folder: Path, text: str = FILE) -> Path:
     path = folder / "mine.toml"
     path.write_text(text)
     return path

@@ -31,11 +31,11 @@ from solvers.studies.failure_modes.lyapunov import lyapunov
 from solvers.studies.failure_modes.separatrix import upright
 from solvers.studies.failure_modes.stiffness import Stiffness, crossover
 from solvers.studies.stability.critical_step import CriticalStep
+from solvers.sweeps import map_kinds
 from solvers.sweeps.job import STATUSES
-from solvers.sweeps.plots.figure import drawn
+from solvers.sweeps.plots.figure import figure
 from solvers.sweeps.reading import find as find_sweep
 from solvers.sweeps.reading import names as sweeps
-from solvers.sweeps.reading_maps import KINDS
 from solvers.sweeps.run import sweep
 
 README_FOLDER = Path(__file__).parent.parent
@@ -59,7 +59,7 @@ def test_snippets_run(snippet: str, tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 def test_the_picture_is_what_the_sweep_draws(tmp_path: Path) -> None:
     asked = find_sweep("flips", load_module)
-    again = Image.open(BytesIO(png(drawn(sweep(asked, tmp_path)))))
+    again = Image.open(BytesIO(png(figure(sweep(asked, tmp_path)))))
     shown = Image.open(README_FOLDER / re.findall(r"!\[.*?\]\((.*?)\)", README)[0])
     assert shown.size == again.size
     apart = np.abs(np.asarray(shown.convert("RGB"), int) - np.asarray(again.convert("RGB"), int))
@@ -211,7 +211,7 @@ def test_the_sweep_that_is_shown_runs_and_every_kind_is_listed(tmp_path: Path) -
     assert found.maps["highest"].shape == (50, 40, 1, 2)
     assert found.count == {"finished": 2000}
     listed = README.split("what is kept of a motion")[1].split("\n\n")[0]
-    assert tuple(re.findall(r"\n\| `([a-z ]+)`", listed)) == tuple(KINDS)
+    assert tuple(sorted(re.findall(r"\n\| `([a-z ]+)`", listed))) == map_kinds.names()
     codes = README.split("says how each motion ended: ")[1].split(". In the end")[0]
     said = {int(n) for n in re.findall(r"\b(\d+) ", codes.replace("\n", " "))}
     assert said < {*range(len(STATUSES))}

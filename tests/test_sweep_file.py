@@ -1,9 +1,9 @@
-"""Files that are no sweeps are refused, each with the key, its value and what is allowed."""
+"""Mistakes in sweep files are reported with the key, its value and the allowed values."""
 
 from pathlib import Path
 
 import pytest
-from sweep_file import FILE, written
+from sweep_file import FILE, write_sweep
 
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
@@ -30,15 +30,15 @@ from solvers.sweeps.reading import find
     (('kind = "final"', 'kind = "samples"'), "maps.end.count is missing"),
     (('kind = "final"', 'kind = "final"\nbarrier = []'), "no key 'barrier'"),
     (('of = ["theta1", "theta2"]', 'of = ["theta1", "thta2"]'), "'thta2' .did you mean 'theta2'"),
-    (('of = ["theta1", "theta2"]', ""), "maps.end.of = .. must name components"),
+    (('of = ["theta1", "theta2"]', ""), "maps.end.of = .. must list different components"),
     (("[maps.end]", "rtol = true\n[maps.end]"), "no key 'rtol'|rtol"),
     (("[axes]", "method = 5\n[axes]"), "method = 5 must be text in quotes"),
     (("[axes]", 'method = "rk4"\n[axes]'), "does not estimate its error: use one of bs32"),
     (("[axes]", "max_steps = 0\n[axes]"), "max_steps = 0 must be a whole number from 1"),
     (('kind = "final"', 'kind = ["final"]'), "kind = .'final'. must be one of"),
     (('kind = "final"', ""), "maps.end.kind is missing"),
-    (('kind = "final"\nof = ["theta1", "theta2"]', 'kind = "first"\nof = {}'), "watches nothing"),
-    (('of = ["theta1", "theta2"]', 'of = ["theta1", "theta1"]'), "each of them once"),
+    (('kind = "final"\nof = ["theta1", "theta2"]', 'kind = "first"\nof = {}'), "`of` is empty"),
+    (('of = ["theta1", "theta2"]', 'of = ["theta1", "theta1"]'), "must list different components"),
     (('"final"\nof = ["theta1", "theta2"]', '"extremes"\nof = ["theta1_dot"]'),
      "extremes of theta1_dot are not known"),
     (("[maps.end]", '[maps.x]\nkind = "section"\ncount = 1\nwhere = "theta1"\n'
@@ -49,16 +49,16 @@ from solvers.sweeps.reading import find
     (('kind = "final"', 'kind = "samples"\ncount = 1000000000'), "from 1 to 1000000"),
     (("[axes]", 'method = "rk44"\n[axes]'), "no method is called 'rk44'"),
     (("[axes]", "random = { count = 5 }\n[axes]"), "axes.theta1 has no key 'count'"),
-    (("[axes]", "[initial]\ntheta1 = 1\n[axes]"), "theta1 varies, and is given"),
+    (("[axes]", "[initial]\ntheta1 = 1\n[axes]"), "theta1 varies and has the value 1"),
     (("[axes]", "[parameters]\nl9 = 1\n[axes]"), "no key 'l9'; known are m1"),
     (("system", "system = [[["), "is no TOML file"),
 ])  # fmt: skip
-def test_a_file_that_is_no_sweep_is_refused(
+def test_a_mistake_in_a_sweep_file_is_reported(
     change: tuple[str, str], words: str, tmp_path: Path
 ) -> None:
     text = FILE.replace(*change, 1)
     assert text != FILE
-    path = written(tmp_path, text)
+    path = write_sweep(tmp_path, text)
     with pytest.raises(InputError, match=words) as refusal:
         find(str(path), load_module)
     assert str(path) in str(refusal.value)
@@ -70,18 +70,18 @@ def test_a_file_that_is_no_sweep_is_refused(
     ("theta1,theta2\n1,2\n1\n", "as many numbers"),
     ("theta1,theta2\n1,two\n", "theta2: unit 'two' is not known"),
     ("theta1,tehta2\n1,2\n", "'tehta2' .did you mean 'theta2'"),
-    ("theta1,theta1\n1,2\n", "has a name twice"),
+    ("theta1,theta1\n1,2\n", "has a duplicate name"),
     ('theta1,theta2\n1,"' + "2" * 200_000, "is no table in UTF-8"),
 ])  # fmt: skip
-def test_a_table_that_is_none_is_refused(table: str, words: str, tmp_path: Path) -> None:
+def test_a_mistake_in_a_table_of_axes_is_reported(table: str, words: str, tmp_path: Path) -> None:
     (tmp_path / "starts.csv").write_text(table)
     begin, end = FILE.index("[axes]"), FILE.index("[maps")
-    path = written(tmp_path, FILE[:begin] + 'axes = "starts.csv"\n' + FILE[end:])
+    path = write_sweep(tmp_path, FILE[:begin] + 'axes = "starts.csv"\n' + FILE[end:])
     with pytest.raises(InputError, match=words):
         find(str(path), load_module)
 
 
-def test_the_command_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_reports_unknown_sweeps_and_options(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", "filps"]) == 2
     assert "did you mean 'flips'" in capsys.readouterr().err
     assert main(["sweep", "none.toml"]) == 2

@@ -17,23 +17,24 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sweep_file import FILE, written
+from sweep_file import FILE, write_sweep
 
 import generated.double_pendulum as dp
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.sweeps import chunk_length, pool
 from solvers.sweeps.axes import Grid, Random
-from solvers.sweeps.folder import Folder, FolderError
-from solvers.sweeps.maps import Final, First
+from solvers.sweeps.folder import Contents, Folder, FolderError
+from solvers.sweeps.maps.final import Final
+from solvers.sweeps.maps.first import First
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find
-from solvers.sweeps.run import sofar, sweep
+from solvers.sweeps.run import partial_results, sweep
 from solvers.sweeps.sweep import Sweep
 
 HOLONOMIC = str(Path(sys.executable).parent / "holonomic")
 ANGLES = np.linspace(-3, 3, 40)
-ASKED = Sweep(
+DEFINITION = Sweep(
     dp, Grid({"theta1": ANGLES, "theta2": ANGLES}),
     {"flip": First({"theta1": (-np.pi, np.pi)}), "end": Final(("theta1",))}, 3.0,
 )  # fmt: skip
@@ -47,7 +48,7 @@ def many_chunks() -> Iterator[None]:
         yield
 
 
-def held(folder: Path) -> dict[str, bytes]:
+def files(folder: Path) -> dict[str, bytes]:
     """All files but the picture and the lock, by name."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
@@ -59,8 +60,8 @@ def held(folder: Path) -> dict[str, bytes]:
 @pytest.fixture(scope="module")
 def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     folder = tmp_path_factory.mktemp("undisturbed")
-    sweep(ASKED, folder)
-    found = held(folder)
+    sweep(DEFINITION, folder)
+    found = files(folder)
     assert {"sweep.json", "flip.npy", "end.npy", "status.npy", "theta1.npy"} <= {*found}
     assert sum(name.startswith("chunks") for name in found) >= 16
     return found
@@ -70,8 +71,8 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 def test_the_number_of_threads_changes_nothing(
     workers: int, tmp_path: Path, expected: dict[str, bytes]
 ) -> None:
-    sweep(ASKED, tmp_path, pool=Pool(workers=workers))
-    assert held(tmp_path) == expected
+    sweep(DEFINITION, tmp_path, pool=Pool(workers=workers))
+    assert files(tmp_path) == expected
 
 
 #: What a worker has loaded; it does not know this file.
@@ -86,9 +87,9 @@ def test_processes_do_the_same_and_never_load_sympy(
     tmp_path: Path, expected: dict[str, bytes]
 ) -> None:
     with ProcessPoolExecutor(2, get_context("spawn")) as executor:
-        sweep(ASKED, tmp_path, pool=Pool(executor, 2))
+        sweep(DEFINITION, tmp_path, pool=Pool(executor, 2))
         assert {tuple(executor.submit(loaded).result()) for _ in range(8)} == {()}
-    assert held(tmp_path) == expected
+    assert files(tmp_path) == expected
 
 
 @pytest.fixture
@@ -127,18 +128,18 @@ def test_a_cluster_that_loses_a_worker_does_the_same(
 
     done = 0
 
-    def tell(_: str) -> None:
+    def report(_: str) -> None:
         nonlocal done
         done += 1
         if done == 4:
             workers[0].kill()
 
     with Client(address) as client:
-        sweep(ASKED, tmp_path, pool=Pool(client.get_executor(), 2), tell=tell)
+        sweep(DEFINITION, tmp_path, pool=Pool(client.get_executor(), 2), report=report)
         (left,) = client.run(modules).values()  # the other worker is gone
         assert "solvers.sweeps.worker" in left
         assert not {"sympy", "derive", "matplotlib"} & {*left}
-    assert held(tmp_path) == expected
+    assert files(tmp_path) == expected
 
 
 @pytest.mark.filterwarnings("default")
@@ -146,21 +147,21 @@ def test_the_command_finds_a_cluster_by_its_address(
     cluster: tuple[str, list["subprocess.Popen[bytes]"]], tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    path = written(tmp_path)
+    path = write_sweep(tmp_path)
     argv = ["sweep", str(path), "--json", "--output"]
     assert main([*argv, str(tmp_path / "here")]) == 0
     here = json.loads(capsys.readouterr().out)
     assert main([*argv, str(tmp_path / "there"), "--scheduler", cluster[0]]) == 0
     there = json.loads(capsys.readouterr().out)
-    assert held(tmp_path / "here") == held(tmp_path / "there")
-    assert here["ended"] == there["ended"] == {"finished": 14400}
+    assert files(tmp_path / "here") == files(tmp_path / "there")
+    assert here["status"] == there["status"] == {"finished": 14400}
 
 
 def test_a_scheduler_that_is_not_there_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("solvers.app.commands.sweep.PATIENCE", 0.5)
-    argv = ["sweep", str(written(tmp_path)), "--output", str(tmp_path / "out"), "--scheduler"]
+    argv = ["sweep", str(write_sweep(tmp_path)), "--output", str(tmp_path / "out"), "--scheduler"]
     assert main([*argv, "tcp://127.0.0.1:9"]) == 4
     assert "no scheduler answers at tcp://127.0.0.1:9" in capsys.readouterr().err
     monkeypatch.setattr("solvers.app.cli._package", lambda _: None)
@@ -171,10 +172,10 @@ def test_a_scheduler_that_is_not_there_is_named(
 
 def test_killed_at_any_moment_it_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     # some seconds of work for one thread
-    path = written(tmp_path, FILE.replace("duration = 30", "duration = 120"))
+    path = write_sweep(tmp_path, FILE.replace("duration = 30", "duration = 120"))
     command = [HOLONOMIC, "sweep", str(path), "--output"]
     subprocess.run([*command, str(tmp_path / "whole")], check=True, stdout=subprocess.DEVNULL)
-    expected, torn = held(tmp_path / "whole"), tmp_path / "torn"
+    expected, torn = files(tmp_path / "whole"), tmp_path / "torn"
     random, unfinished = np.random.default_rng(1), 0
     for _ in range(6):
         run = subprocess.Popen(
@@ -188,7 +189,7 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_bytes(tmp_path: Path) -> No
         run.wait()
         unfinished += not (torn / "end.npy").exists()
     subprocess.run([*command, str(torn)], check=True, stdout=subprocess.DEVNULL)
-    assert held(torn) == expected
+    assert files(torn) == expected
     assert len(expected) > 10
     assert unfinished > 1
 
@@ -197,7 +198,7 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_bytes(tmp_path: Path) -> No
 def test_a_damaged_chunk_is_done_again(
     harm: str, tmp_path: Path, expected: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sweep(ASKED, tmp_path)
+    sweep(DEFINITION, tmp_path)
     chunk = sorted((tmp_path / "chunks").glob("*.npy"))[5]
     whole = chunk.read_bytes()
     chunk.unlink()
@@ -205,22 +206,22 @@ def test_a_damaged_chunk_is_done_again(
         flipped = whole[:200] + bytes([whole[200] ^ 1]) + whole[201:]
         chunk.write_bytes({"truncated": whole[:-9], "flipped": flipped, "empty": b""}[harm])
     done = []
-    real = pool.work
-    monkeypatch.setattr(pool, "work", lambda *given: done.append(1) or real(*given))
-    sweep(ASKED, tmp_path)
-    assert held(tmp_path) == expected
+    real = pool.run_chunk
+    monkeypatch.setattr(pool, "run_chunk", lambda *given: done.append(1) or real(*given))
+    sweep(DEFINITION, tmp_path)
+    assert files(tmp_path) == expected
     assert len(done) == 1
 
 
 @pytest.mark.parametrize(("change", "words"), [
-    ({"duration": 4.0}, "duration is 3.0 there, 4.0 asked"),
+    ({"duration": 4.0}, "duration is 3.0 there and 4.0 here"),
     ({"rtol": 1e-8}, "rtol is 1e-09 there"),
     ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES + 1})}, "axes.axes.1.first is -3.0"),
     ({"axes": Grid({"theta2": ANGLES, "theta1": ANGLES})}, "axes.axes.0.name is 'theta1' there"),
     ({"axes": Random({"theta1": (0, 1), "theta2": (0, 1)}, 1600, 1)}, "axes.kind is 'grid'"),
     ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES[1:]})}, "motions is 1600 there"),
-    ({"maps": {"end": Final(("theta1",))}}, "maps.flip is here only"),
-    ({"values": {"l1": 2.0}}, "values.l1 is asked only"),
+    ({"maps": {"end": Final(("theta1",))}}, "maps.flip is in the folder only"),
+    ({"values": {"l1": 2.0}}, "values.l1 is in the definition only"),
 ])  # fmt: skip
 def test_a_folder_of_another_sweep_is_refused(
     change: dict[str, Any], words: str, tmp_path: Path, expected: dict[str, bytes]
@@ -228,47 +229,54 @@ def test_a_folder_of_another_sweep_is_refused(
     for name, content in expected.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_bytes(content)
-    asked: dict[str, Any] = {"axes": ASKED.axes, "maps": ASKED.maps, "duration": 3.0} | change
+    definition: dict[str, Any] = {
+        "axes": DEFINITION.axes,
+        "maps": DEFINITION.maps,
+        "duration": 3.0,
+    } | change
     with pytest.raises(FolderError, match=words):
-        sweep(Sweep(dp, **asked), tmp_path)
-    assert held(tmp_path) == expected
+        sweep(Sweep(dp, **definition), tmp_path)
+    assert files(tmp_path) == expected
 
 
 @pytest.mark.parametrize("change", [
     "{}", "[]", "\0", '"chunk": 7.5', '"chunk": true', '"chunk": 0', '"chunk": 1e400',
-    '"format": 2', '"motions": 5',
+    '"format": 1', '"motions": 5',
 ])  # fmt: skip
 def test_a_manifest_that_was_changed_is_noticed(
     change: str, tmp_path: Path, expected: dict[str, bytes]
 ) -> None:
-    sweep(ASKED, tmp_path)
+    sweep(DEFINITION, tmp_path)
     manifest = (tmp_path / "sweep.json").read_text()
     key = change.partition(":")[0]
     changed = re.sub(rf"{key}: \d+", change, manifest, count=1) if ":" in change else change
     (tmp_path / "sweep.json").write_text(changed)
-    with pytest.raises(FolderError, match=r"is no manifest of a sweep|holds another sweep"):
-        sweep(ASKED, tmp_path)
-    assert held(tmp_path) == expected | {"sweep.json": changed.encode()}
+    with pytest.raises(
+        FolderError,
+        match=r"is no manifest of a sweep|holds another sweep|in format 1, .* reads format 2",
+    ):
+        sweep(DEFINITION, tmp_path)
+    assert files(tmp_path) == expected | {"sweep.json": changed.encode()}
     # chunks of another length are not mistaken for ours
     (tmp_path / "sweep.json").write_text(re.sub(r'"chunk": \d+', '"chunk": 90', manifest))
-    sweep(ASKED, tmp_path)
-    assert held(tmp_path)["flip.npy"] == expected["flip.npy"]
+    sweep(DEFINITION, tmp_path)
+    assert files(tmp_path)["flip.npy"] == expected["flip.npy"]
 
 
 def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / ".profile").write_text("mine")
-    with pytest.raises(FolderError, match=r"holds .profile, and no sweep"):
-        sweep(ASKED, tmp_path)
+    with pytest.raises(FolderError, match=r"holds .profile and no sweep"):
+        sweep(DEFINITION, tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == [".profile"]
     out = tmp_path / "out"
-    sweep(ASKED, out)
+    sweep(DEFINITION, out)
     mine = [out / ".hidden", out / "chunks" / "notes.npy", out / "chunks" / ".git"]
     for path in mine:
         path.write_text("mine")
     left = [out / ".flip.npy.12", out / "chunks" / ".07-0123456789abcdef.npy.12"]
     for path in left:
         path.write_text("left by a process that was killed")
-    sweep(ASKED, out)
+    sweep(DEFINITION, out)
     assert all(path.read_text() == "mine" for path in mine)
     assert not any(path.exists() for path in left)
 
@@ -278,19 +286,19 @@ def test_maps_that_do_not_fit_are_refused_before_the_work(
 ) -> None:
     monkeypatch.setattr("solvers.sweeps.folder.disk_usage", lambda _: disk_usage(tmp_path)._replace(
         free=1000))  # fmt: skip
-    with pytest.raises(OSError, match=r"the maps take .* GB, and 1e-06 GB are free"):
-        sweep(ASKED, tmp_path / "out")
+    with pytest.raises(OSError, match=r"the maps need .* GB, and 1e-06 GB are free"):
+        sweep(DEFINITION, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
 def test_two_at_once_in_one_folder_are_refused(tmp_path: Path) -> None:
-    dtype = np.dtype([("status", "i1")])
-    with Folder(tmp_path, {}, 10, lambda: 5, dtype):
-        with pytest.raises(FolderError, match="another process is at work"):
-            sweep(ASKED, tmp_path)
+    contents = Contents({}, 10, np.dtype([("status", "i1")]))
+    with Folder(tmp_path, contents, lambda: 5):
+        with pytest.raises(FolderError, match="another process works in"):
+            sweep(DEFINITION, tmp_path)
         with (
-            pytest.raises(FolderError, match="another process is at work"),
-            Folder(tmp_path, {}, 10, lambda: 5, dtype),
+            pytest.raises(FolderError, match="another process works in"),
+            Folder(tmp_path, contents, lambda: 5),
         ):
             pass
 
@@ -318,19 +326,19 @@ def test_what_was_done_before_a_failure_is_kept(
 ) -> None:
     for after, error in ((5, RuntimeError("lost")), (4, KeyboardInterrupt())):
         with pytest.raises(type(error)):
-            sweep(ASKED, tmp_path, pool=Pool(Failing(after, error), 1))
-    chunks = [name for name in held(tmp_path) if name.startswith("chunks")]
+            sweep(DEFINITION, tmp_path, pool=Pool(Failing(after, error), 1))
+    chunks = [name for name in files(tmp_path) if name.startswith("chunks")]
     assert 6 <= len(chunks) <= 9
-    partial = sofar(ASKED, tmp_path)
-    assert 0 < partial.count["not done yet"] < ASKED.motions
+    partial = partial_results(DEFINITION, tmp_path)
+    assert 0 < partial.count["not done yet"] < DEFINITION.motions
     assert np.isnan(partial.maps["end"][partial.status == 0]).all()
     assert np.isfinite(partial.maps["end"][partial.status != 0]).all()
-    sweep(ASKED, tmp_path)
-    assert held(tmp_path) == expected
+    sweep(DEFINITION, tmp_path)
+    assert files(tmp_path) == expected
 
 
-def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path) -> None:
-    path = written(tmp_path)
+def test_a_full_disk_leaves_nothing_half_write_sweep(tmp_path: Path) -> None:
+    path = write_sweep(tmp_path)
     command = [HOLONOMIC, "sweep", str(path), "--output"]
     subprocess.run([*command, str(tmp_path / "whole")], check=True, stdout=subprocess.DEVNULL)
     # files may not grow beyond a few chunks' size: the maps do not fit
@@ -345,14 +353,14 @@ import sys; from solvers.app.cli import main; sys.exit(main(['sweep', {str(path)
     assert "Traceback" not in run.stderr
     assert not (tmp_path / "full" / "end.npy").exists()
     subprocess.run([*command, str(tmp_path / "full")], check=True, stdout=subprocess.DEVNULL)
-    assert held(tmp_path / "full") == held(tmp_path / "whole")
+    assert files(tmp_path / "full") == files(tmp_path / "whole")
 
 
 LONG = FILE.replace("duration = 30", "duration = 3000")
 
 
 def test_interrupted_it_ends_at_once_and_goes_on_later(tmp_path: Path) -> None:
-    path = written(tmp_path, LONG)
+    path = write_sweep(tmp_path, LONG)
     command = [
         sys.executable,
         "-c",
@@ -368,29 +376,29 @@ def test_interrupted_it_ends_at_once_and_goes_on_later(tmp_path: Path) -> None:
     _, errors = run.communicate(timeout=60)
     assert run.returncode == 130
     assert b"Traceback" not in errors
-    assert b"the same command goes on" in errors
+    assert b"the same command resumes" in errors
     assert time.monotonic() - began < 5
     assert not [*(tmp_path / "out").rglob(".*")]
     assert list((tmp_path / "out" / "chunks").glob("*.npy"))
 
 
 def test_a_half_done_sweep_can_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path, out = written(tmp_path), tmp_path / "out"
-    asked = find(str(path), load_module)
+    path, out = write_sweep(tmp_path), tmp_path / "out"
+    definition = find(str(path), load_module)
     with pytest.raises(RuntimeError):
-        sweep(asked, out, pool=Pool(Failing(5, RuntimeError()), 1))
-    before = held(out)
+        sweep(definition, out, pool=Pool(Failing(5, RuntimeError()), 1))
+    before = files(out)
     assert main(["sweep", str(path), "--output", str(out), "--draw"]) == 0
     shown = capsys.readouterr().out
     assert "not done yet" in shown
     assert (out / "mine.png").read_bytes().startswith(b"\x89PNG")
-    assert held(out) == before
+    assert files(out) == before
     assert main(["sweep", str(path), "--output", str(tmp_path / "none"), "--draw"]) == 2
-    assert "sweep.json is not there" in capsys.readouterr().err
+    assert "sweep.json does not exist" in capsys.readouterr().err
 
 
 def test_a_terminal_is_told_how_far_it_is_and_how_long_it_takes(tmp_path: Path) -> None:
-    path = written(tmp_path, LONG)
+    path = write_sweep(tmp_path, LONG)
     master, slave = pty.openpty()
     run = subprocess.Popen(
         [HOLONOMIC, "sweep", str(path), "--output", str(tmp_path / "o")],

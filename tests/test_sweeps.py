@@ -1,4 +1,4 @@
-"""Sweeps: every map holds what motions, run one by one by other methods, or formulas say."""
+"""Every map agrees with motions integrated one by one by other methods, or with formulas."""
 
 import csv
 import json
@@ -22,16 +22,13 @@ from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.sweeps.axes import BLOCK, Grid, Random, Table
 from solvers.sweeps.job import STATUSES
-from solvers.sweeps.map import Map
-from solvers.sweeps.maps import (
-    EnergyError,
-    Extremes,
-    Final,
-    First,
-    Lyapunov,
-    Samples,
-    Section,
-)
+from solvers.sweeps.maps.energy_error import EnergyError
+from solvers.sweeps.maps.extremes import Extremes
+from solvers.sweeps.maps.final import Final
+from solvers.sweeps.maps.first import First
+from solvers.sweeps.maps.lyapunov import Lyapunov
+from solvers.sweeps.maps.samples import Samples
+from solvers.sweeps.maps.section import Section
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import Results
@@ -44,13 +41,13 @@ TOPS = ({"theta1": PI}, {"theta2": PI})
 STARTS = Random({"theta1": (-PI, PI), "theta2": (-PI, PI)}, 400, seed=3)
 
 
-def swept(folder: Path, module: ModuleType, axes: Any, duration: float, maps: Any,
+def run(folder: Path, module: ModuleType, axes: Any, duration: float, maps: Any,
           **options: Any) -> Results:  # fmt: skip
     return sweep(Sweep(module, axes, maps, duration, **options), folder)
 
 
 def flip_time(start: np.ndarray, duration: float) -> float:
-    """By another program and family of methods, with steps that change nothing any more."""
+    """Reference by another program and family of methods, converged."""
     events = []
     for k, value in product((0, 1), (-PI, PI)):
 
@@ -61,122 +58,124 @@ def flip_time(start: np.ndarray, duration: float) -> float:
 
         event.terminal = True  # type: ignore[attr-defined]
         events.append(event)
-    found = solve_ivp(dp.rhs, (0, duration), start, "DOP853", rtol=1e-13, atol=1e-13,
+    solution = solve_ivp(dp.rhs, (0, duration), start, "DOP853", rtol=1e-13, atol=1e-13,
                       args=(dp.DEFAULTS,), events=events)  # fmt: skip
-    return min([t for times in found.t_events for t in times], default=np.nan)
+    return min([t for times in solution.t_events for t in times], default=np.nan)
 
 
-def test_flips_are_those_of_motions_run_one_by_one(tmp_path: Path) -> None:
+def test_flip_times_equal_those_of_single_motions(tmp_path: Path) -> None:
     # over 4 s errors of 1e-9 grow to some 1e-6 at most, far less than flips are apart
-    found = swept(tmp_path, dp, STARTS, 4.0, {"flip": First(FLIP, TOPS)}, rtol=1e-11)
-    flips, starts = found.maps["flip"], STARTS.columns(0, 400)
+    results = run(tmp_path, dp, STARTS, 4.0, {"flip": First(FLIP, TOPS)}, rtol=1e-11)
+    flips, starts = results.maps["flip"], STARTS.columns(0, 400)
     some = [*np.flatnonzero(np.isfinite(flips))[:40], *np.flatnonzero(np.isnan(flips))[:20]]
     for k in some:
         start = np.array([starts["theta1"][k], starts["theta2"][k], 0, 0])
         assert flip_time(start, 4.0) == pytest.approx(flips[k], abs=1e-7, nan_ok=True)
-    assert not found.count.get("not done yet")
+    assert not results.count.get("not done yet")
 
 
-def test_no_flip_is_proved_away(tmp_path: Path) -> None:
+def test_the_barrier_excludes_no_flip(tmp_path: Path) -> None:
     # the potential energy of flips is at least that of one rod up, the other down
     starts = STARTS.columns(0, 400)
     m1, m2, l1, l2, g = dp.DEFAULTS
     first, second = (m1 + m2) * g * l1, m2 * g * l2
     start = -first * np.cos(starts["theta1"]) - second * np.cos(starts["theta2"])
     proved = start < min(first - second, second - first)
-    with_barrier = swept(tmp_path / "a", dp, STARTS, 8.0, {"flip": First(FLIP, TOPS)})
-    without = swept(tmp_path / "b", dp, STARTS, 8.0, {"flip": First(FLIP)})
+    with_barrier = run(tmp_path / "a", dp, STARTS, 8.0, {"flip": First(FLIP, TOPS)})
+    without = run(tmp_path / "b", dp, STARTS, 8.0, {"flip": First(FLIP)})
     assert (with_barrier.status == STATUSES.index("proved")).tolist() == proved.tolist()
     assert 100 < proved.sum() < 200
     assert with_barrier.maps["flip"].tobytes() == without.maps["flip"].tobytes()
 
 
-def test_uniform_rods_do_not_flip_where_heyl_says_so(tmp_path: Path) -> None:
+def test_uniform_rods_do_not_flip_below_heyl_s_energy(tmp_path: Path) -> None:
     # J. S. Heyl (2008): below 3 cos θ1 + cos θ2 = 2, for uniform rods alike
-    asked = find("bar_flips", load_module)
-    axes = Grid({name: values[::8] for name, values in asked.axes.values.items()})
-    found = swept(tmp_path, asked.module, axes, 1.0, asked.maps, values=asked.values)
+    definition = find("bar_flips", load_module)
+    axes = Grid({name: values[::8] for name, values in definition.axes.values.items()})
+    results = run(tmp_path, definition.module, axes, 1.0, definition.maps, values=definition.values)
     theta1, theta2 = np.meshgrid(*axes.values.values(), indexing="ij")
     never = 3 * np.cos(theta1) + np.cos(theta2) > 2
-    assert ((found.status == STATUSES.index("proved")) == never).all()
+    assert ((results.status == STATUSES.index("proved")) == never).all()
 
 
 @pytest.mark.parametrize(("first", "words"), [
-    (First(FLIP, ({"theta1": PI},)), "less energy at .*theta2 = -?3.14159; name that place, too"),
-    (First({"theta1_dot": (5.0,)}, TOPS), "theta1_dot cannot be watched"),
+    (First(FLIP, ({"theta1": PI},)), "energy is lower at .*theta2 = -?3.14159; add this position"),
+    (First({"theta1_dot": (5.0,)}, TOPS), "only coordinates can be watched, not theta1_dot"),
     (First(FLIP, ({"theta3": PI},)), "'theta3' .did you mean"),
 ])  # fmt: skip
-def test_a_barrier_that_is_none_is_refused(first: First, words: str) -> None:
+def test_an_invalid_barrier_is_refused(first: First, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         Sweep(dp, STARTS, {"flip": first}, 1.0)
 
 
 def test_a_barrier_proves_nothing_where_parameters_vary() -> None:
     axes = Grid({"theta1": [0.1], "theta2": [0.1], "g": [9.81, -9.81]})
-    with pytest.raises(ValueError, match="g varies: which place is lowest depends on it"):
+    with pytest.raises(ValueError, match="g varies and the lowest position depends on it"):
         Sweep(dp, axes, {"flip": First(FLIP, TOPS)}, 1.0)
 
 
 @pytest.mark.parametrize("name", ["status", "energy"])
-def test_a_system_cannot_use_the_words_of_sweeps(name: str, tmp_path: Path) -> None:
+def test_a_system_cannot_use_reserved_words(name: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(
         f'gravity = ["0", "0"]\n[coordinates]\nx = {{}}\n[parameters]\n{name} = {{ value = 1 }}\n'
         f'[[masses]]\nmass = "{name}"\nposition = ["x", "0"]\n'
     )
-    with pytest.raises(ValueError, match=f"something called '{name}'"):
+    with pytest.raises(ValueError, match=f"calls a quantity '{name}'"):
         Sweep(load_module(str(path)), Grid({"x": [1.0]}), {"end": Final(("x",))}, 1.0)
 
 
-def test_ends_samples_and_extremes_are_those_of_single_motions(tmp_path: Path) -> None:
+def test_finals_samples_and_extremes_equal_those_of_single_motions(tmp_path: Path) -> None:
     n, of = 12, ("theta1", "theta2_dot")
     axes = Random({"theta1": (-1, 1), "theta2": (-1, 1), "m2": (0.5, 2)}, n, seed=1)
-    found = swept(tmp_path, dp, axes, 3.0, {
+    results = run(tmp_path, dp, axes, 3.0, {
         "end": Final(of), "way": Samples(of, 7), "reach": Extremes(("theta1", "theta2")),
         "drift": EnergyError(), "pass": First({"theta1": (0.0,)}),
     }, rtol=1e-11)  # fmt: skip
     times = np.linspace(0, 3, 3001)
     for k in range(n):
         params = [*dp.DEFAULTS]
-        params[dp.PARAMETERS.index("m2")] = found.axes["m2"][k]
-        start = (found.axes["theta1"][k], found.axes["theta2"][k], 0, 0)
+        params[dp.PARAMETERS.index("m2")] = results.axes["m2"][k]
+        start = (results.axes["theta1"][k], results.axes["theta2"][k], 0, 0)
         y = solve_ivp(dp.rhs, (0, 3), start, "DOP853", times, rtol=1e-13, atol=1e-13,
                       args=(params,)).y  # fmt: skip
-        assert_allclose(found.maps["end"][k], y[[0, 3], -1], atol=1e-8)
-        assert_allclose(found.maps["way"][k], y[[0, 3]][:, ::500], atol=1e-8)
+        assert_allclose(results.maps["end"][k], y[[0, 3], -1], atol=1e-8)
+        assert_allclose(results.maps["way"][k], y[[0, 3]][:, ::500], atol=1e-8)
         # sampled every ms, a parabola's top is missed by (0.5 ms)² times some 10 rad/s²
-        assert_allclose(found.maps["reach"][k], np.c_[y[:2].min(1), y[:2].max(1)], atol=5e-6)
-        assert (found.maps["reach"][k, :, 0] <= y[:2].min(1) + 1e-9).all()
-        assert (found.maps["reach"][k, :, 1] >= y[:2].max(1) - 1e-9).all()
+        assert_allclose(results.maps["reach"][k], np.c_[y[:2].min(1), y[:2].max(1)], atol=5e-6)
+        assert (results.maps["reach"][k, :, 0] <= y[:2].min(1) + 1e-9).all()
+        assert (results.maps["reach"][k, :, 1] >= y[:2].max(1) - 1e-9).all()
         crossing = np.flatnonzero(np.diff(np.sign(y[0])))[0]
-        assert times[crossing] <= found.maps["pass"][k] <= times[crossing + 1]
-    assert 0 < np.abs(found.maps["drift"]).max() < 1e-9
+        assert times[crossing] <= results.maps["pass"][k] <= times[crossing + 1]
+    assert 0 < np.abs(results.maps["drift"]).max() < 1e-9
 
 
-def test_a_swing_reaches_as_far_as_it_began(tmp_path: Path) -> None:
+def test_the_extremes_of_a_swing_are_its_initial_angle(tmp_path: Path) -> None:
     axes = Grid({"theta": np.linspace(0.1, 3.1, 20)})
-    reach = swept(tmp_path, single, axes, 30.0, {"reach": Extremes(("theta",))}).maps["reach"]
+    reach = run(tmp_path, single, axes, 30.0, {"reach": Extremes(("theta",))}).maps["reach"]
     assert_allclose(reach[:, 0, 1], axes.values["theta"], rtol=1e-8)
     assert_allclose(reach[:, 0, 0], -axes.values["theta"], rtol=1e-7)
 
 
-def test_lyapunov_s_exponent_on_the_top_is_the_rate_of_falling(tmp_path: Path) -> None:
+def test_the_lyapunov_exponent_of_an_upright_rod_follows_the_linear_solution(
+    tmp_path: Path,
+) -> None:
     # δ(t) = δ₀ cosh ωt + δ̇₀ sinh ωt / ω about a rod that stands on its head, ω² = g/l
     t, axes = 5.0, Table({"theta": [PI], "l": [0.7]})
-    found = swept(tmp_path, single, axes, t, {"exponent": Lyapunov()}).maps["exponent"]
+    results = run(tmp_path, single, axes, t, {"exponent": Lyapunov()}).maps["exponent"]
     omega = np.sqrt(single.DEFAULTS[single.PARAMETERS.index("g")] / 0.7)
     change = [
         np.cosh(omega * t) + np.sinh(omega * t) / omega,
         omega * np.sinh(omega * t) + np.cosh(omega * t),
     ]
-    assert found[0] == pytest.approx(np.log(np.linalg.norm(change) / np.sqrt(2)) / t, rel=1e-7)
+    assert results[0] == pytest.approx(np.log(np.linalg.norm(change) / np.sqrt(2)) / t, rel=1e-7)
 
 
-def test_lyapunov_s_exponent_is_how_neighbours_part(tmp_path: Path) -> None:
+def test_the_lyapunov_exponent_equals_the_divergence_of_neighbours(tmp_path: Path) -> None:
     t, axes = 5.0, Random({"theta1": (-2, 2), "theta2": (-2, 2)}, 6, seed=8)
-    found = swept(tmp_path, dp, axes, t, {"exponent": Lyapunov()})
-    for k, exponent in enumerate(found.maps["exponent"]):
-        start = np.array([found.axes["theta1"][k], found.axes["theta2"][k], 0, 0])
+    results = run(tmp_path, dp, axes, t, {"exponent": Lyapunov()})
+    for k, exponent in enumerate(results.maps["exponent"]):
+        start = np.array([results.axes["theta1"][k], results.axes["theta2"][k], 0, 0])
         ends = [
             solve_ivp(dp.rhs, (0, t), start + step, "DOP853", rtol=1e-13, atol=1e-13,
                       args=(dp.DEFAULTS,)).y[:, -1]
@@ -186,7 +185,7 @@ def test_lyapunov_s_exponent_is_how_neighbours_part(tmp_path: Path) -> None:
         assert exponent == pytest.approx(np.log(apart) / t, abs=1e-4)
 
 
-def test_changes_may_grow_beyond_all_numbers(tmp_path: Path) -> None:
+def test_small_changes_grow_beyond_the_range_of_floats(tmp_path: Path) -> None:
     # at rest on a pass, x = 0, y = 1, where V'' is -1 along y and 3 along x: of δ₀ = (½, ½, ½, ½)
     # the part along y becomes ½ (1, 1) e^t, the other one turns
     start = [[0, 1, 0, 0, *[0.5] * 4]]
@@ -195,48 +194,50 @@ def test_changes_may_grow_beyond_all_numbers(tmp_path: Path) -> None:
                        t_eval=[50.0], events=Event(hh, "y", 2.0))  # fmt: skip
         assert one.growth[0] == pytest.approx(t - np.log(2) / 2, abs=1e-6)
         assert np.log(one.samples[0, 5, 0] * 2) == pytest.approx(50, abs=1e-6)
-    found = swept(tmp_path, hh, Grid({"y": [1.0]}), t, {"exponent": Lyapunov()}, values={"x": 0.0})
-    assert found.count == {"finished": 1}
-    assert found.maps["exponent"][0] * t == pytest.approx(t - np.log(2) / 2, abs=1e-6)
+    results = run(tmp_path, hh, Grid({"y": [1.0]}), t, {"exponent": Lyapunov()}, values={"x": 0.0})
+    assert results.count == {"finished": 1}
+    assert results.maps["exponent"][0] * t == pytest.approx(t - np.log(2) / 2, abs=1e-6)
 
 
-def test_henon_and_heiles_motions_are_regular_below_and_chaotic_above(tmp_path: Path) -> None:
+def test_henon_heiles_motions_are_regular_at_low_and_chaotic_at_high_energy(tmp_path: Path) -> None:
     # M. Hénon, C. Heiles (1964), figure 7: curves fill the section at 1/12, next to nothing of
     # it at 1/6. In regular motion changes grow in proportion to time, at a rate of ln t/t.
     axes = Grid({"energy": [1 / 12, 1 / 6], "y": np.linspace(-0.3, 0.45, 30),
                  "y_dot": np.linspace(-0.3, 0.3, 9)})  # fmt: skip
-    found = swept(tmp_path, hh, axes, 600.0, {"exponent": Lyapunov()},
+    results = run(tmp_path, hh, axes, 600.0, {"exponent": Lyapunov()},
                   values={"x": 0.0, "x_dot": "energy"})  # fmt: skip
-    chaotic = [np.mean(e[np.isfinite(e)] > 2.5 * np.log(600) / 600) for e in found.maps["exponent"]]
+    chaotic = [
+        np.mean(e[np.isfinite(e)] > 2.5 * np.log(600) / 600) for e in results.maps["exponent"]
+    ]
     assert chaotic[0] < 0.02
     assert chaotic[1] > 0.85
 
 
-def test_energy_sets_a_velocity_or_says_that_it_cannot(tmp_path: Path) -> None:
+def test_a_velocity_follows_from_the_energy_or_has_no_solution(tmp_path: Path) -> None:
     axes = Random({"energy": (-30.0, 10.0), "theta2": (-3, 3), "theta2_dot": (-3, 3)}, 50, seed=2)
-    found = swept(
+    results = run(
         tmp_path, dp, axes, 1e-9, {"start": Final(dp.STATE)},
         values={"theta1": 0.3, "theta1_dot": "energy"},
     )  # fmt: skip
-    can = np.isfinite(found.maps["start"]).all(axis=1)
+    can = np.isfinite(results.maps["start"]).all(axis=1)
     assert 10 < can.sum() < 50
-    assert (found.status[~can] == STATUSES.index("no such energy")).all()
-    energy = dp.energy_many(0.0, found.maps["start"][can].T, dp.DEFAULTS)
-    assert_allclose(energy, found.axes["energy"][can], atol=1e-6)
-    assert (found.maps["start"][can, 2] >= 0).all()
-    # where none was found, even the velocity that costs least is too dear
+    assert (results.status[~can] == STATUSES.index("no such energy")).all()
+    energy = dp.energy_many(0.0, results.maps["start"][can].T, dp.DEFAULTS)
+    assert_allclose(energy, results.axes["energy"][can], atol=1e-6)
+    assert (results.maps["start"][can, 2] >= 0).all()
+    # where none was results, even the velocity that costs least is too dear
     for k in np.flatnonzero(~can):
-        start = np.array([0.3, found.axes["theta2"][k], 0, found.axes["theta2_dot"][k]])
+        start = np.array([0.3, results.axes["theta2"][k], 0, results.axes["theta2_dot"][k]])
         rates = np.linspace(0, 20, 2001)
         there = dp.energy_many(0.0, [start[0] + 0 * rates, start[1], rates, start[3]], dp.DEFAULTS)
-        assert there.min() > found.axes["energy"][k]
+        assert there.min() > results.axes["energy"][k]
 
 
-def test_a_section_is_where_single_motions_pass_it(tmp_path: Path) -> None:
+def test_a_section_equals_the_crossings_of_single_motions(tmp_path: Path) -> None:
     axes = Grid({"y": [0.1, 0.25], "y_dot": [0.0, 0.1]})
     section = {"section": Section(("y", "y_dot"), 15, "x", 0.0, 1)}
     values = {"x": 0.0, "x_dot": "energy", "energy": 0.1}
-    found = swept(tmp_path, hh, axes, 60.0, section, values=values)
+    results = run(tmp_path, hh, axes, 60.0, section, values=values)
     for a, b in np.ndindex(2, 2):
         y, rate = axes.values["y"][a], axes.values["y_dot"][b]
         start = (0, y, np.sqrt(0.2 - rate**2 - y**2 + 2 * y**3 / 3), rate)
@@ -250,10 +251,10 @@ def test_a_section_is_where_single_motions_pass_it(tmp_path: Path) -> None:
         passes = one[np.abs(one[:, 1] - y) + np.abs(one[:, 3] - rate) > 1e-9]  # not the start
         n = min(len(passes), 15)
         assert n > 5
-        assert_allclose(found.maps["section"][a, b, :, :n], passes[:n, [1, 3]].T, atol=1e-6)
+        assert_allclose(results.maps["section"][a, b, :, :n], passes[:n, [1, 3]].T, atol=1e-6)
 
 
-def test_parts_of_random_numbers_are_drawn_by_themselves() -> None:
+def test_any_span_of_random_axes_is_generated_by_itself() -> None:
     axes = Random({"theta1": (-1, 2), "l1": (3, 4)}, 3 * BLOCK, seed=5)
     whole = axes.columns(0, 3 * BLOCK)
     for begin, end in ((0, 1), (7, BLOCK), (BLOCK - 1, BLOCK + 1), (BLOCK, 2 * BLOCK), (50, 9000)):
@@ -264,22 +265,22 @@ def test_parts_of_random_numbers_are_drawn_by_themselves() -> None:
     assert (other["l1"] != whole["l1"][:10]).all()
 
 
-def test_a_motion_that_fails_is_a_status_in_the_map(tmp_path: Path) -> None:
+def test_a_motion_that_fails_has_a_status_and_no_values(tmp_path: Path) -> None:
     axes = Grid({"theta1": [0.1, 3.0], "theta2": [0.1, 3.0]})
-    found = swept(tmp_path, dp, axes, 10.0, {"end": Final(("theta1",))}, max_steps=150)
-    assert found.count == {"finished": 1, "step limit": 3}
-    assert np.isnan(found.maps["end"]).ravel().tolist() == [False, True, True, True]
+    results = run(tmp_path, dp, axes, 10.0, {"end": Final(("theta1",))}, max_steps=150)
+    assert results.count == {"finished": 1, "step limit": 3}
+    assert np.isnan(results.maps["end"]).ravel().tolist() == [False, True, True, True]
 
 
-def test_a_map_of_a_system_of_one_s_own_needs_its_texts_only(tmp_path: Path) -> None:
+def test_a_module_that_does_not_ship_travels_as_text(tmp_path: Path) -> None:
     module = load_module("chain_4")
     names = [f"theta{k}" for k in range(1, 5)]
     axes = Random(dict.fromkeys(names, (-1, 1)), 5, seed=0)
-    found = swept(tmp_path, module, axes, 1.0, {"end": Final(("theta4",))})
+    results = run(tmp_path, module, axes, 1.0, {"end": Final(("theta4",))})
     for k in range(5):
-        start = [*(found.axes[name][k] for name in names), 0, 0, 0, 0]
+        start = [*(results.axes[name][k] for name in names), 0, 0, 0, 0]
         one = integrate(module, (0, 1), start, module.DEFAULTS, backend="python", rtol=1e-10)
-        assert found.maps["end"][k, 0] == pytest.approx(one.y[3, -1], abs=1e-7)
+        assert results.maps["end"][k, 0] == pytest.approx(one.y[3, -1], abs=1e-7)
 
 
 @pytest.mark.parametrize(("changes", "words"), [
@@ -287,35 +288,35 @@ def test_a_map_of_a_system_of_one_s_own_needs_its_texts_only(tmp_path: Path) -> 
     ({"maps": {"status": Lyapunov()}}, "'status' cannot be a map's name"),
     ({"maps": {"l1": Lyapunov()}, "axes": Grid({"theta1": [1], "theta2": [1], "l1": [1]})},
      "cannot be a map's name"),
-    ({"maps": {"a": Samples(("theta1",), 5), "b": Samples(("theta1",), 6)}}, "as many"),
-    ({"maps": {"a": Final(())}}, "map a keeps nothing: name some of theta1"),
+    ({"maps": {"a": Samples(("theta1",), 5), "b": Samples(("theta1",), 6)}}, "the same number"),
+    ({"maps": {"a": Final(())}}, "map a: `of` is empty; name some of theta1"),
     ({"maps": {"a": Final(("theta",))}}, "'theta' .did you mean 'theta"),
     ({"axes": Grid({"theta1": [1.0]})}, "theta2 is missing"),
     ({"axes": Grid({"thet1": [1.0]})}, "'thet1' .did you mean 'theta1'"),
-    ({"values": {"theta1": 1.0}}, "theta1 varies, and is given as 1.0"),
+    ({"values": {"theta1": 1.0}}, "theta1 varies and has the value 1.0"),
     ({"values": {"l1": -1.0}}, "l1 = -1.0 must be positive"),
     ({"axes": Grid({"theta1": [1], "theta2": [1], "l1": [1, 0]})}, "l1 = 0.0 must be positive"),
     ({"values": {"theta1_dot": np.inf}}, "must be a finite number"),
-    ({"values": {"theta1_dot": "energy"}}, "belong together"),
-    ({"values": {"energy": 1.0}}, "belong together"),
-    ({"values": {"energy": 1.0, "l1": "energy"}}, "sets one velocity"),
+    ({"values": {"theta1_dot": "energy"}}, "an energy requires a velocity"),
+    ({"values": {"energy": 1.0}}, "an energy requires a velocity"),
+    ({"values": {"energy": 1.0, "l1": "energy"}}, "determines one velocity"),
     ({"duration": -1.0}, "duration = -1.0 must be positive"),
     ({"method": "rk5"}, "no method is called 'rk5'"),
     ({"method": "DOP853"}, "no method is called 'DOP853'"),
     ({"method": "gauss2"}, "does not estimate its error: use one of"),
     ({"rtol": 0.0, "atol": 0.0}, "no step is short enough"),
 ])  # fmt: skip
-def test_a_sweep_that_makes_no_sense_is_refused(changes: dict[str, Any], words: str) -> None:
-    asked: dict[str, Any] = {
+def test_an_invalid_sweep_is_refused(changes: dict[str, Any], words: str) -> None:
+    definition: dict[str, Any] = {
         "axes": STARTS, "maps": {"exponent": Lyapunov()}, "duration": 1.0,
     } | changes  # fmt: skip
     with pytest.raises(ValueError, match=words):
-        Sweep(dp, **asked)
+        Sweep(dp, **definition)
 
 
-def test_energy_is_not_asked_of_what_is_driven() -> None:
+def test_energy_errors_need_a_conserved_energy() -> None:
     axes = Grid({name: [0.1] for name in driven.COORDINATES})
-    with pytest.raises(ValueError, match="the energy is not kept"):
+    with pytest.raises(ValueError, match="does not conserve its energy"):
         Sweep(driven, axes, {"drift": EnergyError()}, 1.0)
     with pytest.raises(ValueError, match="workers"):
         Pool(workers=0)
@@ -323,7 +324,7 @@ def test_energy_is_not_asked_of_what_is_driven() -> None:
 
 @pytest.mark.parametrize(("axes", "words"), [
     (lambda: Grid({}), "nothing varies"),
-    (lambda: Grid({"theta1": []}), "finite numbers, one at least"),
+    (lambda: Grid({"theta1": []}), "finite numbers, at least one"),
     (lambda: Grid({"theta1": [1, np.nan]}), "finite numbers"),
     (lambda: Table({"theta1": [1, 2], "theta2": [1]}), "different lengths"),
     (lambda: Random({"theta1": (0, 1)}, 0, 1), "count = 0 must be from 1"),
@@ -334,51 +335,51 @@ def test_axes_without_values_are_refused(axes: Any, words: str) -> None:
         axes()
 
 
-def test_maps_open_as_one_dataset_with_names_and_units(tmp_path: Path) -> None:
+def test_all_maps_form_one_dataset_with_names_and_units(tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     axes = Grid({"theta1": [0.1, 0.2, 0.3], "l1": [1.0, 2.0]})
-    found = swept(tmp_path / "a", dp, axes, 1.0, {
+    results = run(tmp_path / "a", dp, axes, 1.0, {
         "end": Final(("theta1", "theta2_dot")), "reach": Extremes(("theta1",)),
         "flip": First(FLIP),
     }, values={"theta2": 0.0})  # fmt: skip
-    found.dataset().to_zarr(tmp_path / "maps.zarr", consolidated=False)
+    results.dataset().to_zarr(tmp_path / "maps.zarr", consolidated=False)
     whole = xarray.open_zarr(tmp_path / "maps.zarr", consolidated=False)
     assert dict(whole.sizes) == {
         "theta1": 3, "l1": 2, "end_component": 2, "reach_component": 1, "reach_extreme": 2,
     }  # fmt: skip
-    assert json.loads(whole.asked)["duration"] == 1.0
+    assert json.loads(whole.definition)["duration"] == 1.0
     assert (whole.theta1.units, whole.l1.units, whole.flip.units) == ("rad", "m", "s")
     assert whole.end_component.values.tolist() == ["theta1", "theta2_dot"]
     chosen = whole.end.sel(theta1=0.2, l1=2.0, end_component="theta1")
-    assert float(chosen) == found.maps["end"][1, 1, 0]
-    rows = swept(tmp_path / "b", dp, STARTS, 0.1, {"end": Final(("theta1",))}).dataset()
+    assert float(chosen) == results.maps["end"][1, 1, 0]
+    rows = run(tmp_path / "b", dp, STARTS, 0.1, {"end": Final(("theta1",))}).dataset()
     assert rows.theta1.dims == ("motion",)
     assert rows.end.shape == (400, 1)
 
 
 @pytest.mark.parametrize("name", names())
-def test_sweeps_that_ship_make_sense_and_are_plain_numpy_files(name: str, tmp_path: Path) -> None:
-    asked = find(name, load_module)
+def test_shipped_sweeps_run_and_their_files_are_plain_numpy(name: str, tmp_path: Path) -> None:
+    definition = find(name, load_module)
     few = Grid(
-        {key: values[:: max(1, len(values) // 4)] for key, values in asked.axes.values.items()}
+        {key: values[:: max(1, len(values) // 4)] for key, values in definition.axes.values.items()}
     )
-    found = swept(tmp_path, asked.module, few, min(asked.duration, 20), asked.maps,
-                  values=asked.values)  # fmt: skip
+    results = run(tmp_path, definition.module, few, min(definition.duration, 20), definition.maps,
+                  values=definition.values)  # fmt: skip
     for path in tmp_path.glob("*.npy"):
         np.load(path, allow_pickle=False)
-    assert set(found.count) <= {"finished", "event", "proved", "no such energy"}
-    kept: Map = next(iter(asked.maps.values()))
-    assert next(iter(found.maps.values())).shape == (*few.shape, *kept.shape)
+    assert set(results.count) <= {"finished", "event", "proved", "no such energy"}
+    for key, one in definition.maps.items():
+        assert results.maps[key].shape == (*few.shape, *one.shape)
 
 
-def test_a_table_may_be_a_file(tmp_path: Path) -> None:
+def test_axes_may_be_a_csv_file(tmp_path: Path) -> None:
     with open(tmp_path / "starts.csv", "w", newline="") as file:
         csv.writer(file).writerows([["theta1", "theta2"], ["90 deg", "pi/2"], [0.1, -0.2]])
     (tmp_path / "mine.toml").write_text(
         'system = "double_pendulum"\nduration = 1\naxes = "starts.csv"\n'
         '[maps.end]\nkind = "final"\nof = ["theta1"]\n'
     )
-    asked = find(str(tmp_path / "mine.toml"), load_module)
-    assert isinstance(asked.axes, Table)
-    assert_allclose(asked.axes.values["theta1"], [PI / 2, 0.1])
-    assert_allclose(asked.axes.values["theta2"], [PI / 2, -0.2])
+    definition = find(str(tmp_path / "mine.toml"), load_module)
+    assert isinstance(definition.axes, Table)
+    assert_allclose(definition.axes.values["theta1"], [PI / 2, 0.1])
+    assert_allclose(definition.axes.values["theta2"], [PI / 2, -0.2])

@@ -1,52 +1,50 @@
-"""How many motions are done at a time."""
+"""Number of motions in a chunk."""
 
 from __future__ import annotations
 
-from solvers.sweeps.axes import some
-from solvers.sweeps.initial_states import begun
+from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import integrated
 
-#: Seconds that a chunk takes at most, about, and what it costs beside its motions.
+#: Longest duration of a chunk in s, approximately, and its overhead.
 CHUNK, COST = 1.0, 0.004
-#: Motions that are tried to see how long they take.
-TRIED = 64
-#: Seconds for each evaluation of a right-hand side with n numbers: this times n^1.5.
+#: Number of motions that are timed.
+TRIALS = 64
+#: Seconds for each evaluation of a right-hand side of n components: this times n^1.5.
 EVALUATION = 0.25e-9
-#: Largest number of bytes that a chunk's states may take; all that it keeps of its motions while
-#: they run takes about ten times as much.
-ROOM = 8e6
+#: Largest number of bytes for the states of a chunk; its working memory is about ten times as much.
+MAX_BYTES = 8e6
 
 
-def chunk_length(asked: Sweep, job: Job) -> int:
-    """How many motions a chunk is to hold: what takes about a second, in short sweeps less.
+def chunk_length(sweep: Sweep, job: Job) -> int:
+    """Number of motions in a chunk: about a second of work, less in short sweeps.
 
-    There, so much that chunks cost no more than it costs to wait for the last of them. How
-    long motions take follows from how often some evaluate their right-hand side, not from
-    how fast they happen to be, so that a sweep is always cut alike.
+    In short sweeps the overhead of the chunks equals the time spent on waiting for the last one.
+    The time follows from the number of evaluations of the right-hand side, not from the clock,
+    so that a sweep is always divided in the same way.
 
     Parameters
     ----------
-    asked : Sweep
-        What is to be done.
+    sweep : Sweep
+        The sweep.
     job : Job
-        The same, for one motion.
+        Its job.
 
     Returns
     -------
     int
-        One at least.
+        At least one.
     """
-    most, maps = asked.motions, asked.maps.values()
-    starts, params, status = begun(job, asked.module, some(asked.axes, TRIED))
-    there = status == 0
+    starts, params, status = initial_states(job, sweep.module, sweep.axes.subset(TRIALS))
+    runs = status == 0
     evaluations = 1
-    if there.any():
-        tried = integrated(job, asked.module, starts[there], [p[there] for p in params])
-        evaluations += int(tried.nfev.sum())
-    each = evaluations / len(status) * EVALUATION * len(asked.start) ** 1.5
-    events = sum(one.occurrences * len(one.events(asked.module)) for one in maps)
-    room = ROOM / (8 * len(asked.start) * (1 + job.samples + events))
-    seconds = min(CHUNK, (COST * each * most) ** 0.5)
-    return max(1, int(min(seconds / each, room)))
+    if runs.any():
+        trials = integrated(job, sweep.module, starts[runs], [p[runs] for p in params])
+        evaluations += int(trials.nfev.sum())
+    size = len(sweep.state)
+    each = evaluations / len(status) * EVALUATION * size**1.5
+    events = sum(one.occurrences * len(one.events(sweep.module)) for one in sweep.maps.values())
+    most = MAX_BYTES / (8 * size * (1 + job.samples + events))
+    seconds = min(CHUNK, (COST * each * sweep.motions) ** 0.5)
+    return max(1, int(min(seconds / each, most)))

@@ -1,4 +1,4 @@
-"""How far a sweep can be trusted: some of its motions once more, with tighter tolerances."""
+"""Convergence of a sweep: changes of the maps with tighter tolerances."""
 
 from __future__ import annotations
 
@@ -6,29 +6,28 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solvers.sweeps.axes import some
 from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
-from solvers.sweeps.worker import work
+from solvers.sweeps.worker import run_chunk
 
-#: Motions that are done again, and by how much tighter their tolerances are.
-AGAIN, TIGHTER = 64, 100.0
-#: The tightest relative tolerance that numbers allow.
-TIGHTEST = 1e-14
+#: Number of motions that are repeated, and the ratio of the tolerances.
+REPEATED, RATIO = 64, 100.0
+#: The smallest relative tolerance, limited by rounding.
+MIN_RTOL = 1e-14
 
 
 @dataclass(frozen=True)
-class Trust:
-    """By how much the numbers of a map change under tighter tolerances.
+class Convergence:
+    """Changes of a map's numbers with tighter tolerances.
 
     Attributes
     ----------
     motions : int
-        How many were compared.
+        Number of motions that were compared.
     median, most : float
-        Changes that half of the numbers, and all but a tenth of them, do not exceed.
+        Changes that half of the numbers, and nine tenths of them, do not exceed.
     lost : float
-        The share of numbers that are there with one tolerance only.
+        Share of the numbers that exist with one tolerance only.
     """
 
     motions: int
@@ -37,23 +36,23 @@ class Trust:
     lost: float
 
 
-def tighter(asked: Sweep) -> float:
-    """The relative tolerance with which motions are done again."""
-    return max(asked.rtol / TIGHTER, TIGHTEST)
+def tighter_rtol(sweep: Sweep) -> float:
+    """The relative tolerance of the repeated motions."""
+    return max(sweep.rtol / RATIO, MIN_RTOL)
 
 
-def trust(asked: Sweep) -> dict[str, Trust]:
-    """How much each map changes, from motions all over the sweep."""
-    job = Job.of(asked)
-    tight = replace(job, rtol=tighter(asked), atol=asked.atol / TIGHTER)
-    columns = some(asked.axes, AGAIN)
-    once, again = work(job, columns), work(tight, columns)
-    found = {}
-    for name in asked.maps:
-        there = np.isfinite(once[name]), np.isfinite(again[name])
-        apart = np.abs(once[name] - again[name])[there[0] & there[1]]
-        if apart.size:
-            median, most = np.quantile(apart, (0.5, 0.9)).tolist()
-            lost = float(np.mean(there[0] != there[1]))
-            found[name] = Trust(len(once), median, most, lost)
-    return found
+def convergence(sweep: Sweep) -> dict[str, Convergence]:
+    """Changes of each map, from motions all over the sweep."""
+    job = Job.of(sweep)
+    tight = replace(job, rtol=tighter_rtol(sweep), atol=sweep.atol / RATIO)
+    columns = sweep.axes.subset(REPEATED)
+    original, repeated = run_chunk(job, columns), run_chunk(tight, columns)
+    changes = {}
+    for name in sweep.maps:
+        known = np.isfinite(original[name]), np.isfinite(repeated[name])
+        change = np.abs(original[name] - repeated[name])[known[0] & known[1]]
+        if change.size:
+            median, most = np.quantile(change, (0.5, 0.9)).tolist()
+            lost = float(np.mean(known[0] != known[1]))
+            changes[name] = Convergence(len(original), median, most, lost)
+    return changes

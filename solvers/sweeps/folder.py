@@ -1,9 +1,9 @@
-"""The folder of a sweep: what was asked, and what is done of it, whatever happens in between.
+"""The folder of a sweep: its definition and the chunks that are completed.
 
-``sweep.json`` says exactly what was asked. Each finished chunk of motions is a NumPy file whose
-name ends with the beginning of its SHA-256 digest: it is written beside its name, flushed and
-moved into place, so that a file of that name is whole, or is found to be damaged and done again.
-When all chunks are there, one NumPy file for each map is put together from them.
+``sweep.json`` is the manifest. Each completed chunk of motions is a NumPy file whose name ends
+with the first digits of its SHA-256 digest: it is written under another name, flushed and moved
+into place, so that a file of that name is complete, or recognised as damaged and repeated. From
+all chunks one NumPy file for each map is written.
 """
 
 from __future__ import annotations
@@ -13,12 +13,13 @@ import hashlib
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
 from errno import ENOSPC
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
 from shutil import disk_usage
-from types import TracebackType
 from typing import IO, Any
 
 import numpy as np
@@ -27,129 +28,135 @@ from numpy.typing import NDArray
 
 from solvers.io.atomic_write import replacing, write_text
 
-MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 1
+MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 2
 #: Hexadecimal digits of a digest in a file's name.
 DIGITS = 16
 #: Names of chunks, and of files that are being written.
 CHUNK = re.compile(rf"\d+-[0-9a-f]{{{DIGITS}}}\.npy")
-PASSAGE = re.compile(r"\.\w[\w-]*\.(npy|json|png)\.\d+")
+TEMPORARY = re.compile(r"\.\w[\w-]*\.(npy|json|png)\.\d+")
 
 
 class FolderError(ValueError):
-    """The folder is another sweep's, or another process works in it."""
+    """The folder holds another sweep, or another process works in it."""
+
+
+@dataclass(frozen=True)
+class Contents:
+    """The data that a folder is for.
+
+    Attributes
+    ----------
+    definition : mapping
+        All that determines the results, as JSON values.
+    motions : int
+        Number of motions.
+    dtype : numpy.dtype
+        The record that is stored for each motion.
+    """
+
+    definition: Mapping[str, Any]
+    motions: int
+    dtype: np.dtype[np.void]
 
 
 class Folder:
-    """Where a sweep is kept; only one process at a time may work in it.
+    """The folder of a sweep; as a context it locks the folder for one process.
 
     Parameters
     ----------
     path : Path
-        The folder; it is made.
-    asked : mapping
-        All that decides what comes out.
-    motions : int
-        How many there are.
-    chunk : callable
-        How many of them a chunk is to hold; called where nothing is there yet.
-    dtype : numpy.dtype
-        What is kept of a motion.
+        The folder; it is created.
+    contents : Contents
+        The data.
+    chunk_length : callable
+        Gives the number of motions in a chunk; called for a new folder only.
 
     Raises
     ------
     FolderError
-        When another sweep is there, or another process is at work.
+        When the folder holds another sweep, or another process works in it.
     OSError
         When it cannot be written.
     """
 
-    def __init__(
-        self, path: Path, asked: Mapping[str, Any], motions: int, chunk: Callable[[], int],
-        dtype: np.dtype[np.void],
-    ) -> None:  # fmt: skip
-        self.path, self._dtype, self._motions = path, dtype, motions
-        self._asked, self._chunk = json.loads(json.dumps(asked)), chunk
+    def __init__(self, path: Path, contents: Contents, chunk_length: Callable[[], int]) -> None:
+        self.path, self._motions, self._dtype = path, contents.motions, contents.dtype
+        self._definition = json.loads(json.dumps(contents.definition))
+        self._chunk_length = chunk_length
         self._length = 0
         self._lock: IO[bytes] | None = None
 
     def __enter__(self) -> Folder:
-        self._check_room()
+        self._check_new()
         (self.path / CHUNKS).mkdir(parents=True, exist_ok=True)
         self._lock = open(self.path / CHUNKS / "lock", "wb")
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._claim()
         except BlockingIOError as error:
             self._lock.close()
             raise FolderError(
-                f"another process is at work in {self.path}: wait for it, or give another --output"
+                f"another process works in {self.path}: wait for it, or give another --output"
             ) from error
-        try:
-            self._claim()
         except BaseException:
             self._lock.close()
             raise
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:  # fmt: skip
+    def __exit__(self, *_: object) -> None:
         assert self._lock is not None
         self._lock.close()
 
     def _claim(self) -> None:
-        """Write the manifest, or see that it is the same; sweep up what killed processes left."""
-        place = self.path / MANIFEST
-        if place.exists():
-            self.look()
+        """Write the manifest or compare it; remove what killed processes have left."""
+        manifest = self.path / MANIFEST
+        if manifest.exists():
+            self.check()
         else:
-            self._length = self._chunk()
-            manifest = {
-                "format": FORMAT, "chunk": self._length, "motions": self._motions,
-                "asked": self._asked,
-            }  # fmt: skip
-            write_text(place, json.dumps(manifest, indent=2, ensure_ascii=False) + "\n")
-        for place in [*self.path.iterdir(), *(self.path / CHUNKS).iterdir()]:
-            is_damaged = CHUNK.fullmatch(place.name) and place not in self.done.values()
-            if is_damaged or PASSAGE.fullmatch(place.name):
-                place.unlink()
+            self._length = self._chunk_length()
+            counts = {"format": FORMAT, "chunk": self._length, "motions": self._motions}
+            record = {**counts, "definition": self._definition}
+            write_text(manifest, json.dumps(record, indent=2, ensure_ascii=False) + "\n")
+        for file in [*self.path.iterdir(), *(self.path / CHUNKS).iterdir()]:
+            is_damaged = CHUNK.fullmatch(file.name) and file not in self.completed.values()
+            if is_damaged or TEMPORARY.fullmatch(file.name):
+                file.unlink()
 
-    def _check_room(self) -> None:
-        """Refuse a folder that is somebody else's, and maps that do not fit."""
-        if self.path.is_dir() and not (self.path / MANIFEST).exists():
-            for place in self.path.iterdir():
-                if place.name != CHUNKS and not PASSAGE.fullmatch(place.name):
-                    raise FolderError(
-                        f"{self.path} holds {place.name}, and no sweep: give another --output"
-                    )
+    def _check_new(self) -> None:
+        """Refuse a new folder that holds other files, or whose disk is too small."""
+        if (self.path / MANIFEST).exists():
+            return
+        for file in self.path.iterdir() if self.path.is_dir() else ():
+            if file.name != CHUNKS and not TEMPORARY.fullmatch(file.name):
+                raise FolderError(
+                    f"{self.path} holds {file.name} and no sweep: give another --output"
+                )
         above = next(p for p in (self.path, *self.path.absolute().parents) if p.exists())
         needed, free = 2 * self._motions * self._dtype.itemsize, disk_usage(above).free
-        if not (self.path / MANIFEST).exists() and needed > free:
-            raise OSError(
-                ENOSPC, f"the maps take {needed / 1e9:.3g} GB, and {free / 1e9:.3g} GB are free",
-                str(self.path),
-            )  # fmt: skip
+        if needed > free:
+            sizes = f"the maps need {needed / 1e9:.3g} GB, and {free / 1e9:.3g} GB are free"
+            raise OSError(ENOSPC, sizes, str(self.path))
 
-    def look(self) -> None:
-        """See what is there, and change nothing.
+    def check(self) -> None:
+        """Compare the manifest, and change nothing.
 
         Raises
         ------
         FolderError
             When another sweep is there, or none.
         """
-        found = _read(self.path / MANIFEST)
-        asked = {"format": FORMAT, "motions": self._motions, **self._asked}
-        there = {"format": found["format"], "motions": found["motions"], **found["asked"]}
-        if different := difference(there, asked):
+        manifest = _manifest(self.path / MANIFEST)
+        own = {"motions": self._motions, **self._definition}
+        other = {"motions": manifest["motions"], **manifest["definition"]}
+        if different := difference(other, own):
             raise FolderError(
                 f"{self.path} holds another sweep: {different}; give another --output, or remove it"
             )
-        self._length = found["chunk"]
+        self._length = manifest["chunk"]
 
     @property
     def chunks(self) -> int:
-        """How many chunks there are."""
+        """Number of chunks."""
         return -(-self._motions // self._length)
 
     def span(self, chunk: int) -> tuple[int, int]:
@@ -157,82 +164,84 @@ class Folder:
         return chunk * self._length, min((chunk + 1) * self._length, self._motions)
 
     @cached_property
-    def done(self) -> dict[int, Path]:
-        """The chunks that are there, and whole."""
-        found = {}
-        for place in sorted((self.path / CHUNKS).glob("*.npy")):
-            if CHUNK.fullmatch(place.name) and is_whole(place):
-                chunk = int(place.stem.partition("-")[0])
-                begin, end = self.span(chunk)
-                if np.load(place, mmap_mode="r").shape == (end - begin,):
-                    found[chunk] = place
-        return found
+    def completed(self) -> dict[int, Path]:
+        """The chunks that are there and undamaged."""
+        chunks = {}
+        for file in sorted((self.path / CHUNKS).glob("*.npy")):
+            if CHUNK.fullmatch(file.name) and is_undamaged(file):
+                chunk = int(file.stem.partition("-")[0])
+                start, stop = self.span(chunk)
+                if np.load(file, mmap_mode="r").shape == (stop - start,):
+                    chunks[chunk] = file
+        return chunks
 
-    def keep(self, chunk: int, motions: NDArray[np.void]) -> None:
+    def store(self, chunk: int, motions: NDArray[np.void]) -> None:
         """Write a chunk."""
-        begin, end = self.span(chunk)
-        if motions.shape != (end - begin,) or motions.dtype != self._dtype:
+        start, stop = self.span(chunk)
+        if motions.shape != (stop - start,) or motions.dtype != self._dtype:
             raise AssertionError(f"chunk {chunk} has shape {motions.shape}, {motions.dtype}")
         file = BytesIO()
         np.save(file, motions, allow_pickle=False)
         digest = hashlib.sha256(file.getbuffer()).hexdigest()[:DIGITS]
         name = f"{chunk:0{len(str(self.chunks))}}-{digest}.npy"
-        self.done[chunk] = write_text(self.path / CHUNKS / name, file.getvalue())
+        self.completed[chunk] = write_text(self.path / CHUNKS / name, file.getvalue())
 
     def gather(self, shape: tuple[int, ...]) -> None:
-        """Put the maps together, a file each, of a sweep of this shape."""
+        """Write a file for each map, whose first axes have this shape."""
         for name in self._dtype.names or ():
             field = self._dtype[name]
-            header = {
-                "descr": dtype_to_descr(field.base), "fortran_order": False,
-                "shape": (*shape, *field.shape),
-            }  # fmt: skip
+            header = {"descr": dtype_to_descr(field.base), "fortran_order": False}
             with replacing(self.path / f"{name}.npy") as file:
-                write_array_header_1_0(file, header)
+                write_array_header_1_0(file, {**header, "shape": (*shape, *field.shape)})
                 for rows in self.rows(name):
                     file.write(np.ascontiguousarray(rows).tobytes())
 
     def rows(self, name: str) -> Iterator[NDArray[Any]]:
-        """One field of all motions, chunk by chunk; of those not done NaN, or 0 if whole."""
+        """One field of all motions by chunks; NaN, or 0 for integers, where it is not done yet."""
         field = self._dtype[name]
         for chunk in range(self.chunks):
-            begin, end = self.span(chunk)
-            if chunk in self.done:
-                yield np.load(self.done[chunk])[name]
+            start, stop = self.span(chunk)
+            if chunk in self.completed:
+                yield np.load(self.completed[chunk])[name]
             else:
                 unknown = np.nan if field.base.kind == "f" else 0
-                yield np.full((end - begin, *field.shape), unknown, field.base)
+                yield np.full((stop - start, *field.shape), unknown, field.base)
 
 
-def _read(place: Path) -> dict[str, Any]:
+def _manifest(path: Path) -> dict[str, Any]:
     """The manifest in a file."""
-    try:
-        found = json.loads(place.read_bytes())
-        counts = [found[key] for key in ("format", "chunk", "motions")]
-        if all(type(n) is int and n > 0 for n in counts) and isinstance(found["asked"], dict):
-            return dict(found)
-    except (OSError, ValueError, KeyError, TypeError):
-        pass
-    what = "is no manifest of a sweep" if place.exists() else "is not there"
-    raise FolderError(f"{place} {what}: give the --output of a sweep, or of none")
+    manifest: dict[str, Any] = {}
+    with suppress(OSError, ValueError, TypeError):
+        manifest = dict(json.loads(path.read_bytes()))
+    counts = [manifest.get(key) for key in ("format", "chunk", "motions")]
+    if all(type(n) is int and n > 0 for n in counts):
+        if counts[0] != FORMAT:
+            raise FolderError(
+                f"{path.parent} holds a sweep in format {counts[0]}, and this version reads format "
+                f"{FORMAT}: give another --output, or remove it"
+            )
+        if isinstance(manifest.get("definition"), dict):
+            return manifest
+    problem = "is no manifest of a sweep" if path.exists() else "does not exist"
+    raise FolderError(f"{path} {problem}: give the --output of a sweep, or a new folder")
 
 
-def is_whole(place: Path) -> bool:
-    """Whether a chunk is what it was when it was written."""
-    digest = place.stem.partition("-")[2]
-    return hashlib.sha256(place.read_bytes()).hexdigest()[:DIGITS] == digest
+def is_undamaged(file: Path) -> bool:
+    """Whether a chunk has the digest in its name."""
+    digest = file.stem.partition("-")[2]
+    return hashlib.sha256(file.read_bytes()).hexdigest()[:DIGITS] == digest
 
 
-def difference(found: Any, asked: Any, where: str = "") -> str:
-    """The first key at which two manifests differ, and what stands there; empty if none does."""
-    if isinstance(found, list) and isinstance(asked, list) and len(found) == len(asked):
-        found, asked = dict(enumerate(found)), dict(enumerate(asked))
-    if isinstance(found, dict) and isinstance(asked, dict):
-        for key in {**asked, **found}:
-            if key not in found or key not in asked:
-                side = "here" if key in found else "asked"
-                return f"{where}{key} is {side} only"
-            if inner := difference(found[key], asked[key], f"{where}{key}."):
+def difference(other: Any, own: Any, path: str = "") -> str:
+    """The first difference of two manifests, as key and values; empty if they are equal."""
+    if isinstance(other, list) and isinstance(own, list) and len(other) == len(own):
+        other, own = dict(enumerate(other)), dict(enumerate(own))
+    if isinstance(other, dict) and isinstance(own, dict):
+        for key in {**own, **other}:
+            if key not in other or key not in own:
+                side = "in the folder" if key in other else "in the definition"
+                return f"{path}{key} is {side} only"
+            if inner := difference(other[key], own[key], f"{path}{key}."):
                 return inner
         return ""
-    return "" if found == asked else f"{where.rstrip('.')} is {found!r} there, {asked!r} asked"
+    return "" if other == own else f"{path.rstrip('.')} is {other!r} there and {own!r} here"

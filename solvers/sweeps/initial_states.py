@@ -1,4 +1,4 @@
-"""Where motions begin, and which of them need not be run."""
+"""Initial states, and motions that need no integration."""
 
 from __future__ import annotations
 
@@ -16,53 +16,52 @@ from solvers.sweeps.job import NO_SUCH_ENERGY, PROVED, Job
 Array: TypeAlias = NDArray[np.float64]
 
 
-def begun(
+def initial_states(
     job: Job, module: GeneratedModule, columns: Mapping[str, Array]
 ) -> tuple[Array, list[Array], NDArray[np.int8]]:
-    """Starts in rows, parameters, and the status of motions that need not be integrated, or 0."""
+    """States in rows, parameters, and the status of motions that are not integrated, else 0."""
     n = len(next(iter(columns.values())))
-    whole = {**job.values, **columns}
+    given = {**job.values, **columns}
     free = next((name for name, value in job.values.items() if value == FROM_ENERGY), None)
     defaults = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
 
-    def column(name: str, usual: float) -> Array:
-        value = 0.0 if name == free else whole.get(name, usual)
+    def column(name: str, default: float) -> Array:
+        value = 0.0 if name == free else given.get(name, default)
         return np.broadcast_to(np.asarray(value, float), n).copy()
 
     params = [column(name, defaults[name]) for name in module.PARAMETERS]
     state = np.stack([column(name, 0.0) for name in module.STATE], axis=1)
     status = np.zeros(n, np.int8)
     if free is not None:
-        place = module.STATE.index(free)
-        state[:, place] = rate(module, state, params, place, column(ENERGY, 0.0))
-        status[np.isnan(state[:, place])] = NO_SUCH_ENERGY
-        state[status != 0, place] = 0.0
-    if job.only_first and job.only_first.barrier:
-        low = is_below(module, job.only_first.barrier, state, params)
-        status[(status == 0) & low] = PROVED
+        index = module.STATE.index(free)
+        state[:, index] = velocity(module, state, params, index, column(ENERGY, 0.0))
+        status[np.isnan(state[:, index])] = NO_SUCH_ENERGY
+        state[status != 0, index] = 0.0
+    if job.barrier:
+        status[(status == 0) & is_below(module, job.barrier, state, params)] = PROVED
     if job.form == "variational":
         size = len(module.STATE)
         state = np.hstack([state, np.full((n, size), size**-0.5)])
     return state, params, status
 
 
-def rate(
-    module: GeneratedModule, state: Array, params: list[Array], place: int, energy: Array
+def velocity(
+    module: GeneratedModule, state: Array, params: list[Array], index: int, energy: Array
 ) -> Array:
     """The velocity of 0 or more with which states have an energy; NaN where there is none.
 
-    The energy is a polynomial of the second degree in the velocity.
+    The energy is a polynomial of degree two in the velocity.
 
     Parameters
     ----------
     module : module
         A generated module.
     state : ndarray of shape (n, state)
-        States, in which this velocity may be anything.
+        States; their values of this velocity do not matter.
     params : list of ndarray of shape (n,)
         In the order of ``module.PARAMETERS``.
-    place : int
-        Which component of the state it is.
+    index : int
+        Index of the velocity in the state.
     energy : ndarray of shape (n,)
         In J.
 
@@ -73,11 +72,11 @@ def rate(
     """
     at = {}
     for value in (-1.0, 0.0, 1.0):
-        there = state.copy()
-        there[:, place] = value
-        at[value] = energies(module, there, params)
+        trial = state.copy()
+        trial[:, index] = value
+        at[value] = energies(module, trial, params)
     a, b = (at[1.0] + at[-1.0]) / 2 - at[0.0], (at[1.0] - at[-1.0]) / 2
     with np.errstate(invalid="ignore"):
         root = np.sqrt(b * b - 4 * a * (at[0.0] - energy))
-    found = (root - b) / (2 * a)
-    return np.where(found >= 0, found, np.nan)
+    larger = (root - b) / (2 * a)
+    return np.where(larger >= 0, larger, np.nan)

@@ -1,6 +1,6 @@
-"""What is done with every motion of a sweep, so small that it can travel.
+"""The work for each motion of a sweep, small enough to be sent to workers.
 
-It is names and numbers, and the text of a module that does not ship.
+It consists of names and numbers, and of the text of a module that does not ship.
 """
 
 from __future__ import annotations
@@ -17,22 +17,19 @@ from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
 from solvers.integration.solution import Status
 from solvers.sweeps.axes import Grid
-from solvers.sweeps.map import Map
-from solvers.sweeps.maps import First
+from solvers.sweeps.maps import Map
 from solvers.sweeps.sweep import Sweep
 
-#: How a motion ended, by the number that stands in a map; the first is not done yet.
-STATUSES = (
-    "not done yet", *(status.name.lower().replace("_", " ") for status in Status), "proved",
-    "no such energy",
-)  # fmt: skip
+ENDS = (status.name.lower().replace("_", " ") for status in Status)
+#: Status of a motion, by its number in ``status.npy``.
+STATUSES = ("not done yet", *ENDS, "proved", "no such energy")
 CODES = {status: code for code, status in enumerate(Status, 1)}
 PROVED, NO_SUCH_ENERGY = STATUSES.index("proved"), STATUSES.index("no such energy")
 
 
 @dataclass(frozen=True)
 class Source:
-    """Where a worker finds a module: under its name, or as texts by file name."""
+    """A generated module for workers: its name, or its files as pairs of name and text."""
 
     name: str
     texts: tuple[tuple[str, str], ...] = ()
@@ -57,7 +54,7 @@ def loaded(source: Source) -> GeneratedModule:
 
 @dataclass(frozen=True)
 class Job:
-    """What is done with every motion of a sweep; a few kilobytes."""
+    """The part of a sweep's definition that all its motions share; a few kilobytes."""
 
     source: Source
     values: Mapping[str, float | str]
@@ -75,21 +72,34 @@ class Job:
     def of(cls, sweep: Sweep) -> Job:
         """The job of a sweep."""
         return cls(
-            Source.of(sweep.module), dict(sweep.values), sweep.duration, sweep.method, sweep.form,
-            sweep.rtol, sweep.atol, sweep.max_steps, sweep.samples, dict(sweep.maps),
-            () if isinstance(sweep.axes, Grid) else tuple(sweep.axes.smallest),
-        )  # fmt: skip
+            source=Source.of(sweep.module),
+            values=dict(sweep.values),
+            duration=sweep.duration,
+            method=sweep.method,
+            form=sweep.form,
+            rtol=sweep.rtol,
+            atol=sweep.atol,
+            max_steps=sweep.max_steps,
+            samples=sweep.samples,
+            maps=dict(sweep.maps),
+            columns=() if isinstance(sweep.axes, Grid) else tuple(sweep.axes.smallest),
+        )
 
     @property
-    def only_first(self) -> First | None:
-        """The only map, if it is of a first event: then nothing is asked of a motion after it."""
-        one, *others = self.maps.values()
-        return one if isinstance(one, First) and not others else None
+    def ends_at_event(self) -> bool:
+        """Whether motions end at their first event: nothing after it matters to the only map."""
+        return len(self.maps) == 1 and all(one.ends_motion for one in self.maps.values())
+
+    @property
+    def barrier(self) -> tuple[Mapping[str, float], ...]:
+        """Positions of which a motion must have the energy of the lowest to be integrated."""
+        (one, *_) = self.maps.values()
+        return one.barrier if self.ends_at_event else ()
 
     @property
     def dtype(self) -> np.dtype[np.void]:
-        """What is kept of one motion."""
+        """The record that is stored for each motion."""
         fields = [(name, "<f8", one.shape) for name, one in self.maps.items()]
-        # what varies on no grid stands beside what came of it
+        # quantities that vary on no grid are stored beside the results
         columns = [(name, "<f8") for name in self.columns]
         return np.dtype([("status", "i1"), *columns, *fields])

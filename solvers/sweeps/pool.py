@@ -1,4 +1,4 @@
-"""Who does the work: threads of this process, or whatever executes functions."""
+"""Execution of chunks: threads of this process, or another executor."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,15 @@ from solvers.integration import validation
 from solvers.integration.ensemble import stop
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.job import Job
-from solvers.sweeps.worker import work
+from solvers.sweeps.worker import run_chunk
+
+#: Index of the first motion of a chunk, and of the one after its last.
+Span: TypeAlias = tuple[int, int]
 
 
 @dataclass(frozen=True)
 class Pool:
-    """Who does the work.
+    """An executor of chunks.
 
     Parameters
     ----------
@@ -28,12 +32,13 @@ class Pool:
         A pool of processes, ``dask.distributed``'s ``Client.get_executor()``,
         ``mpi4py.futures.MPIPoolExecutor``; threads of this process by default.
     workers : int, optional
-        How many chunks are done at the same time; by default one for each processor here.
+        Number of chunks that are computed at the same time; by default one for each processor
+        of this machine.
 
     Raises
     ------
     ValueError
-        When `workers` is no positive whole number.
+        When `workers` is no positive integer.
 
     Examples
     --------
@@ -52,53 +57,53 @@ class Pool:
 
     @property
     def size(self) -> int:
-        """How many chunks are done at the same time."""
+        """Number of chunks that are computed at the same time."""
         return self.workers or len(os.sched_getaffinity(0))
 
     def opened(self) -> AbstractContextManager[Executor]:
-        """The executor; our own is closed again."""
+        """The executor; threads of this process end with the context."""
         return nullcontext(self.executor) if self.executor else ThreadPoolExecutor(self.size)
 
     def completed(
-        self, executor: Executor, job: Job, axes: Axes, spans: Sequence[tuple[int, int]]
-    ) -> Generator[tuple[tuple[int, int], NDArray[np.void]]]:
-        """What is kept of the motions in each span, as it is done, in any order.
+        self, executor: Executor, job: Job, axes: Axes, spans: Sequence[Span]
+    ) -> Generator[tuple[Span, NDArray[np.void]]]:
+        """Results of chunks in the order of their completion.
 
-        No more than two spans a worker are under way.
+        At most two chunks for each worker are submitted at a time.
 
         Parameters
         ----------
         executor : concurrent.futures.Executor
-            As `opened` gives it.
+            From `opened`.
         job : Job
-            What is done with every motion.
+            The work for each motion.
         axes : Grid, Table or Random
-            What varies.
+            Quantities that vary.
         spans : sequence of pairs of int
-            The first motion of each part, and the one after its last.
+            The first motion of each chunk, and the one after its last.
 
         Yields
         ------
         span : pair of int
             One of `spans`.
-        kept : structured ndarray of shape (motions of the span,)
+        chunk : structured ndarray of shape (motions of the span,)
             With the fields of ``job.dtype``.
         """
         waiting = iter(spans)
-        under_way: dict[Future[NDArray[np.void]], tuple[int, int]] = {}
+        submitted: dict[Future[NDArray[np.void]], Span] = {}
         try:
             while True:
                 for span in waiting:
-                    under_way[executor.submit(work, job, axes.columns(*span))] = span
-                    if len(under_way) == 2 * self.size:
+                    submitted[executor.submit(run_chunk, job, axes.columns(*span))] = span
+                    if len(submitted) == 2 * self.size:
                         break
-                if not under_way:
+                if not submitted:
                     return
-                finished, _ = wait(under_way, return_when=FIRST_COMPLETED)
+                finished, _ = wait(submitted, return_when=FIRST_COMPLETED)
                 for future in finished:
-                    yield under_way.pop(future), future.result()
+                    yield submitted.pop(future), future.result()
         finally:
-            for future in under_way:
+            for future in submitted:
                 future.cancel()
-            if under_way:
+            if submitted:
                 stop()

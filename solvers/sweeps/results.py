@@ -1,4 +1,4 @@
-"""The maps of a sweep, opened: NumPy arrays with what stands along their axes, and units."""
+"""The maps of a sweep as NumPy arrays, with their axes and units."""
 
 from __future__ import annotations
 
@@ -16,75 +16,70 @@ from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.job import STATUSES
 from solvers.sweeps.sweep import Sweep
 
-#: What the dimensions of a motion's numbers are called.
-PARTS = ("component", "number")
-
 
 @dataclass(frozen=True)
 class Results:
-    """What a sweep has found, whole or so far.
+    """Maps of a sweep, complete or so far.
 
     Attributes
     ----------
-    asked : Sweep
-        What was asked.
+    definition : Sweep
+        The motions and maps.
     folder : Path
-        Where it is: a file ``<map>.npy`` for each map, ``status.npy``, and ``sweep.json``.
+        Their folder: a file ``<map>.npy`` for each map, ``status.npy``, and ``sweep.json``.
     maps : dict of str to ndarray
-        The maps; of a grid their first axes are those of the grid, else the first counts
-        motions. Files are mapped into memory.
+        The maps; the first axes are those of the grid, else the first axis counts motions.
+        Files are mapped into memory.
     axes : dict of str to ndarray
-        What varies: the values along each axis of a grid, else of each motion.
+        Quantities that vary: the values along each axis of a grid, else of each motion.
     status : ndarray of int
-        How each motion ended, as a place in `solvers.sweeps.job.STATUSES`.
+        Status of each motion, as an index of `solvers.sweeps.job.STATUSES`.
     """
 
-    asked: Sweep
+    definition: Sweep
     folder: Path
     maps: dict[str, NDArray[np.float64]]
     axes: dict[str, NDArray[np.float64]]
     status: NDArray[np.int8]
 
     @classmethod
-    def of(cls, asked: Sweep, folder: Path) -> Results:
+    def of(cls, definition: Sweep, folder: Path) -> Results:
         """Open the maps in a folder.
 
         Parameters
         ----------
-        asked : Sweep
-            What was asked.
+        definition : Sweep
+            The motions and maps.
         folder : Path
-            Where a finished sweep is kept.
+            The folder of the finished sweep.
 
         Returns
         -------
         Results
-            With arrays that are read when they are looked at, and cannot be written to.
+            With read-only arrays that are loaded when they are accessed.
 
         Raises
         ------
         OSError
-            When they are not there.
+            When a file is missing.
         """
 
         def opened(name: str) -> NDArray[Any]:
             return np.load(folder / f"{name}.npy", mmap_mode="r")
 
-        varied = asked.axes.smallest
-        return cls(
-            asked, folder, {name: opened(name) for name in asked.maps},
-            {name: opened(name) for name in varied}, opened("status"),
-        )  # fmt: skip
+        maps = {name: opened(name) for name in definition.maps}
+        axes = {name: opened(name) for name in definition.axes.smallest}
+        return cls(definition, folder, maps, axes, opened("status"))
 
     @property
     def count(self) -> dict[str, int]:
-        """How many motions ended in each way."""
-        found = np.bincount(self.status.ravel(), minlength=len(STATUSES))
-        return {name: int(n) for name, n in zip(STATUSES, found, strict=True) if n}
+        """Number of motions by status."""
+        counts = np.bincount(self.status.ravel(), minlength=len(STATUSES))
+        return {name: int(n) for name, n in zip(STATUSES, counts, strict=True) if n}
 
     def unit(self, name: str) -> str:
-        """Unit of what varies."""
-        return "J" if name == ENERGY else str(self.asked.module.UNITS[name])
+        """Unit of a quantity that varies."""
+        return "J" if name == ENERGY else str(self.definition.module.UNITS[name])
 
     def dataset(self) -> Any:
         """All maps in one ``xarray.Dataset``, with named axes and units; ``to_zarr`` writes it.
@@ -92,28 +87,27 @@ class Results:
         Returns
         -------
         xarray.Dataset
-            Its dimensions are the axes of a grid, else ``motion``; ``status`` is in it, too.
+            Its dimensions are the axes of a grid, else ``motion``; it contains ``status``.
 
         Raises
         ------
         ImportError
             When xarray is not installed: it comes with the extra ``xarray``.
         """
-        xarray = import_module("xarray")  # an extra, for those who have it
-        is_grid = isinstance(self.asked.axes, Grid)
+        xarray = import_module("xarray")  # an optional dependency
+        is_grid = isinstance(self.definition.axes, Grid)
         names = tuple(self.axes) if is_grid else ("motion",)
-        along: dict[str, Any] = {
+        coordinates: dict[str, Any] = {
             name: ((name,) if is_grid else names, column, {"units": self.unit(name)})
             for name, column in self.axes.items()
         }
-        found: dict[str, Any] = {"status": (names, self.status, {"meanings": list(STATUSES)})}
-        for name, one in self.asked.maps.items():
-            kinds = ("component", "extreme") if one.labels[1:] and one.labels[1] else PARTS
-            inner = [f"{name}_{kind}" for kind in kinds[: len(one.shape)]]
-            for dimension, labels in zip(inner, one.labels, strict=True):
-                if labels:
-                    along[dimension] = ((dimension,), np.array(labels, object))
-            units = {"units": one.unit(self.asked.module)}
-            found[name] = ((*names, *inner), self.maps[name], units)
-        title = {"title": self.asked.title, "asked": json.dumps(self.asked.asked)}
-        return xarray.Dataset(found, along, title)
+        variables: dict[str, Any] = {"status": (names, self.status, {"meanings": list(STATUSES)})}
+        for name, one in self.definition.maps.items():
+            dimensions = [f"{name}_{dimension}" for dimension in one.dimensions]
+            for dimension, labels in zip(dimensions, one.labels, strict=False):
+                coordinates[dimension] = ((dimension,), np.array(labels, object))
+            units = {"units": one.unit(self.definition.module)}
+            variables[name] = ((*names, *dimensions), self.maps[name], units)
+        definition = json.dumps(self.definition.as_json)
+        attributes = {"title": self.definition.title, "definition": definition}
+        return xarray.Dataset(variables, coordinates, attributes)

@@ -1,4 +1,4 @@
-"""Run a sweep: its chunks go to whoever executes them, and into its folder as they come back."""
+"""Run a sweep: compute its chunks and store them in its folder."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from solvers.io.atomic_write import write_text
 from solvers.io.progress import Rate
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.chunk_length import chunk_length
-from solvers.sweeps.folder import Folder
+from solvers.sweeps.folder import Contents, Folder
 from solvers.sweeps.job import Job
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.results import Results
@@ -25,46 +25,43 @@ THREADS = Pool()
 
 
 def sweep(
-    asked: Sweep,
+    definition: Sweep,
     folder: str | Path,
     *,
     pool: Pool = THREADS,
-    tell: Callable[[str], None] = lambda _: None,
+    report: Callable[[str], None] = lambda _: None,
 ) -> Results:
-    """Run a sweep, or what is left of it, and put its maps together.
+    """Compute the maps of a sweep in a folder; chunks that are there already are not repeated.
 
     Parameters
     ----------
-    asked : Sweep
-        What is to be done.
+    definition : Sweep
+        The motions and maps.
     folder : str or Path
-        Where it is kept; it is made. What is there of the same sweep is not done again.
+        The folder for all files; it is created. It may hold chunks of the same sweep.
     pool : Pool, optional
-        Who does it; by default threads, one for each processor.
-    tell : callable, optional
-        ``tell(text)`` is told how far it is.
+        Executor of the chunks; by default threads, one for each processor.
+    report : callable, optional
+        ``report(text)`` is called with the progress.
 
     Returns
     -------
     Results
-        The maps. They are the same to the last bit however the work was shared out, on
-        processors of one kind.
+        The maps. They are the same bit for bit for every pool, on processors of one kind.
 
     Raises
     ------
     solvers.sweeps.folder.FolderError
         When another sweep is in the folder, or another process works there.
     OSError
-        When something cannot be written, or there is not room enough.
+        When a file cannot be written, or the disk is too small.
     KeyboardInterrupt
-        When the user interrupts; the chunks that are done are kept, and the same call goes on.
+        When the user interrupts; completed chunks are stored, and the same call resumes.
 
     Examples
     --------
     >>> import generated.double_pendulum as dp
-    >>> from solvers.sweeps.axes import Grid
-    >>> from solvers.sweeps.maps import Extremes
-    >>> from solvers.sweeps.sweep import Sweep
+    >>> from solvers import Extremes, Grid, Sweep, sweep
     >>> axes = Grid({"theta1": [0.1, 0.2, 0.3], "theta2": [0.0, 0.1]})
     >>> results = sweep(Sweep(dp, axes, {"reach": Extremes(("theta2",))}, duration=5), "reach")
     >>> results.maps["reach"].shape
@@ -72,66 +69,78 @@ def sweep(
     >>> results.count
     {'finished': 6}
     """
-    job = Job.of(asked)
-    with _folder(asked, job, folder) as kept:
-        left = {kept.span(chunk): chunk for chunk in range(kept.chunks) if chunk not in kept.done}
-        rate = Rate(asked.motions, sum(end - begin for begin, end in left))
+    job = Job.of(definition)
+    with _folder(definition, job, folder) as stored:
+        missing = {
+            stored.span(chunk): chunk
+            for chunk in range(stored.chunks)
+            if chunk not in stored.completed
+        }
+        rate = Rate(definition.motions, sum(stop - start for start, stop in missing))
         with (
             pool.opened() as executor,
-            closing(pool.completed(executor, job, asked.axes, [*left])) as completed,
+            closing(pool.completed(executor, job, definition.axes, [*missing])) as completed,
         ):
-            for span, found in completed:
-                kept.keep(left[span], found)
-                tell(rate(len(found)))
-        gathered(asked, kept)
-    return Results.of(asked, Path(folder))
+            for span, chunk in completed:
+                stored.store(missing[span], chunk)
+                report(rate(len(chunk)))
+        gather(definition, stored)
+    return Results.of(definition, Path(folder))
 
 
-def sofar(asked: Sweep, folder: str | Path) -> Results:
-    """What is there of a sweep that is not finished; it may be going on.
+def partial_results(definition: Sweep, folder: str | Path) -> Results:
+    """The results so far of a sweep that is not finished; it may be running.
 
     Parameters
     ----------
-    asked : Sweep
-        What is being done.
+    definition : Sweep
+        The motions and maps.
     folder : str or Path
-        Where it is kept; nothing in it is changed.
+        The folder of the sweep; nothing in it is changed.
 
     Returns
     -------
     Results
-        With NaN for motions that are not done yet, whose status is 0.
+        With NaN and status 0 for motions that are not done yet.
 
     Raises
     ------
     solvers.sweeps.folder.FolderError
         When another sweep is in the folder, or none.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> from solvers import Final, Grid, Sweep, partial_results, sweep
+    >>> definition = Sweep(dp, Grid({"theta1": [0.1], "theta2": [0.2]}),
+    ...                    {"end": Final(("theta1",))}, duration=5)
+    >>> results = sweep(definition, "end")
+    >>> partial_results(definition, "end").count
+    {'finished': 1}
     """
-    job = Job.of(asked)
-    kept = _folder(asked, job, folder)
-    kept.look()
+    stored = _folder(definition, Job.of(definition), folder)
+    stored.check()
 
-    def whole(name: str) -> NDArray[Any]:
-        found = np.concatenate([*kept.rows(name)])
-        return found.reshape(*asked.axes.shape, *found.shape[1:])
+    def gathered(name: str) -> NDArray[Any]:
+        rows = np.concatenate([*stored.rows(name)])
+        return rows.reshape(*definition.axes.shape, *rows.shape[1:])
 
-    varied = asked.axes.columns(0, asked.motions)
-    axes = asked.axes.values if isinstance(asked.axes, Grid) else varied
-    maps = {name: whole(name) for name in asked.maps}
-    return Results(asked, Path(folder), maps, dict(axes), whole("status"))
-
-
-def _folder(asked: Sweep, job: Job, folder: str | Path) -> Folder:
-    return Folder(
-        Path(folder), asked.asked, asked.motions, lambda: chunk_length(asked, job), job.dtype
-    )
+    axes = definition.axes
+    varied = axes.values if isinstance(axes, Grid) else axes.columns(0, axes.motions)
+    maps = {name: gathered(name) for name in definition.maps}
+    return Results(definition, Path(folder), maps, dict(varied), gathered("status"))
 
 
-def gathered(asked: Sweep, kept: Folder) -> None:
-    """Put together what is there, and write the axes of a grid."""
-    kept.gather(asked.axes.shape)
-    if isinstance(asked.axes, Grid):
-        for name, values in asked.axes.values.items():
+def _folder(definition: Sweep, job: Job, folder: str | Path) -> Folder:
+    contents = Contents(definition.as_json, definition.motions, job.dtype)
+    return Folder(Path(folder), contents, lambda: chunk_length(definition, job))
+
+
+def gather(definition: Sweep, stored: Folder) -> None:
+    """Write a file for each map, and for each axis of a grid."""
+    stored.gather(definition.axes.shape)
+    if isinstance(definition.axes, Grid):
+        for name, values in definition.axes.values.items():
             file = BytesIO()
             np.save(file, values, allow_pickle=False)
-            write_text(kept.path / f"{name}.npy", file.getvalue())
+            write_text(stored.path / f"{name}.npy", file.getvalue())

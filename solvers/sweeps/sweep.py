@@ -1,4 +1,4 @@
-"""A sweep: very many motions of one system, and what is kept of each."""
+"""The definition of a sweep: many motions of one system, and maps of them."""
 
 from __future__ import annotations
 
@@ -9,54 +9,52 @@ from pathlib import Path
 from typing import Any
 
 from solvers.equations.forms import fastest_form
-from solvers.equations.module import GeneratedModule, header
+from solvers.equations.module import GeneratedModule, header, state_names
 from solvers.integration import validation
 from solvers.runge_kutta.catalogue import load, names
 from solvers.sweeps import checks
-from solvers.sweeps.axes import Axes, motions
-from solvers.sweeps.map import Map
-from solvers.sweeps.maps import Lyapunov, Samples
+from solvers.sweeps.axes import Axes
+from solvers.sweeps.maps import Map
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """What moves, what varies from motion to motion, and what is kept of each.
+    """A system, the quantities that vary from motion to motion, and the maps to compute.
 
     Parameters
     ----------
     module : module
-        The generated equations of its system.
+        The generated equations of the system.
     axes : Grid, Table or Random
-        What varies.
+        Quantities that vary.
     maps : mapping of str to Map
-        What is kept of each motion, by the name of the map.
+        Maps by name.
     duration : float
-        In s.
+        Duration of each motion in s.
     values : mapping of str to float or str, optional
-        What does not vary, of coordinates, velocities, parameters and energy, in their units.
-        Velocities that are not named are 0, parameters have their default. One velocity may
-        be ``"energy"``: it is 0 or more, and as large as the energy demands.
+        Quantities that do not vary: coordinates, velocities, parameters and energy, in their
+        units. Velocities that are not named are 0, parameters have their default. One velocity
+        may be ``"energy"``: it is 0 or more and follows from the energy.
     method : str, optional
         One of ``solvers.runge_kutta.catalogue.names()`` that estimates its error.
     rtol, atol : float, optional
         Tolerances of each step, as in `solvers.integration.ensemble.ensemble`.
     max_steps : int, optional
-        How many steps a motion may take.
+        Largest number of steps of a motion.
     name, title : str, optional
-        What to call it, for files and for people.
+        Name for files, and title for people.
 
     Raises
     ------
     ValueError
-        When something makes no sense; the message says what is allowed.
+        When an argument is not possible; the message says what is allowed.
     solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
 
     Examples
     --------
     >>> import generated.double_pendulum as dp
-    >>> from solvers.sweeps.axes import Grid
-    >>> from solvers.sweeps.maps import Extremes
+    >>> from solvers import Extremes, Grid, Sweep
     >>> axes = Grid({"theta1": [0.1, 0.2, 0.3], "theta2": [0.0, 0.1]})
     >>> Sweep(dp, axes, {"reach": Extremes(("theta2",))}, duration=5).motions
     6
@@ -82,44 +80,38 @@ class Sweep:
                 f"method = {self.method!r} does not estimate its error: use one of {able}"
             )
         checks.check_names(self.module, self.axes, self.values)
-        checks.check_energy(self.module, self.given, self.values)
+        checks.check_energy(self.module, (*self.axes.smallest, *self.values), self.values)
         checks.check_maps(self.module, self.axes, self.maps, self.values)
         validation.problem(
-            self.module, (0.0, self.duration), (0.0,) * len(self.start), self.module.DEFAULTS,
+            self.module, (0.0, self.duration), (0.0,) * len(self.state), self.module.DEFAULTS,
             self.method, self.form, self.rtol, self.atol, None, None, (), self.max_steps,
         )  # fmt: skip
 
     @property
-    def given(self) -> tuple[str, ...]:
-        """Names of what varies and what is given."""
-        return (*self.axes.smallest, *self.values)
-
-    @property
     def form(self) -> str:
-        """The form of the equations: small changes are followed where a map needs them."""
-        if any(isinstance(one, Lyapunov) for one in self.maps.values()):
+        """The form of the equations; variational where a map needs it."""
+        if any(one.is_variational for one in self.maps.values()):
             return "variational"
         return fastest_form(self.module)
 
     @property
-    def start(self) -> tuple[str, ...]:
-        """What the state outside is made of."""
-        changes = [f"delta_{name}" for name in self.module.STATE]
-        return (*self.module.STATE, *(changes if self.form == "variational" else ()))
+    def state(self) -> tuple[str, ...]:
+        """Names of the components of an initial state."""
+        return state_names(self.module, self.form)
 
     @property
     def samples(self) -> int:
-        """At how many times motions are looked at, evenly, both ends included."""
-        return max((m.count for m in self.maps.values() if type(m) is Samples), default=0)
+        """Number of evenly spaced times at which states are stored, both ends included."""
+        return max(one.sample_count for one in self.maps.values())
 
     @property
     def motions(self) -> int:
-        """How many there are."""
-        return motions(self.axes)
+        """Number of motions."""
+        return self.axes.motions
 
     @property
-    def asked(self) -> dict[str, Any]:
-        """All that decides what its numbers are, as JSON knows it."""
+    def as_json(self) -> dict[str, Any]:
+        """All that determines the results, as JSON values."""
         generated = header(self.module) or Path(str(self.module.__file__))
         return {
             "system": self.module.SYSTEM,
@@ -130,7 +122,7 @@ class Sweep:
             "rtol": self.rtol,
             "atol": self.atol,
             "max_steps": self.max_steps,
-            "axes": self.axes.asked,
+            "axes": self.axes.as_json,
             "maps": {
                 name: {"kind": type(one).__name__} | asdict(one)  # type: ignore[call-overload]
                 for name, one in self.maps.items()

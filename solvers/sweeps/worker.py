@@ -1,4 +1,4 @@
-"""A part of a sweep, done anywhere: in a thread, another process, or on another machine."""
+"""A chunk of a sweep, computed in a thread, another process, or on another machine."""
 
 from __future__ import annotations
 
@@ -13,22 +13,23 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
 from solvers.integration.predictability import ignore_predictability
 from solvers.integration.solution import Ensemble, Status
-from solvers.sweeps.initial_states import begun
+from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.job import CODES, Job, loaded
-from solvers.sweeps.map import Found, Map
+from solvers.sweeps.maps import Motions
 
 Array: TypeAlias = NDArray[np.float64]
 
 
-def work(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
-    """Integrate the motions whose varying values are `columns`, and keep what is asked.
+def run_chunk(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
+    """Integrate motions and compute their maps.
 
     Parameters
     ----------
     job : Job
-        What is done with each.
+        The work for each motion.
     columns : mapping of str to ndarray of shape (n,)
-        What varies, in the unit of the coordinate, velocity or parameter, or of the energy in J.
+        Quantities that vary, in the unit of the coordinate, velocity or parameter, or of the
+        energy in J.
 
     Returns
     -------
@@ -41,51 +42,51 @@ def work(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
         When `solvers.integration.ensemble.stop` was called meanwhile.
     """
     module = loaded(job.source)
-    starts, params, status = begun(job, module, columns)
-    kept = np.zeros(len(status), job.dtype)
+    starts, params, status = initial_states(job, module, columns)
+    chunk = np.zeros(len(status), job.dtype)
     for name in job.maps:
-        kept[name] = np.nan
-    kept["status"] = status
+        chunk[name] = np.nan
+    chunk["status"] = status
     for name in job.columns:
-        kept[name] = columns[name]
-    there = np.flatnonzero(status == 0)
-    if len(there):
-        own = [column[there] for column in params]
-        motions = integrated(job, module, starts[there], own)
-        for name, one, events in watched(job, module):
-            kept[name][there] = one.values(Found(module, starts[there], own, motions, events))
-        for ended, code in CODES.items():
-            kept["status"][there[motions.status == ended]] = code
-        failed = there[~motions.success]
+        chunk[name] = columns[name]
+    runs = np.flatnonzero(status == 0)
+    if len(runs):
+        starts, params = starts[runs], [column[runs] for column in params]
+        motions = integrated(job, module, starts, params)
+        first = 0
+        for name, one in job.maps.items():
+            events = slice(first, first + len(one.events(module)))
+            first = events.stop
+            chunk[name][runs] = one.values(Motions(module, starts, params, motions, events))
+        for end, code in CODES.items():
+            chunk["status"][runs[motions.status == end]] = code
+        failed = runs[~motions.success]
         for name in job.maps:
-            kept[name][failed] = np.nan
-    return kept
-
-
-def watched(job: Job, module: GeneratedModule) -> list[tuple[str, Map, slice]]:
-    """The maps, with their names and which of all events are theirs."""
-    found, first = [], 0
-    for name, one in job.maps.items():
-        count = len(one.events(module))
-        found.append((name, one, slice(first, first + count)))
-        first += count
-    return found
+            chunk[name][failed] = np.nan
+    return chunk
 
 
 def integrated(job: Job, module: GeneratedModule, starts: Array, params: list[Array]) -> Ensemble:
     """The motions, in one thread."""
     maps = job.maps.values()
-    is_over = job.only_first is not None
-    events = [replace(event, terminal=is_over) for one in maps for event in one.events(module)]
+    events = [event for one in maps for event in one.events(module)]
+    events = [replace(event, terminal=job.ends_at_event) for event in events]
     with ignore_predictability():
         motions = ensemble(
-            module, (0.0, job.duration), starts,
+            module,
+            (0.0, job.duration),
+            starts,
             np.stack(params, axis=1) if params else np.empty((1, 0)),
-            method=job.method, form=job.form, rtol=job.rtol, atol=job.atol,
+            method=job.method,
+            form=job.form,
+            rtol=job.rtol,
+            atol=job.atol,
             t_eval=np.linspace(0, job.duration, job.samples) if job.samples else None,
-            events=events, occurrences=max(one.occurrences for one in maps),
-            max_steps=job.max_steps, workers=1,
-        )  # fmt: skip
+            events=events,
+            occurrences=max(one.occurrences for one in maps),
+            max_steps=job.max_steps,
+            workers=1,
+        )
     if (motions.status == Status.INTERRUPTED).any():
-        raise InterruptedError("a part of the sweep was stopped")
+        raise InterruptedError("the sweep was stopped")
     return motions

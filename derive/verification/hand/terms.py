@@ -54,9 +54,7 @@ def written(text: str, scope: Scope) -> list[Written]:
     """The terms of a formula, in the order in which they are written."""
     text = text.strip()
     return [
-        Written(
-            f"{'' if sign > 0 else '-'}{ast.unparse(node)}", sign * evaluate(node, text, scope)
-        )
+        Written(f"{'' if sign > 0 else '-'}{ast.unparse(node)}", sign * evaluate(node, text, scope))
         for sign, node in _summands(syntax_tree(text), 1)
     ]
 

@@ -27,7 +27,7 @@ from solvers.integration.events import Event
 from solvers.studies.benchmarks import peers
 from solvers.sweeps.axes import Random
 from solvers.sweeps.barrier import is_below
-from solvers.sweeps.maps import First
+from solvers.sweeps.maps.first import First
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.run import sweep
 from solvers.sweeps.sweep import Sweep

@@ -1,0 +1,233 @@
+"""Map kinds: the numbers that a sweep stores for each motion. Every module here is one kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Self, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.equations.module import GeneratedModule, has_function
+from solvers.integration.events import Event
+from solvers.integration.solution import Ensemble
+from solvers.io.suggestion import did_you_mean
+from solvers.sweeps.axes import Axes
+from solvers.sweeps.map_table import MapTable
+
+if TYPE_CHECKING:  # workers do not load matplotlib
+    from matplotlib.axes import Axes as Panel
+
+    from solvers.sweeps.results import Results
+
+Array: TypeAlias = NDArray[np.float64]
+#: Title of a panel, and the function that draws it.
+Panels: TypeAlias = "Iterator[tuple[str, Callable[[Panel], None]]]"
+
+
+@dataclass(frozen=True)
+class Motions:
+    """Integrated motions, as input of a map.
+
+    Attributes
+    ----------
+    module : module
+        The generated module.
+    starts : ndarray of shape (n, state)
+        Initial states.
+    params : list of ndarray
+        Each parameter's value in each motion.
+    ensemble : Ensemble
+        The result of the integration.
+    events : slice
+        The events of this map among all events of the ensemble.
+    """
+
+    module: GeneratedModule
+    starts: Array
+    params: list[Array]
+    ensemble: Ensemble
+    events: slice
+
+    def energies(self, t: Array | float, y: Array) -> Array:
+        """Energies in J of states in rows."""
+        return np.asarray(self.module.energy_many(t, y.T, self.params))
+
+    def indices(self, components: tuple[str, ...]) -> list[int]:
+        """Indices of components of the state."""
+        return [self.module.STATE.index(name) for name in components]
+
+
+@dataclass(frozen=True)
+class ColourScale:
+    """Colour map and norm of an image.
+
+    Parameters
+    ----------
+    colours : str, optional
+        A colour map of matplotlib's. By default the signs of the values decide: diverging about
+        0 where both occur, else sequential.
+    is_logarithmic : bool, optional
+        Whether absolute values are shown on a logarithmic scale; a linear one includes 0.
+    """
+
+    colours: str = ""
+    is_logarithmic: bool = False
+
+
+class Map:
+    """One number for each motion; the base of all map kinds.
+
+    A kind is a frozen dataclass in a module of this package. Its word in a sweep file is the
+    module's name, with spaces for underscores; the keys of its table are the class's fields.
+
+    Attributes
+    ----------
+    example : str
+        Keys of a table of this kind, as a sweep file of the double pendulum has them.
+    quantity : str
+        Name of the quantity, for labels; by default that of the component, or of the map.
+    dimensions : tuple of str
+        Names of the dimensions of the numbers of one motion.
+    colours : ColourScale
+        How images show the numbers.
+    wraps_angles : bool
+        Whether plots show angles modulo 2π.
+    is_variational : bool
+        Whether a small change of the state is integrated, too.
+    ends_motion : bool
+        Whether the first event of the map may end the motion.
+    barrier : tuple of mapping of str to float
+        Positions at rest: motions with less energy than the lowest have no event.
+    """
+
+    example: ClassVar[str] = ""
+    quantity: ClassVar[str] = ""
+    dimensions: ClassVar[tuple[str, ...]] = ()
+    colours: ClassVar[ColourScale] = ColourScale()
+    wraps_angles: ClassVar[bool] = False
+    is_variational: ClassVar[bool] = False
+    ends_motion: ClassVar[bool] = False
+    barrier: tuple[Mapping[str, float], ...] = ()
+
+    @classmethod
+    def read(cls, table: MapTable) -> Self:
+        """The map that a table of a sweep file specifies."""
+        return cls()
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """Labels along the leading dimensions; the others are numbered."""
+        return ()
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the numbers of one motion."""
+        return tuple(map(len, self.labels))
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Components of the state that the map refers to."""
+        return ()
+
+    @property
+    def sample_count(self) -> int:
+        """Number of evenly spaced times at which states are stored."""
+        return 0
+
+    @property
+    def occurrences(self) -> int:
+        """Number of occurrences of each event that are stored."""
+        return 1
+
+    @property
+    def uses_energy(self) -> bool:
+        """Whether the energy must be conserved."""
+        return bool(self.barrier)
+
+    def unit(self, module: GeneratedModule) -> str:
+        """Unit of the numbers; empty if they have different units."""
+        units = {module.UNITS[name] for name in self.components}
+        return units.pop() if len(units) == 1 else ""
+
+    def events(self, module: GeneratedModule) -> list[Event]:
+        """Events to locate."""
+        return []
+
+    def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
+        """Check the map against its sweep.
+
+        Parameters
+        ----------
+        module : module
+            A generated module.
+        axes : Grid, Table or Random
+            Quantities that vary.
+        values : mapping of str to float or str
+            Quantities that do not vary.
+
+        Raises
+        ------
+        ValueError
+            When the map is not possible there.
+        """
+        for name in self.components:
+            if name not in module.STATE:
+                raise ValueError(
+                    f"unknown component {name[:50]!r}{did_you_mean(name, module.STATE)}; known are "
+                    f"{', '.join(module.STATE)}"
+                )
+        self.events(module)
+        if self.uses_energy and has_function(module, "power"):
+            raise ValueError(f"{module.SYSTEM} does not conserve its energy")
+
+    def values(self, motions: Motions) -> Array:
+        """The numbers, shape (n, *shape); NaN where there are none."""
+        raise NotImplementedError
+
+    def panels(self, name: str, results: Results) -> Panels:
+        """Panels of a figure, as pairs of a title and a function that draws on axes."""
+        from solvers.sweeps.plots.panels import number_panels
+
+        return number_panels(name, results)
+
+    def notes(self, results: Results) -> Iterator[str]:
+        """Remarks below the figure."""
+        return iter(())
+
+
+@dataclass(frozen=True)
+class ComponentMap(Map):
+    """Base of the kinds that store numbers for some components of the state.
+
+    Parameters
+    ----------
+    of : tuple of str
+        The components.
+    """
+
+    of: tuple[str, ...]
+
+    dimensions: ClassVar[tuple[str, ...]] = ("component",)
+
+    @classmethod
+    def read(cls, table: MapTable) -> Self:
+        """The map that a table of a sweep file specifies."""
+        return cls(table.components("of"))
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """The components."""
+        return (self.of,)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """The components that are stored."""
+        return self.of
+
+    def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
+        """Check the map against its sweep, as in `Map.check`."""
+        if not self.of:
+            raise ValueError(f"`of` is empty; name some of {', '.join(module.STATE)}")
+        super().check(module, axes, values)

@@ -1,0 +1,36 @@
+"""Energy errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from solvers.equations.module import GeneratedModule
+from solvers.sweeps.maps import Array, ColourScale, Map, Motions
+
+
+@dataclass(frozen=True)
+class EnergyError(Map):
+    """Energy at the end minus energy at the start, in J.
+
+    Where forces or friction change the energy, the difference is no error: a
+    `solvers.sweeps.sweep.Sweep` of such a system raises `ValueError`.
+
+    Examples
+    --------
+    >>> EnergyError().shape
+    ()
+    """
+
+    quantity = "energy error"
+    colours = ColourScale("magma", is_logarithmic=True)
+    uses_energy = True
+
+    def unit(self, module: GeneratedModule) -> str:
+        """Unit of an energy."""
+        return "J"
+
+    def values(self, motions: Motions) -> Array:
+        """Differences of the energy."""
+        n, ensemble = len(motions.module.STATE), motions.ensemble
+        before = motions.energies(0.0, motions.starts[:, :n])
+        return motions.energies(ensemble.t, ensemble.y[:, :n]) - before

@@ -1,0 +1,49 @@
+"""Extreme values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.equations.module import GeneratedModule
+from solvers.integration.events import Event, Extremum
+from solvers.sweeps.maps import Array, ComponentMap, Motions
+
+
+@dataclass(frozen=True)
+class Extremes(ComponentMap):
+    """Smallest and largest value of coordinates over the motion, located between steps.
+
+    Parameters
+    ----------
+    of : tuple of str
+        Coordinates; a `solvers.sweeps.sweep.Sweep` raises `ValueError` for other names.
+
+    Examples
+    --------
+    >>> Extremes(("theta1", "theta2")).shape
+    (2, 2)
+    """
+
+    example = 'of = ["theta2"]'
+    dimensions = ("component", "extreme")
+    occurrences = 2
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """The coordinates, and the two extremes."""
+        return (self.of, ("smallest", "largest"))
+
+    def events(self, module: GeneratedModule) -> list[Event]:
+        """Zeros of the velocities."""
+        return [Extremum(module, f"{name}_dot") for name in self.of]
+
+    def values(self, motions: Motions) -> Array:
+        """The extremes, among turning points, start and end."""
+        indices, ensemble = motions.indices(self.of), motions.ensemble
+        inner = ensemble.y_events[:, motions.events, :2]
+        between = np.stack([inner[:, k, :, index] for k, index in enumerate(indices)], axis=1)
+        ends = np.stack([motions.starts[:, indices], ensemble.y[:, indices]], axis=2)
+        candidates = np.concatenate([between, ends], axis=2)
+        return np.stack([np.fmin.reduce(candidates, 2), np.fmax.reduce(candidates, 2)], axis=2)

@@ -1,0 +1,104 @@
+"""Times of first events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solvers.equations.module import GeneratedModule
+from solvers.integration.events import Event
+from solvers.sweeps.axes import Axes
+from solvers.sweeps.barrier import lower_position
+from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.maps import Array, ColourScale, Map, Motions
+
+if TYPE_CHECKING:
+    from solvers.sweeps.results import Results
+
+
+@dataclass(frozen=True)
+class First(Map):
+    """Time in s at which one of the components `of` first crosses one of its values.
+
+    Two crossings within one step are not detected.
+
+    Parameters
+    ----------
+    of : mapping of str to tuple of float
+        Values by component.
+    barrier : tuple of mapping of str to float
+        Positions at rest, by coordinate, at least one of which every motion must pass in energy
+        before a crossing can occur; coordinates that are not named are 0. Motions with less
+        energy than the lowest are not integrated if the sweep has no other map.
+
+    Examples
+    --------
+    >>> First({"theta1": (-3.14159, 3.14159)}).unit(None)
+    's'
+    """
+
+    of: Mapping[str, tuple[float, ...]]
+    barrier: tuple[Mapping[str, float], ...] = ()
+
+    example = 'of = { theta1 = ["-180 deg", "180 deg"] }, barrier = [{ theta1 = "180 deg" }]'
+    quantity = "time"
+    colours = ColourScale("viridis_r", is_logarithmic=True)
+    ends_motion = True
+
+    @classmethod
+    def read(cls, table: MapTable) -> First:
+        """The map that a table of a sweep file specifies."""
+        return cls(table.values_by_component("of"), table.positions("barrier"))
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Components that are watched, and coordinates of the barrier."""
+        return (*self.of, *(name for position in self.barrier for name in position))
+
+    def unit(self, module: GeneratedModule) -> str:
+        """Unit of a time."""
+        return "s"
+
+    def events(self, module: GeneratedModule) -> list[Event]:
+        """A crossing for each value."""
+        return [Event(module, name, value) for name, values in self.of.items() for value in values]
+
+    def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
+        """Check the map against its sweep, as in `Map.check`; prove the barrier."""
+        super().check(module, axes, values)
+        if not any(self.of.values()):
+            raise ValueError("`of` is empty; give values by component")
+        if not self.barrier:
+            return
+        for name in self.of:
+            if name not in module.COORDINATES:
+                raise ValueError(f"with a barrier only coordinates can be watched, not {name}")
+        varied = [name for name in axes.smallest if name in module.PARAMETERS]
+        if varied:
+            raise ValueError(
+                f"{varied[0]} varies and the lowest position depends on it, so that a barrier "
+                "proves nothing; remove one of them"
+            )
+        known = {**dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True)), **values}
+        params = [float(known[parameter]) for parameter in module.PARAMETERS]
+        if lower := lower_position(module, self.of, self.barrier, params):
+            position = ", ".join(f"{q} = {value:.6g}" for q, value in lower.items())
+            raise ValueError(
+                f"the barrier is too high: the energy is lower at {position}; add this position"
+            )
+
+    def values(self, motions: Motions) -> Array:
+        """Time of the first event; NaN where none occurred."""
+        times = motions.ensemble.t_events[:, motions.events, 0]
+        first = np.where(np.isnan(times), np.inf, times).min(axis=1, initial=np.inf)
+        return np.where(np.isinf(first), np.nan, first)
+
+    def notes(self, results: Results) -> Iterator[str]:
+        """Meaning of white and grey."""
+        if "proved" in results.count:
+            yield "white, inside the line: not enough energy"
+        if "finished" in results.count:
+            yield f"grey or empty: not within {results.definition.duration:g} s"

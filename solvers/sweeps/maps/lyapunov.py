@@ -1,0 +1,36 @@
+"""Lyapunov exponents."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from solvers.equations.module import GeneratedModule
+from solvers.sweeps.maps import Array, ColourScale, Map, Motions
+
+
+@dataclass(frozen=True)
+class Lyapunov(Map):
+    """Lyapunov exponent ln(|δ|/|δ₀|)/t in 1/s over the duration of the motion.
+
+    The small change δ of the state follows the variational equations from δ₀, whose components
+    are all equal; its length is taken in units of m, rad and s. The limit of long times is the
+    largest exponent, for almost every δ₀ (G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn,
+    Meccanica 15 (1980) 9-20). In regular motion it decreases as ln t/t.
+
+    Examples
+    --------
+    >>> Lyapunov().unit(None)
+    '1/s'
+    """
+
+    quantity = "Lyapunov exponent"
+    colours = ColourScale("magma")
+    is_variational = True
+
+    def unit(self, module: GeneratedModule) -> str:
+        """Unit of a rate."""
+        return "1/s"
+
+    def values(self, motions: Motions) -> Array:
+        """The exponents."""
+        return motions.ensemble.growth / motions.ensemble.t

@@ -1,0 +1,69 @@
+"""States at evenly spaced times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.maps import Array, ComponentMap, Motions, Panels
+
+if TYPE_CHECKING:
+    from solvers.sweeps.results import Results
+
+#: Number of motions that are drawn.
+CURVES = 60
+
+
+@dataclass(frozen=True)
+class Samples(ComponentMap):
+    """Components of the state at `count` evenly spaced times, start and end included.
+
+    Parameters
+    ----------
+    of : tuple of str
+        The components.
+    count : int
+        Number of times; the same for all maps of this kind in a sweep.
+
+    Examples
+    --------
+    >>> Samples(("theta1",), 100).shape
+    (1, 100)
+    """
+
+    count: int
+
+    example = 'of = ["theta1"], count = 100'
+    dimensions = ("component", "number")
+
+    @classmethod
+    def read(cls, table: MapTable) -> Samples:
+        """The map that a table of a sweep file specifies."""
+        return cls(table.components("of"), table.count("count"))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Samples of each component."""
+        return (len(self.of), self.count)
+
+    @property
+    def sample_count(self) -> int:
+        """Number of times."""
+        return self.count
+
+    def values(self, motions: Motions) -> Array:
+        """The samples."""
+        return motions.ensemble.samples[:, motions.indices(self.of)]
+
+    def panels(self, name: str, results: Results) -> Panels:
+        """A panel of curves over time for each component."""
+        from solvers.sweeps.plots.panels import curve_panels
+
+        return curve_panels(name, results, CURVES)
+
+    def notes(self, results: Results) -> Iterator[str]:
+        """Number of curves, if it is limited."""
+        if (motions := results.definition.motions) > CURVES:
+            yield f"about {CURVES} of {motions:,} motions over time"

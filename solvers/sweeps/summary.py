@@ -1,0 +1,94 @@
+"""Text and figures that describe the results of a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from solvers.runge_kutta.catalogue import load
+from solvers.sweeps.convergence import Convergence, tighter_rtol
+from solvers.sweeps.results import Results
+
+#: Status of motions that have values in the maps.
+GOOD = ("finished", "event", "proved")
+#: Advice on other motions.
+HINTS = {
+    "step limit": "raise max_steps",
+    "step too small": "a singularity, most likely",
+    "not done yet": "the same command without --draw resumes",
+}
+
+
+def summary(
+    results: Results, seconds: float | None, changes: Mapping[str, Convergence]
+) -> Iterator[str]:
+    """Lines of text: the sweep, status of the motions, ranges of the maps, and convergence."""
+    definition = results.definition
+    yield definition.title
+    time = "" if seconds is None else f"; this run took {seconds:.3g} s"
+    yield (
+        f"{definition.motions:,} motions of {definition.duration:g} s, "
+        f"{load(definition.method).title}, {definition.form} form, rtol = {definition.rtol:g}{time}"
+    )
+    yield "status: " + ", ".join(
+        f"{name} {n:,}{f' ({HINTS[name]})' if name in HINTS else ''}"
+        for name, n in results.count.items()
+    )
+    for name, values in ranges(results).items():
+        if not values["known"]:
+            yield f"{name}: no values"
+            continue
+        low, middle, high = values["smallest"], values["median"], values["largest"]
+        unit = values["unit"] and f" {values['unit']}"
+        yield (
+            f"{name}: {low:.6g} to {high:.6g}{unit}, median {middle:.6g}{unit}; "
+            f"{values['known']:.1%} of the map has values"
+        )
+    for name, change in changes.items():
+        own = definition.maps[name].unit(definition.module)
+        unit = own and f" {own}"
+        lost = f"; {change.lost:.0%} exist with one tolerance only" if change.lost else ""
+        yield (
+            f"{name}, {change.motions} motions repeated with rtol = {tighter_rtol(definition):g}: "
+            f"half of the values change by less than {change.median:.1g}{unit}, nine tenths by "
+            f"less than {change.most:.1g}{unit}{lost}"
+        )
+
+
+def ranges(results: Results) -> dict[str, dict[str, Any]]:
+    """Smallest, median and largest value of each map, or of each of its labelled parts."""
+    statistics, module = {}, results.definition.module
+    for name, one in results.definition.maps.items():
+        rows = results.maps[name].reshape(-1, *one.shape)
+        for index in np.ndindex(*map(len, one.labels)):
+            labels = [part[k] for part, k in zip(one.labels, index, strict=True)]
+            values = rows[(slice(None), *index)]
+            finite = values[np.isfinite(values)]
+            low, middle, high = (
+                np.percentile(finite, (0, 50, 100)).tolist() if finite.size else [np.nan] * 3
+            )
+            statistics[" ".join([name, *labels])] = {
+                "smallest": low,
+                "median": middle,
+                "largest": high,
+                "unit": module.UNITS[labels[0]] if labels else one.unit(module),
+                "known": finite.size / values.size,
+            }
+    return statistics
+
+
+def as_json(results: Results, seconds: float, changes: Mapping[str, Convergence]) -> dict[str, Any]:
+    """The same as `summary` for programs."""
+    definition = results.definition
+    return {
+        "sweep": definition.name,
+        "folder": str(results.folder),
+        "definition": definition.as_json,
+        "motions": definition.motions,
+        "seconds": seconds,
+        "status": results.count,
+        "maps": ranges(results),
+        "convergence": changes,
+    }
