@@ -1,7 +1,7 @@
 """Sphinx configuration: one site from READMEs, notebooks, gallery scripts and docstrings.
 
-The source folder is the repository, so that links between READMEs hold on the site too. Markers such
-as ``<!-- api: solvers -->`` are replaced by what the code itself knows.
+The source folder is the repository, so that links between READMEs hold on the site too. Markers
+such as ``<!-- api: solvers -->`` are replaced by what the code itself states.
 """
 
 from __future__ import annotations
