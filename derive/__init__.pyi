@@ -2,11 +2,11 @@ from derive.codegen.writing import write as write
 from derive.mechanics.derivation import Derivation as Derivation
 from derive.mechanics.linearisation import Linearisation as Linearisation
 from derive.system.catalogue import load as load
-from derive.system.catalogue import names as names
 from derive.system.parts import Coordinate as Coordinate
 from derive.system.parts import Parameter as Parameter
 from derive.system.parts import PointMass as PointMass
 from derive.system.parts import RigidBody as RigidBody
+from derive.system.shipped import names as names
 from derive.system.symbols import TIME as TIME
 from derive.system.symbols import velocity as velocity
 from derive.system.system import System as System

@@ -13,10 +13,10 @@ import sympy as sp
 from browser import Player
 
 from derive import Derivation, load
-from solvers.app.commands.stability import scene_steps
 from solvers.app.modules import load as load_module
 from solvers.scenes.shipped import find
 from solvers.studies.stability.critical_step import CriticalStep
+from solvers.studies.stability.summary import scene_steps
 
 
 @pytest.fixture(scope="session", autouse=True)

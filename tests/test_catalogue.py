@@ -21,8 +21,8 @@ from mpmath import diff, fdot, mpf, workdps
 from numpy.testing import assert_allclose
 
 from derive import TIME, System, load, names, systems, write
-from derive.commands.systems import main
 from derive.system.catalogue import drawing
+from solvers.app.cli import main
 from solvers.equations.forms import Form
 
 SYSTEMS = Path(systems.__path__[0])
@@ -256,12 +256,12 @@ def test_a_system_is_one_short_file_with_a_drawing_and_its_source(path: Path) ->
 
 
 def test_a_listing_says_what_a_user_has_to_write(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["chain_4", "spherical_pendulum"]) == 0
+    assert main(["systems", "chain_4", "spherical_pendulum"]) == 0
     shown = capsys.readouterr().out
     assert "theta1, theta2, theta3, theta4, theta1_dot" in shown
     assert "parameters: m = 1 kg, l = 1 m, g = 9.81 m/s^2" in shown
     assert max(map(len, shown.splitlines())) <= 100
-    assert main([]) == 0
+    assert main(["systems"]) == 0
     whole = capsys.readouterr().out
     assert all(f"{name}: {load(name).title}" in whole for name in names())
 
@@ -273,5 +273,5 @@ def test_a_listing_says_what_a_user_has_to_write(capsys: pytest.CaptureFixture[s
 def test_a_system_that_is_not_there_is_refused(
     asked: str, words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main([asked]) == 2
+    assert main(["systems", asked]) == 2
     assert words in capsys.readouterr().err

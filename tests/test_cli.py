@@ -1,4 +1,4 @@
-"""The command line: what it prints, and with which code it ends."""
+"""The command line: its output and its exit codes."""
 
 import json
 import os
@@ -11,46 +11,110 @@ from pathlib import Path
 import pytest
 
 from derive.verification.report.equation import Equation
-from solvers.app import cli
 from solvers.app.cli import COMMANDS, main
-from solvers.app.tables import counted, report
+from solvers.app.commands import verify
+from solvers.app.verdict import report
+from solvers.app.verdict.report import report_verdicts
+from solvers.app.verdict.tables import counted, tables
 from solvers.runge_kutta.order_conditions import order
 
 ROOT = Path(__file__).parent.parent
 
 
 @pytest.fixture(scope="module")
-def judged() -> dict[str, list[dict[str, str]]]:
-    return cli.judgement()
+def verdicts() -> dict[str, list[dict[str, str]]]:
+    return report_verdicts()
 
 
-def test_help_names_every_command_and_each_command_shows_an_example(
+def test_help_lists_every_command_and_each_command_shows_an_example(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    assert main([]) == main(["--help"]) == 0
-    shown = capsys.readouterr().out
-    assert all(f"  {name}" in shown for name in COMMANDS)
+    assert main([]) == 0
+    text = capsys.readouterr().out
+    with pytest.raises(SystemExit, match="0"):
+        main(["--help"])
+    assert capsys.readouterr().out == text
+    assert all(f"  {name} " in text for name in COMMANDS)
     for name in COMMANDS:
         with pytest.raises(SystemExit, match="0"):
             main([name, "--help"])
-        shown = capsys.readouterr().out
-        assert "example" in shown
-        assert f"  holonomic {name}" in shown
+        text = capsys.readouterr().out
+        assert "example" in text
+        assert f"  holonomic {name}" in text
 
 
-def test_an_unknown_command_or_option_is_bad_input(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["verifi"]) == 2
-    assert "unknown command 'verifi'" in capsys.readouterr().err
+def test_every_file_of_a_command_is_a_command() -> None:
+    files = {path.stem for path in (ROOT / "solvers" / "app" / "commands").glob("*.py")}
+    assert files - {"__init__", "options"} == {*COMMANDS}
+
+
+def test_help_and_completion_load_no_numerical_package() -> None:
+    code = (
+        "import sys; from solvers.app.cli import main; main(sys.argv[1:]);"
+        "print(*({'sympy', 'numpy', 'scipy', 'matplotlib'} & {*sys.modules}), file=sys.stderr)"
+    )
+    for arguments in ([], ["--version"], ["--print-completion", "bash"]):
+        run = subprocess.run(
+            [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True
+        )
+        assert run.stdout
+        assert run.stderr == "\n"
+
+
+def test_a_shipped_system_runs_without_sympy(tmp_path: Path) -> None:
+    code = (
+        "import sys; from solvers.app.cli import main; main(sys.argv[1:]);"
+        "print('sympy' in sys.modules, file=sys.stderr)"
+    )
+    argv = [sys.executable, "-c", code, "run", "single", "--output", str(tmp_path)]
+    run = subprocess.run(argv, capture_output=True, text=True, check=True)
+    assert run.stderr == "False\n"
+
+
+@pytest.mark.parametrize(("words", "completions"), [
+    (["ve"], ["verify"]), (["run", "sepa"], ["separatrix"]), (["sweep", "fl"], ["flips"]),
+    (["derive", "double_p"], ["double_pendulum"]), (["run", "report", "--j"], ["--json"]),
+])  # fmt: skip
+def test_a_shell_completes_commands_options_and_names(
+    words: list[str], completions: list[str], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    pytest.importorskip("shtab", reason="needs: pip install shtab")
+    assert main(["--print-completion", "bash"]) == 0
+    script = capsys.readouterr().out + (
+        f"COMP_WORDS=(holonomic {' '.join(words)}); COMP_CWORD={len(words)}\n"
+        f'_shtab_holonomic holonomic {words[-1]}; printf "%s\\n" "${{COMPREPLY[@]}}"'
+    )
+    run = subprocess.run(
+        ["bash", "-c", script], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
+    assert run.stdout.split() == completions
+
+
+def test_completion_without_its_extra_names_the_extra(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "shtab", None)
+    assert main(["--print-completion", "zsh"]) == 4
+    message = "holonomic: shtab is not installed: pip install 'holonomic[completion]'\n"
+    assert capsys.readouterr().err == message
+
+
+def test_an_unknown_command_or_option_is_invalid_input(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["verifi"])
+    assert "invalid choice: 'verifi'" in capsys.readouterr().err
     with pytest.raises(SystemExit, match="2"):
         main(["verify", "--yaml"])
+    assert main(["bench", "chain"]) == 2
+    assert "PART must be one of pendulum, pipelines, chains, maps" in capsys.readouterr().err
 
 
 def test_verify_prints_json_with_every_verdict(
     capsys: pytest.CaptureFixture[str],
-    judged: dict[str, list[dict[str, str]]],
+    verdicts: dict[str, list[dict[str, str]]],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(cli, "judgement", lambda: judged)
+    monkeypatch.setattr(report, "report_verdicts", lambda: verdicts)
     assert main(["verify", "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert {"id", "verdict", "correction", "residual"} <= set(printed["equations"][0])
@@ -67,24 +131,24 @@ def test_verify_prints_json_with_every_verdict(
     assert "theta1_dot**2 - theta2_dot**2" in misprint["residual"]
 
 
-def test_verify_prints_a_table_for_people_within_the_width_of_the_terminal(
-    judged: dict[str, list[dict[str, str]]], monkeypatch: pytest.MonkeyPatch
+def test_verify_prints_a_table_that_fits_the_terminal(
+    verdicts: dict[str, list[dict[str, str]]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
-    lines = report(judged).splitlines()
+    lines = tables(verdicts).splitlines()
     assert all(len(line) <= 80 for line in lines if " " in line.strip()[:40])
-    assert f"equations: {counted(judged['equations'])}" in lines
+    assert f"equations: {counted(verdicts['equations'])}" in lines
     assert sum(line.startswith("eq") for line in lines) >= 128
 
 
 def test_readme_states_the_verdicts_as_they_are(
-    judged: dict[str, list[dict[str, str]]],
+    verdicts: dict[str, list[dict[str, str]]],
 ) -> None:
     text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
     equations, claims = (
-        Counter(row["verdict"] for row in judged[name]) for name in ("equations", "claims")
+        Counter(row["verdict"] for row in verdicts[name]) for name in ("equations", "claims")
     )
-    stopped = sum(bool(program["stops"]) for program in judged["programs"])
+    stopped = sum(bool(program["stops"]) for program in verdicts["programs"])
     assert f"{equations['verified']} hold, {equations['misprint']} are misprints" in text
     assert f"{equations['definition']} are definitions and {equations['context']} concern" in text
     assert f"three programs {stopped} would not run" in text
@@ -94,7 +158,7 @@ def test_readme_states_the_verdicts_as_they_are(
     ) in text
 
 
-def test_verify_fails_where_an_equation_is_neither_right_nor_mended(
+def test_verify_fails_if_an_equation_is_wrong_without_a_proved_correction(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from derive.verification.report import judgement
@@ -106,7 +170,7 @@ def test_verify_fails_where_an_equation_is_neither_right_nor_mended(
     assert "wrong" in capsys.readouterr().out
 
 
-def test_a_place_that_cannot_be_written_to_is_named_before_the_work(
+def test_an_output_folder_that_cannot_be_created_is_reported_before_the_work(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("")
@@ -130,15 +194,27 @@ def test_a_broken_system_ends_with_2_and_is_named(
         assert f"{name}.py does not define a system: {message}" in shown
 
 
-def test_an_interrupted_command_ends_with_130(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(_: object) -> int:
-        raise KeyboardInterrupt
+@pytest.mark.parametrize(("error", "code"), [
+    (KeyboardInterrupt(), 130), (ValueError("v"), 2), (ArithmeticError("a"), 3),
+    (MemoryError("m"), 3), (OSError("o"), 4),
+])  # fmt: skip
+def test_the_exit_code_states_the_kind_of_error(
+    error: BaseException,
+    code: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def failing(_: object) -> int:
+        raise error
 
-    monkeypatch.setitem(COMMANDS, "verify", interrupted)
-    assert main(["verify"]) == 130
+    monkeypatch.setattr(verify, "run", failing)
+    assert main(["verify"]) == code
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert output.err == (f"holonomic verify: {error}\n" if str(error) else "")
 
 
-def test_a_reader_who_leaves_early_causes_no_traceback() -> None:
+def test_a_closed_pipe_causes_no_traceback() -> None:
     run = subprocess.run(
         f"{Path(sys.executable).parent}/holonomic derive --check | true; echo ${{PIPESTATUS[0]}}",
         shell=True, executable="/bin/bash", capture_output=True, text=True, cwd=ROOT, check=False,
@@ -148,16 +224,17 @@ def test_a_reader_who_leaves_early_causes_no_traceback() -> None:
     assert run.stdout in ("0\n", "141\n")
 
 
-def test_a_notice_is_told_once_however_often_it_comes(
+def test_a_warning_is_printed_once_and_the_process_keeps_its_own_display(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def noisy(_: object) -> int:
         for _ in range(3):
-            with warnings.catch_warnings():  # which forgets what was told
-                warnings.warn("integrating in Python: why", stacklevel=1)
+            with warnings.catch_warnings():  # which resets the registry of shown warnings
+                warnings.warn("integrating in Python: reason", stacklevel=1)
         return 0
 
-    monkeypatch.setitem(COMMANDS, "verify", noisy)
-    with warnings.catch_warnings():
-        assert main(["verify"]) == 0
-    assert capsys.readouterr().err == "holonomic verify: integrating in Python: why\n"
+    monkeypatch.setattr(verify, "run", noisy)
+    before = warnings.showwarning, list(warnings.filters)
+    assert main(["verify"]) == 0
+    assert (warnings.showwarning, list(warnings.filters)) == before
+    assert capsys.readouterr().err == "holonomic verify: integrating in Python: reason\n"

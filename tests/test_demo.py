@@ -1,4 +1,4 @@
-"""The demonstration: one screen, and one page that reads well anywhere and loads nothing."""
+"""The demonstration: one screen of text, and one page that fits every screen and loads nothing."""
 
 import json
 import re
@@ -13,18 +13,17 @@ import pytest
 import generated.double_pendulum as dp
 from derive.verification.report.judgement import EQUATIONS
 from solvers.app.cli import main
-from solvers.app.commands import demo as command
+from solvers.app.demo import stages
 from solvers.app.demo.code import FUNCTIONS
 from solvers.app.demo.html import table
-from solvers.app.demo.page import write_demo
-from solvers.app.demo.station import Station
-from solvers.app.modules import load as load_module
+from solvers.app.demo.page import write_page
+from solvers.app.demo.stage import Stage
 from solvers.equations.module import operations_on_state
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
-    """What it prints, and where the page is."""
+def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """The terminal text and the path of the page."""
     folder = tmp_path_factory.mktemp("demo")
     with redirect_stdout(StringIO()) as screen:
         assert main(["demo", "--output", str(folder)]) == 0
@@ -32,7 +31,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
 
 
 @pytest.fixture(params=[1280, 390])
-def opened(driver: Any, made: tuple[str, Path], request: pytest.FixtureRequest) -> Iterator[Any]:
+def opened(driver: Any, demo: tuple[str, Path], request: pytest.FixtureRequest) -> Iterator[Any]:
     driver.get("about:blank")
     driver.get_log("browser")
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
@@ -41,24 +40,24 @@ def opened(driver: Any, made: tuple[str, Path], request: pytest.FixtureRequest) 
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
         {"name": "prefers-reduced-motion", "value": "reduce"},
     ]})  # fmt: skip
-    driver.get(made[1].as_uri())
+    driver.get(demo[1].as_uri())
     yield driver
     assert driver.get_log("browser") == []
 
 
-def test_it_shows_the_whole_way_on_one_screen(made: tuple[str, Path]) -> None:
-    shown, page = made
-    assert "119 verified" in shown
-    assert "up to date" in shown
-    assert "theta1 = 2.22806424" in shown
-    assert str(page) in shown
-    lines = shown.splitlines()
+def test_all_stages_fit_on_one_screen(demo: tuple[str, Path]) -> None:
+    text, page = demo
+    assert "119 verified" in text
+    assert "up to date" in text
+    assert "theta1 = 2.22806424" in text
+    assert str(page) in text
+    lines = text.splitlines()
     assert len(lines) <= 40
     assert max(map(len, lines)) <= 80
     assert {path.name for path in page.parent.iterdir()} == {"demo.html", "flips"}
 
 
-def test_the_page_fits_every_screen_and_says_nothing_to_the_console(opened: Any) -> None:
+def test_the_page_fits_every_screen_without_console_messages(opened: Any) -> None:
     wide, room = opened.execute_script(
         "for (const one of document.querySelectorAll('details')) one.open = true;"
         "return [document.documentElement.scrollWidth, innerWidth]"
@@ -74,7 +73,7 @@ def test_the_page_fits_every_screen_and_says_nothing_to_the_console(opened: Any)
     assert hidden == []
 
 
-def test_formulas_charts_and_motion_are_drawn(opened: Any) -> None:
+def test_formulas_charts_and_motion_are_rendered(opened: Any) -> None:
     sizes = opened.execute_script(
         "for (const one of document.querySelectorAll('details')) one.open = true;"
         "return [...document.querySelectorAll('math')].map("
@@ -90,7 +89,7 @@ def test_formulas_charts_and_motion_are_drawn(opened: Any) -> None:
     assert opened.execute_script("return document.querySelectorAll('#panels canvas').length") == 2
 
 
-def test_keys_play_in_sight_of_the_motion_and_scroll_elsewhere(opened: Any) -> None:
+def test_the_space_key_plays_a_visible_motion_and_scrolls_elsewhere(opened: Any) -> None:
     from selenium.webdriver import ActionChains
 
     def space() -> tuple[bool, float]:
@@ -112,9 +111,9 @@ def test_keys_play_in_sight_of_the_motion_and_scroll_elsewhere(opened: Any) -> N
     assert after > before
 
 
-def test_every_misprint_stands_beside_its_correction(made: tuple[str, Path]) -> None:
-    page = made[1].read_text(encoding="utf-8")
-    verdict = page.partition("Every misprint")[2].partition("</details>")[0]
+def test_every_misprint_is_followed_by_its_correction(demo: tuple[str, Path]) -> None:
+    page = demo[1].read_text(encoding="utf-8")
+    verdict = page.partition("All misprints")[2].partition("</details>")[0]
     lines = re.findall(r'<div class="line misprint">', verdict)
     assert len(lines) == verdict.count("<p>should be</p>") == 23
     assert len(EQUATIONS) == 150
@@ -123,19 +122,19 @@ def test_every_misprint_stands_beside_its_correction(made: tuple[str, Path]) -> 
         assert page.count(f"<strong>{words}") == 1
 
 
-def test_the_fastest_comes_first_and_two_programs_are_two(made: tuple[str, Path]) -> None:
-    page = made[1].read_text(encoding="utf-8")
+def test_methods_are_ordered_by_cost_and_two_programs_agree(demo: tuple[str, Path]) -> None:
+    page = demo[1].read_text(encoding="utf-8")
     rows = page.partition("<th>times as long</th>")[2].partition("</table>")[0]
     ratios = list(map(float, re.findall(r"<td>([\d.e+]+)</td></tr>", rows)))
     assert len(ratios) == 5
     assert ratios == sorted(ratios)
     assert ratios[0] == 1
-    apart = re.findall(r"states after 5 s</td><td>(\S+) rad or rad/s", page)
+    apart = re.findall(r"two programs after 5 s</td><td>(\S+) rad or rad/s", page)
     assert 0 < float(apart[0]) < 1e-9
 
 
-def test_every_figure_says_how_it_was_obtained(made: tuple[str, Path]) -> None:
-    page = made[1].read_text(encoding="utf-8")
+def test_every_number_states_its_method_and_command(demo: tuple[str, Path]) -> None:
+    page = demo[1].read_text(encoding="utf-8")
     rows = re.findall(r"<tr>(.*?)</tr>", page.partition('id="numbers"')[2])[1:]
     figures = [re.findall(r"<td>(.*?)</td>", row) for row in rows]
     figures = [cells for cells in figures if len(cells) == 4]
@@ -144,7 +143,7 @@ def test_every_figure_says_how_it_was_obtained(made: tuple[str, Path]) -> None:
     assert all(cells[3].startswith("holonomic ") for cells in figures)
 
 
-def test_operations_are_those_that_the_functions_state() -> None:
+def test_operation_counts_equal_those_of_the_generated_module() -> None:
     assert {name: dp.OPERATIONS[name][0] for name in FUNCTIONS} == {
         "rhs": 32, "rhs_hamiltonian": 35, "rhs_rational": 39, "rhs_variational": 77,
         "jacobian": 85, "energy": 26,
@@ -152,24 +151,25 @@ def test_operations_are_those_that_the_functions_state() -> None:
     assert operations_on_state(dp, "rhs_rational") == 34
 
 
-def test_without_a_compiler_the_map_is_left_out_and_said_so(
+def test_without_a_compiler_the_map_is_left_out_with_a_message(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(command, "no_compiler", lambda _: "no C compiler")
-    quick = {"derive": lambda: Station(("a line",), "<p>something</p>")}
-    monkeypatch.setattr(command, "cost", lambda _: Station(("cost",), ""))
-    assert command.main(["--output", str(tmp_path)], load_module, quick, "") == 0
+    monkeypatch.setattr(stages, "no_compiler", lambda _: "no C compiler")
+    for name in ("derivation", "verification", "generation", "motion", "cost", "limits"):
+        monkeypatch.setattr(stages, name, lambda *_: Stage(("a line",), "<p>content</p>"))
+    assert main(["demo", "--output", str(tmp_path)]) == 0
     assert "left out: no C compiler" in capsys.readouterr().out
+    assert 'id="chart"' in (tmp_path / "demo.html").read_text(encoding="utf-8")
     assert 'id="map"' not in (tmp_path / "demo.html").read_text(encoding="utf-8")
 
 
-def test_words_in_tables_are_no_markup() -> None:
+def test_text_in_tables_is_escaped() -> None:
     assert "<b>" not in table(("<b>",), [("<b>",)])
 
 
-def test_the_page_is_written_whole_or_not_at_all(made: tuple[str, Path], tmp_path: Path) -> None:
+def test_the_page_is_written_atomically(demo: tuple[str, Path], tmp_path: Path) -> None:
     (tmp_path / "demo.html").mkdir()
     with pytest.raises(OSError, match=r"demo\.html"):
-        write_demo(tmp_path / "demo.html", {}, {}, "")
+        write_page(tmp_path / "demo.html", {}, {})
     assert [path.name for path in tmp_path.iterdir()] == ["demo.html"]
-    json.loads(re.findall(r'id="motions">(.*?)</script>', made[1].read_text(encoding="utf-8"))[0])
+    json.loads(re.findall(r'id="motions">(.*?)</script>', demo[1].read_text(encoding="utf-8"))[0])

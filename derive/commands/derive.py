@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,17 +12,11 @@ from shlex import quote
 from derive.codegen.translation import UnsupportedFunctionError
 from derive.codegen.tree import Difference, Tree
 from derive.codegen.writing import texts
+from derive.commands.arguments import add_arguments
 from derive.mechanics.derivation import Derivation
-from derive.system.catalogue import UnknownSystemError, load, names
+from derive.system.catalogue import UnknownSystemError, load
 from derive.system.parts import SystemDefinitionError
-
-EXAMPLE = """\
-examples:
-  holonomic derive                                  all systems, into the package `generated`
-  holonomic derive double_pendulum --output build   one system, as build/double_pendulum.py, .h
-  holonomic derive my_system.toml --output build    your own system
-  holonomic derive --check                          exit 1 if a file is not what this writes
-"""
+from derive.system.shipped import names
 
 PACKAGE = '''"""Equations of motion as code, one module a system; see ``holonomic derive``."""
 
@@ -34,8 +28,14 @@ __all__ = [
 
 
 def main(argv: Sequence[str]) -> int:
+    """Run ``python -m derive`` with command-line arguments."""
+    parser = ArgumentParser("holonomic derive", formatter_class=RawDescriptionHelpFormatter)
+    add_arguments(parser)
+    return run(parser.parse_args(argv))
+
+
+def run(arguments: Namespace) -> int:
     """Run the command and return its exit code: 0, 1 (differences), 2 (input), 4 (files)."""
-    arguments = _parser().parse_args(argv)
     try:
         tree = planned(arguments.systems, arguments.output)
         return _check(tree, arguments) if arguments.check else _write(tree)
@@ -51,28 +51,6 @@ def main(argv: Sequence[str]) -> int:
             file=sys.stderr,
         )
         return 4
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="holonomic derive",
-        description="Derive systems from their positions; write Python modules and C headers.",
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument(
-        "systems",
-        nargs="*",
-        metavar="SYSTEM",
-        help=f"one of {', '.join(names())}, or a TOML file of your own; default: all",
-    )
-    parser.add_argument(
-        "--check", action="store_true", help="write nothing; exit 1 and show what differs"
-    )
-    parser.add_argument(
-        "--output", type=Path, metavar="DIR", help="folder to write to; default: `generated`"
-    )
-    return parser
 
 
 def _write(tree: Tree) -> int:
@@ -111,7 +89,7 @@ def _package_folder() -> Path:
     return Path(spec.submodule_search_locations[0])
 
 
-def _check(tree: Tree, arguments: argparse.Namespace) -> int:
+def _check(tree: Tree, arguments: Namespace) -> int:
     differences = tree.differences()
     for difference in differences:
         print(f"{difference.path}: {difference.reason}")
@@ -130,7 +108,7 @@ def _removal(path: Path) -> str:
     return f"rm {'-r ' if path.is_dir() else ''}{quote(str(path))}"
 
 
-def _mending(difference: Difference, arguments: argparse.Namespace) -> str:
+def _mending(difference: Difference, arguments: Namespace) -> str:
     if difference.reason == "orphan":
         return _removal(difference.path)
     stem = difference.path.stem

@@ -1,37 +1,13 @@
-"""``holonomic systems``: what there is, with drawings, coordinates and parameters."""
+"""Descriptions of systems: drawings, coordinates, state and parameters."""
 
 from __future__ import annotations
 
-import argparse
-import sys
-from collections.abc import Sequence
 from itertools import groupby
 from textwrap import indent, wrap
 
-from derive.system.catalogue import UnknownSystemError, drawing, load, names
-from derive.system.parts import SystemDefinitionError
+from derive.system.catalogue import drawing, load
 
 WIDTH = 96
-
-
-def main(argv: Sequence[str]) -> int:
-    """Run the command and return its exit code: 0, or 2 for an unknown system."""
-    parser = argparse.ArgumentParser(
-        prog="holonomic systems",
-        description="List the systems that ship, with drawing, coordinates and parameters.",
-        epilog="example:\n  holonomic systems chain_5",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument(
-        "systems", nargs="*", metavar="SYSTEM", help="such as chain_5; default: all"
-    )
-    wanted = parser.parse_args(argv).systems or names()
-    try:
-        print("\n\n".join(description(name) for name in wanted))
-    except (UnknownSystemError, SystemDefinitionError) as error:
-        print(f"holonomic systems: {error}", file=sys.stderr)
-        return 2
-    return 0
 
 
 def description(name: str) -> str:

@@ -16,21 +16,17 @@ from types import ModuleType
 
 from derive import systems
 from derive.system.parts import SystemDefinitionError
+from derive.system.shipped import USUAL, names
 from derive.system.system import System
 from derive.system.system_file import read_system
 from solvers.io.suggestion import did_you_mean
 
-#: The member of a family that is listed and shipped, and the largest that is derived.
-USUAL, LARGEST = 3, 100
+#: The largest member of a family that is derived.
+LARGEST = 100
 
 
 class UnknownSystemError(ValueError):
     """No system has this name; the message lists the names that exist."""
-
-
-def names() -> tuple[str, ...]:
-    """Names of all systems, in alphabetical order; a family is listed as its usual member."""
-    return tuple(sorted(re.sub(r"_n\Z", f"_{USUAL}", stem) for stem in _stems()))
 
 
 def load(name: str | PathLike[str]) -> System:

@@ -1,9 +1,9 @@
-"""What deriving a chain of pendulums costs, here and with SymPy's own mechanics."""
+"""Derivation times of chains of pendulums, here and with SymPy's own mechanics."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +23,14 @@ from derive.codegen.functions import contents
 from derive.codegen.python_backend import module
 from derive.mechanics.derivation import Derivation
 from derive.system.catalogue import load
+
+
+def lambdified_rhs() -> Callable[..., Any]:
+    """SymPy's function for the right-hand side of the double pendulum."""
+    derivation = Derivation(load("double_pendulum"))
+    system = derivation.system
+    rates = [*system.qdot, *derivation.accelerations]
+    return sp.lambdify([[*system.q, *system.qdot], system.params], rates, "numpy")
 
 
 def chain(n: int, form: str = "") -> tuple[float, float, str, str]:

@@ -1,1 +1,4 @@
-"""Commands that measure, tell and draw: what stands on top of everything else."""
+"""One command a file: ``SUMMARY``, ``add_arguments(parser)`` and ``run(arguments)``.
+
+Nothing that computes is imported before a command runs, so that help and completion are quick.
+"""

@@ -1,116 +1,122 @@
-"""``holonomic chart``: work-precision diagrams of scenes."""
+"""``holonomic chart``."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator, Sequence
-from types import ModuleType
-from typing import Any
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from solvers.app.commands.options import options
-from solvers.equations.module import GeneratedModule
-from solvers.io.atomic_write import write_text
-from solvers.io.figures import save
-from solvers.io.json_values import jsonable
-from solvers.io.progress import Progress
-from solvers.scenes.models.method_choice import RECORD
-from solvers.studies.work_precision import peers, plots
-from solvers.studies.work_precision.findings import Charted, wrong_from
-from solvers.studies.work_precision.measurement import Combination, combinations, curves
-from solvers.studies.work_precision.record import recorded
-from solvers.studies.work_precision.reference import Reference, reference
-from solvers.studies.work_precision.summary import told
+from solvers.app.commands import options
 
-#: Scenes that are charted if none is named.
-USUAL = ("report", "long", "single")
+if TYPE_CHECKING:
+    from solvers.io.progress import Progress
+    from solvers.scenes.scene import Scene
+    from solvers.studies.work_precision.findings import Charted
+    from solvers.studies.work_precision.measurement import Combination
+
+SUMMARY = "chart speed against accuracy"
+DEFAULT = ("report", "long", "single")
 
 
-def main(
-    argv: Sequence[str],
-    module: Callable[[str], GeneratedModule],
-    package: Callable[[str], ModuleType | None],
-) -> int:  # fmt: skip
-    """Measure, draw and print.
+def add_arguments(parser: ArgumentParser) -> None:
+    """Describe the command and its arguments."""
+    parser.description = (
+        "Chart speed against accuracy for every method, form and backend, and for other programs "
+        "that are installed. The default scenes take about two minutes; nothing else should run "
+        "on the machine meanwhile."
+    )
+    options.add_scenes(parser, "a name, or a file that ends in .toml", DEFAULT)
+    options.add_output(parser, "plots")
+    options.add_json(parser)
+    record = "chart compiled loops only and record the cheapest methods, which scenes then use"
+    parser.add_argument("--record", action="store_true", help=record)
+    options.add_examples(parser, "holonomic chart report --json", scenes=True)
 
-    Parameters
-    ----------
-    argv : sequence of str
-        Options.
-    module : callable
-        Gives a generated module by its name; raises `LookupError` for an unknown one.
-    package : callable
-        Gives another program's package by its name, or None if it is not installed.
 
-    Returns
-    -------
-    int
-        Exit code 0; what goes wrong is raised.
-    """
-    scenes, arguments = options(
-        argv, module, name="chart", scenes="what to chart", usual=USUAL, example="report --json",
-        description="Chart speed against accuracy for every method, form and backend, beside "
-        f"other programs that are installed. Without a scene: {', '.join(USUAL)}, in about two "
-        "minutes; leave the machine alone meanwhile.",
-        record="chart compiled loops only and keep what was cheapest: scenes are run that way",
-    )  # fmt: skip
-    found: list[Charted] = []
-    pictures: list[str] = []
-    for scene in scenes:
-        with Progress() as tell:
-            tell(f"{scene.name}: reference")
-            truth = reference(scene)
-            wanted = list(combinations(scene.module))
-            if arguments.record:
-                wanted = [one for one in wanted if one[2] == "compiled"]
-            measured = curves(scene, truth, _telling(scene.name, wanted, tell))
-            if not arguments.record:
-                tell(f"{scene.name}: other programs")
-                measured += peers.curves(scene, truth, package)
-            charted = Charted.of(scene, truth, measured)
-        figures = {
-            f"work_precision_{scene.name}": plots.work_precision(
-                f"Cost of accuracy: {scene.title}", charted.curves
-            ),
-            f"steps_{scene.name}": plots.steps(f"Shorter steps: {scene.title}", charted.curves),
-            f"energy_{scene.name}": plots.energy(
-                f"Energy and trajectory: {scene.title}", charted.curves, wrong_from(scene, truth)
-            ),
-        }
-        paths = {name: arguments.output / f"{name}.png" for name in figures}
-        for name, figure in figures.items():
-            save(figure, paths[name])
-        found.append(charted)
-        pictures += map(str, paths.values())
+def run(arguments: Namespace) -> int:
+    """Measure, plot and print."""
+    from solvers.io.atomic_write import write_text
+    from solvers.scenes.models.method_choice import RECORD
+    from solvers.studies.work_precision.record import recorded
+    from solvers.studies.work_precision.summary import told
+
+    results, plots = [], []
+    for scene in options.selected_scenes(arguments, DEFAULT):
+        result = _measured(scene, compiled_only=arguments.record)
+        paths = _write_plots(result, arguments.output)
+        results.append(result)
+        plots += paths
         if not arguments.json:
-            where = f"pictures: {', '.join(map(str, paths.values()))}"
-            print(*told(charted), where, "", sep="\n", flush=True)
+            print(*told(result), f"plots: {', '.join(paths)}", "", sep="\n", flush=True)
     if arguments.record:
-        write_text(RECORD, recorded(found))
+        write_text(RECORD, recorded(results))
     if arguments.json:
-        print(json.dumps(jsonable(_figures(found, pictures)), indent=2))
+        options.print_json(_as_json(results, plots))
     return 0
 
 
-def _telling(scene: str, wanted: Sequence[Combination], tell: Progress) -> Iterator[Combination]:
-    """Combinations, each told as it comes."""
-    for n, combination in enumerate(wanted, 1):
-        tell(f"{scene}: {', '.join(combination)} ({n} of {len(wanted)})")
+def _measured(scene: Scene, *, compiled_only: bool) -> Charted:
+    from solvers.app.packages import optional_package
+    from solvers.io.progress import Progress
+    from solvers.studies.work_precision import peers
+    from solvers.studies.work_precision.findings import Charted
+    from solvers.studies.work_precision.measurement import combinations, curves
+    from solvers.studies.work_precision.reference import reference
+
+    with Progress() as report:
+        report(f"{scene.name}: reference")
+        truth = reference(scene)
+        selected = list(combinations(scene.module))
+        if compiled_only:
+            selected = [combination for combination in selected if combination[2] == "compiled"]
+        measured = curves(scene, truth, _reported(scene.name, selected, report))
+        if not compiled_only:
+            report(f"{scene.name}: other programs")
+            measured += peers.curves(scene, truth, optional_package)
+        return Charted.of(scene, truth, measured)
+
+
+def _reported(
+    scene: str, selected: Sequence[Combination], report: Progress
+) -> Iterator[Combination]:
+    """Combinations, each reported when its measurement starts."""
+    for n, combination in enumerate(selected, 1):
+        report(f"{scene}: {', '.join(combination)} ({n} of {len(selected)})")
         yield combination
 
 
-def _figures(found: Sequence[Charted], pictures: Sequence[str]) -> dict[str, Any]:
-    """All that was found, for programs."""
+def _write_plots(result: Charted, folder: Path) -> list[str]:
+    from solvers.io.figures import save
+    from solvers.studies.work_precision import plots
+    from solvers.studies.work_precision.findings import wrong_from
+
+    scene, curves = result.scene, result.curves
+    wrong = wrong_from(scene, result.reference)
+    figures = {
+        "work_precision": plots.work_precision(f"Cost of accuracy: {scene.title}", curves),
+        "steps": plots.steps(f"Shorter steps: {scene.title}", curves),
+        "energy": plots.energy(f"Energy and trajectory: {scene.title}", curves, wrong),
+    }
+    paths = [folder / f"{name}_{scene.name}.png" for name in figures]
+    for path, figure in zip(paths, figures.values(), strict=True):
+        save(figure, path)
+    return list(map(str, paths))
+
+
+def _as_json(results: Sequence[Charted], plots: Sequence[str]) -> dict[str, Any]:
+    from solvers.studies.work_precision.reference import Reference
+
+    frontiers = [(*result.frontier, *result.frontier_rhs) for result in results]
     return {
-        "curves": [curve for charted in found for curve in charted.curves],
-        "frontier": [
-            best for charted in found for best in (*charted.frontier, *charted.frontier_rhs)
-        ],
-        "turnings": {charted.scene.name: charted.turnings for charted in found},
-        "misled": {charted.scene.name: charted.misled for charted in found},
-        "pictures": pictures,
+        "curves": [curve for result in results for curve in result.curves],
+        "frontier": [best for frontier in frontiers for best in frontier],
+        "turnings": {result.scene.name: result.turnings for result in results},
+        "misled": {result.scene.name: result.misled for result in results},
+        "pictures": plots,
         "reference": {
             "method": Reference.METHOD,
-            "global_error": max(charted.reference.global_error for charted in found),
-            "scenes": {charted.scene.name: charted.reference for charted in found},
+            "global_error": max(result.reference.global_error for result in results),
+            "scenes": {result.scene.name: result.reference for result in results},
         },
     }

@@ -1,68 +1,90 @@
-"""What commands on scenes have in common: their options."""
+"""Arguments that several commands share."""
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable, Sequence
+import json
+from argparse import Action, ArgumentParser, HelpFormatter, Namespace
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from solvers.equations.module import GeneratedModule
-from solvers.io.toml_input import InputError
-from solvers.scenes.scene import Scene
-from solvers.scenes.shipped import find, names
+from solvers.io.toml_input import names
+
+if TYPE_CHECKING:
+    from solvers.scenes.scene import Scene
+
+#: Completion of a folder's name, for shtab.
+FOLDER = {"bash": "_shtab_compgen_dirs", "zsh": "_files -/"}
 
 
-def options(
-    argv: Sequence[str], module: Callable[[str], GeneratedModule], *, name: str, description: str,
-    scenes: str, usual: Sequence[str], example: str, record: str = "",
-) -> tuple[list[Scene], argparse.Namespace]:  # fmt: skip
-    """The scenes that are named, or else the usual ones; and the options, with their folder made.
+class Formatter(HelpFormatter):
+    """Wraps paragraphs to the width of the terminal, and keeps indented lines as they are."""
 
-    Parameters
-    ----------
-    argv : sequence of str
-        What was typed.
-    module : callable
-        Gives a generated module by its name; raises `LookupError` for an unknown one.
-    name, description, example : str
-        Of the command.
-    scenes : str
-        What it does with scenes.
-    usual : sequence of str
-        Their names if none is given.
-    record : str
-        What ``--record`` does, if the command has it.
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return "\n".join(
+            line if line.startswith(" ") else super(Formatter, self)._fill_text(line, width, indent)
+            for line in text.splitlines()
+        )
 
-    Returns
-    -------
-    scenes : list of Scene
-        In the order in which they are named, each once.
-    arguments : argparse.Namespace
-        ``scenes``, ``output`` and ``json``; and ``record``, if the command has it.
 
-    Raises
-    ------
-    SystemExit
-        When an option or a scene makes no sense, with what is allowed on standard error.
-    OSError
-        When a scene cannot be read, or the folder cannot be made.
-    """
-    parser = argparse.ArgumentParser(
-        prog=f"holonomic {name}",
-        description=description,
-        epilog=f"scenes: {', '.join(names())}\n\nexample:\n  holonomic {name} {example}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+def shipped(kind: str) -> tuple[str, ...]:
+    """Names of the ``scenes`` or ``sweeps`` that ship, without loading their readers."""
+    return names(Path(__file__).parents[2] / kind / "files")
+
+
+def complete_with(action: Action, kind: str, words: Sequence[str]) -> None:
+    """Let shells complete an argument with these words, and with files."""
+    function, text = f"_holonomic_{kind}", " ".join(words)
+    shell = f'{function}() {{ compgen -W "{text}" -- "$1"; compgen -f -- "$1"; }}'
+    completion = {"bash": function, "zsh": f"({text})", "preamble": {"bash": shell}}
+    setattr(action, "complete", completion)  # noqa: B010  the attribute is shtab's
+
+
+def add_scenes(parser: ArgumentParser, meaning: str, default: Sequence[str]) -> None:
+    """Add the argument SCENE, which can be repeated."""
+    usual = f" (default: {', '.join(default)})"
+    action = parser.add_argument("scenes", nargs="*", metavar="SCENE", help=meaning + usual)
+    complete_with(action, "scenes", shipped("scenes"))
+
+
+def add_output(parser: ArgumentParser, contents: str) -> None:
+    """Add the option ``--output``."""
+    meaning = f"folder for {contents} (default: out)"
+    add_folder(parser, meaning, Path("out"))
+
+
+def add_folder(parser: ArgumentParser, meaning: str, default: Path | None) -> None:
+    """Add the option ``--output`` with a default and a help text of its own."""
+    action = parser.add_argument(
+        "--output", type=Path, metavar="DIR", default=default, help=meaning
     )
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=scenes)
-    parser.add_argument("--output", type=Path, default=Path("out"), metavar="DIR",
-                        help="folder for the pictures (default: out)")  # fmt: skip
-    parser.add_argument("--json", action="store_true", help="print figures for programs")
-    if record:
-        parser.add_argument("--record", action="store_true", help=record)
-    arguments = parser.parse_args(argv)
-    try:
-        chosen = [find(one, module) for one in dict.fromkeys(arguments.scenes or usual)]
-    except InputError as error:
-        parser.error(str(error))
+    setattr(action, "complete", FOLDER)  # noqa: B010  the attribute is shtab's
+
+
+def add_json(parser: ArgumentParser) -> None:
+    """Add the option ``--json``."""
+    parser.add_argument("--json", action="store_true", help="print JSON instead of text")
+
+
+def add_examples(parser: ArgumentParser, *examples: str, scenes: bool = False) -> None:
+    """Add examples, and the names of the scenes that ship, below the help text."""
+    listed = f"scenes: {', '.join(shipped('scenes'))}\n\n" if scenes else ""
+    title = "examples" if examples[1:] else "example"
+    parser.epilog = f"{listed}{title}:\n" + "\n".join(f"  {line}" for line in examples)
+
+
+def selected_scenes(arguments: Namespace, default: Sequence[str]) -> list[Scene]:
+    """The requested scenes, each once, or the default ones; the output folder is created."""
+    from solvers.app.modules import load
+    from solvers.scenes.shipped import find
+
+    scenes = [find(name, load) for name in dict.fromkeys(arguments.scenes or default)]
     arguments.output.mkdir(parents=True, exist_ok=True)
-    return chosen, arguments
+    return scenes
+
+
+def print_json(results: Any) -> None:
+    """Print results as JSON; numbers that are not finite become null."""
+    from solvers.io.json_values import jsonable
+
+    print(json.dumps(jsonable(results), indent=2, ensure_ascii=False))

@@ -1,96 +1,52 @@
-"""``holonomic run``: scenes answered by the smallest model that is good enough."""
+"""``holonomic run``."""
 
 from __future__ import annotations
 
-import json
+from argparse import ArgumentParser, Namespace
 from collections import Counter
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import Any
 
-from solvers.app.commands.options import options
-from solvers.equations.module import GeneratedModule
-from solvers.io.atomic_write import write_text
-from solvers.io.figures import save
-from solvers.io.json_values import jsonable
-from solvers.io.progress import Progress
-from solvers.player.page import Page
-from solvers.scenes.played import track
-from solvers.scenes.plots import drawn, sureness
-from solvers.scenes.run import Answer, Specialiser, answer
-from solvers.scenes.scene import Scene
-from solvers.scenes.summary import figures, special_code, table, told
+from solvers.app.commands import options
+
+SUMMARY = "run scenes with the smallest sufficient model"
+DEFAULT = ("report",)
 
 
-def main(
-    argv: Sequence[str], module: Callable[[str], GeneratedModule], specialiser: Specialiser
-) -> int:
-    """Answer scenes, draw them and print.
+def add_arguments(parser: ArgumentParser) -> None:
+    """Describe the command and its arguments."""
+    parser.description = (
+        "Run scenes with the smallest model whose error stays below the requested accuracy; write "
+        "each motion as a table, a plot and a page that plays it."
+    )
+    options.add_scenes(parser, "a name, or a file that ends in .toml", DEFAULT)
+    options.add_output(parser, "tables, plots and pages")
+    options.add_json(parser)
+    options.add_examples(parser, "holonomic run separatrix --json", scenes=True)
 
-    Parameters
-    ----------
-    argv : sequence of str
-        Options.
-    module : callable
-        Gives a generated module by its name; raises `LookupError` for an unknown one.
-    specialiser : callable
-        Makes code for one scene.
 
-    Returns
-    -------
-    int
-        Exit code 0; what goes wrong is raised.
+def run(arguments: Namespace) -> int:
+    """Run the scenes, write their files and print summaries."""
+    from solvers.app.modules import specialiser
+    from solvers.io.progress import Progress
+    from solvers.scenes.output import write_files
+    from solvers.scenes.run import answer
+    from solvers.scenes.summary import figures, told
 
-    Raises
-    ------
-    ValueError
-        When two scenes have the same name, or there is no model of one.
-    ArithmeticError
-        When a scene cannot be answered as accurately as it asks.
-    """
-    scenes, arguments = options(
-        argv, module, name="run", scenes="what to run: a name, or a file that ends in .toml",
-        usual=("report",), example="separatrix --json",
-        description="Run scenes with the smallest model whose error stays below what is asked; "
-        "write the motion as a table, a picture and a page that plays it.",
-    )  # fmt: skip
-    found = []
-    twice = [name for name, n in Counter(scene.name for scene in scenes).items() if n > 1]
-    if twice:
-        raise ValueError(f"two scenes are called {twice[0]!r} and would write the same files")
+    results = []
+    scenes = options.selected_scenes(arguments, DEFAULT)
+    (name, count), *_ = Counter(scene.name for scene in scenes).most_common()
+    if count > 1:
+        raise ValueError(f"two scenes are called {name!r} and would write the same files")
     for scene in scenes:
-        with Progress() as tell:
-            answers = [answer(one, specialiser, tell) for one in (scene, *scene.beside)]
-            tell("pictures")
-            paths = shown(scene, answers, arguments.output)
-        found.append({
-            **figures(answers[0]),
-            "beside": [figures(one) for one in answers[1:]],
-            "files": {kind: str(path) for kind, path in paths.items()},
-        })  # fmt: skip
+        with Progress() as report:
+            first, *beside = (answer(one, specialiser, report) for one in (scene, *scene.beside))
+            report("plots")
+            paths = write_files([first, *beside], arguments.output)
+        files = {kind: str(path) for kind, path in paths.items()}
+        results.append(figures(first) | {"beside": [*map(figures, beside)], "files": files})
         if not arguments.json:
-            for one in answers:
-                print(*told(one), "", sep="\n")
-            print(f"files: {', '.join(map(str, paths.values()))}\n", flush=True)
+            for result in (first, *beside):
+                print(*told(result), "", sep="\n")
+            print(f"files: {', '.join(files.values())}\n", flush=True)
     if arguments.json:
-        one_or_all: Any = found[0] if len(found) == 1 else found
-        print(json.dumps(jsonable(one_or_all), indent=2))
+        options.print_json(results if results[1:] else results[0])
     return 0
-
-
-def shown(scene: Scene, answers: Sequence[Answer], folder: Path) -> dict[str, Path]:
-    """Write table, picture and page of a scene; return where they are."""
-    paths = {
-        "table": folder / f"{scene.name}.csv",
-        "picture": folder / f"{scene.name}.png",
-        "page": folder / f"{scene.name}.html",
-    }
-    save(drawn(answers), paths["picture"])
-    write_text(paths["table"], table(answers[0]))
-    for n, one in enumerate(answers[1:], 2):
-        paths[f"table {n}"] = write_text(folder / f"{scene.name}_{n}.csv", table(one))
-    if code := special_code(answers[0]):
-        paths["code"] = code
-    words = [*scene.note.split(), *(sureness(one, named=len(answers) > 1) for one in answers)]
-    Page(scene.title, " ".join(words), list(map(track, answers))).write(paths["page"])
-    return paths

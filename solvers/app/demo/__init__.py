@@ -1,1 +1,1 @@
-"""The whole way on one page: what ``holonomic demo`` does, measures and shows."""
+"""The demonstration: all stages from positions to motions, on one page."""

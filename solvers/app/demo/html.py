@@ -1,4 +1,4 @@
-"""Parts of the page: tables, pictures, and what is opened on demand."""
+"""Elements of the page: tables, images and collapsed details."""
 
 from __future__ import annotations
 
@@ -10,40 +10,40 @@ from matplotlib.figure import Figure
 
 from solvers.io.figures import png, svg
 
-#: A table with so many columns stands as one cell below the other on a narrow screen.
-MANY = 4
+#: On a narrow screen the cells of a table with so many columns are stacked.
+STACKED = 4
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Plain text in rows and columns."""
+    """A table of plain text."""
     head = "".join(f"<th>{escape(cell)}</th>" for cell in heads)
     body = "".join(
         f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows
     )
-    kind = ' class="stacks"' if len(heads) >= MANY else ""
+    kind = ' class="stacks"' if len(heads) >= STACKED else ""
     return f"<table{kind}><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def pair(one: str, other: str) -> str:
-    """Beside each other where there is room."""
-    return f'<div class="pair"><div>{one}</div><div>{other}</div></div>'
+def pair(left: str, right: str) -> str:
+    """Two columns where the screen is wide enough."""
+    return f'<div class="pair"><div>{left}</div><div>{right}</div></div>'
 
 
-def drawing(figure: Figure, words: str) -> str:
-    """A chart that stays sharp on every screen."""
-    return _image("svg+xml", svg(figure).encode(), words)
+def svg_image(figure: Figure, alternative: str) -> str:
+    """A chart as vector graphics."""
+    return _image("svg+xml", svg(figure).encode(), alternative)
 
 
-def image(figure: Figure, words: str) -> str:
-    """A picture of many pixels."""
-    return _image("png", png(figure), words)
+def png_image(figure: Figure, alternative: str) -> str:
+    """A chart as pixels."""
+    return _image("png", png(figure), alternative)
 
 
-def _image(kind: str, data: bytes, words: str) -> str:
+def _image(kind: str, data: bytes, alternative: str) -> str:
     source = f"data:image/{kind};base64,{b64encode(data).decode()}"
-    return f'<img class="chart" src="{source}" alt="{escape(words)}">'
+    return f'<img class="chart" src="{source}" alt="{escape(alternative)}">'
 
 
-def opened(summary: str, html: str) -> str:
-    """What is shown when it is asked for."""
+def details(summary: str, html: str) -> str:
+    """Collapsed content below a summary."""
     return f"<details><summary>{escape(summary)}</summary>{html}</details>"

@@ -1,4 +1,4 @@
-"""The page that the demonstration ends in: one file, which loads nothing from anywhere."""
+"""The page of the demonstration: one file without references to other files."""
 
 from __future__ import annotations
 
@@ -6,30 +6,32 @@ from collections.abc import Mapping
 from html import escape
 from pathlib import Path
 
+from derive.verification.report.beside import STYLE as DERIVATION_STYLE
 from solvers.app.demo.html import table
-from solvers.app.demo.station import Station
+from solvers.app.demo.stage import Stage
 from solvers.io.atomic_write import write_text
 from solvers.player import page as motions
 from solvers.player.document import document
 
 STYLE = Path(__file__).with_name("demo.css")
+TITLE = "Double pendulum: from positions to motion"
 
-#: Sections by station, in the order of the page: their titles, and what to look at.
+#: Titles and introductions of the sections, by stage, in the order of the page.
 SECTIONS = {
     "integrate": (
         "Motion",
-        "The report's scene: two masses of 1 kg on rods of 2 m, released from rest. Beside it the "
-        "same equations by Euler's method, which gains energy out of nothing.",
+        "The scene of the report: two masses of 1 kg on rods of 2 m, released from rest. Beside "
+        "it, Euler's method integrates the same equations and gains energy.",
     ),
     "derive": (
         "Derivation",
-        "What SymPy derives from the positions alone, and beside it the report's own lines, each "
-        "judged by computation.",
+        "The equations that SymPy derives from the positions alone, beside the equations of the "
+        "report, each verified by computation.",
     ),
     "verify": (
-        "The verdict on the report",
+        "Verification of the report",
         "The technical report Comparing Method in Double Pendulum derives these equations by hand "
-        "and compares methods. Every formula and every conclusion of it is judged by computation.",
+        "and compares methods. All of its formulas and conclusions are tested by computation.",
     ),
     "generate": (
         "Generated code",
@@ -37,79 +39,56 @@ SECTIONS = {
     ),
     "chart": (
         "Speed against accuracy",
-        "What a smaller error costs, measured while this page was made: compiled loops of "
-        "holonomic (lines), and SciPy's solve_ivp with the same generated equations (dashed).",
+        "The cost of a smaller error, measured when this page was written: compiled loops of "
+        "holonomic (solid lines), and SciPy's solve_ivp with the same equations (dashed lines).",
     ),
     "stability": (
-        "How long steps may be",
-        "Inside its line a method lets small motions fade; oscillations live on the vertical axis. "
-        "The table gives the longest step for the report's pendulum: none means that "
-        "oscillations grow with every step, any that none does.",
+        "Longest stable steps",
+        "Inside the boundary of its stability region a method damps small motions; eigenvalues of "
+        "undamped oscillations are on the vertical axis. The table gives the longest stable step "
+        "for the pendulum of the report: with none, oscillations grow at every step size; with "
+        "any, they grow at none.",
     ),
     "map": (
         "A quarter of a million motions",
-        "How long until one of two rods first turns over, from rest at any two angles. It is a "
-        "fractal (J. S. Heyl, 2008).",
+        "The time until one of the two rods first flips, from rest at any two angles. The map is "
+        "a fractal (J. S. Heyl, 2008).",
     ),
 }
 
 
-def page(
-    stations: Mapping[str, Station], made: Mapping[str, str], style: str
-) -> str:  # fmt: skip
-    """The page as text.
-
-    Parameters
-    ----------
-    stations : mapping of str to Station
-        By their names, as in `SECTIONS`; those that are not there are left out.
-    made : mapping of str to str
-        Where and with what the page was made.
-    style : str
-        Of the derivation, as CSS.
-
-    Returns
-    -------
-    str
-        HTML, a whole file.
-    """
-    title = "Double pendulum: from positions to motion"
-    body = [
-        f"<header><h1>{title}</h1><p>From the positions of two masses to equations, code, motion "
-        "and their proof, made by <code>holonomic demo</code>.</p><nav>",
-        *(f'<a href="#{name}">{escape(SECTIONS[name][0])}</a> ' for name in _shown(stations)),
-        '<a href="#numbers">Numbers</a></nav></header><main>',
-        *(_section(name, stations[name]) for name in _shown(stations)),
-        _numbers(stations, made),
-        "</main>",
-    ]
-    looks = motions.style() + style + STYLE.read_text(encoding="utf-8")
-    return document(title, "\n".join(body), style=looks, script=motions.script())
+def page(stages: Mapping[str, Stage], versions: Mapping[str, str]) -> str:
+    """The page as HTML; stages without content are left out."""
+    shown = {name: stages[name] for name in SECTIONS if name in stages and stages[name].html}
+    links = "".join(f'<a href="#{name}">{escape(SECTIONS[name][0])}</a> ' for name in shown)
+    header = (
+        f"<header><h1>{TITLE}</h1><p>Equations, code, motions and their verification, from the "
+        f"positions of two masses. Written by <code>holonomic demo</code>.</p><nav>{links}"
+        '<a href="#numbers">Numbers</a></nav></header>'
+    )
+    sections = "\n".join(_section(name, stage) for name, stage in shown.items())
+    body = f"{header}<main>{sections}{_numbers(shown, versions)}</main>"
+    style = motions.style() + DERIVATION_STYLE + STYLE.read_text(encoding="utf-8")
+    return document(TITLE, body, style=style, script=motions.script())
 
 
-def write_demo(
-    path: Path, stations: Mapping[str, Station], made: Mapping[str, str], style: str
-) -> None:  # fmt: skip
-    """Write the page beside its name first, and move it into place."""
-    write_text(path, page(stations, made, style))
+def write_page(path: Path, stages: Mapping[str, Stage], versions: Mapping[str, str]) -> None:
+    """Write the page atomically."""
+    write_text(path, page(stages, versions))
 
 
-def _shown(stations: Mapping[str, Station]) -> list[str]:
-    return [name for name in SECTIONS if name in stations]
+def _section(name: str, stage: Stage) -> str:
+    title, introduction = SECTIONS[name]
+    head = f"<h2>{escape(title)}</h2><p>{escape(introduction)}</p>"
+    return f'<section id="{name}">{head}{stage.html}</section>'
 
 
-def _section(name: str, station: Station) -> str:
-    title, words = SECTIONS[name]
-    head = f"<h2>{escape(title)}</h2><p>{escape(words)}</p>"
-    return f'<section id="{name}">{head}{station.html}</section>'
-
-
-def _numbers(stations: Mapping[str, Station], made: Mapping[str, str]) -> str:
-    numbers = [number for name in _shown(stations) for number in stations[name].numbers]
-    rows = [(number.what, number.value, number.how, number.command) for number in numbers]
+def _numbers(stages: Mapping[str, Stage], versions: Mapping[str, str]) -> str:
+    numbers = [number for stage in stages.values() for number in stage.numbers]
+    rows = [(number.quantity, number.value, number.method, number.command) for number in numbers]
     return (
-        '<section id="numbers"><h2>Numbers, and where they come from</h2>'
-        + table(("what", "value", "how", "again by"), rows)
-        + table(("made with", ""), made.items())
+        '<section id="numbers"><h2>Numbers and their origins</h2>'
+        + table(("quantity", "value", "method", "command"), rows)
+        + table(("environment", ""), versions.items())
         + "</section>"
     )

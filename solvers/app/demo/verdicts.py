@@ -1,4 +1,4 @@
-"""The verdicts on the report, as a part of the page."""
+"""The verdicts on the report, for the terminal and for the page."""
 
 from __future__ import annotations
 
@@ -7,44 +7,68 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from solvers.app.demo.html import opened, table
+from derive.verification.report.beside import line
+from derive.verification.report.equation import Verdict
+from solvers.app.demo.html import details, table
+from solvers.app.demo.stage import Number, Stage
+from solvers.app.verdict.report import report_verdicts
+from solvers.app.verdict.tables import counted
 
-WORDS = {
-    "verified": "hold as printed", "misprint": "are misprints, each with a proved correction",
-    "definition": "are definitions", "context": "concern fluids", "wrong": "are wrong",
-    "supported": "hold", "contradicted": "do not", "untestable": "cannot be tested",
-}  # fmt: skip
+DESCRIPTIONS = {
+    "verified": "hold as printed",
+    "misprint": "are misprints, each with a proved correction",
+    "definition": "are definitions",
+    "context": "concern fluids",
+    "wrong": "are wrong",
+    "supported": "hold",
+    "contradicted": "do not hold",
+    "untestable": "cannot be tested",
+}
 
 
-def verdicts(judged: Mapping[str, Any], misprints: Sequence[str]) -> str:
-    """Counts, and on demand every misprint and every claim.
-
-    Parameters
-    ----------
-    judged : mapping
-        As ``holonomic verify --json`` prints it.
-    misprints : sequence of str
-        HTML of each wrong line and its correction.
-
-    Returns
-    -------
-    str
-        HTML, a part of the page.
-    """
-    claims = [(c["id"], c["claim"], c["verdict"], c["number"]) for c in judged["claims"]]
-    programs = [
-        (f"program {k}", "; ".join(program["stops"]) or "runs as printed")
-        for k, program in enumerate(judged["programs"], 1)
-    ]
-    return (
-        f"<p>Of {len(judged['equations'])} equations {_counted(judged['equations'])}. Of "
-        f"{len(claims)} objectives, claims and recommendations {_counted(judged['claims'])}.</p>"
-        + opened("Every misprint, and what should be there", "".join(misprints))
-        + opened("Every claim", table(("", "claim", "verdict", "because"), claims))
-        + opened("The three programs", table(("", "as printed"), programs))
+def verification() -> Stage:
+    """Verify the report's equations, programs and claims."""
+    verdicts = report_verdicts()
+    equations, claims = counted(verdicts["equations"]), counted(verdicts["claims"])
+    stopped = sum(bool(program["stops"]) for program in verdicts["programs"])
+    proof = "proved or refuted symbolically, and with numbers of 40 digits"
+    return Stage(
+        (
+            f"equations of the report: {equations}",
+            f"objectives, claims and recommendations: {claims}",
+            f"programs: {len(verdicts['programs'])}; {stopped} do not run as printed",
+            "details and corrections: holonomic verify",
+        ),
+        section(verdicts),
+        (
+            Number("equations of the report", equations, proof, "holonomic verify"),
+            Number("claims of the report", claims, "computed", "holonomic verify"),
+        ),
     )
 
 
-def _counted(rows: Sequence[Mapping[str, Any]]) -> str:
+def section(verdicts: Mapping[str, Any]) -> str:
+    """Counts, and collapsed lists of all misprints, claims and programs, as HTML."""
+    equations = verdicts["equations"]
+    misprints = [line(Verdict(**row)) for row in equations if row["verdict"] == "misprint"]
+    claims = [
+        (row["id"], row["claim"], row["verdict"], row["number"]) for row in verdicts["claims"]
+    ]
+    programs = [
+        (f"program {k}", "; ".join(program["stops"]) or "runs as printed")
+        for k, program in enumerate(verdicts["programs"], 1)
+    ]
+    return (
+        f"<p>Of {len(equations)} equations, {_described(equations)}. Of {len(claims)} "
+        f"objectives, claims and recommendations, {_described(verdicts['claims'])}.</p>"
+        + details("All misprints and their corrections", "".join(misprints))
+        + details("All claims", table(("", "claim", "verdict", "reason"), claims))
+        + details("The three programs", table(("", "as printed"), programs))
+    )
+
+
+def _described(rows: Sequence[Mapping[str, Any]]) -> str:
     counts = Counter(row["verdict"] for row in rows).most_common()
-    return ", ".join(f"<strong>{n}</strong> {escape(WORDS[verdict])}" for verdict, n in counts)
+    return ", ".join(
+        f"<strong>{n}</strong> {escape(DESCRIPTIONS[verdict])}" for verdict, n in counts
+    )

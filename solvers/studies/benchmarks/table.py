@@ -2,97 +2,15 @@
 
 from __future__ import annotations
 
-import argparse
-import json
 import platform
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from solvers.equations.module import GeneratedModule
-from solvers.io.figures import save
-from solvers.io.json_values import jsonable
-from solvers.studies.benchmarks import chains_summary, curves, maps, pipeline, rates
-from solvers.studies.benchmarks.growth import Maker, drawn
+from solvers.studies.benchmarks import curves, rates
 
-#: What can be timed.
-PARTS = ("pendulum", "way", "chains", "maps")
 #: Global errors at which both sides are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
-
-
-def main(
-    argv: Sequence[str],
-    module: Callable[[str], GeneratedModule],
-    lambdify: Callable[[], Any],
-    peer: Callable[[str], GeneratedModule],
-    made: Maker,
-    rival: Callable[[int], float],
-    mechanics: Callable[[int], Any],
-) -> int:
-    """Measure and print.
-
-    Parameters
-    ----------
-    argv : sequence of str
-        Options.
-    module : callable
-        Gives the generated module of a system.
-    lambdify : callable
-        Gives SymPy's function for the double pendulum's right-hand side.
-    peer : callable
-        Gives another program's package.
-    made, rival : callable
-        Derive a chain of pendulums here, and with SymPy's own mechanics.
-    mechanics : callable
-        Gives its equations.
-
-    Returns
-    -------
-    int
-        The exit code, 0.
-    """
-    parser = argparse.ArgumentParser(
-        prog="holonomic bench",
-        description="Time compiled loops beside other programs, at equal global error. "
-        "Leave the machine alone meanwhile: it takes about ten minutes.",
-        epilog="examples:\n  holonomic bench --json > figures.json\n  holonomic bench chains",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("--json", action="store_true", help="print figures for programs")
-    parser.add_argument(
-        "--output", type=Path, default=Path("out"), metavar="DIR",
-        help="folder for the picture of growth (default: out)",
-    )  # fmt: skip
-    parser.add_argument(
-        # argparse compares an empty list, too, with the choices
-        "parts", nargs="*", choices=[*PARTS, []], metavar="PART",
-        help=f"what to time, of {', '.join(PARTS)}; default: all",
-    )  # fmt: skip
-    arguments = parser.parse_args(argv)
-    hy, found = peer("heyoka"), {}
-    if "pendulum" in (arguments.parts or PARTS):
-        found["pendulum"] = figures(module("double_pendulum"), lambdify(), hy)
-        if not arguments.json:
-            print(text(found["pendulum"]))
-    if "way" in (arguments.parts or PARTS):
-        ways = pipeline.ways(module("double_pendulum"), peer, made, mechanics)
-        found["way"] = jsonable(ways)
-        if not arguments.json:
-            print(*pipeline.told(ways), "", sep="\n")
-    if "chains" in (arguments.parts or PARTS):
-        found["chains"] = chains_summary.figures(made, rival, module, hy)
-        save(drawn(found["chains"]["growth"]), arguments.output / "growth.png")
-        if not arguments.json:
-            print(*chains_summary.told(found["chains"]), sep="\n")
-            print(f"picture: {arguments.output / 'growth.png'}")
-    if "maps" in (arguments.parts or PARTS):
-        found["maps"] = maps.figures(module("double_pendulum"), hy, peer("numba"))
-        if not arguments.json:
-            print(*maps.told(found["maps"]), sep="\n")
-    if arguments.json:
-        print(json.dumps(found, indent=2))
-    return 0
 
 
 def figures(module: GeneratedModule, lambdified: Callable[..., object], hy: Any) -> dict[str, Any]:

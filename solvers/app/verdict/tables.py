@@ -13,12 +13,12 @@ Rows = Sequence[Mapping[str, Any]]
 COLUMN = 20
 
 
-def report(judged: Mapping[str, Any]) -> str:
+def tables(verdicts: Mapping[str, Any]) -> str:
     """The verdicts on equations, programs and claims as three tables.
 
     Parameters
     ----------
-    judged : mapping
+    verdicts : mapping
         ``equations``, ``programs`` and ``claims`` as ``holonomic verify --json`` prints
         them, and ``state``, where the witnesses were computed.
 
@@ -28,23 +28,23 @@ def report(judged: Mapping[str, Any]) -> str:
         Wrapped to the width of the terminal, and to 120 characters at most.
     """
     width = min(shutil.get_terminal_size((100, 24)).columns, 120)
-    lines = [*_equations(judged["equations"], width), ""]
-    state = ", ".join(f"{name} = {value}" for name, value in judged["state"].items())
+    lines = [*_equations(verdicts["equations"], width), ""]
+    state = ", ".join(f"{name} = {value}" for name, value in verdicts["state"].items())
     lines += [_wrapped(f"Residuals as numbers: at {state}.", width, 0), ""]
-    for program in judged["programs"]:
+    for program in verdicts["programs"]:
         lines.append(f"{program['id']:<{COLUMN}}{program['title']}")
         lines.append(_wrapped(f"solves: {program['solves']}", width))
         lines += [_wrapped(f"stops on: {reason}", width) for reason in program["stops"]]
         lines += [_wrapped(f"differs: {reason}", width) for reason in program["differs"]]
         lines.append("")
-    for claim in judged["claims"]:
+    for claim in verdicts["claims"]:
         lines.append(_row(claim["id"], claim["verdict"], claim["claim"], width))
         lines.append(_wrapped(claim["number"], width))
         if claim["figure"]:
             lines.append(_wrapped(f"see {claim['figure']}", width))
     lines += ["", "Lines that end in ... are whole in: holonomic verify --json"]
-    lines += [f"equations: {counted(judged['equations'])}"]
-    lines += [f"claims:    {counted(judged['claims'])}"]
+    lines += [f"equations: {counted(verdicts['equations'])}"]
+    lines += [f"claims:    {counted(verdicts['claims'])}"]
     return "\n".join(lines) + "\n"
 
 

@@ -1,0 +1,29 @@
+"""Arguments of ``holonomic derive``; describing them loads no SymPy."""
+
+from __future__ import annotations
+
+from argparse import Action, ArgumentParser
+from pathlib import Path
+
+from derive.system.shipped import names
+
+EXAMPLES = """\
+examples:
+  holonomic derive                                  all systems, into the package `generated`
+  holonomic derive double_pendulum --output build   one system, as build/double_pendulum.py, .h
+  holonomic derive my_system.toml --output build    your own system
+  holonomic derive --check                          exit 1 if a file is not up to date
+"""
+
+
+def add_arguments(parser: ArgumentParser) -> Action:
+    """Describe the command and its arguments; return the argument SYSTEM."""
+    parser.description = "Derive systems from their positions; write Python modules and C headers."
+    parser.epilog = f"systems: {', '.join(names())}\n\n{EXAMPLES}"
+    systems = "a name, or a TOML file (default: all systems)"
+    action = parser.add_argument("systems", nargs="*", metavar="SYSTEM", help=systems)
+    check = "write nothing; list differences and exit with 1 if there are any"
+    parser.add_argument("--check", action="store_true", help=check)
+    output = "folder to write to (default: the package `generated`)"
+    parser.add_argument("--output", type=Path, metavar="DIR", help=output)
+    return action

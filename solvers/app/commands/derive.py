@@ -1,0 +1,23 @@
+"""``holonomic derive``."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from derive.commands import arguments as derive_arguments
+from derive.system.shipped import names
+from solvers.app.commands.options import complete_with
+
+SUMMARY = "write generated modules, or check them"
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Describe the command and its arguments."""
+    complete_with(derive_arguments.add_arguments(parser), "systems", names())
+
+
+def run(arguments: Namespace) -> int:
+    """Write or check the files."""
+    from derive.commands.derive import run
+
+    return run(arguments)

@@ -1,0 +1,27 @@
+"""``holonomic systems``."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from derive.system.shipped import names
+from solvers.app.commands.options import add_examples, complete_with
+
+SUMMARY = "list systems, with drawings"
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Describe the command and its arguments."""
+    parser.description = "List systems with their drawings, coordinates and parameters."
+    meaning = "a name, such as chain_5 (default: all systems)"
+    action = parser.add_argument("systems", nargs="*", metavar="SYSTEM", help=meaning)
+    complete_with(action, "systems", names())
+    add_examples(parser, "holonomic systems chain_5")
+
+
+def run(arguments: Namespace) -> int:
+    """Print the descriptions."""
+    from derive.commands.systems import description
+
+    print("\n\n".join(map(description, arguments.systems or names())))
+    return 0

@@ -1,0 +1,47 @@
+"""``holonomic verify``."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from solvers.app.commands.options import add_examples, add_json, print_json
+
+SUMMARY = "verify the report, or other hand derivations"
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Describe the command and its arguments."""
+    parser.description = (
+        "Verify hand derivations: the double-pendulum report with its programs and claims, or "
+        "equations of your own. The exit code is 1 if an equation is wrong; in the report, if it "
+        "has no proved correction."
+    )
+    meaning = "TOML files, or systems with published equations (default: the report)"
+    parser.add_argument("equations", nargs="*", metavar="EQUATIONS", help=meaning)
+    add_json(parser)
+    add_examples(
+        parser,
+        "holonomic verify --json > verdicts.json",
+        "holonomic verify my_equations.toml",
+        "holonomic verify swinging_atwood",
+    )
+
+
+def run(arguments: Namespace) -> int:
+    """Print the verdicts; return 1 if an equation is wrong, 2 if one cannot be read."""
+    if arguments.equations:
+        from derive.commands.verify import verify
+
+        return verify(arguments.equations, as_json=arguments.json)
+    from solvers.app.verdict.report import report_verdicts
+    from solvers.app.verdict.tables import tables
+    from solvers.io.progress import Progress
+
+    with Progress() as report:
+        report("verifying the report")
+        verdicts = report_verdicts()
+    if arguments.json:
+        print_json(verdicts)
+    else:
+        print(tables(verdicts), end="")
+    return int(any(equation["verdict"] == "wrong" for equation in verdicts["equations"]))

@@ -1,0 +1,56 @@
+"""The stages of the demonstration, from positions to a map of motions."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
+
+import generated.double_pendulum as double_pendulum
+from solvers.app.demo.code import generation
+from solvers.app.demo.cost import cost
+from solvers.app.demo.derivation import derivation
+from solvers.app.demo.flips import flips
+from solvers.app.demo.limits import limits
+from solvers.app.demo.motion import motion
+from solvers.app.demo.stage import Stage
+from solvers.app.demo.verdicts import verification
+from solvers.app.modules import load
+from solvers.integration.prepare import no_compiler
+from solvers.scenes import shipped
+from solvers.sweeps import reading
+
+#: Packages whose versions the page states.
+PACKAGES = ("holonomic", "sympy", "numpy", "scipy", "matplotlib")
+
+
+def stages(folder: Path) -> dict[str, Callable[[], Stage]]:
+    """The stages by name, in their order; the map of motions needs a compiler."""
+    scene = shipped.find("report", load)
+
+    def flip_map() -> Stage:
+        if missing := no_compiler(scene.module):
+            return Stage((f"left out: {missing}",))
+        return flips(reading.find("flips", load), folder / "flips")
+
+    return {
+        "derive": derivation,
+        "verify": verification,
+        "generate": lambda: generation(double_pendulum),
+        "integrate": lambda: motion(scene),
+        "chart": lambda: cost(scene),
+        "stability": lambda: limits(scene),
+        "map": flip_map,
+    }
+
+
+def versions() -> dict[str, str]:
+    """Date, machine and versions."""
+    return {
+        "date": date.today().isoformat(),
+        "machine": f"{platform.system()} {platform.machine()}",
+        "Python": platform.python_version(),
+        **{name: version(name) for name in PACKAGES},
+    }
