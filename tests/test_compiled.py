@@ -16,8 +16,9 @@ import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.integration import validation
 from solvers.integration.compiled import compiler
-from solvers.integration.compiled.kernel import STATUSES, Batch, Kernel, kernel
+from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.kernel_source import program
+from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.compiled.native import equations
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
@@ -211,9 +212,13 @@ def test_sine_and_cosine_stay_on_the_circle_over_long_runs(
 def test_what_the_loop_approximates_is_as_close_as_it_says() -> None:
     text = program(equations(sp, "rational"), load("rk4"), lanes=False, compensated=False)
     text += """
-double logarithm(double x) { return binary_logarithm(x); }
-double power(double x) { return power_of_two(x); }
-double angle(double s, double c) { Place place = {.z = {s, c}}; return rough_angle(&place, 0); }
+double logarithm(double x) { return lane_log2(x); }
+double power(double x) { return lane_exp2(x); }
+double angle(double s, double c)
+{
+    State state = {.z = {s, c}};
+    return approximate_angle(&state, 0);
+}
 """
     library = ctypes.CDLL(str(compiler.build(text).path))
     for name, count in (("logarithm", 1), ("power", 1), ("angle", 2)):

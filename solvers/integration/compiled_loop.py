@@ -10,7 +10,8 @@ import numpy as np
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import header
 from solvers.integration.compiled.compiler import NoCompilerError
-from solvers.integration.compiled.kernel import MOST_EVENTS, STATUSES, Batch, Kernel, kernel
+from solvers.integration.compiled.kernel import Batch, Kernel, kernel
+from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Outcome, Problem
 from solvers.runge_kutta.tableau import Tableau
@@ -32,8 +33,8 @@ def obstacle(problem: Problem) -> str:
         return f"its stages have {unknowns} unknowns, more than {MOST_UNKNOWNS}"
     if problem.atol.ndim:
         return "atol differs by component"
-    if len(problem.events) > MOST_EVENTS:
-        return f"there are more than {MOST_EVENTS} events"
+    if len(problem.events) > MAX_EVENTS:
+        return f"there are more than {MAX_EVENTS} events"
     if header(problem.form.module) is None:
         return "there is no C header beside the module"
     for event in problem.events:

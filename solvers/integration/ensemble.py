@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, state_names
 from solvers.integration import compiled_loop, python_loop, scipy_loop, validation
-from solvers.integration.compiled.kernel import STATUSES, Batch
+from solvers.integration.compiled.kernel import Batch
+from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.solution import Ensemble, Interrupted, Status
@@ -232,7 +233,7 @@ def _collect(batch: Batch, result: Ensemble) -> None:
         there = np.flatnonzero(motions["rows"] > k)
         _, result.samples[there, :, k] = _passed(batch, there, batch.rows[there, k])
     result.occurred[:] = motions["occurred"][:, : result.occurred.shape[1]]
-    kept = np.where(batch.keeps_extremes, np.minimum(result.occurred, 2), result.occurred)
+    kept = np.where(batch.extremes_only, np.minimum(result.occurred, 2), result.occurred)
     for event, k in np.ndindex(result.t_events.shape[1:]):
         there = np.flatnonzero(kept[:, event] > k)
         times, states = _passed(batch, there, batch.event_rows[there, event, k])

@@ -12,7 +12,8 @@ import numpy as np
 
 from solvers.equations.forms import Form
 from solvers.integration.compiled.compiler import NoCompilerError
-from solvers.integration.compiled.kernel import STATUSES, Batch, kernel
+from solvers.integration.compiled.kernel import Batch, kernel
+from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.compiled_loop import obstacle
 from solvers.integration.problem import Problem
 from solvers.runge_kutta.catalogue import load

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from solvers.equations.module import GeneratedModule, state_names
 from solvers.integration import compiled_loop, validation
 from solvers.integration.compiled.compiler import NoCompilerError
-from solvers.integration.compiled.kernel import STATUSES, Batch
+from solvers.integration.compiled.kernel import Batch
+from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.problem import SHORTEST, Problem
 from solvers.integration.solution import Status
 
@@ -109,7 +110,7 @@ def prepare(
         program, problem, problem.form, problem.start[np.newaxis],
         capacity=0, occurrences=0, pauses=False,
     )  # fmt: skip
-    return Prepared(program.once, batch, problem)
+    return Prepared(program.single, batch, problem)
 
 
 class Prepared:
@@ -135,7 +136,7 @@ class Prepared:
         self._start, self._end = room(), room()
         once.argtypes = [ctypes.c_void_p, *[ctypes.c_double] * 2, *[ctypes.c_void_p] * 2]
         once.restype = ctypes.c_int64
-        batch.task.patience = compiled_loop.PATIENCE
+        batch.task.time_limit = compiled_loop.PATIENCE
         self._once, self._task = once, ctypes.addressof(batch.task)
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
 

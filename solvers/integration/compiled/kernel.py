@@ -1,4 +1,4 @@
-"""Compiled loops: many motions of one form by one method, driven from Python."""
+"""Compiled loops: many motions of one form by one method, called from Python."""
 
 from __future__ import annotations
 
@@ -13,46 +13,13 @@ from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.kernel_source import program
+from solvers.integration.compiled.layout import EVENT, Task, check, record
 from solvers.integration.compiled.native import equations
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import SHORTEST, Problem
-from solvers.integration.solution import Status
 from solvers.runge_kutta.catalogue import load
 
 Array = NDArray[np.float64]
-
-#: What the numbers of ``enum Status`` in C mean; the first two are motions that are not done.
-STATUSES = (
-    None,
-    None,
-    Status.FINISHED,
-    Status.EVENT,
-    Status.STEP_LIMIT,
-    Status.NOT_FINITE,
-    Status.STEP_TOO_SMALL,
-    Status.NO_CONVERGENCE,
-)
-MOST_EVENTS = 8
-
-
-#: How ``motion.h`` lays out what C and Python share.
-EVENT = np.dtype([
-    *((name, float) for name in ("value", "sine", "cosine")),
-    *((name, np.int64) for name in ("is_angle", "index", "direction", "terminal")),
-    *((name, np.int64) for name in ("keeps_extremes", "kept_is_angle", "kept")),
-])  # fmt: skip
-
-
-class _Task(ctypes.Structure):
-    _fields_ = [
-        *((name, ctypes.c_int64) for name in ("count", "trajectories", "next")),
-        *((name, ctypes.c_double) for name in ("rtol", "atol", "fixed")),
-        *((name, ctypes.c_int64) for name in ("most_steps", "samples", "times")),
-        *((name, ctypes.c_int64) for name in ("capacity", "rows", "events", "event")),
-        *((name, ctypes.c_int64) for name in ("occurrences", "event_rows", "pauses")),
-        ("patience", ctypes.c_double),
-        ("stop", ctypes.c_int64),
-    ]
 
 
 class Kernel:
@@ -65,69 +32,61 @@ class Kernel:
     form : str
         One of its forms.
     method : str
-        One of ours.
+        Name of a Runge-Kutta method.
     lanes : bool
-        Whether it is to run many motions at once, where right-hand side and method allow it.
+        Whether to run many motions at once, where right-hand side and method allow it.
     compensated : bool
         Whether the state's rounding errors are carried along.
     reproducible : bool
-        Whether every compiler is to give the same bits.
+        Whether every compiler must give the same bits.
 
     Attributes
     ----------
     run : ctypes function
-        Takes a task; releases Python's lock while it runs.
-    once : ctypes function or None
-        Takes a task of one motion, its span, start and room for its end; not with lanes.
+        Takes a task; releases the global interpreter lock while it runs.
+    single : ctypes function or None
+        Takes a task of one motion, its span, its start and an array for its end; not with lanes.
     trajectory, row : numpy.dtype
-        Layout of a motion in memory, and of a place that it passes; their ``scale`` is the
-        power of two that was taken out of a small change, of many motions' variational form.
+        Layout of a motion in memory, and of a sample; their ``scale`` is the exponent of the
+        power of two that was taken out of the variation, in the variational form with lanes.
     library : Library
-        What was built, and by what.
+        The compiled file.
 
     Raises
     ------
     solvers.integration.compiled.compiler.NoCompilerError
         When no compiler could build it.
+    solvers.integration.compiled.layout.LayoutError
+        When C and Python disagree about a structure.
     """
 
     def __init__(
-        self, module: GeneratedModule, form: str, method: str, *,
-        lanes: bool, compensated: bool, reproducible: bool,
-    ) -> None:  # fmt: skip
+        self,
+        module: GeneratedModule,
+        form: str,
+        method: str,
+        *,
+        lanes: bool,
+        compensated: bool,
+        reproducible: bool,
+    ) -> None:
         tableau, source = load(method), equations(module, form)
         vectors = lanes and source.vectorises and tableau.is_explicit
-        # of many motions there is nobody who could make a change small again
-        changes = source.ordinary // 2 if lanes and form == "variational" else 0
-        scale = (int(changes > 0),)
+        # a single motion is rescaled in Python instead
+        variations = source.ordinary // 2 if lanes and form == "variational" else 0
+        sizes = source.sizes(tableau, compensated=compensated, variations=variations)
         text = program(
-            source, tableau, lanes=vectors, compensated=compensated, changes=changes
-        )  # fmt: skip
+            source, tableau, lanes=vectors, compensated=compensated, variations=variations
+        )
         self.library = build(text, reproducible=reproducible)
         library = ctypes.CDLL(str(self.library.path))
+        check(library, sizes)
         self.run = library.run
-        self.run.restype, self.run.argtypes = None, [ctypes.POINTER(_Task)]
-        self.once = None if lanes else library.once
-        state, angles = (source.state,), (len(source.angles),)
-        fields: list[tuple[str, type, tuple[int, ...]]] = [
-            ("t", float, ()), ("t_low", float, ()), ("z", float, state),
-            ("low", float, (compensated * source.state,)), ("turns", float, angles),
-            ("first", float, (tableau.is_fsal * source.state,)), ("scale", float, scale),
-            *((name, float, ()) for name in ("h", "previous", "steps", "rejected")),
-            *((name, float, ()) for name in ("trials", "rounds", "cuts", "t_end", "shortest")),
-            ("params", float, (source.parameters,)),
-            ("status", np.int64, ()), ("rows", np.int64, ()),
-            ("occurred", np.int64, (MOST_EVENTS,)),
-        ]  # fmt: skip
-        self.trajectory = np.dtype(fields)
-        self.row = np.dtype([
-            ("t", float), ("z", float, state), ("turns", float, angles),
-            ("scale", float, scale),
-        ])  # fmt: skip
-        self.slopes = tableau.stages - tableau.is_fsal
+        self.run.restype, self.run.argtypes = None, [ctypes.POINTER(Task)]
+        self.single = None if lanes else library.single
+        self.trajectory, self.row = record("Trajectory", sizes), record("Row", sizes)
+        self.evaluations_per_step = tableau.stages - tableau.is_fsal
         self.is_explicit = tableau.is_explicit
-        if library.trajectory_size() != self.trajectory.itemsize:
-            raise AssertionError("C and Python disagree about the layout of a trajectory")
 
 
 #: Kernels that this process has loaded.
@@ -135,46 +94,53 @@ kernel = cache(Kernel)
 
 
 class Batch:
-    """Motions in memory, and what is asked of them.
+    """Motions in memory, and the task of integrating them.
 
     Parameters
     ----------
     kernel : Kernel
-        What runs them.
+        The compiled program.
     problem : Problem
-        What is asked of all of them.
+        The problem that all motions share.
     form : Form
         The problem's form, with parameters for each motion if they differ.
     starts : ndarray of shape (n, state)
-        Ordinary states at the beginning.
+        Ordinary initial states.
     capacity : int
         How many rows each motion may write: its samples, or the ends of its steps.
     occurrences : int
         How many rows each motion may write for each event.
     pauses : bool
-        Whether a motion waits when its rows are full.
+        Whether a motion pauses when its rows are full.
 
     Attributes
     ----------
     motions : structured ndarray of shape (n,)
-        As in ``Trajectory``.
+        Type ``Trajectory`` in ``c/layout.h``.
     rows, event_rows : structured ndarray of shape (n, capacity), (n, events, occurrences)
-        What they have written.
+        The samples and events written.
     stop : ndarray of shape (1,)
-        Anything but 0 makes all motions wait.
+        Any value but 0 makes `run` return.
     task : ctypes structure
-        What C is given.
+        The argument of the compiled program.
     """
 
     def __init__(
-        self, kernel: Kernel, problem: Problem, form: Form, starts: Array,
-        *, capacity: int, occurrences: int, pauses: bool,
-    ) -> None:  # fmt: skip
+        self,
+        kernel: Kernel,
+        problem: Problem,
+        form: Form,
+        starts: Array,
+        *,
+        capacity: int,
+        occurrences: int,
+        pauses: bool,
+    ) -> None:
         n, events = len(starts), cast("list[Event]", problem.events)
         self._kernel, self.form = kernel, form
         self.motions = np.zeros(n, kernel.trajectory)
         self.motions["t"], self.motions["t_end"] = problem.span
-        self.motions["shortest"] = SHORTEST * np.spacing(np.abs(problem.span).max())
+        self.motions["min_h"] = SHORTEST * np.spacing(np.abs(problem.span).max())
         self.motions["z"], self.motions["turns"] = form.from_ordinary_many(problem.span[0], starts)
         for k, parameter in enumerate(form.params):
             self.motions["params"][:, k] = parameter
@@ -182,52 +148,61 @@ class Batch:
         self.event_rows = np.zeros((n, len(events), occurrences), kernel.row)
         self.stop = np.zeros(1, np.int64)
         self._times = np.empty(0) if problem.samples is None else problem.samples
-        self._events = np.array([_event(form, crossing, pauses) for crossing in events], EVENT)
-        self.task = _Task(
-            count=n, trajectories=self.motions.ctypes.data,
-            rtol=problem.rtol, atol=float(problem.atol), fixed=problem.h or 0.0,
-            most_steps=problem.max_steps,
+        self._events = np.array([_event(form, event, pauses) for event in events], EVENT)
+        self.task = Task(
+            count=n,
+            trajectories=self.motions.ctypes.data,
+            rtol=problem.rtol,
+            atol=float(problem.atol),
+            fixed_h=problem.h or 0.0,
+            max_steps=problem.max_steps,
             samples=-1 if problem.samples is None else len(problem.samples),
-            times=self._times.ctypes.data, capacity=capacity, rows=self.rows.ctypes.data,
-            events=len(events), event=self._events.ctypes.data, occurrences=occurrences,
-            event_rows=self.event_rows.ctypes.data, pauses=pauses, stop=self.stop.ctypes.data,
-        )  # fmt: skip
+            times=self._times.ctypes.data,
+            capacity=capacity,
+            rows=self.rows.ctypes.data,
+            event_count=len(events),
+            events=self._events.ctypes.data,
+            event_capacity=occurrences,
+            event_rows=self.event_rows.ctypes.data,
+            pauses=pauses,
+            stop=self.stop.ctypes.data,
+        )
 
-    def restart(self, patience: float = 0.0) -> None:
-        """Let the next `run` begin with the first motion; it returns after `patience` seconds."""
-        self.task.next, self.task.patience = 0, patience
+    def restart(self, time_limit: float = 0.0) -> None:
+        """Let the next `run` start with the first motion, and return after `time_limit` seconds."""
+        self.task.next, self.task.time_limit = 0, time_limit
 
     def run(self) -> None:
-        """Go on with motions that are not done; several threads may do so at once."""
+        """Continue unfinished motions; several threads may do so at once."""
         self._kernel.run(self.task)
 
     @property
-    def keeps_extremes(self) -> NDArray[np.bool_]:
-        """Of which events only two rows are kept, of the smallest and the largest value."""
-        return self._events["keeps_extremes"] != 0
+    def extremes_only(self) -> NDArray[np.bool_]:
+        """Which events keep two rows only, of the smallest and the largest value."""
+        return self._events["extremes_only"] != 0
 
     @property
     def nfev(self) -> NDArray[np.int64]:
         """Evaluations of the right-hand side by each motion."""
-        rounds = self.motions["rounds"].astype(np.int64)
-        first = 1 if self.task.fixed else 2  # the slope at the beginning, and one to choose h
-        return rounds * self._kernel.slopes + self.njev + first * (rounds > 0)
+        iterations = self.motions["iterations"].astype(np.int64)
+        first = 1 if self.task.fixed_h else 2  # at the start, and to choose the first step
+        stages = iterations * self._kernel.evaluations_per_step
+        return stages + self.njev + first * (iterations > 0)
 
     @property
     def njev(self) -> NDArray[np.int64]:
-        """Evaluations of the Jacobian; with each of them begins a guess, the slope there."""
-        return self.motions["trials"].astype(np.int64) * (not self._kernel.is_explicit)
+        """Evaluations of the Jacobian: one for every step of an implicit method."""
+        return self.motions["attempts"].astype(np.int64) * (not self._kernel.is_explicit)
 
 
-def _event(form: Form, crossing: Event, pauses: bool) -> tuple[float | int, ...]:
+def _event(form: Form, event: Event, pauses: bool) -> tuple[float | int, ...]:
+    """An event as a record of type ``Event`` in ``c/layout.h``."""
     # a motion that pauses has room for every occurrence
-    extremes = isinstance(crossing, Extremum) and not pauses
-    watched = form.locate(crossing.name)
-    kept = form.locate(crossing.coordinate) if isinstance(crossing, Extremum) else (False, 0)
-    assert watched is not None
-    assert kept is not None
-    value = crossing.value
-    return (
-        value, np.sin(value), np.cos(value), *map(int, watched), crossing.direction,
-        int(crossing.terminal), int(extremes), *map(int, kept),
-    )  # fmt: skip
+    extremes_only = isinstance(event, Extremum) and not pauses
+    component = form.locate(event.name)
+    extremum = form.locate(event.coordinate) if isinstance(event, Extremum) else (False, 0)
+    assert component is not None
+    assert extremum is not None
+    angle = event.value, np.sin(event.value), np.cos(event.value)
+    flags = event.direction, int(event.terminal), int(extremes_only)
+    return (*angle, *map(int, component), *flags, *map(int, extremum))

@@ -1,21 +1,18 @@
 """The C program that integrates one form of a module's equations with one method.
 
-It is put together from the module's generated header, the method's stages written
-out from its tableau, and the hand-written files in ``solvers/c``.
+It consists of the module's generated header, the method's stages written out from its
+tableau, and the handwritten files in the folder ``c``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 
+from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
 from solvers.integration.problem import SHORTEST
 from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.tableau import Tableau
-
-#: Folder of the handwritten C files.
-SOURCES = files(__package__) / "c"
 
 PROGRAM = """\
 #include <math.h>
@@ -29,34 +26,34 @@ PROGRAM = """\
 {header}
 #define RHS {rhs}
 #define JACOBIAN {jacobian}
-enum {{ STATE = {state}, PARAMETERS = {parameters}, ANGLES = {angles}, CHANGES = {changes} }};
+{layout}
 static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 #define COMPENSATED {compensated}
 {method}
 {step_h}
 {motion_h}
-{errand_h}
+{within_step_h}
 {integrator_c}
-{once}"""
+{single}"""
 
-#: Between ordinary states and those of the form, for single motions.
-ONCE = """\
-enum {{ ORDINARY = {ordinary}, SHORTEST = {shortest} }};
+#: Conversion between ordinary states and those of the form, for single motions.
+SINGLE = """\
+enum {{ ORDINARY = {ordinary}, MIN_H_ULPS = {shortest} }};
 
-static void enter(
+static void from_ordinary(
     double t, const double *y, double *z, double *turns, const double *params)
 {{
-{enter}
+{from_ordinary}
     (void)t; (void)turns; (void)params;
 }}
 
-static void leave(
+static void to_ordinary(
     double t, const double *z, const double *turns, double *y, const double *params)
 {{
-{leave}
+{to_ordinary}
     (void)t; (void)turns; (void)params;
 }}
-{once_h}
+{single_h}
 """
 
 METHOD = """\
@@ -66,17 +63,17 @@ enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
 
 {solution}
 
-static inline real increment(real h, real (*k)[STATE], int n)
+static inline real increment(real h, real (*k)[DIM], int n)
 {{
     return {increment};
 }}
 
-static inline real estimate(real h, real (*k)[STATE], int n)
+static inline real estimate(real h, real (*k)[DIM], int n)
 {{
     return {estimate};
 }}
 
-static inline real second_estimate(real h, real (*k)[STATE], int n)
+static inline real second_estimate(real h, real (*k)[DIM], int n)
 {{
     return {second_estimate};
 }}
@@ -84,11 +81,11 @@ static inline real second_estimate(real h, real (*k)[STATE], int n)
 
 EXPLICIT = """\
 static inline real stages(
-    real t, const real *z, real h, real (*k)[STATE], const real *params)
+    real t, const real *z, real h, real (*k)[DIM], const real *params)
 {{
-    real place[STATE];
-{rows}    (void)t; (void)z; (void)h; (void)place; (void)k; (void)params;
-    return every(1.0);
+    real stage[DIM];
+{rows}    (void)t; (void)z; (void)h; (void)stage; (void)k; (void)params;
+    return splat(1.0);
 }}"""
 
 IMPLICIT = """\
@@ -100,10 +97,10 @@ static const double C[STAGES] = {{{nodes}}};
 {newton_h}"""
 
 STAGE = """\
-    for (int n = 0; n < STATE; n++) {{
-        place[n] = z[n] + {sum};
+    for (int n = 0; n < DIM; n++) {{
+        stage[n] = z[n] + {sum};
     }}
-    RHS(t + h*{c}, place, params, k[{i}]);
+    RHS(t + h*{c}, stage, params, k[{i}]);
 """
 
 
@@ -116,19 +113,17 @@ class Equations:
     header : str
         Text of the generated header.
     rhs, jacobian : str
-        The right-hand side in it and its Jacobian, which is not there in every form.
-    state, parameters : int
-        How many numbers it takes.
-    ordinary : int
-        How many numbers an ordinary state (q, q̇) has.
+        Names of the right-hand side and its Jacobian, which does not exist in every form.
+    state, parameters, ordinary : int
+        Number of components of the form's state, of parameters, and of an ordinary state.
     angles : sequence of pairs of int
-        For every angle that is known by sine and cosine: where in the state its sine
-        is, which its cosine follows, and where its velocity is.
-    enter, leave : sequence of str
+        For every angle known by sine and cosine: the index of its sine, which its cosine
+        follows, and of its velocity.
+    from_ordinary, to_ordinary : sequence of str
         Statements that compute the state z of this form and the turns of its angles from
         the ordinary state y, and y from these.
     vectorises : bool
-        Whether the right-hand side calls no function, so that vectors may be its numbers.
+        Whether the right-hand side calls no function, so that its numbers may be vectors.
     """
 
     header: str
@@ -138,66 +133,75 @@ class Equations:
     parameters: int
     ordinary: int
     angles: Sequence[tuple[int, int]]
-    enter: Sequence[str]
-    leave: Sequence[str]
+    from_ordinary: Sequence[str]
+    to_ordinary: Sequence[str]
     vectorises: bool
+
+    def sizes(self, tableau: Tableau, *, compensated: bool, variations: int) -> dict[str, int]:
+        """Numbers of components of the arrays in ``layout.h``."""
+        return {
+            "DIM": self.state,
+            "LOW_DIM": compensated * self.state,
+            "FSAL_DIM": tableau.is_fsal * self.state,
+            "ANGLES": len(self.angles),
+            "PARAMETERS": self.parameters,
+            "VARIATIONS": variations,
+            "SCALES": int(variations > 0),
+            "MAX_EVENTS": MAX_EVENTS,
+        }
 
 
 def program(
-    equations: Equations, tableau: Tableau, *, lanes: bool, compensated: bool, changes: int = 0
+    equations: Equations, tableau: Tableau, *, lanes: bool, compensated: bool, variations: int = 0
 ) -> str:
-    """The text of the program.
-
-    Its functions are ``run``, ``trajectory_size`` and, without lanes, ``once``.
+    """The text of the program, with the functions ``run`` and, without lanes, ``single``.
 
     Parameters
     ----------
     equations : Equations
-        What is integrated.
+        The equations of motion.
     tableau : Tableau
         The method.
     lanes : bool
-        Whether as many motions are integrated at once as fill the processor's vectors;
-        explicit methods only.
+        Whether the processor's vectors integrate many motions at once; explicit methods only.
     compensated : bool
         Whether rounding errors of the state are carried along, as those of time are.
-    changes : int
-        How many numbers at the end of the state are a small change, out of which powers of
+    variations : int
+        Number of components at the end of the state that are a variation, out of which powers of
         two are taken where it is large.
 
     Returns
     -------
     str
-        C99, complete, as `solvers.integration.compiled.compiler.build` takes it.
+        C99, complete, for `solvers.integration.compiled.compiler.build`.
     """
     sines, rates = ([pair[part] for pair in equations.angles] or [0] for part in (0, 1))
-    texts = {
-        name.replace(".", "_"): (SOURCES / name).read_text(encoding="utf-8")
-        for name in ("lanes.h", "step.h", "motion.h", "errand.h", "integrator.c", "once.h")
-    }
-    once = ONCE.format(
+    sizes = equations.sizes(tableau, compensated=compensated, variations=variations)
+    single = SINGLE.format(
         ordinary=equations.ordinary,
         shortest=SHORTEST,
-        enter="\n".join(f"    {line}" for line in equations.enter),
-        leave="\n".join(f"    {line}" for line in equations.leave),
-        once_h=texts.pop("once_h"),
+        from_ordinary="\n".join(f"    {line}" for line in equations.from_ordinary),
+        to_ordinary="\n".join(f"    {line}" for line in equations.to_ordinary),
+        single_h=_source("single.h"),
     )
+    files = ("lanes.h", "step.h", "motion.h", "within_step.h", "integrator.c")
     return PROGRAM.format(
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
         header=equations.header,
         rhs=equations.rhs,
         jacobian=equations.jacobian,
-        state=equations.state,
-        parameters=equations.parameters,
-        angles=len(equations.angles),
-        changes=changes,
+        layout=declarations(sizes),
         sine=", ".join(map(str, sines)),
         rate=", ".join(map(str, rates)),
         compensated=int(compensated),
         method=_method(tableau),
-        once="" if lanes else once,
-        **texts,
+        single="" if lanes else single,
+        **{name.replace(".", "_"): _source(name) for name in files},
     )
+
+
+def _source(name: str) -> str:
+    return (SOURCES / name).read_text(encoding="utf-8")
 
 
 def _explicit(tableau: Tableau) -> str:
@@ -213,7 +217,7 @@ def _implicit(tableau: Tableau) -> str:
     return IMPLICIT.format(
         rows=",\n".join(f"    {{{', '.join(map(_real, row))}}}" for row in tableau.A),
         nodes=", ".join(map(_real, tableau.c)),
-        newton_h=(SOURCES / "newton.h").read_text(encoding="utf-8"),
+        newton_h=_source("newton.h"),
     )
 
 
@@ -233,7 +237,7 @@ def _method(tableau: Tableau) -> str:
 
 
 def _sum(weights: Sequence[Number]) -> str:
-    """Σ h w k: all but the last product are ready before the last slope is."""
+    """Σ h w k, with all products but the last one independent of the last stage."""
     terms = [f"(h*{_real(w)})*k[{j}][n]" for j, w in enumerate(weights) if w != 0]
     return "\n            + ".join(terms) or "0.0*h"
 

@@ -29,9 +29,9 @@ class NativeRhs:
     function : ctypes function
         Takes a float and three pointers, such as ``array.ctypes.data``.
     address : int
-        Where it is, for numba, Cython or another library.
+        Address of the function, for numba, Cython or another library.
     library : Library
-        The file it came from; it stays loaded as long as `function` lives.
+        The file, which stays loaded as long as `function` exists.
     """
 
     function: Any
@@ -52,33 +52,42 @@ def equations(module: GeneratedModule, form: str) -> Equations:
     Returns
     -------
     Equations
-        The whole header's text, and what of it belongs to this form.
+        The header's text, and the names and sizes of this form.
 
     Raises
     ------
     ValueError
         When there is no header beside the module, or no such form.
     """
-    place = header(module)
-    if place is None:
+    path = header(module)
+    if path is None:
         name = module.SYSTEM
         raise ValueError(f"{name}.h is missing: write it with holonomic derive {name}")
-    text = place.read_text(encoding="utf-8")
-    rhs, jacobian = (f"{place.stem}_{named(stem, form)}" for stem in ("rhs", "jacobian"))
-    described = Form(module, form, (0.0,) * len(module.PARAMETERS))
-    enter = [f"z[{i}] = y[{k}];" for k, i in described.shared_columns]
-    leave = [f"y[{k}] = z[{i}];" for k, i in described.shared_columns]
-    for a, (k, i) in enumerate(described.angle_columns):
+    text = path.read_text(encoding="utf-8")
+    rhs, jacobian = (f"{path.stem}_{named(stem, form)}" for stem in ("rhs", "jacobian"))
+    layout = Form(module, form, (0.0,) * len(module.PARAMETERS))
+    from_ordinary = [f"z[{i}] = y[{k}];" for k, i in layout.shared_columns]
+    to_ordinary = [f"y[{k}] = z[{i}];" for k, i in layout.shared_columns]
+    for a, (k, i) in enumerate(layout.angle_columns):
         wrapped = f"atan2(z[{i}], z[{i + 1}])"
-        enter.append(f"z[{i}] = sin(y[{k}]); z[{i + 1}] = cos(y[{k}]);")
-        enter.append(f"turns[{a}] = nearest_whole((y[{k}] - {wrapped})*(0.5/PI));")
-        leave.append(f"y[{k}] = {wrapped} + 2*PI*turns[{a}];")
+        from_ordinary.append(f"z[{i}] = sin(y[{k}]); z[{i + 1}] = cos(y[{k}]);")
+        from_ordinary.append(f"turns[{a}] = lane_round((y[{k}] - {wrapped})*(0.5/PI));")
+        to_ordinary.append(f"y[{k}] = {wrapped} + 2*PI*turns[{a}];")
     if form == "hamiltonian":
-        enter = [f"{place.stem}_hamiltonian_state(t, y, params, z);"]
-        leave = [f"{place.stem}_lagrangian_state(t, z, params, y);"]
-    sizes = len(described.state), len(module.PARAMETERS), len(described.ordinary)
-    vectorises = named("rhs", form) not in module.CALLS_FUNCTIONS
-    return Equations(text, rhs, jacobian, *sizes, described.angles, enter, leave, vectorises)
+        from_ordinary = [f"{path.stem}_hamiltonian_state(t, y, params, z);"]
+        to_ordinary = [f"{path.stem}_lagrangian_state(t, z, params, y);"]
+    return Equations(
+        text,
+        rhs,
+        jacobian,
+        state=len(layout.state),
+        parameters=len(module.PARAMETERS),
+        ordinary=len(layout.ordinary),
+        angles=layout.angles,
+        from_ordinary=from_ordinary,
+        to_ordinary=to_ordinary,
+        vectorises=named("rhs", form) not in module.CALLS_FUNCTIONS,
+    )
 
 
 def native_rhs(
@@ -93,12 +102,12 @@ def native_rhs(
     form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
         Which right-hand side.
     reproducible : bool, optional
-        Whether every compiler is to give the same bits, at some cost of speed.
+        Whether every compiler must give the same bits, at some cost of speed.
 
     Returns
     -------
     NativeRhs
-        A function of the time in s, the state of this form, room for its rate of change, and the
+        A function of the time in s, the state of this form, the array for its derivative, and the
         parameters in the order of ``module.PARAMETERS``.
 
     Raises

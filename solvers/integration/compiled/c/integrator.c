@@ -1,335 +1,332 @@
 /* Motions, as many at once as there are lanes, each with its own step size.
 
-   Every turn of the loop makes one step in every lane from the place where the lane's motion
-   stands: to advance it, or on an errand within a step that was accepted. A lane whose motion ends
-   takes the next one. What a lane computes depends on nothing but its own motion. */
+   Every iteration of run() makes one step in every lane, from the state of the lane's motion:
+   either to advance the motion, or within an accepted step. A lane whose motion ends loads the next
+   one. The result of a motion depends on no other motion. */
 
-enum { MOST_CUTS = 25, TURNS_BETWEEN_LOOKS = 64 };
+enum { MAX_REDUCTIONS = 25, STEPS_BETWEEN_CHECKS = 64 };
 
 typedef struct {
     Task *task;
     Motion motion;
-    Place end;
-    real trial;                             /* length of the step that is made */
-    real before[MOST_EVENTS], after[MOST_EVENTS];   /* values of the events, here and at the end */
-    real due;                               /* time of the next sample, NaN if there is none */
-    mask advancing, fresh, taken;           /* fresh motions begin; those taken were put down before */
-    Errand errands[LANES];
+    State end;
+    real h;                                     /* length of the step */
+    real before[MAX_EVENTS], after[MAX_EVENTS]; /* event values at its start and end */
+    real next_sample;                           /* time of the next sample, or NaN */
+    mask advancing, starting, loaded;           /* starting motions are new; loaded ones resume */
+    WithinStep within[LANES];
 } Lanes;
 
-/* Give the lane the next motion that waits, if there is one. */
-static void take_next(Lanes *lanes, int lane)
+/* Load the next unfinished motion into a lane, if there is one. */
+static void load_motion(Lanes *lanes, int lane)
 {
     Task *task = lanes->task;
-    Errand *errand = &lanes->errands[lane];
-    int64_t which;
-    errand->mode = IDLE;
-    while ((which = __atomic_fetch_add(&task->next, 1, __ATOMIC_RELAXED)) < task->count) {
-        Trajectory *trajectory = &task->trajectories[which];
+    WithinStep *within = &lanes->within[lane];
+    int64_t motion;
+    within->mode = IDLE;
+    while ((motion = __atomic_fetch_add(&task->next, 1, __ATOMIC_RELAXED)) < task->count) {
+        Trajectory *trajectory = &task->trajectories[motion];
         if (trajectory->status <= RUNNING) {
-            errand->mode = ADVANCE;
-            errand->trajectory = trajectory;
-            to_lane(&lanes->motion, MOTION, lane, trajectory->numbers);
-            errand->resolution = 0.4*NUMBER(lanes->motion.shortest, lane);
-            errand->stopping = -1;
-            WORD(lanes->fresh, lane) = trajectory->status == WAITING ? -1 : 0;
-            WORD(lanes->taken, lane) = -1;
+            within->mode = ADVANCE;
+            within->trajectory = trajectory;
+            write_lane(&lanes->motion, MOTION_SIZE, lane, trajectory->motion);
+            within->resolution = 0.4*LANE(lanes->motion.min_h, lane);
+            within->terminal = -1;
+            MASK_LANE(lanes->starting, lane) = trajectory->status == WAITING ? -1 : 0;
+            MASK_LANE(lanes->loaded, lane) = -1;
             return;
         }
     }
 }
 
-/* Note for all lanes at once what a lane's errand says. */
-static void note(Lanes *lanes, int lane)
+/* Copy a lane's mode and next sample into the vectors of all lanes. */
+static void update_lane(Lanes *lanes, int lane)
 {
     const Task *task = lanes->task;
-    const Errand *errand = &lanes->errands[lane];
-    const int is_due = errand->mode == ADVANCE && errand->trajectory->rows < task->samples;
-    NUMBER(lanes->due, lane) = is_due ? task->times[errand->trajectory->rows] : NAN;
-    WORD(lanes->advancing, lane) = errand->mode == ADVANCE ? -1 : 0;
+    const WithinStep *within = &lanes->within[lane];
+    const int has_sample = within->mode == ADVANCE && within->trajectory->rows < task->samples;
+    LANE(lanes->next_sample, lane) = has_sample ? task->times[within->trajectory->rows] : NAN;
+    MASK_LANE(lanes->advancing, lane) = within->mode == ADVANCE ? -1 : 0;
 }
 
-/* Values of the events where motions are that lanes have just taken. */
-static void watch(Lanes *lanes)
+/* Event values of the motions just loaded. */
+static void evaluate_events(Lanes *lanes)
 {
     const Task *task = lanes->task;
-    for (int e = 0; e < task->events; e++) {
-        const real value = event_value(&task->event[e], &lanes->motion.place);
-        lanes->before[e] = chosen(lanes->taken, value, lanes->before[e]);
+    for (int e = 0; e < task->event_count; e++) {
+        const real value = event_value(&task->events[e], &lanes->motion.state);
+        lanes->before[e] = select(lanes->loaded, value, lanes->before[e]);
     }
-    lanes->taken = (mask){0};
+    lanes->loaded = (mask){0};
 }
 
-/* Slopes and first steps of motions that have just begun. */
-static void begin(Lanes *lanes)
+/* Derivatives and first step sizes of the starting motions. */
+static void start_motions(Lanes *lanes)
 {
     const Task *task = lanes->task;
     Motion *motion = &lanes->motion;
-    Place *place = &motion->place;
-    real slope[STATE];
-    RHS(place->t, place->z, motion->params, slope);
-    for (int n = 0; n < STATE && IS_FSAL; n++) {
-        place->first[n] = chosen(lanes->fresh, slope[n], place->first[n]);
+    State *state = &motion->state;
+    real derivative[DIM];
+    RHS(state->t, state->z, motion->params, derivative);
+    for (int n = 0; n < DIM && IS_FSAL; n++) {
+        state->derivative[n] = select(lanes->starting, derivative[n], state->derivative[n]);
     }
-    const real duration = motion->t_end - place->t;
-    real h = every(task->fixed);
-    if (!task->fixed) {
-        h = first_step(place, slope, motion->params, duration, lanes->fresh, task->rtol,
-                       task->atol);
-        h = larger(h, 2.0*motion->shortest);
+    const real duration = motion->t_end - state->t;
+    real h = splat(task->fixed_h);
+    if (!task->fixed_h) {
+        h = initial_step(state, derivative, motion->params, duration, lanes->starting, task->rtol,
+                         task->atol);
+        h = lane_fmax(h, 2.0*motion->min_h);
     }
-    motion->h = chosen(lanes->fresh, signed_as(h, duration), motion->h);
+    motion->h = select(lanes->starting, lane_copysign(h, duration), motion->h);
     for (int lane = 0; lane < LANES; lane++) {
-        Errand *errand = &lanes->errands[lane];
-        const int keeps = task->samples < 0
-            || (task->samples > 0 && task->times[0] == NUMBER(place->t, lane));
-        if (WORD(lanes->fresh, lane) && keeps) {
-            double start[PLACE];
-            from_lane(place, PLACE, lane, start);
-            keep_row(task, errand->trajectory, start);
+        WithinStep *within = &lanes->within[lane];
+        const int is_sample = task->samples < 0
+            || (task->samples > 0 && task->times[0] == LANE(state->t, lane));
+        if (MASK_LANE(lanes->starting, lane) && is_sample) {
+            double start[STATE_SIZE];
+            read_lane(state, STATE_SIZE, lane, start);
+            append_row(task, within->trajectory, start);
         }
     }
-    real nothing = every(0.0);
-    for (int n = 0; n < STATE; n++) {
-        nothing += (slope[n] - slope[n]) + (place->z[n] - place->z[n]);
+    real check = splat(0.0);
+    for (int n = 0; n < DIM; n++) {
+        check += (derivative[n] - derivative[n]) + (state->z[n] - state->z[n]);
     }
-    /* a motion without a slope has used up all its tries */
-    const mask hopeless = lanes->fresh & ~below(size(nothing), every(1.0));
-    motion->cuts = chosen(hopeless, every(MOST_CUTS + 1), motion->cuts);
+    /* a motion without a finite derivative cannot start */
+    const mask not_finite = lanes->starting & ~less_than(lane_fabs(check), splat(1.0));
+    motion->reductions = select(not_finite, splat(MAX_REDUCTIONS + 1), motion->reductions);
 }
 
-/* Decide over the step that a lane has made; return whether its motion moves to its end. */
-static int attend(Lanes *lanes, int lane, int kept, int broken)
+/* Evaluate a lane's step; return whether its motion moves to the end of the step. */
+static int process_step(Lanes *lanes, int lane, int accepted, int failed)
 {
     const Task *task = lanes->task;
     Motion *motion = &lanes->motion;
-    Errand *errand = &lanes->errands[lane];
-    if (errand->mode == IDLE) {
+    WithinStep *within = &lanes->within[lane];
+    if (within->mode == IDLE) {
         return 0;
     }
-    double end[PLACE];
-    from_lane(&lanes->end, PLACE, lane, end);
-    const double length = NUMBER(lanes->trial, lane);
-    if (broken) {
-        if (errand->mode != ADVANCE) {
-            undo_errand(errand);
+    double end[STATE_SIZE];
+    read_lane(&lanes->end, STATE_SIZE, lane, end);
+    const double h = LANE(lanes->h, lane);
+    if (failed) {
+        if (within->mode != ADVANCE) {
+            discard_step(within);
         }
-        NUMBER(motion->h, lane) = (errand->mode == ADVANCE ? length : errand->whole)/4;
-        NUMBER(motion->cuts, lane) += 1;
-        errand->mode = ADVANCE;
+        LANE(motion->h, lane) = (within->mode == ADVANCE ? h : within->full_h)/4;
+        LANE(motion->reductions, lane) += 1;
+        within->mode = ADVANCE;
         return 0;
     }
-    if (errand->mode == ADVANCE) {
-        if (!kept) {
+    if (within->mode == ADVANCE) {
+        if (!accepted) {
             return 0;
         }
-        int waiting = 0;
-        for (int e = 0; e < task->events; e++) {
-            const mask passed = has_passed(&task->event[e], lanes->before[e], lanes->after[e]);
-            waiting |= (int)(WORD(passed, lane) & 1) << e;
-            errand->before[e] = NUMBER(lanes->before[e], lane);
-            errand->after[e] = NUMBER(lanes->after[e], lane);
+        int pending = 0;
+        for (int e = 0; e < task->event_count; e++) {
+            const mask crossed = has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
+            pending |= (int)(MASK_LANE(crossed, lane) & 1) << e;
+            within->before[e] = LANE(lanes->before[e], lane);
+            within->after[e] = LANE(lanes->after[e], lane);
         }
-        begin_errand(errand, length, end, waiting);
+        begin_within_step(within, h, end, pending);
     } else {
-        const int e = errand->event;
-        take_try(task, errand, length, end, e < 0 ? 0 : NUMBER(lanes->after[e], lane));
+        const int e = within->event;
+        use_substep(task, within, h, end, e < 0 ? 0 : LANE(lanes->after[e], lane));
     }
-    const double next = next_length(task, errand, NUMBER(motion->place.t, lane),
-                                    NUMBER(motion->place.t_low, lane));
+    const double next = next_h(task, within, LANE(motion->state.t, lane),
+                               LANE(motion->state.t_low, lane));
     if (next != 0) {
-        NUMBER(lanes->trial, lane) = next;
+        LANE(lanes->h, lane) = next;
         return 0;
     }
-    errand->mode = ADVANCE;
-    to_lane(&lanes->end, PLACE, lane, errand->end);
-    for (int e = 0; e < task->events; e++) {
-        NUMBER(lanes->after[e], lane) = errand->after[e];
+    within->mode = ADVANCE;
+    write_lane(&lanes->end, STATE_SIZE, lane, within->end);
+    for (int e = 0; e < task->event_count; e++) {
+        LANE(lanes->after[e], lane) = within->after[e];
     }
     return 1;
 }
 
-/* How a lane's motion stands after the step: RUNNING if it is to go on. */
+/* Status of a lane's motion after a step: RUNNING if it continues. */
 static enum Status status(const Lanes *lanes, int lane)
 {
     const Task *task = lanes->task;
     const Motion *motion = &lanes->motion;
-    const Errand *errand = &lanes->errands[lane];
-    const double left = fabs(NUMBER(motion->t_end, lane) - NUMBER(motion->place.t, lane));
-    const double h = fabs(NUMBER(motion->h, lane));
-    if (errand->stopping >= 0) {
+    const WithinStep *within = &lanes->within[lane];
+    const double left = fabs(LANE(motion->t_end, lane) - LANE(motion->state.t, lane));
+    const double h = fabs(LANE(motion->h, lane));
+    if (within->terminal >= 0) {
         return EVENT;
     }
     if (left == 0) {
         return FINISHED;
     }
-    if (NUMBER(motion->cuts, lane) > (task->fixed ? 0 : MOST_CUTS)) {
-        return IS_EXPLICIT || NUMBER(motion->cuts, lane) > MOST_CUTS ? NOT_FINITE : NO_CONVERGENCE;
+    const double reductions = LANE(motion->reductions, lane);
+    if (reductions > (task->fixed_h ? 0 : MAX_REDUCTIONS)) {
+        return IS_EXPLICIT || reductions > MAX_REDUCTIONS ? NOT_FINITE : NO_CONVERGENCE;
     }
-    if (NUMBER(motion->steps, lane) >= (double)task->most_steps) {
+    if (LANE(motion->steps, lane) >= (double)task->max_steps) {
         return STEP_LIMIT;
     }
-    return h < NUMBER(motion->shortest, lane) && h < left ? STEP_TOO_SMALL : RUNNING;
+    return h < LANE(motion->min_h, lane) && h < left ? STEP_TOO_SMALL : RUNNING;
 }
 
-/* Whether there is no room for what the next step may give. */
+/* Whether the rows have no room for the next step. */
 static int is_full(const Task *task, const Trajectory *trajectory)
 {
     int full = task->samples < 0 && trajectory->rows >= task->capacity;
-    for (int e = 0; e < task->events; e++) {
-        full |= trajectory->occurred[e] >= task->occurrences;
+    for (int e = 0; e < task->event_count; e++) {
+        full |= trajectory->occurred[e] >= task->event_capacity;
     }
     return full && task->pauses;
 }
 
-/* After its step a lane's motion goes on, or is put down and the lane takes the next; returns
-   whether there is none. */
-static int conclude(Lanes *lanes, int lane, int leaving)
+/* After a step, store a lane's motion if it ends or pauses, and load the next one; returns whether
+   the lane becomes idle. */
+static int finish_step(Lanes *lanes, int lane, int returning)
 {
-    Errand *errand = &lanes->errands[lane];
-    if (errand->mode == ADVANCE) {
-        Trajectory *trajectory = errand->trajectory;
+    WithinStep *within = &lanes->within[lane];
+    if (within->mode == ADVANCE) {
+        Trajectory *trajectory = within->trajectory;
         const enum Status now = status(lanes, lane);
-        if (now != RUNNING || leaving || is_full(lanes->task, trajectory)) {
-            from_lane(&lanes->motion, MOTION, lane, trajectory->numbers);
+        if (now != RUNNING || returning || is_full(lanes->task, trajectory)) {
+            read_lane(&lanes->motion, MOTION_SIZE, lane, trajectory->motion);
             trajectory->status = now;
-            errand->mode = IDLE;
-            if (!leaving) {
-                take_next(lanes, lane);
+            within->mode = IDLE;
+            if (!returning) {
+                load_motion(lanes, lane);
             }
-            note(lanes, lane);
-            return errand->mode == IDLE;
+            update_lane(lanes, lane);
+            return within->mode == IDLE;
         }
     }
-    note(lanes, lane);
+    update_lane(lanes, lane);
     return 0;
 }
 
-/* One step in every lane; returns the lanes that must be looked at one by one. */
-static __attribute__((noinline)) mask advance(Lanes *lanes, mask *kept, mask *broken)
+/* One step in every lane; returns the lanes that need to be processed one by one. */
+static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask *failed)
 {
     const Task *task = lanes->task;
     Motion *motion = &lanes->motion;
-    Place *place = &motion->place, *end = &lanes->end;
+    State *state = &motion->state, *end = &lanes->end;
     const mask advancing = lanes->advancing;
-    const real left = (motion->t_end - place->t) - place->t_low;
-    const mask last = advancing & ~below(size(motion->h)*(1 + 1e-9), size(left));
-    lanes->trial = chosen(advancing, chosen(last, left, motion->h), lanes->trial);
-    real error[2][STATE];
-    motion->rounds += step(place, lanes->trial, motion->params, !task->fixed, end, error);
-    end->t = chosen(last, motion->t_end, end->t);
-    end->t_low = chosen(last, every(0.0), end->t_low);
-    real nothing = every(0.0);
-    for (int n = 0; n < STATE; n++) {
-        nothing += end->z[n] - end->z[n];
+    const real left = (motion->t_end - state->t) - state->t_low;
+    const mask last = advancing & ~less_than(lane_fabs(motion->h)*(1 + 1e-9), lane_fabs(left));
+    lanes->h = select(advancing, select(last, left, motion->h), lanes->h);
+    real error[2][DIM];
+    motion->iterations += step(state, lanes->h, motion->params, !task->fixed_h, end, error);
+    end->t = select(last, motion->t_end, end->t);
+    end->t_low = select(last, splat(0.0), end->t_low);
+    real check = splat(0.0);
+    for (int n = 0; n < DIM; n++) {
+        check += end->z[n] - end->z[n];
     }
-    *broken = ~below(size(nothing), every(1.0));
-    *kept = advancing & ~*broken;
-    if (!task->fixed) {
-        const real square = error_square(error, place->z, end->z, task->rtol, task->atol);
-        *broken |= advancing & ~below(square, every(INFINITY));
-        *kept &= ~below(every(1.0), square) & ~*broken;
-        const real change = factor(square, *kept, &motion->previous);
-        const real h = chosen(*kept, motion->h, lanes->trial)*change;
-        motion->h = chosen(advancing & ~*broken, h, motion->h);
+    *failed = ~less_than(lane_fabs(check), splat(1.0));
+    *accepted = advancing & ~*failed;
+    if (!task->fixed_h) {
+        const real square = squared_error_norm(error, state->z, end->z, task->rtol, task->atol);
+        *failed |= advancing & ~less_than(square, splat(INFINITY));
+        *accepted &= ~less_than(splat(1.0), square) & ~*failed;
+        const real factor = step_factor(square, *accepted, &motion->previous_error);
+        const real h = select(*accepted, motion->h, lanes->h)*factor;
+        motion->h = select(advancing & ~*failed, h, motion->h);
     }
-    settle(end);
-    rescale(place, end);
-    nothing = count_turns(place, lanes->trial, end);
-    *broken |= ~below(size(nothing), every(1.0));
-    *kept &= ~*broken;
-    const real one = every(1.0);
-    motion->trials += one;
-    motion->rejected += chosen(advancing & ~*kept, one, every(0.0));
-    motion->cuts = chosen(*kept, every(0.0), motion->cuts);
-    mask attention = *broken | last | ~advancing | below(size(motion->h), motion->shortest);
-    for (int e = 0; e < task->events; e++) {
-        lanes->after[e] = event_value(&task->event[e], end);
-        attention |= *kept & has_passed(&task->event[e], lanes->before[e], lanes->after[e]);
+    normalise_angles(end);
+    rescale_variation(state, end);
+    check = count_turns(state, lanes->h, end);
+    *failed |= ~less_than(lane_fabs(check), splat(1.0));
+    *accepted &= ~*failed;
+    const real one = splat(1.0);
+    motion->attempts += one;
+    motion->rejected += select(advancing & ~*accepted, one, splat(0.0));
+    motion->reductions = select(*accepted, splat(0.0), motion->reductions);
+    mask attention = *failed | last | ~advancing | less_than(lane_fabs(motion->h), motion->min_h);
+    for (int e = 0; e < task->event_count; e++) {
+        lanes->after[e] = event_value(&task->events[e], end);
+        attention |= *accepted & has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
     }
-    attention |= below(every((double)task->most_steps), motion->steps + 2.0);
+    attention |= less_than(splat((double)task->max_steps), motion->steps + 2.0);
     if (task->samples < 0) {
-        attention |= *kept;
+        attention |= *accepted;
     }
-    return attention | below(size(lanes->due - place->t), size(lanes->trial) + motion->shortest);
+    const real wait = lane_fabs(lanes->next_sample - state->t);
+    return attention | less_than(wait, lane_fabs(lanes->h) + motion->min_h);
 }
 
-/* Move the motions that are kept to where their steps end. */
-static void move(Lanes *lanes, mask kept)
+/* Move the motions of accepted steps to the ends of these steps. */
+static void move(Lanes *lanes, mask accepted)
 {
-    if (!any(kept)) {
+    if (!any(accepted)) {
         return;
     }
-    real *to = (real *)&lanes->motion.place;
+    real *to = (real *)&lanes->motion.state;
     const real *from = (const real *)&lanes->end;
-    for (int k = 0; k < PLACE; k++) {
-        to[k] = chosen(kept, from[k], to[k]);
+    for (int k = 0; k < STATE_SIZE; k++) {
+        to[k] = select(accepted, from[k], to[k]);
     }
-    for (int e = 0; e < lanes->task->events; e++) {
-        lanes->before[e] = chosen(kept, lanes->after[e], lanes->before[e]);
+    for (int e = 0; e < lanes->task->event_count; e++) {
+        lanes->before[e] = select(accepted, lanes->after[e], lanes->before[e]);
     }
-    lanes->motion.steps += chosen(kept, every(1.0), every(0.0));
+    lanes->motion.steps += select(accepted, splat(1.0), splat(0.0));
 }
 
-static int must_leave(const Task *task, clock_t started)
+static int must_return(const Task *task, clock_t started)
 {
-    return *task->stop
-        || (task->patience > 0 && (double)(clock() - started) > task->patience*CLOCKS_PER_SEC);
+    return *task->stop || (task->time_limit > 0
+                           && (double)(clock() - started) > task->time_limit*CLOCKS_PER_SEC);
 }
 
-/* Go on with all motions of the task that wait or run, until none is left or it is time to leave.
-   Several threads may do this with one task. */
+/* Continue all unfinished motions of the task, until none is left or it is time to return. Several
+   threads may run one task. */
 void run(Task *task)
 {
     Lanes lanes = {.task = task};
     const clock_t started = clock();
-    int leaving = 0, busy = 0;
+    int returning = 0, busy = 0;
     for (int lane = 0; lane < LANES; lane++) {
-        take_next(&lanes, lane);
-        note(&lanes, lane);
-        busy += lanes.errands[lane].mode != IDLE;
+        load_motion(&lanes, lane);
+        update_lane(&lanes, lane);
+        busy += lanes.within[lane].mode != IDLE;
     }
-    for (int64_t turn = 0; busy; turn++) {
-        /* a motion may be over where it begins, and the next one, too */
-        while (any(lanes.fresh)) {
-            const mask fresh = lanes.fresh;
-            begin(&lanes);
-            lanes.fresh = (mask){0};
+    for (int64_t count = 0; busy; count++) {
+        /* a motion may end where it starts, and the next one, too */
+        while (any(lanes.starting)) {
+            const mask starting = lanes.starting;
+            start_motions(&lanes);
+            lanes.starting = (mask){0};
             for (int lane = 0; lane < LANES; lane++) {
-                if (WORD(fresh, lane)) {
-                    busy -= conclude(&lanes, lane, leaving);
+                if (MASK_LANE(starting, lane)) {
+                    busy -= finish_step(&lanes, lane, returning);
                 }
             }
         }
-        if (any(lanes.taken)) {
-            watch(&lanes);
+        if (any(lanes.loaded)) {
+            evaluate_events(&lanes);
         }
-        if (turn % TURNS_BETWEEN_LOOKS == 0) {
-            leaving |= must_leave(task, started);
+        if (count % STEPS_BETWEEN_CHECKS == 0) {
+            returning |= must_return(task, started);
         }
-        mask kept, broken;
-        const mask attention = advance(&lanes, &kept, &broken) | ((mask){0} - leaving);
+        mask accepted, failed;
+        const mask attention = advance(&lanes, &accepted, &failed) | ((mask){0} - returning);
         if (!any(attention)) {
-            move(&lanes, kept);
+            move(&lanes, accepted);
             continue;
         }
         for (int lane = 0; lane < LANES; lane++) {
-            if (WORD(attention, lane)) {
-                const int moves =
-                    attend(&lanes, lane, WORD(kept, lane) != 0, WORD(broken, lane) != 0);
-                WORD(kept, lane) = -moves;
+            if (MASK_LANE(attention, lane)) {
+                const int moves = process_step(&lanes, lane, MASK_LANE(accepted, lane) != 0,
+                                               MASK_LANE(failed, lane) != 0);
+                MASK_LANE(accepted, lane) = -moves;
             }
         }
-        move(&lanes, kept);
+        move(&lanes, accepted);
         for (int lane = 0; lane < LANES; lane++) {
-            if (WORD(attention, lane)) {
-                busy -= conclude(&lanes, lane, leaving);
+            if (MASK_LANE(attention, lane)) {
+                busy -= finish_step(&lanes, lane, returning);
             }
         }
     }
-}
-
-int64_t trajectory_size(void)
-{
-    return sizeof(Trajectory);
 }

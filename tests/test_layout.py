@@ -1,0 +1,66 @@
+"""Structures that C and Python share: read from one file, and compared when a library is loaded."""
+
+import ctypes
+import shutil
+from collections.abc import Callable
+
+import pytest
+
+import generated.double_pendulum as dp
+from solvers.integration.compiled import layout
+from solvers.integration.compiled.kernel import Kernel
+from solvers.integration.compiled.layout import LayoutError, members
+
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+
+
+def load() -> Kernel:
+    options = {"lanes": False, "compensated": True, "reproducible": False}
+    return Kernel(dp, "rational", "rk4", **options)
+
+
+def test_every_member_of_the_header_is_read() -> None:
+    assert [name for _, name, _ in members("Row")] == ["t", "z", "turns", "scale"]
+    assert members("Motion")[: len(members("State"))] == members("State")
+    assert len(members("Event")) == 10
+    kernel = load()
+    assert kernel.trajectory["z"].shape == kernel.trajectory["z_low"].shape == (6,)
+    assert kernel.row["turns"].shape == (2,)
+    assert kernel.row["scale"].shape == (0,)
+
+
+def without_first(structure: str) -> Callable[[str], tuple[layout.Member, ...]]:
+    return lambda name: members(name)[1:] if name == structure else members(name)
+
+
+@pytest.mark.parametrize("structure", ["Trajectory", "Row", "Event", "Motion"])
+def test_a_member_that_python_misses_is_reported(
+    structure: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(layout, "members", without_first(structure))
+    name = "Trajectory" if structure == "Motion" else structure
+    with pytest.raises(
+        LayoutError, match=rf"structure {name} has \d+ bytes in C and \d+ in Python"
+    ):
+        load()
+
+
+def test_a_task_that_python_misses_a_member_of_is_reported(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Short(ctypes.Structure):
+        _fields_ = layout.Task._fields_[:-1]
+
+    monkeypatch.setattr(layout, "Task", Short)
+    with pytest.raises(LayoutError, match="structure Task has 144 bytes in C and 136 in Python"):
+        load()
+
+
+def test_a_member_that_is_not_of_eight_bytes_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (layout.SOURCES / "layout.h").read_text(encoding="utf-8")
+    narrow = text.replace("    int64_t direction;", "    int direction : 3;")
+    monkeypatch.setattr(layout, "_text", lambda: narrow)
+    members.cache_clear()
+    with pytest.raises(LayoutError, match=r"Event in layout\.h has an unreadable member: int dir"):
+        members("Event")
+    members.cache_clear()
