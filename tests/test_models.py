@@ -22,32 +22,32 @@ from solvers.scenes.models import quadrature as by_quadrature
 from solvers.scenes.models.equilibrium import rest
 from solvers.scenes.models.full_equations import NotAccurateError, TooLongError, full
 from solvers.scenes.models.light_masses import light
-from solvers.scenes.models.method_choice import Way, cheapest
-from solvers.scenes.models.model import Asked, OutsideDomainError
+from solvers.scenes.models.method_choice import MethodChoice, cheapest
+from solvers.scenes.models.model import Motion, OutsideDomainError
 from solvers.scenes.models.normal_modes import small
 from solvers.scenes.models.pendulum import pendulum
 from solvers.scenes.models.quadrature import orbit, quadrature
-from solvers.scenes.models.selection import RUNGS, Choice, choice
+from solvers.scenes.models.selection import RUNGS, ModelSelection, select_model
 from solvers.scenes.scene import MODELS, Scene
 from solvers.scenes.shipped import find
 
 Array = np.ndarray
 
 
-def asked(module, y0, duration, params=None, wanted=None) -> Asked:
+def asked(module, y0, duration, params=None, wanted=None) -> Motion:
     params = tuple(params or module.DEFAULTS)
-    return Asked(module, params, tuple(y0), duration, wanted or tuple(range(len(y0))))
+    return Motion(module, params, tuple(y0), duration, wanted or tuple(range(len(y0))))
 
 
-def chosen(scene: Scene) -> Choice:
-    return choice(scene, lambda asked, _: asked, lambda _: None)
+def chosen(scene: Scene) -> ModelSelection:
+    return select_model(scene, lambda asked, _: asked, lambda _: None)
 
 
-def truth(motion: Asked, times: Array, digits: int = 24) -> Array:
+def truth(motion: Motion, times: Array, digits: int = 24) -> Array:
     return taylor(motion.module, motion.params, motion.y0, times, digits)
 
 
-def worst(motion: Asked, model, digits: int = 24) -> float:
+def worst(motion: Motion, model, digits: int = 24) -> float:
     """The largest error of what is wanted, beside Taylor series."""
     apart = np.abs(model.states(motion.looks) - truth(motion, motion.looks, digits))
     return float(apart[:, list(motion.wanted)].max())
@@ -87,7 +87,7 @@ def random_scene(random: np.random.Generator) -> Scene:
 def judged(scene: Scene) -> tuple[str, float, float]:
     """Model, error in parts of what was asked, and in parts of the estimate."""
     found = chosen(scene).model
-    motion = Asked(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
+    motion = Motion(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
     with ignore_predictability():
         fine = integrate(
             scene.module, (0, scene.duration), scene.y0, scene.params, method="verner98",
@@ -242,21 +242,21 @@ def test_estimates_are_not_for_free(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_full_equations_are_checked_by_another_method() -> None:
     scene = find("report", load_module)
-    motion = Asked(dp, scene.params, scene.y0, scene.duration, scene.wanted)
+    motion = Motion(dp, scene.params, scene.y0, scene.duration, scene.wanted)
     found = chosen(scene).model
     error = worst(motion, found)
     assert error <= found.error_estimate <= scene.accuracy
     assert found.error_estimate < 100 * error
     # a check of the run by itself would find nothing
-    way = Way("verner98", "rational", "")
-    assert full(motion, 1e-3, way, motion, 1e-6).error_estimate > 1e-9
+    choice = MethodChoice("verner98", "rational", "")
+    assert full(motion, 1e-3, choice, motion, 1e-6).error_estimate > 1e-9
     assert set(full_equations.CHECKS) == {"dop853", "verner98"}
 
 
 def test_where_numbers_have_too_few_digits_series_have_more() -> None:
     scene = find("long", load_module)
     found = chosen(scene)
-    assert found.model.way.method == "taylor"
+    assert found.model.method_choice.method == "taylor"
     assert "at best where 1e-09 was asked" in found.declined["ordinary numbers"]
     end = found.model.states(np.array([20.0]))[0]
     fine = taylor(dp, scene.params, scene.y0, [0, 20], 60)[-1]
@@ -270,7 +270,7 @@ def test_the_choice_can_be_named_instead() -> None:
     assert chosen(still).model.name == "rest"
     assert chosen(replace(still, model="full")).model.name == "full equations"
     named = chosen(replace(find("report", load_module), method="rk4", step=0.01)).model
-    assert (named.way.method, named.setting) == ("rk4", 0.01)
+    assert (named.method_choice.method, named.setting) == ("rk4", 0.01)
     assert worst(named.asked, named) < named.error_estimate < 3 * worst(named.asked, named)
     for method in ("rk4", "gauss3"):  # steps that are fixed are found, too
         fixed = chosen(replace(find("report", load_module), method=method, accuracy=1e-6)).model
@@ -308,7 +308,9 @@ def test_estimates_see_what_is_quick_and_rare() -> None:
     found = chosen(narrow).model
     times = np.linspace(2.18, 2.185, 401)
     truths = taylor(ep, narrow.params, narrow.y0, [0, *times], 30)[1:]
-    run = full_equations.run(found.asked, found.way, found.setting, np.array([0, *times, 3.0]))
+    run = full_equations.run(
+        found.asked, found.method_choice, found.setting, np.array([0, *times, 3.0])
+    )
     assert np.abs(run[1:-1] - truths).max() < 2 * found.error_estimate
 
 
@@ -357,10 +359,10 @@ def test_every_rung_is_taken_by_a_scene_that_ships() -> None:
 
 
 def test_the_cheapest_way_is_what_was_measured() -> None:
-    way = cheapest(dp, dp.DEFAULTS, 1e-9)
-    assert (way.method, way.form) == ("verner87", "rational")
-    assert "as measured in scene 'report'" in way.why
-    assert way.seconds > 0
+    choice = cheapest(dp, dp.DEFAULTS, 1e-9)
+    assert (choice.method, choice.form) == ("verner87", "rational")
+    assert "as measured in scene 'report'" in choice.why
+    assert choice.seconds > 0
     assert mode_spread(dp, dp.DEFAULTS) == pytest.approx(1 + 2**0.5)
     # where one mode is three hundred times as fast, implicit methods win for large errors
     stiff = find("stiff_spring", load_module)

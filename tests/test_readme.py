@@ -22,7 +22,7 @@ from solvers.app.verdict.evidence import Evidence, Setting
 from solvers.app.verdict.objectives import objectives
 from solvers.io.figures import png
 from solvers.scenes.reading import KEYS, scene
-from solvers.scenes.run import answer
+from solvers.scenes.run import run_scene
 from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
 from solvers.studies.failure_modes.chaos import CHAOTIC
@@ -150,9 +150,9 @@ def test_every_command_that_is_shown_exists() -> None:
 def test_the_scene_that_is_shown_is_answered_with_what_is_beside_it() -> None:
     whole = "".join(TABLES[:2])
     found = scene("my_scene", tomllib.loads(whole), load_module)
-    assert answer(found).is_met
+    assert run_scene(found).is_met
     euler, moved = found.beside
-    assert not answer(euler).is_met
+    assert not run_scene(euler).is_met
     assert (euler.label, moved.label) == ("rk1, step = 10 ms", "1e-3 rad further")
     assert moved.y0[0] - found.y0[0] == pytest.approx(1e-3)
 
@@ -162,7 +162,7 @@ def test_scenes_that_are_named_take_the_model_that_is_said() -> None:
     for row in table.splitlines()[2:]:
         model, *_, named = row.strip("| ").split(" | ")
         for name in re.findall(r"`(\w+)`", named):
-            assert answer(find(name, load_module)).choice.model.name == model, name
+            assert run_scene(find(name, load_module)).selection.model.name == model, name
 
 
 def test_systems_have_the_coordinates_that_are_said() -> None:
@@ -181,7 +181,7 @@ def test_the_system_that_is_shown_is_derived_and_runs(tmp_path: Path) -> None:
     (tmp_path / "bead.toml").write_text(table("bead.toml"))
     text = 'system = "bead.toml"\nduration = 3\ninitial = { x = "10 cm" }\n'
     (tmp_path / "scene.toml").write_text(text)
-    found = answer(find(str(tmp_path / "scene.toml"), load_module))
+    found = run_scene(find(str(tmp_path / "scene.toml"), load_module))
     assert found.is_met
     assert hasattr(found.scene.module, "power")
 

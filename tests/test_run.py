@@ -20,12 +20,11 @@ from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.io.notation import symbol
 from solvers.references.taylor import taylor
-from solvers.scenes.geometry import ABOVE, projected
-from solvers.scenes.played import track
-from solvers.scenes.plots import _labelled, drawn, usual
-from solvers.scenes.run import answer
+from solvers.scenes.geometry import ABOVE, projected, track
+from solvers.scenes.plots import _labelled, default_pictures, figure
+from solvers.scenes.run import run_scene
 from solvers.scenes.shipped import find
-from solvers.scenes.summary import special_code, table, told
+from solvers.scenes.summary import special_code, summary, table
 
 KEYS = {"model", "method", "form", "final_state", "accuracy_asked", "error_estimate", "why"}
 
@@ -85,7 +84,7 @@ def test_only_digits_that_can_be_trusted_are_printed(
 
 def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
     scene = replace(find("small", load_module), outputs=("theta1", "energy"), samples=5)
-    found = answer(scene)
+    found = run_scene(scene)
     lines = table(found).splitlines()
     assert lines[0] == "t [s],theta1 [rad],energy [J]"
     rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
@@ -93,17 +92,17 @@ def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
     assert rows[:, 1].tolist() == found.y[0].tolist()
     assert np.ptp(rows[:, 2]) < 1e-6
     # no energy unless it is asked for
-    assert answer(replace(scene, outputs=("theta1",))).energy is None
+    assert run_scene(replace(scene, outputs=("theta1",))).energy is None
 
 
 @pytest.mark.parametrize("name", ["report", "tremor", "single", "weightless", "rest"])
 def test_a_motion_begins_exactly_where_the_scene_says(name: str) -> None:
     scene = find(name, load_module)
-    assert answer(scene).y[:, 0].tolist() == [*scene.y0]
+    assert run_scene(scene).y[:, 0].tolist() == [*scene.y0]
 
 
 def test_rods_and_springs_are_told_apart_by_their_lengths() -> None:
-    rods, spring = (track(answer(find(name, load_module))) for name in ("report", "spring"))
+    rods, spring = (track(run_scene(find(name, load_module))) for name in ("report", "spring"))
     assert (rods.links, rods.springs) == (((-1, 0), (0, 1)), ())
     assert (spring.links, spring.springs) == ((), ((-1, 0),))
 
@@ -119,7 +118,7 @@ def test_what_keeps_its_distance_is_joined(
 ) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(f'system = "{system}"\nduration = 2\naccuracy = 1e-6\n[initial]\n{initial}\n')
-    seen = track(answer(find(str(path), load_module)))
+    seen = track(run_scene(find(str(path), load_module)))
     assert list(seen.links) == rods
     assert not seen.springs
 
@@ -135,15 +134,15 @@ def test_space_is_seen_from_above_and_from_the_side() -> None:
 
 def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:
     scene = replace(find("report", load_module), code="specialised")
-    found = answer(scene, specialiser)
-    assert found.choice.model.asked.module.PARAMETERS == ()
+    found = run_scene(scene, specialiser)
+    assert found.selection.model.asked.module.PARAMETERS == ()
     assert "def rhs_rational(" in special_code(found).read_text()
-    assert any("specialised code (29 operations instead of 34" in line for line in told(found))
-    plain = answer(replace(scene, code=None), specialiser)
-    assert plain.choice.model.asked.module is dp
+    assert any("specialised code (29 operations instead of 34" in line for line in summary(found))
+    plain = run_scene(replace(scene, code=None), specialiser)
+    assert plain.selection.model.asked.module is dp
     assert np.abs(found.y - plain.y).max() < 2 * scene.accuracy
     with pytest.raises(ValueError, match="needs a specialiser"):
-        answer(scene)
+        run_scene(scene)
 
 
 @pytest.mark.parametrize(("text", "code", "words"), [
@@ -185,18 +184,18 @@ def test_text_is_drawn_as_it_is_written(tmp_path: Path) -> None:
     assert run(*both, folder=tmp_path / "out") == 2
 
 
-def lines_of(figure: Figure) -> list[tuple[str, int]]:
-    return [(panel.get_ylabel(), len(panel.lines)) for panel in figure.axes if panel.axison]
+def lines_of(chart: Figure) -> list[tuple[str, int]]:
+    return [(panel.get_ylabel(), len(panel.lines)) for panel in chart.axes if panel.axison]
 
 
 def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> None:
     scene = find("report", load_module)
-    assert usual(answer(scene)) == (
+    assert default_pictures(run_scene(scene)) == (
         "theta1, theta2 over t", "theta1_dot over theta1", "theta2_dot over theta2",
         "theta2 over theta1", "theta2_dot over theta1_dot", "path", "energy",
     )  # fmt: skip
-    figure = drawn([answer(scene)])
-    panels = [panel for panel in figure.axes if panel.axison]
+    chart = figure([run_scene(scene)])
+    panels = [panel for panel in chart.axes if panel.axison]
     assert len(panels) == 7
     for panel in panels:
         for label in (panel.get_xlabel(), panel.get_ylabel()):
@@ -204,21 +203,26 @@ def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> Non
     assert [panel.get_aspect() for panel in panels].count(1.0) == 1
     assert symbol("theta1_dot") == r"$\dot{\theta}_{1}$"
     assert (symbol("r"), symbol("t")) == ("$r$", "$t$")
-    without = answer(find("one_bob", load_module))
-    assert usual(without) == ("theta1 over t", "theta1_dot over theta1", "path", "energy")
+    without = run_scene(find("one_bob", load_module))
+    assert default_pictures(without) == (
+        "theta1 over t",
+        "theta1_dot over theta1",
+        "path",
+        "energy",
+    )
     # what is drawn is the motion
     angles = panels[0].lines
-    assert np.array_equal(angles[1].get_ydata(), answer(scene).y[1])
+    assert np.array_equal(angles[1].get_ydata(), run_scene(scene).y[1])
 
 
 def test_the_report_s_figures_are_drawn_with_what_is_known_of_them() -> None:
     for name, curves in (("figure_3_1", 4), ("figure_3_3", 2), ("figure_3_6", 1),
                          ("figure_4_2", 1), ("figure_4_5", 2)):  # fmt: skip
         scene = find(name, load_module)
-        figure = drawn([answer(one) for one in (scene, *scene.beside)])
-        (panel,) = figure.axes
+        chart = figure([run_scene(one) for one in (scene, *scene.beside)])
+        (panel,) = chart.axes
         assert len(panel.lines) == curves
-        note = figure.get_supxlabel()
+        note = chart.get_supxlabel()
         assert "lost" in note
         assert "error estimate" in note
 

@@ -23,7 +23,7 @@ from solvers.app.modules import generator_text, specialiser
 from solvers.equations.specialise import required_functions, specialised_module
 from solvers.integration.integrate import integrate
 from solvers.io.build_cache import cache_folder
-from solvers.scenes.models.method_choice import Way
+from solvers.scenes.models.method_choice import MethodChoice
 
 ROOT = Path(__file__).parent.parent
 REPORT = (np.pi / 2, np.pi, 0.0, 0.0)
@@ -49,7 +49,7 @@ def operations(name: str, function: str, **values: float) -> int:
 def test_specialised_code_has_the_same_values(
     module: ModuleType, params: tuple[float, ...], form: str
 ) -> None:
-    special = specialiser(module, params, Way("verner87", form, ""))
+    special = specialiser(module, params, MethodChoice("verner87", form, ""))
     suffix = "" if form == "lagrangian" else f"_{form}"
     states = np.random.default_rng(4).uniform(0.2, 2.0, (20, len(module.STATE)))
     if form == "rational":
@@ -68,7 +68,9 @@ def test_folded_numbers_are_exact_and_rounded_once() -> None:
         # the same equations with numbers of 40 digits: the rational form calls no function
         rational = dp.rational_state(0.0, y, dp.DEFAULTS)
         fine = dp.rhs_rational(0, [mpf(x) for x in rational], exact)
-        found = specialiser(dp, (1.3, 0.7, 1.1, 0.9, 9.81), Way("verner87", "rational", ""))
+        found = specialiser(
+            dp, (1.3, 0.7, 1.1, 0.9, 9.81), MethodChoice("verner87", "rational", "")
+        )
         coarse = found.rhs_rational(0, rational, ())
         assert max(abs(a - b) for a, b in zip(fine, coarse, strict=True)) < 4e-15
 
@@ -121,7 +123,7 @@ def test_only_what_a_scene_needs_is_there() -> None:
     assert required_functions("gauss2", "lagrangian") == ("rhs", "jacobian")
     assert required_functions("radau3", "hamiltonian")[-1] == "jacobian_hamiltonian"
     assert required_functions("LSODA", "lagrangian") == ("rhs",)
-    special = specialiser(dp, dp.DEFAULTS, Way("verner87", "rational", ""))
+    special = specialiser(dp, dp.DEFAULTS, MethodChoice("verner87", "rational", ""))
     functions = {name for name in vars(special) if callable(getattr(special, name))}
     assert {f for f in functions if f.startswith("rhs")} == {"rhs_rational", "rhs_rational_many"}
     assert not any("jacobian" in f or "energy" in f or "positions" in f for f in functions)
@@ -131,7 +133,7 @@ def test_only_what_a_scene_needs_is_there() -> None:
     ("verner87", "rational", None), ("dop853", "hamiltonian", None), ("gauss2", "lagrangian", 1e-3),
 ])  # fmt: skip
 def test_a_specialised_motion_is_the_general_one(method: str, form: str, h: float | None) -> None:
-    special = specialiser(dp, dp.DEFAULTS, Way(method, form, ""))
+    special = specialiser(dp, dp.DEFAULTS, MethodChoice(method, form, ""))
     ends = [
         integrate(module, (0, 5), REPORT, params, method=method, form=form, h=h, rtol=1e-12,
                   t_eval=[5]).y[:, -1]

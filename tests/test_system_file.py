@@ -16,7 +16,7 @@ from solvers.app.cli import main as holonomic
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.scenes.geometry import energy_errors
-from solvers.scenes.run import answer
+from solvers.scenes.run import run_scene
 from solvers.scenes.shipped import find
 
 BEAD = """
@@ -132,18 +132,18 @@ def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
     written(tmp_path, BEAD, "bead")
     text = 'system = "bead.toml"\nduration = 5\naccuracy = 1e-7\n[initial]\nx = "50 cm"\n'
     scene = find(str(written(tmp_path, text, "scene")), load_module)
-    found = answer(scene)
+    found = run_scene(scene)
     assert found.is_met
-    assert found.choice.declined["rest"] == "the equations depend on time"
-    special = answer(
+    assert found.selection.declined["rest"] == "the equations depend on time"
+    special = run_scene(
         find(str(written(tmp_path, 'code = "specialised"\n' + text, "special")), load_module),
         specialiser,
     )
-    assert special.choice.model.asked.module.PARAMETERS == ()
+    assert special.selection.model.asked.module.PARAMETERS == ()
     assert abs(special.y - found.y).max() < 2e-7
     # a file that changes is another system
     written(tmp_path, BEAD.replace("value = 0.2", "value = 0.4"), "bead")
-    other = answer(find(str(tmp_path / "scene.toml"), load_module))
+    other = run_scene(find(str(tmp_path / "scene.toml"), load_module))
     assert abs(other.y - found.y).max() > 1e-2
 
 
@@ -193,8 +193,8 @@ def test_friction_leaves_rest_and_the_full_equations_only(tmp_path: Path) -> Non
     text = PENDULUM.replace("[coordinates]", 'dissipation = "theta_dot**2/20"\n[coordinates]', 1)
     written(tmp_path, text, "damped")
     scene = 'system = "damped.toml"\nduration = 20\naccuracy = 1e-7\ninitial = { theta = 1 }\n'
-    found = answer(find(str(written(tmp_path, scene, "scene")), load_module))
-    assert found.choice.declined["pendulum"] == "energy is not kept"
+    found = run_scene(find(str(written(tmp_path, scene, "scene")), load_module))
+    assert found.selection.declined["pendulum"] == "energy is not kept"
     assert found.is_met
     energy = found.scene.module.energy_many(0.0, found.y, found.scene.params)
     assert energy[-1] < energy[0] - 1

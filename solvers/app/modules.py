@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module_cache import cached_module
 from solvers.equations.specialise import required_functions, specialised_module
-from solvers.scenes.models.method_choice import Way
+from solvers.scenes.models.method_choice import MethodChoice
 
 if TYPE_CHECKING:
     from derive import System
@@ -96,7 +96,9 @@ def build(system: System) -> GeneratedModule:
     return module
 
 
-def specialiser(module: GeneratedModule, params: Sequence[float], way: Way) -> GeneratedModule:
+def specialiser(
+    module: GeneratedModule, params: Sequence[float], choice: MethodChoice
+) -> GeneratedModule:
     """A module with these parameters folded in, and the functions that a method choice needs."""
 
     def generator(
@@ -113,7 +115,7 @@ def specialiser(module: GeneratedModule, params: Sequence[float], way: Way) -> G
     # the name of a module from the cache contains a digest of its system
     version = module.__name__ + generator_text()
     return specialised_module(
-        module, params, required_functions(way.method, way.form), generator, version
+        module, params, required_functions(choice.method, choice.form), generator, version
     )
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from solvers.equations.energy import energy_error, supplied_energy
-from solvers.scenes.run import Answer, energies
+from solvers.player.track import Track
+from solvers.scenes.run import SceneResult, energies
 
 #: Lengths that differ by less are those of rods.
 RIGID = 1e-6
@@ -13,9 +14,9 @@ RIGID = 1e-6
 AROUND, ABOVE = 0.5, 0.45
 
 
-def places(answer: Answer) -> np.ndarray:
+def places(result: SceneResult) -> np.ndarray:
     """Positions in m of the masses that there are, shape (masses, axes, samples)."""
-    found = np.asarray(answer.scene.module.positions_many(answer.t, answer.y, answer.scene.params))
+    found = np.asarray(result.scene.module.positions_many(result.t, result.y, result.scene.params))
     return found[np.isfinite(found).all(axis=(1, 2))]
 
 
@@ -42,7 +43,7 @@ def projected(positions: np.ndarray) -> np.ndarray:
     return np.stack([right, np.cos(ABOVE) * z + np.sin(ABOVE) * depth], axis=1)
 
 
-def links(answer: Answer, positions: np.ndarray) -> list[tuple[int, int]]:
+def links(result: SceneResult, positions: np.ndarray) -> list[tuple[int, int]]:
     """Which masses are joined, by their numbers; -1 is the origin.
 
     Neighbours that keep their distance are, and a single mass whose distance from the origin
@@ -50,7 +51,7 @@ def links(answer: Answer, positions: np.ndarray) -> list[tuple[int, int]]:
 
     Parameters
     ----------
-    answer : Answer
+    result : SceneResult
         The motion, with its coordinates.
     positions : ndarray of shape (masses, axes, samples)
         Its masses' `places` in m.
@@ -68,7 +69,7 @@ def links(answer: Answer, positions: np.ndarray) -> list[tuple[int, int]]:
         before = place
     if len(positions) == 1 and not joined:
         length = np.linalg.norm(positions[0], axis=0)
-        coordinates = answer.y[: len(answer.y) // 2]
+        coordinates = result.y[: len(result.y) // 2]
         if any(np.allclose(length, coordinate, rtol=RIGID) for coordinate in coordinates):
             joined.append((-1, 0))
     return joined
@@ -80,9 +81,23 @@ def is_rigid(one: np.ndarray, other: np.ndarray) -> bool:
     return bool(np.ptp(length) <= RIGID * length.max())
 
 
-def energy_errors(answer: Answer) -> np.ndarray:
+def energy_errors(result: SceneResult) -> np.ndarray:
     """Energy errors in parts of the energy above rest, shape (samples,)."""
-    scene = answer.scene
-    kept = energies(scene, answer.t, answer.y)
-    kept -= supplied_energy(scene.module, answer.t, answer.y, scene.params)
+    scene = result.scene
+    kept = energies(scene, result.t, result.y)
+    kept -= supplied_energy(scene.module, result.t, result.y, scene.params)
     return energy_error(scene.module, scene.params, kept)
+
+
+def track(result: SceneResult) -> Track:
+    """Masses, joined by rods or, where lengths change, springs."""
+    positions = places(result)
+    rods: list[tuple[int, int]] = []
+    springs: list[tuple[int, int]] = []
+    for a, b in links(result, positions):
+        start = positions[a] if a >= 0 else np.zeros_like(positions[b])
+        (rods if is_rigid(start, positions[b]) else springs).append((a, b))
+    return Track(
+        result.scene.label, result.t, projected(positions), tuple(rods), tuple(springs),
+        energy_errors(result),
+    )  # fmt: skip

@@ -13,26 +13,26 @@ from numpy.typing import NDArray
 from solvers.equations.module import GeneratedModule
 from solvers.integration.timing import median_seconds
 from solvers.scenes.models.full_equations import Full
-from solvers.scenes.models.method_choice import Way, cheapest
-from solvers.scenes.models.model import Asked
-from solvers.scenes.models.selection import Choice, asked_of, choice
+from solvers.scenes.models.method_choice import MethodChoice, cheapest
+from solvers.scenes.models.model import Motion
+from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.scene import ENERGY, Scene
 
 Array = NDArray[np.float64]
 
-#: Takes a module, parameters and a way; gives the module with these parameters folded in.
-Specialiser = Callable[[GeneratedModule, tuple[float, ...], Way], GeneratedModule]
+#: Takes a module, parameters and a choice; gives the module with these parameters folded in.
+Specialiser = Callable[[GeneratedModule, tuple[float, ...], MethodChoice], GeneratedModule]
 
 
 @dataclass(frozen=True)
-class Answer:
+class SceneResult:
     """What a scene asked, answered.
 
     Attributes
     ----------
     scene : Scene
         What was asked.
-    choice : Choice
+    choice : ModelSelection
         Which model was taken, and why no smaller one.
     t : ndarray of shape (samples,)
         Times in s.
@@ -49,7 +49,7 @@ class Answer:
     """
 
     scene: Scene
-    choice: Choice
+    selection: ModelSelection
     t: Array
     y: Array
     energy: Array | None
@@ -61,14 +61,14 @@ class Answer:
     @property
     def method(self) -> str | None:
         """How it was integrated; None if nothing was."""
-        model = self.choice.model
-        return model.way.method if isinstance(model, Full) else None
+        model = self.selection.model
+        return model.method_choice.method if isinstance(model, Full) else None
 
     @property
     def form(self) -> str | None:
         """In which form of the equations."""
-        model = self.choice.model
-        return model.way.form if isinstance(model, Full) else None
+        model = self.selection.model
+        return model.method_choice.form if isinstance(model, Full) else None
 
     @property
     def final_state(self) -> dict[str, float]:
@@ -79,13 +79,13 @@ class Answer:
     @property
     def is_met(self) -> bool:
         """Whether the error stays below what was asked."""
-        return self.choice.model.error_estimate <= self.scene.accuracy
+        return self.selection.model.error_estimate <= self.scene.accuracy
 
 
-def answer(
+def run_scene(
     scene: Scene, specialiser: Specialiser | None = None,
-    tell: Callable[[str], None] = lambda _: None,
-) -> Answer:  # fmt: skip
+    report: Callable[[str], None] = lambda _: None,
+) -> SceneResult:  # fmt: skip
     """The smallest model of a scene that is good enough, and its motion.
 
     Parameters
@@ -93,14 +93,14 @@ def answer(
     scene : Scene
         What is asked.
     specialiser : callable, optional
-        ``specialiser(module, params, way)`` gives the module with these parameters folded in;
+        ``specialiser(module, params, choice)`` gives the module with these parameters folded in;
         needed where ``scene.code`` is ``"specialised"``.
-    tell : callable, optional
-        ``tell(text)`` is told what is going on.
+    report : callable, optional
+        ``report(text)`` is called with the progress.
 
     Returns
     -------
-    Answer
+    SceneResult
         Its ``is_met`` says whether the error estimate stays below ``scene.accuracy``, which it
         need not where the scene names a model or a step.
 
@@ -120,30 +120,30 @@ def answer(
     --------
     >>> import generated.single_pendulum as sp
     >>> from solvers.scenes.scene import Scene
-    >>> found = answer(Scene(sp, sp.DEFAULTS, (0.001, 0.0), 10.0, accuracy=1e-6))
-    >>> found.choice.model.name
+    >>> result = run_scene(Scene(sp, sp.DEFAULTS, (0.001, 0.0), 10.0, accuracy=1e-6))
+    >>> result.selection.model.name
     'normal modes'
-    >>> found.is_met
+    >>> result.is_met
     True
     """
 
-    def code(asked: Asked, way: Way) -> Asked:
+    def code(asked: Motion, choice: MethodChoice) -> Motion:
         if scene.code != "specialised":
             return asked
         if specialiser is None:
             raise ValueError("code = 'specialised' needs a specialiser, which generates it")
-        tell("specialised code")
-        return replace(asked, module=specialiser(asked.module, asked.params, way), params=())
+        report("specialised code")
+        return replace(asked, module=specialiser(asked.module, asked.params, choice), params=())
 
     before = perf_counter()
-    chosen = choice(scene, code, tell)
+    chosen = select_model(scene, code, report)
     choosing = perf_counter() - before
-    tell(chosen.model.name)
+    report(chosen.model.name)
     t = scene.times
     y = chosen.model.states(t).T
     y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
     energy = energies(scene, t, y) if ENERGY in scene.outputs else None
-    return Answer(
+    return SceneResult(
         scene, chosen, t, y, energy, choosing, _work(chosen, scene), _full(scene),
         _general(chosen, scene),
     )  # fmt: skip
@@ -155,19 +155,19 @@ def energies(scene: Scene, t: Array, y: Array) -> Array:
     return np.asarray(scene.module.energy_many(t, states, scene.params))
 
 
-def _work(chosen: Choice, scene: Scene) -> float:
+def _work(chosen: ModelSelection, scene: Scene) -> float:
     if isinstance(chosen.model, Full):
         return chosen.model.seconds()
     end = np.array([scene.duration])
     return median_seconds(lambda: chosen.model.states(end))
 
 
-def _general(chosen: Choice, scene: Scene) -> float:
+def _general(chosen: ModelSelection, scene: Scene) -> float:
     if not isinstance(chosen.model, Full) or chosen.model.asked.module is scene.module:
         return nan
-    return replace(chosen.model, asked=asked_of(scene)).seconds()
+    return replace(chosen.model, asked=motion_of(scene)).seconds()
 
 
 def _full(scene: Scene) -> float:
-    way = cheapest(scene.module, scene.params, scene.accuracy)
-    return way.seconds * scene.duration
+    choice = cheapest(scene.module, scene.params, scene.accuracy)
+    return choice.seconds * scene.duration

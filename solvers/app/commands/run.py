@@ -28,8 +28,8 @@ def run(arguments: Namespace) -> int:
     from solvers.app.modules import specialiser
     from solvers.io.progress import Progress
     from solvers.scenes.output import write_files
-    from solvers.scenes.run import answer
-    from solvers.scenes.summary import figures, told
+    from solvers.scenes.run import run_scene
+    from solvers.scenes.summary import figures, summary
 
     results = []
     scenes = options.selected_scenes(arguments, DEFAULT)
@@ -38,14 +38,14 @@ def run(arguments: Namespace) -> int:
         raise ValueError(f"two scenes are called {name!r} and would write the same files")
     for scene in scenes:
         with Progress() as report:
-            first, *beside = (answer(one, specialiser, report) for one in (scene, *scene.beside))
+            first, *beside = (run_scene(one, specialiser, report) for one in (scene, *scene.beside))
             report("plots")
             paths = write_files([first, *beside], arguments.output)
         files = {kind: str(path) for kind, path in paths.items()}
         results.append(figures(first) | {"beside": [*map(figures, beside)], "files": files})
         if not arguments.json:
             for result in (first, *beside):
-                print(*told(result), "", sep="\n")
+                print(*summary(result), "", sep="\n")
             print(f"files: {', '.join(files.values())}\n", flush=True)
     if arguments.json:
         options.print_json(results if results[1:] else results[0])

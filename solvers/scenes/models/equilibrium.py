@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
-from solvers.scenes.models.model import EPS, ROUNDINGS, Array, Asked, OutsideDomainError
+from solvers.scenes.models.model import EPS, ROUNDINGS, Array, Motion, OutsideDomainError
 
 #: What may be missed between the times that are looked at.
 MARGIN = 1.5
@@ -29,7 +29,7 @@ class Rest:
         return np.tile(self.y0, (len(t), 1))
 
 
-def rest(asked: Asked) -> Rest:
+def rest(asked: Motion) -> Rest:
     """Rest, with the error that grows from what accelerates the system nevertheless.
 
     The defect d = y' of the state that stays obeys e' = J e + d, J the Jacobian there;
@@ -38,7 +38,7 @@ def rest(asked: Asked) -> Rest:
 
     Parameters
     ----------
-    asked : Asked
+    asked : Motion
         The motion.
 
     Returns

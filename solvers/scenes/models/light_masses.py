@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solvers.references.elliptic import pendulum as exact
-from solvers.scenes.models.model import Array, Asked, OutsideDomainError
+from solvers.scenes.models.model import Array, Motion, OutsideDomainError
 from solvers.scenes.models.pendulum import ANGLES, SAME, Pendulum, rounding
 
 #: Random states that are tried, rounds until a bound of velocities settles, and times of kicks.
@@ -14,7 +14,7 @@ STATES, ROUNDS, KICKS = 512, 4, 16
 MARGIN, ENDLESS = 2.0, 1e6
 
 
-def light(asked: Asked) -> Pendulum:
+def light(asked: Motion) -> Pendulum:
     """The closed form for the one angle that is wanted, if the others hardly act on it.
 
     Whatever the others do, they accelerate for no longer than the motion lasts, which
@@ -24,7 +24,7 @@ def light(asked: Asked) -> Pendulum:
 
     Parameters
     ----------
-    asked : Asked
+    asked : Motion
         The motion, and which angle and velocity are wanted.
 
     Returns
@@ -59,7 +59,7 @@ def light(asked: Asked) -> Pendulum:
                     f"{defect:.1g} rad/s²")  # fmt: skip
 
 
-def _square(asked: Asked, k: int) -> float:
+def _square(asked: Motion, k: int) -> float:
     """ω² of the pendulum that is left, in 1/s²."""
     n = asked.coordinates
     y = np.zeros((2 * n, ANGLES, ANGLES))
@@ -74,7 +74,7 @@ def _square(asked: Asked, k: int) -> float:
     return swing / float(mass.flat[0])
 
 
-def _defect(asked: Asked, k: int, square: float, motion: Array) -> float:
+def _defect(asked: Motion, k: int, square: float, motion: Array) -> float:
     """The largest acceleration by other coordinates that is within reach."""
     n, random = asked.coordinates, np.random.default_rng(2)
     y = random.uniform(-np.pi, np.pi, (2 * n, STATES))

@@ -20,7 +20,7 @@ SERIES = "taylor"
 
 
 @dataclass(frozen=True)
-class Way:
+class MethodChoice:
     """A method and a form.
 
     Attributes
@@ -69,7 +69,7 @@ def _record() -> list[dict[str, Any]]:
     return found
 
 
-def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) -> Way:
+def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) -> MethodChoice:
     """The way that was cheapest for this accuracy in the charted scene most like this one.
 
     Scenes of the same system are alike, and of these those whose modes are: a method that
@@ -87,7 +87,7 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
 
     Returns
     -------
-    Way
+    MethodChoice
         Where nothing charted is as accurate, that for the smallest error charted.
     """
     spread = mode_spread(module, params)
@@ -102,7 +102,7 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
         for choice in ("method", "form")
         for name, factor in list(best["worth"][choice].items())[:2]
     )
-    return Way(
+    return MethodChoice(
         best["method"],
         best["form"] if best["form"] in module.FORMS else usual_form(module, best["method"]),
         f"cheapest for {best['global_error']:.0e} as measured in scene {nearest['scene']!r}, whose "

@@ -27,7 +27,7 @@ class OutsideDomainError(ValueError):
 
 
 @dataclass(frozen=True)
-class Asked:
+class Motion:
     """A motion, and what is wanted of it.
 
     Attributes

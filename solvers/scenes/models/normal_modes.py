@@ -8,7 +8,7 @@ import numpy as np
 
 from solvers.equations.module import function
 from solvers.equations.normal_modes import Modes
-from solvers.scenes.models.model import EPS, ROUNDINGS, Array, Asked, OutsideDomainError, scattered
+from solvers.scenes.models.model import EPS, ROUNDINGS, Array, Motion, OutsideDomainError, scattered
 
 #: The defect is looked at at so many times, scattered evenly over the duration.
 SAMPLES = 256
@@ -40,7 +40,7 @@ class Small:
         return np.hstack([self.rest + place, speed])
 
 
-def small(asked: Asked) -> Small:
+def small(asked: Motion) -> Small:
     """Normal modes, with the error that the nonlinear terms bring about.
 
     In the norm ‖(x, ẋ)‖² = ẋᵀM₀ẋ + xᵀKx small motions keep their size, so that the error
@@ -50,7 +50,7 @@ def small(asked: Asked) -> Small:
 
     Parameters
     ----------
-    asked : Asked
+    asked : Motion
         The motion.
 
     Returns

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solvers.scenes.models.model import Array, Asked, OutsideDomainError
+from solvers.scenes.models.model import Array, Motion, OutsideDomainError
 
 #: Two energies that differ by less are the same, relatively: random states tell.
 SAME, STATES = 1e-12, 8
@@ -24,7 +24,7 @@ class EnergyForm:
 
     Attributes
     ----------
-    asked : Asked
+    asked : Motion
         The motion.
     shape, turn : ndarray of shape (coordinates,)
         q = u shape + s turn; without a turn the latter is zero.
@@ -36,7 +36,7 @@ class EnergyForm:
         L and E.
     """
 
-    asked: Asked
+    asked: Motion
     shape: Array
     turn: Array
     is_angle: bool
@@ -67,12 +67,12 @@ class EnergyForm:
         return np.hstack([place * there, speed * there])
 
 
-def energy_form(asked: Asked) -> EnergyForm:
+def energy_form(asked: Motion) -> EnergyForm:
     """The form of a motion.
 
     Parameters
     ----------
-    asked : Asked
+    asked : Motion
         The motion.
 
     Returns
@@ -108,7 +108,7 @@ def energy_form(asked: Asked) -> EnergyForm:
     return replace(form, energy=energy)
 
 
-def _directions(asked: Asked) -> tuple[Array, Array]:
+def _directions(asked: Motion) -> tuple[Array, Array]:
     """In which direction the shape changes, and in which the whole system turns."""
     n, alive = asked.coordinates, asked.alive
     unit = np.eye(n)
@@ -124,7 +124,7 @@ def _directions(asked: Asked) -> tuple[Array, Array]:
     return unit[shapes[0]], turn
 
 
-def _unchanged(asked: Asked, turn: Array) -> bool:
+def _unchanged(asked: Motion, turn: Array) -> bool:
     """Whether the energy of any state is the same after a turn."""
     random = np.random.default_rng(1)
     y = random.uniform(0.2, 3.0, (2 * asked.coordinates, STATES))

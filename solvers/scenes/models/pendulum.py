@@ -8,7 +8,7 @@ import numpy as np
 
 from solvers.references.elliptic import pendulum as exact
 from solvers.references.elliptic import swing
-from solvers.scenes.models.model import EPS, ROUNDINGS, Array, Asked, OutsideDomainError
+from solvers.scenes.models.model import EPS, ROUNDINGS, Array, Motion, OutsideDomainError
 from solvers.scenes.models.one_degree_of_freedom import energy_form
 
 #: Numbers that differ by less are the same, relatively; so many angles tell.
@@ -40,12 +40,12 @@ class Pendulum:
         return found
 
 
-def pendulum(asked: Asked) -> Pendulum:
+def pendulum(asked: Motion) -> Pendulum:
     """The closed form, with what rounding does to it.
 
     Parameters
     ----------
-    asked : Asked
+    asked : Motion
         The motion.
 
     Returns

@@ -19,7 +19,7 @@ from solvers.scenes.models.model import (
     EPS,
     ROUNDINGS,
     Array,
-    Asked,
+    Motion,
     OutsideDomainError,
     rounding_error,
 )
@@ -44,8 +44,8 @@ class Orbit:
     form : EnergyForm
         What moves.
     middle, half : float
-        u = middle - half cos φ; a half of 0 stands for u = way φ.
-    way : float
+        u = middle - half cos φ; a half of 0 stands for u = direction φ.
+    direction : float
         Direction of a motion that turns over.
     time, turn : Series
         G and S.
@@ -60,7 +60,7 @@ class Orbit:
     form: EnergyForm
     middle: float
     half: float
-    way: float
+    direction: float
     time: Series
     turn: Series
     phase: float
@@ -89,7 +89,10 @@ class Orbit:
         if self.half:
             u, slope = self.middle - self.half * np.cos(phi), self.half * np.sin(phi)
         else:
-            u, slope = self.way * (phi + whole * 2 * np.pi), np.full_like(phi, self.way)
+            u, slope = (
+                self.direction * (phi + whole * 2 * np.pi),
+                np.full_like(phi, self.direction),
+            )
         return self.form.states(u, slope * rate, s, self.turn.value(phi) * rate)
 
 
@@ -107,12 +110,12 @@ class Quadrature:
         return self.orbit.states(t)
 
 
-def quadrature(asked: Asked) -> Quadrature:
+def quadrature(asked: Motion) -> Quadrature:
     """The orbit, with the error of its series and of rounding.
 
     Parameters
     ----------
-    asked : Asked
+    asked : Motion
         The motion.
 
     Returns
@@ -166,19 +169,19 @@ def orbit(form: EnergyForm) -> Orbit:
     """
     u, u_dot, _ = form.start
     ends = _turning_points(form)
-    way = float(np.sign(u_dot)) or 1.0
+    direction = float(np.sign(u_dot)) or 1.0
     middle = half = 0.0
     if ends:
         a, b = ends
         middle, half = (a + b) / 2, (b - a) / 2
-        phase = float(np.arctan2(way * np.sqrt(max((u - a) * (b - u), 0.0)), middle - u))
+        phase = float(np.arctan2(direction * np.sqrt(max((u - a) * (b - u), 0.0)), middle - u))
     else:
-        phase = way * u
+        phase = direction * u
     n = FEWEST
     while n <= MOST:
         phi = 2 * np.pi * (np.arange(n) + 0.5) / n
-        where = middle - half * np.cos(phi) if half else way * phi
-        slope = half * np.sin(phi) if half else np.full_like(phi, way)
+        where = middle - half * np.cos(phi) if half else direction * phi
+        slope = half * np.sin(phi) if half else np.full_like(phi, direction)
         mu, W, spin, drag = form.parts(where)
         kinetic = form.energy - W
         if not np.all(kinetic > 0):
@@ -197,7 +200,7 @@ def orbit(form: EnergyForm) -> Orbit:
             reach = min(half - abs(where[k] - middle) for k in (0, n // 2)) if half else 0.0
             place = float(max(lost[0], lost[n // 2]) * abs(reach))
             rate = float((lost * (np.abs(slope) + np.abs(S)) / G).max())
-            return Orbit(form, middle, half, way, time, turn, phase, period, place, rate)
+            return Orbit(form, middle, half, direction, time, turn, phase, period, place, rate)
         n *= 2
     raise OutsideDomainError(f"no Fourier series of {MOST} points converges")
 

@@ -11,8 +11,8 @@ from solvers.equations.module import GeneratedModule, depends_on_time, has_funct
 from solvers.scenes.models.equilibrium import rest
 from solvers.scenes.models.full_equations import NotAccurateError, full, series
 from solvers.scenes.models.light_masses import light
-from solvers.scenes.models.method_choice import SERIES, Way, cheapest, usual_form
-from solvers.scenes.models.model import Asked, Model, OutsideDomainError
+from solvers.scenes.models.method_choice import SERIES, MethodChoice, cheapest, usual_form
+from solvers.scenes.models.model import Model, Motion, OutsideDomainError
 from solvers.scenes.models.normal_modes import small
 from solvers.scenes.models.pendulum import pendulum
 from solvers.scenes.models.quadrature import quadrature
@@ -21,7 +21,7 @@ from solvers.scenes.scene import Scene
 #: Errors above this say nothing any more.
 USELESS = 1e3
 #: From the smallest model on, those that integrate nothing.
-RUNGS: dict[str, Callable[[Asked], Model]] = {
+RUNGS: dict[str, Callable[[Motion], Model]] = {
     "rest": rest,
     "normal modes": small,
     "pendulum": pendulum,
@@ -31,7 +31,7 @@ RUNGS: dict[str, Callable[[Asked], Model]] = {
 
 
 @dataclass(frozen=True)
-class Choice:
+class ModelSelection:
     """The model that was taken, and why no smaller one.
 
     Attributes
@@ -46,9 +46,9 @@ class Choice:
     declined: dict[str, str]
 
 
-def choice(
-    scene: Scene, code: Callable[[Asked, Way], Asked], tell: Callable[[str], None]
-) -> Choice:
+def select_model(
+    scene: Scene, code: Callable[[Motion, MethodChoice], Motion], report: Callable[[str], None]
+) -> ModelSelection:
     """The smallest model whose error stays below what is asked.
 
     Parameters
@@ -56,14 +56,14 @@ def choice(
     scene : Scene
         What is asked.
     code : callable
-        Takes a motion and a way to integrate it; returns the motion with the module to
+        Takes a motion and a choice to integrate it; returns the motion with the module to
         integrate it with, which may be specialised.
-    tell : callable
-        Is told what is being tried.
+    report : callable
+        Called with the progress.
 
     Returns
     -------
-    Choice
+    ModelSelection
         One of `RUNGS` that the scene names is taken whatever its error.
 
     Raises
@@ -76,19 +76,19 @@ def choice(
         When the model that the scene names says nothing about its motion, or nothing that is
         asked for moves mass; when there are no full equations, since a coordinate moves none.
     """
-    asked = asked_of(scene)
+    asked = motion_of(scene)
     declined: dict[str, str] = {}
     if scene.model in RUNGS:
         if obstacle := _obstacle(scene.module, scene.model):
             raise OutsideDomainError(obstacle)
         with np.errstate(all="ignore"):
-            return Choice(RUNGS[scene.model](asked), {})
+            return ModelSelection(RUNGS[scene.model](asked), {})
     if not scene.is_fixed:
         for name, rung in RUNGS.items():
             if obstacle := _obstacle(scene.module, name):
                 declined[name] = obstacle
                 continue
-            tell(name)
+            report(name)
             try:
                 with np.errstate(all="ignore"):
                     model = rung(asked)
@@ -99,25 +99,27 @@ def choice(
                 declined[name] = f"its numbers are not finite: {reason}"
                 continue
             if model.error_estimate <= scene.accuracy:
-                return Choice(model, declined)
+                return ModelSelection(model, declined)
             declined[name] = (
                 f"its error may reach {model.error_estimate:.1g}"
                 if model.error_estimate < USELESS
                 else "the motion leaves its domain"
             )
     asked.require_mass()
-    way = _way(scene)
-    tell(f"full equations by {way.method}")
+    choice = _method_choice(scene)
+    report(f"full equations by {choice.method}")
     try:
-        return Choice(full(code(asked, way), scene.accuracy, way, asked, scene.step), declined)
+        return ModelSelection(
+            full(code(asked, choice), scene.accuracy, choice, asked, scene.step), declined
+        )
     except NotAccurateError as reason:
         if scene.method or scene.form:
             raise
         declined["ordinary numbers"] = str(reason)
-    tell("full equations by Taylor series")
+    report("full equations by Taylor series")
     form = usual_form(scene.module, SERIES)
-    way = Way(SERIES, form, "the motion loses more digits than ordinary numbers have")
-    return Choice(series(asked, scene.accuracy, way, scene.times), declined)
+    choice = MethodChoice(SERIES, form, "the motion loses more digits than ordinary numbers have")
+    return ModelSelection(series(asked, scene.accuracy, choice, scene.times), declined)
 
 
 def _obstacle(module: GeneratedModule, rung: str) -> str:
@@ -131,20 +133,20 @@ def _obstacle(module: GeneratedModule, rung: str) -> str:
     return ""
 
 
-def asked_of(scene: Scene) -> Asked:
+def motion_of(scene: Scene) -> Motion:
     """The motion of a scene, and what is wanted of it that exists."""
-    asked = Asked(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
+    asked = Motion(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
     wanted = tuple(k for k in scene.wanted if k % asked.coordinates in asked.alive)
     if not wanted:
         raise OutsideDomainError("nothing that is asked for moves mass")
     return replace(asked, wanted=wanted)
 
 
-def _way(scene: Scene) -> Way:
-    """The way that the scene names, and the cheapest where it does not."""
+def _method_choice(scene: Scene) -> MethodChoice:
+    """The choice that the scene names, and the cheapest where it does not."""
     found = cheapest(scene.module, scene.params, scene.accuracy)
     if scene.method is None and scene.form is None:
         return found
     method = scene.method or found.method
     form = scene.form or usual_form(scene.module, method)
-    return Way(method, form, "named in the scene")
+    return MethodChoice(method, form, "named in the scene")
