@@ -19,32 +19,8 @@ Array: TypeAlias = NDArray[np.float64]
 BLOCK = 4096
 
 
-class _Axes:
-    """The part that grids, tables and random axes have in common."""
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of an array with one element for each motion."""
-        raise NotImplementedError
-
-    @property
-    def motions(self) -> int:
-        """Number of motions."""
-        return prod(self.shape)
-
-    def columns(self, start: int, stop: int) -> dict[str, Array]:
-        """Values of the motions from `start` on, before `stop`, by name."""
-        raise NotImplementedError
-
-    def subset(self, count: int) -> dict[str, Array]:
-        """Values of about `count` motions from all over a sweep, always the same."""
-        chosen = np.unique(np.random.default_rng(0).integers(0, self.motions, count))
-        rows = [self.columns(index, index + 1) for index in chosen]
-        return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
-
-
 @dataclass(frozen=True)
-class _Listed(_Axes):
+class _Listed:
     """Axes with listed values."""
 
     values: Mapping[str, Array]
@@ -98,7 +74,7 @@ class Grid(_Listed):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        validation.count("the number of motions", self.motions, 1)
+        validation.count("the number of motions", prod(self.shape), 1)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -129,8 +105,8 @@ class Table(_Listed):
 
     Examples
     --------
-    >>> Table({"theta1": [0.1, 0.2], "theta2": [0.0, 3.0]}).motions
-    2
+    >>> Table({"theta1": [0.1, 0.2], "theta2": [0.0, 3.0]}).shape
+    (2,)
     """
 
     def __post_init__(self) -> None:
@@ -150,7 +126,7 @@ class Table(_Listed):
 
 
 @dataclass(frozen=True)
-class Random(_Axes):
+class Random:
     """Uniformly distributed random values between two limits each.
 
     Parameters
@@ -167,8 +143,8 @@ class Random(_Axes):
 
     Examples
     --------
-    >>> Random({"theta1": (-3, 3), "theta2": (-3, 3)}, count=1000, seed=1).motions
-    1000
+    >>> Random({"theta1": (-3, 3), "theta2": (-3, 3)}, count=1000, seed=1).shape
+    (1000,)
     """
 
     limits: Mapping[str, tuple[float, float]]
@@ -213,6 +189,13 @@ class Random(_Axes):
 
 
 Axes: TypeAlias = Grid | Table | Random
+
+
+def subset(axes: Axes, count: int) -> dict[str, Array]:
+    """Values of about `count` motions from all over a sweep, always the same."""
+    chosen = np.unique(np.random.default_rng(0).integers(0, prod(axes.shape), count))
+    rows = [axes.columns(index, index + 1) for index in chosen]
+    return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
 
 
 def _columns(values: Mapping[str, Any]) -> dict[str, Array]:

@@ -53,26 +53,7 @@ def lower_position(
     positions: Positions,
     params: Sequence[float],
 ) -> dict[str, float]:
-    """A position below all of `positions` with a watched coordinate at its value, or no entry.
-
-    Descents from random positions search for it; the random numbers are always the same.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    watched : mapping of str to sequence of float
-        Values by coordinate, in rad or m.
-    positions : sequence of mapping of str to float
-        Coordinates in rad or m; those that are not named are 0.
-    params : sequence of float
-        In the order of ``module.PARAMETERS``.
-
-    Returns
-    -------
-    dict of str to float
-        All coordinates by name, in rad or m.
-    """
+    """A position below all of `positions` with a watched coordinate at its value, or no entry."""
     own = [np.array([p]) for p in params]
     top = float(barrier(module, positions, own, 1)[0])
     random, n = np.random.default_rng(0), len(module.COORDINATES)

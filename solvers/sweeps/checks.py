@@ -23,22 +23,7 @@ Values = Mapping[str, float | str]
 
 
 def check_names(module: GeneratedModule, axes: Axes, values: Values) -> None:
-    """Check names and values of quantities.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    axes : Grid, Table or Random
-        Quantities that vary.
-    values : mapping of str to float or str
-        Quantities that do not vary.
-
-    Raises
-    ------
-    ValueError
-        When a name is unknown, duplicate or missing, or a value is not possible.
-    """
+    """Check names and values of quantities."""
     own = (*module.STATE, *module.PARAMETERS)
     known, varied = (*own, ENERGY), tuple(axes.smallest)
     for name in own:
@@ -63,22 +48,7 @@ def check_names(module: GeneratedModule, axes: Axes, values: Values) -> None:
 
 
 def check_energy(module: GeneratedModule, given: Sequence[str], values: Values) -> None:
-    """Check that an energy and one velocity that follows from it are given together.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    given : sequence of str
-        Names of all quantities that vary or have a value.
-    values : mapping of str to float or str
-        Quantities that do not vary.
-
-    Raises
-    ------
-    ValueError
-        When one is given without the other.
-    """
+    """Check that an energy and one velocity that follows from it are given together."""
     free = [name for name, value in values.items() if value == FROM_ENERGY]
     velocities = module.STATE[len(module.COORDINATES) :]
     if len(free) > 1 or not {*free} <= {*velocities}:
@@ -96,24 +66,7 @@ def check_energy(module: GeneratedModule, given: Sequence[str], values: Values) 
 def check_maps(
     module: GeneratedModule, axes: Axes, maps: Mapping[str, Map], values: Values
 ) -> None:
-    """Check the names of maps, and each map against the sweep.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    axes : Grid, Table or Random
-        Quantities that vary.
-    maps : mapping of str to Map
-        The maps by name.
-    values : mapping of str to float or str
-        Quantities that do not vary.
-
-    Raises
-    ------
-    ValueError
-        When a map is not possible.
-    """
+    """Check the names of maps, and each map against the sweep."""
     if not maps:
         raise ValueError("no maps: give at least one")
     counts = {one.sample_count for one in maps.values()} - {0}

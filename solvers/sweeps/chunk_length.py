@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from solvers.sweeps.axes import subset
 from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
@@ -18,25 +19,10 @@ MAX_BYTES = 8e6
 
 
 def chunk_length(sweep: Sweep, job: Job) -> int:
-    """Number of motions in a chunk: about a second of work, less in short sweeps.
-
-    In short sweeps the overhead of the chunks equals the time spent on waiting for the last one.
-    The time follows from the number of evaluations of the right-hand side, not from the clock,
-    so that a sweep is always divided in the same way.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        The sweep.
-    job : Job
-        Its job.
-
-    Returns
-    -------
-    int
-        At least one.
-    """
-    starts, params, status = initial_states(job, sweep.module, sweep.axes.subset(TRIALS))
+    """Number of motions in a chunk: about a second of work, less in short sweeps."""
+    # in short sweeps chunks cost as much as waiting for the last of them; time follows from the
+    # number of evaluations, not from the clock, so that a sweep is always divided in the same way
+    starts, params, status = initial_states(job, sweep.module, subset(sweep.axes, TRIALS))
     runs = status == 0
     evaluations = 1
     if runs.any():

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from solvers.sweeps.axes import subset
 from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import run_chunk
@@ -44,8 +45,9 @@ def tighter_rtol(sweep: Sweep) -> float:
 def convergence(sweep: Sweep) -> dict[str, Convergence]:
     """Changes of each map, from motions all over the sweep."""
     job = Job.of(sweep)
-    tight = replace(job, rtol=tighter_rtol(sweep), atol=sweep.atol / RATIO)
-    columns = sweep.axes.subset(REPEATED)
+    tolerances = {"rtol": tighter_rtol(sweep), "atol": sweep.atol / RATIO}
+    tight = replace(job, options=job.options | tolerances)
+    columns = subset(sweep.axes, REPEATED)
     original, repeated = run_chunk(job, columns), run_chunk(tight, columns)
     changes = {}
     for name in sweep.maps:

@@ -42,17 +42,7 @@ class FolderError(ValueError):
 
 @dataclass(frozen=True)
 class Contents:
-    """The data that a folder is for.
-
-    Attributes
-    ----------
-    definition : mapping
-        All that determines the results, as JSON values.
-    motions : int
-        Number of motions.
-    dtype : numpy.dtype
-        The record that is stored for each motion.
-    """
+    """The data that a folder is for."""
 
     definition: Mapping[str, Any]
     motions: int
@@ -60,24 +50,7 @@ class Contents:
 
 
 class Folder:
-    """The folder of a sweep; as a context it locks the folder for one process.
-
-    Parameters
-    ----------
-    path : Path
-        The folder; it is created.
-    contents : Contents
-        The data.
-    chunk_length : callable
-        Gives the number of motions in a chunk; called for a new folder only.
-
-    Raises
-    ------
-    FolderError
-        When the folder holds another sweep, or another process works in it.
-    OSError
-        When it cannot be written.
-    """
+    """The folder of a sweep; as a context it locks the folder for one process."""
 
     def __init__(self, path: Path, contents: Contents, chunk_length: Callable[[], int]) -> None:
         self.path, self._motions, self._dtype = path, contents.motions, contents.dtype
@@ -138,13 +111,7 @@ class Folder:
             raise OSError(ENOSPC, sizes, str(self.path))
 
     def check(self) -> None:
-        """Compare the manifest, and change nothing.
-
-        Raises
-        ------
-        FolderError
-            When another sweep is there, or none.
-        """
+        """Compare the manifest, and change nothing."""
         manifest = _manifest(self.path / MANIFEST)
         own = {"motions": self._motions, **self._definition}
         other = {"motions": manifest["motions"], **manifest["definition"]}

@@ -39,7 +39,7 @@ def initial_states(
         state[status != 0, index] = 0.0
     if job.barrier:
         status[(status == 0) & is_below(module, job.barrier, state, params)] = PROVED
-    if job.form == "variational":
+    if job.options["form"] == "variational":
         size = len(module.STATE)
         state = np.hstack([state, np.full((n, size), size**-0.5)])
     return state, params, status
@@ -48,28 +48,7 @@ def initial_states(
 def velocity(
     module: GeneratedModule, state: Array, params: list[Array], index: int, energy: Array
 ) -> Array:
-    """The velocity of 0 or more with which states have an energy; NaN where there is none.
-
-    The energy is a polynomial of degree two in the velocity.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    state : ndarray of shape (n, state)
-        States; their values of this velocity do not matter.
-    params : list of ndarray of shape (n,)
-        In the order of ``module.PARAMETERS``.
-    index : int
-        Index of the velocity in the state.
-    energy : ndarray of shape (n,)
-        In J.
-
-    Returns
-    -------
-    ndarray of shape (n,)
-        In rad/s or m/s.
-    """
+    """The velocity of 0 or more with which states have an energy; NaN where there is none."""
     at = {}
     for value in (-1.0, 0.0, 1.0):
         trial = state.copy()

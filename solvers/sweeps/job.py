@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -59,11 +60,7 @@ class Job:
     source: Source
     values: Mapping[str, float | str]
     duration: float
-    method: str
-    form: str
-    rtol: float
-    atol: float
-    max_steps: int
+    options: dict[str, Any]
     samples: int
     maps: Mapping[str, Map]
     columns: tuple[str, ...]
@@ -71,19 +68,9 @@ class Job:
     @classmethod
     def of(cls, sweep: Sweep) -> Job:
         """The job of a sweep."""
-        return cls(
-            source=Source.of(sweep.module),
-            values=dict(sweep.values),
-            duration=sweep.duration,
-            method=sweep.method,
-            form=sweep.form,
-            rtol=sweep.rtol,
-            atol=sweep.atol,
-            max_steps=sweep.max_steps,
-            samples=sweep.samples,
-            maps=dict(sweep.maps),
-            columns=() if isinstance(sweep.axes, Grid) else tuple(sweep.axes.smallest),
-        )
+        columns = () if isinstance(sweep.axes, Grid) else tuple(sweep.axes.smallest)
+        source, values, maps = Source.of(sweep.module), dict(sweep.values), dict(sweep.maps)
+        return cls(source, values, sweep.duration, sweep.options, sweep.samples, maps, columns)
 
     @property
     def ends_at_event(self) -> bool:

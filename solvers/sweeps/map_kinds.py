@@ -36,27 +36,7 @@ def load(name: str) -> type[Map]:
 
 
 def read(path: str, module: GeneratedModule, table: Mapping[str, Any]) -> Map:
-    """The map that a table of a sweep file specifies.
-
-    Parameters
-    ----------
-    path : str
-        The table's place in the file, such as ``maps.flip``.
-    module : module
-        A generated module.
-    table : mapping
-        The table.
-
-    Returns
-    -------
-    Map
-        An instance of the class of its ``kind``.
-
-    Raises
-    ------
-    solvers.io.toml_input.InputError
-        When the kind is unknown, or a key or value is not possible.
-    """
+    """The map that a table of a sweep file specifies."""
     known, word = names(), table.get("kind")
     options = ", ".join(map(repr, known))
     if word is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -60,50 +60,27 @@ class Pool:
         """Number of chunks that are computed at the same time."""
         return self.workers or len(os.sched_getaffinity(0))
 
-    def opened(self) -> AbstractContextManager[Executor]:
-        """The executor; threads of this process end with the context."""
-        return nullcontext(self.executor) if self.executor else ThreadPoolExecutor(self.size)
-
     def completed(
-        self, executor: Executor, job: Job, axes: Axes, spans: Sequence[Span]
+        self, job: Job, axes: Axes, spans: Sequence[Span]
     ) -> Generator[tuple[Span, NDArray[np.void]]]:
-        """Results of chunks in the order of their completion.
-
-        At most two chunks for each worker are submitted at a time.
-
-        Parameters
-        ----------
-        executor : concurrent.futures.Executor
-            From `opened`.
-        job : Job
-            The work for each motion.
-        axes : Grid, Table or Random
-            Quantities that vary.
-        spans : sequence of pairs of int
-            The first motion of each chunk, and the one after its last.
-
-        Yields
-        ------
-        span : pair of int
-            One of `spans`.
-        chunk : structured ndarray of shape (motions of the span,)
-            With the fields of ``job.dtype``.
-        """
+        """Spans and their chunks in the order of completion; each worker gets two at a time."""
         waiting = iter(spans)
         submitted: dict[Future[NDArray[np.void]], Span] = {}
-        try:
-            while True:
-                for span in waiting:
-                    submitted[executor.submit(run_chunk, job, axes.columns(*span))] = span
-                    if len(submitted) == 2 * self.size:
-                        break
-                if not submitted:
-                    return
-                finished, _ = wait(submitted, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    yield submitted.pop(future), future.result()
-        finally:
-            for future in submitted:
-                future.cancel()
-            if submitted:
-                stop()
+        own = self.executor or ThreadPoolExecutor(self.size)
+        with nullcontext(own) if self.executor else own as executor:
+            try:
+                while True:
+                    for span in waiting:
+                        submitted[executor.submit(run_chunk, job, axes.columns(*span))] = span
+                        if len(submitted) == 2 * self.size:
+                            break
+                    if not submitted:
+                        return
+                    finished, _ = wait(submitted, return_when=FIRST_COMPLETED)
+                    for future in finished:
+                        yield submitted.pop(future), future.result()
+            finally:
+                for future in submitted:
+                    future.cancel()
+                if submitted:
+                    stop()

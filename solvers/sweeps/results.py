@@ -44,25 +44,7 @@ class Results:
 
     @classmethod
     def of(cls, definition: Sweep, folder: Path) -> Results:
-        """Open the maps in a folder.
-
-        Parameters
-        ----------
-        definition : Sweep
-            The motions and maps.
-        folder : Path
-            The folder of the finished sweep.
-
-        Returns
-        -------
-        Results
-            With read-only arrays that are loaded when they are accessed.
-
-        Raises
-        ------
-        OSError
-            When a file is missing.
-        """
+        """Open the maps in a folder."""
 
         def opened(name: str) -> NDArray[Any]:
             return np.load(folder / f"{name}.npy", mmap_mode="r")

@@ -71,16 +71,10 @@ def sweep(
     """
     job = Job.of(definition)
     with _folder(definition, job, folder) as stored:
-        missing = {
-            stored.span(chunk): chunk
-            for chunk in range(stored.chunks)
-            if chunk not in stored.completed
-        }
+        chunks = {*range(stored.chunks)} - {*stored.completed}
+        missing = {stored.span(chunk): chunk for chunk in sorted(chunks)}
         rate = Rate(definition.motions, sum(stop - start for start, stop in missing))
-        with (
-            pool.opened() as executor,
-            closing(pool.completed(executor, job, definition.axes, [*missing])) as completed,
-        ):
+        with closing(pool.completed(job, definition.axes, [*missing])) as completed:
             for span, chunk in completed:
                 stored.store(missing[span], chunk)
                 report(rate(len(chunk)))
@@ -126,7 +120,7 @@ def partial_results(definition: Sweep, folder: str | Path) -> Results:
         return rows.reshape(*definition.axes.shape, *rows.shape[1:])
 
     axes = definition.axes
-    varied = axes.values if isinstance(axes, Grid) else axes.columns(0, axes.motions)
+    varied = axes.values if isinstance(axes, Grid) else axes.columns(0, definition.motions)
     maps = {name: gathered(name) for name in definition.maps}
     return Results(definition, Path(folder), maps, dict(varied), gathered("status"))
 

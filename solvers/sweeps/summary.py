@@ -73,7 +73,7 @@ def ranges(results: Results) -> dict[str, dict[str, Any]]:
                 "smallest": low,
                 "median": middle,
                 "largest": high,
-                "unit": module.UNITS[labels[0]] if labels else one.unit(module),
+                "unit": one.unit(module, *labels[:1]),
                 "known": finite.size / values.size,
             }
     return statistics

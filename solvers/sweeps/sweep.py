@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -105,9 +106,15 @@ class Sweep:
         return max(one.sample_count for one in self.maps.values())
 
     @property
+    def options(self) -> dict[str, Any]:
+        """Options of `solvers.integration.ensemble.ensemble`."""
+        limits = {"rtol": self.rtol, "atol": self.atol, "max_steps": self.max_steps}
+        return {"method": self.method, "form": self.form, **limits}
+
+    @property
     def motions(self) -> int:
         """Number of motions."""
-        return self.axes.motions
+        return prod(self.axes.shape)
 
     @property
     def as_json(self) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -21,26 +22,7 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 def run_chunk(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
-    """Integrate motions and compute their maps.
-
-    Parameters
-    ----------
-    job : Job
-        The work for each motion.
-    columns : mapping of str to ndarray of shape (n,)
-        Quantities that vary, in the unit of the coordinate, velocity or parameter, or of the
-        energy in J.
-
-    Returns
-    -------
-    structured ndarray of shape (n,)
-        With the fields of ``job.dtype``.
-
-    Raises
-    ------
-    InterruptedError
-        When `solvers.integration.ensemble.stop` was called meanwhile.
-    """
+    """Integrate motions and compute their maps."""
     module = loaded(job.source)
     starts, params, status = initial_states(job, module, columns)
     chunk = np.zeros(len(status), job.dtype)
@@ -71,22 +53,12 @@ def integrated(job: Job, module: GeneratedModule, starts: Array, params: list[Ar
     maps = job.maps.values()
     events = [event for one in maps for event in one.events(module)]
     events = [replace(event, terminal=job.ends_at_event) for event in events]
+    times = np.linspace(0, job.duration, job.samples) if job.samples else None
+    constants = np.stack(params, axis=1) if params else np.empty((1, 0))
+    occurrences = max(one.occurrences for one in maps)
+    run = partial(ensemble, module, (0.0, job.duration), starts, constants, **job.options)
     with ignore_predictability():
-        motions = ensemble(
-            module,
-            (0.0, job.duration),
-            starts,
-            np.stack(params, axis=1) if params else np.empty((1, 0)),
-            method=job.method,
-            form=job.form,
-            rtol=job.rtol,
-            atol=job.atol,
-            t_eval=np.linspace(0, job.duration, job.samples) if job.samples else None,
-            events=events,
-            occurrences=max(one.occurrences for one in maps),
-            max_steps=job.max_steps,
-            workers=1,
-        )
+        motions = run(t_eval=times, events=events, occurrences=occurrences, workers=1)
     if (motions.status == Status.INTERRUPTED).any():
         raise InterruptedError("the sweep was stopped")
     return motions

@@ -28,21 +28,7 @@ Panels: TypeAlias = "Iterator[tuple[str, Callable[[Panel], None]]]"
 
 @dataclass(frozen=True)
 class Motions:
-    """Integrated motions, as input of a map.
-
-    Attributes
-    ----------
-    module : module
-        The generated module.
-    starts : ndarray of shape (n, state)
-        Initial states.
-    params : list of ndarray
-        Each parameter's value in each motion.
-    ensemble : Ensemble
-        The result of the integration.
-    events : slice
-        The events of this map among all events of the ensemble.
-    """
+    """Integrated motions as input of a map; `events` selects its own in the ensemble."""
 
     module: GeneratedModule
     starts: Array
@@ -59,23 +45,6 @@ class Motions:
         return [self.module.STATE.index(name) for name in components]
 
 
-@dataclass(frozen=True)
-class ColourScale:
-    """Colour map and norm of an image.
-
-    Parameters
-    ----------
-    colours : str, optional
-        A colour map of matplotlib's. By default the signs of the values decide: diverging about
-        0 where both occur, else sequential.
-    is_logarithmic : bool, optional
-        Whether absolute values are shown on a logarithmic scale; a linear one includes 0.
-    """
-
-    colours: str = ""
-    is_logarithmic: bool = False
-
-
 class Map:
     """One number for each motion; the base of all map kinds.
 
@@ -90,8 +59,11 @@ class Map:
         Name of the quantity, for labels; by default that of the component, or of the map.
     dimensions : tuple of str
         Names of the dimensions of the numbers of one motion.
-    colours : ColourScale
-        How images show the numbers.
+    colour_map : str
+        A colour map of matplotlib's whose range includes 0; by default the signs of the values
+        decide: diverging about 0 where both occur, else sequential.
+    is_logarithmic : bool
+        Whether images show absolute values on a logarithmic scale.
     wraps_angles : bool
         Whether plots show angles modulo 2π.
     is_variational : bool
@@ -105,7 +77,8 @@ class Map:
     example: ClassVar[str] = ""
     quantity: ClassVar[str] = ""
     dimensions: ClassVar[tuple[str, ...]] = ()
-    colours: ClassVar[ColourScale] = ColourScale()
+    colour_map: ClassVar[str] = ""
+    is_logarithmic: ClassVar[bool] = False
     wraps_angles: ClassVar[bool] = False
     is_variational: ClassVar[bool] = False
     ends_motion: ClassVar[bool] = False
@@ -146,9 +119,9 @@ class Map:
         """Whether the energy must be conserved."""
         return bool(self.barrier)
 
-    def unit(self, module: GeneratedModule) -> str:
-        """Unit of the numbers; empty if they have different units."""
-        units = {module.UNITS[name] for name in self.components}
+    def unit(self, module: GeneratedModule, component: str = "") -> str:
+        """Unit of the numbers, or of those of one component; empty if they have different units."""
+        units = {module.UNITS[name] for name in ([component] if component else self.components)}
         return units.pop() if len(units) == 1 else ""
 
     def events(self, module: GeneratedModule) -> list[Event]:
@@ -156,22 +129,7 @@ class Map:
         return []
 
     def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
-        """Check the map against its sweep.
-
-        Parameters
-        ----------
-        module : module
-            A generated module.
-        axes : Grid, Table or Random
-            Quantities that vary.
-        values : mapping of str to float or str
-            Quantities that do not vary.
-
-        Raises
-        ------
-        ValueError
-            When the map is not possible there.
-        """
+        """Check the map against its sweep."""
         for name in self.components:
             if name not in module.STATE:
                 raise ValueError(
@@ -192,20 +150,10 @@ class Map:
 
         return number_panels(name, results)
 
-    def notes(self, results: Results) -> Iterator[str]:
-        """Remarks below the figure."""
-        return iter(())
-
 
 @dataclass(frozen=True)
 class ComponentMap(Map):
-    """Base of the kinds that store numbers for some components of the state.
-
-    Parameters
-    ----------
-    of : tuple of str
-        The components.
-    """
+    """Base of the kinds that store numbers for the components `of` of the state."""
 
     of: tuple[str, ...]
 
@@ -231,3 +179,17 @@ class ComponentMap(Map):
         if not self.of:
             raise ValueError(f"`of` is empty; name some of {', '.join(module.STATE)}")
         super().check(module, axes, values)
+
+
+@dataclass(frozen=True)
+class CountedMap(ComponentMap):
+    """Base of the kinds that store `count` values of each component."""
+
+    count: int
+
+    dimensions: ClassVar[tuple[str, ...]] = ("component", "number")
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Values of each component."""
+        return (len(self.of), self.count)

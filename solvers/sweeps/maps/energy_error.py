@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solvers.equations.module import GeneratedModule
-from solvers.sweeps.maps import Array, ColourScale, Map, Motions
+from solvers.sweeps.maps import Array, Map, Motions
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,11 @@ class EnergyError(Map):
     """
 
     quantity = "energy error"
-    colours = ColourScale("magma", is_logarithmic=True)
+    colour_map = "magma"
+    is_logarithmic = True
     uses_energy = True
 
-    def unit(self, module: GeneratedModule) -> str:
+    def unit(self, module: GeneratedModule, component: str = "") -> str:
         """Unit of an energy."""
         return "J"
 

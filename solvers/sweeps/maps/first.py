@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +12,7 @@ from solvers.integration.events import Event
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.barrier import lower_position
 from solvers.sweeps.map_table import MapTable
-from solvers.sweeps.maps import Array, ColourScale, Map, Motions
-
-if TYPE_CHECKING:
-    from solvers.sweeps.results import Results
+from solvers.sweeps.maps import Array, Map, Motions
 
 
 @dataclass(frozen=True)
@@ -45,7 +41,8 @@ class First(Map):
 
     example = 'of = { theta1 = ["-180 deg", "180 deg"] }, barrier = [{ theta1 = "180 deg" }]'
     quantity = "time"
-    colours = ColourScale("viridis_r", is_logarithmic=True)
+    colour_map = "viridis_r"
+    is_logarithmic = True
     ends_motion = True
 
     @classmethod
@@ -58,7 +55,7 @@ class First(Map):
         """Components that are watched, and coordinates of the barrier."""
         return (*self.of, *(name for position in self.barrier for name in position))
 
-    def unit(self, module: GeneratedModule) -> str:
+    def unit(self, module: GeneratedModule, component: str = "") -> str:
         """Unit of a time."""
         return "s"
 
@@ -95,10 +92,3 @@ class First(Map):
         times = motions.ensemble.t_events[:, motions.events, 0]
         first = np.where(np.isnan(times), np.inf, times).min(axis=1, initial=np.inf)
         return np.where(np.isinf(first), np.nan, first)
-
-    def notes(self, results: Results) -> Iterator[str]:
-        """Meaning of white and grey."""
-        if "proved" in results.count:
-            yield "white, inside the line: not enough energy"
-        if "finished" in results.count:
-            yield f"grey or empty: not within {results.definition.duration:g} s"

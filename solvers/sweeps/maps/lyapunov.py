@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solvers.equations.module import GeneratedModule
-from solvers.sweeps.maps import Array, ColourScale, Map, Motions
+from solvers.sweeps.maps import Array, Map, Motions
 
 
 @dataclass(frozen=True)
@@ -24,10 +24,10 @@ class Lyapunov(Map):
     """
 
     quantity = "Lyapunov exponent"
-    colours = ColourScale("magma")
+    colour_map = "magma"
     is_variational = True
 
-    def unit(self, module: GeneratedModule) -> str:
+    def unit(self, module: GeneratedModule, component: str = "") -> str:
         """Unit of a rate."""
         return "1/s"
 

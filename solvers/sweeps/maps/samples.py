@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from solvers.sweeps.map_table import MapTable
-from solvers.sweeps.maps import Array, ComponentMap, Motions, Panels
+from solvers.sweeps.maps import Array, CountedMap, Motions, Panels
 
 if TYPE_CHECKING:
     from solvers.sweeps.results import Results
 
-#: Number of motions that are drawn.
-CURVES = 60
-
 
 @dataclass(frozen=True)
-class Samples(ComponentMap):
+class Samples(CountedMap):
     """Components of the state at `count` evenly spaced times, start and end included.
 
     Parameters
@@ -33,20 +29,12 @@ class Samples(ComponentMap):
     (1, 100)
     """
 
-    count: int
-
     example = 'of = ["theta1"], count = 100'
-    dimensions = ("component", "number")
 
     @classmethod
     def read(cls, table: MapTable) -> Samples:
         """The map that a table of a sweep file specifies."""
         return cls(table.components("of"), table.count("count"))
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Samples of each component."""
-        return (len(self.of), self.count)
 
     @property
     def sample_count(self) -> int:
@@ -61,9 +49,4 @@ class Samples(ComponentMap):
         """A panel of curves over time for each component."""
         from solvers.sweeps.plots.panels import curve_panels
 
-        return curve_panels(name, results, CURVES)
-
-    def notes(self, results: Results) -> Iterator[str]:
-        """Number of curves, if it is limited."""
-        if (motions := results.definition.motions) > CURVES:
-            yield f"about {CURVES} of {motions:,} motions over time"
+        return curve_panels(name, results)

@@ -10,7 +10,7 @@ import numpy as np
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event
 from solvers.sweeps.map_table import MapTable
-from solvers.sweeps.maps import Array, ComponentMap, Motions, Panels
+from solvers.sweeps.maps import Array, CountedMap, Motions, Panels
 
 if TYPE_CHECKING:
     from solvers.sweeps.results import Results
@@ -20,7 +20,7 @@ DIRECTIONS = {"both": 0, "up": 1, "down": -1}
 
 
 @dataclass(frozen=True)
-class Section(ComponentMap):
+class Section(CountedMap):
     """Poincaré section: components at the first `count` crossings of `where` = `value`.
 
     The start of a motion is no crossing.
@@ -44,13 +44,11 @@ class Section(ComponentMap):
     (2, 50)
     """
 
-    count: int
     where: str
     value: float = 0.0
     direction: int = 0
 
     example = 'of = ["theta2"], count = 50, where = "theta1", value = 0, direction = "up"'
-    dimensions = ("component", "number")
     wraps_angles = True
 
     @classmethod
@@ -60,11 +58,6 @@ class Section(ComponentMap):
         direction = DIRECTIONS[table.choice("direction", tuple(DIRECTIONS), "both")]
         value = table.number("value", table.module.UNITS[where], 0.0)
         return cls(table.components("of"), table.count("count"), where, value, direction)
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Crossings of each component."""
-        return (len(self.of), self.count)
 
     @property
     def occurrences(self) -> int:

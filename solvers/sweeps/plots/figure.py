@@ -8,6 +8,7 @@ from math import ceil
 from matplotlib.figure import Figure
 
 from solvers.io.figures import panels
+from solvers.sweeps.plots.lines import CURVES
 from solvers.sweeps.results import Results
 
 #: Largest number of panels.
@@ -56,8 +57,14 @@ def figure(results: Results) -> Figure:
 
 
 def _remarks(results: Results) -> Iterator[str]:
-    """Remarks of the maps, and numbers of motions with an unusual status."""
-    notes = [note for one in results.definition.maps.values() for note in one.notes(results)]
-    yield from dict.fromkeys(notes)
+    """Meaning of colours, number of curves, and motions with an unusual status."""
+    definition, count = results.definition, results.count
+    kinds = definition.maps.values()
+    if "proved" in count:
+        yield "white, inside the line: not enough energy"
+    if "finished" in count and any(one.ends_motion for one in kinds):
+        yield f"grey or empty: not within {definition.duration:g} s"
+    if definition.samples and definition.motions > CURVES:
+        yield f"about {CURVES} of {definition.motions:,} motions over time"
     usual = ("finished", "event", "proved")
-    yield from (f"{name}: {n:,} motions" for name, n in results.count.items() if name not in usual)
+    yield from (f"{name}: {n:,} motions" for name, n in count.items() if name not in usual)

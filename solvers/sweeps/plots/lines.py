@@ -15,8 +15,8 @@ from solvers.sweeps.plots.labels import add_colour_bar, label_axis
 from solvers.sweeps.plots.quantity import NOTHING, Quantity, wrapped
 from solvers.sweeps.results import Results
 
-#: Largest number of values with markers, and of points of a section.
-MARKED, POINTS = 100, 200_000
+#: Largest number of values with markers, of curves, and of points of a section.
+MARKED, CURVES, POINTS = 100, 60, 200_000
 
 
 def line(panel: Axes, *, quantity: Quantity) -> None:
@@ -42,11 +42,11 @@ def line(panel: Axes, *, quantity: Quantity) -> None:
         panel.text(0.5, 0.5, "no values", transform=panel.transAxes, ha="center")
 
 
-def curves(panel: Axes, *, quantity: Quantity, most: int) -> None:
-    """A sampled component of up to about `most` motions over time."""
+def curves(panel: Axes, *, quantity: Quantity) -> None:
+    """A sampled component of about `CURVES` motions over time, from all over the sweep."""
     results, one = quantity.results, quantity.map
     motions = results.maps[quantity.name].reshape(-1, *one.shape)
-    motions = motions[:: max(1, -(-len(motions) // most)), quantity.index[0]]
+    motions = motions[:: max(1, -(-len(motions) // CURVES)), quantity.index[0]]
     times = np.linspace(0, results.definition.duration, one.sample_count)
     shades = mpl.colormaps["viridis"](np.linspace(0, 0.9, len(motions)))
     for y, colour in zip(motions, shades, strict=True):

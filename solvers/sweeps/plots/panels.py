@@ -31,12 +31,12 @@ def number_panels(name: str, results: Results) -> Panels:
         yield title, partial(draw, quantity=Quantity(results, name, index))
 
 
-def curve_panels(name: str, results: Results, most: int) -> Panels:
-    """A panel for each component, with up to about `most` motions over time."""
+def curve_panels(name: str, results: Results) -> Panels:
+    """A panel for each component, with some of the motions over time."""
     (components,) = results.definition.maps[name].labels
     for k, component in enumerate(components):
         quantity = Quantity(results, name, (k,))
-        yield f"{name}: {symbol(component)}", partial(curves, quantity=quantity, most=most)
+        yield f"{name}: {symbol(component)}", partial(curves, quantity=quantity)
 
 
 def section_panels(name: str, results: Results) -> Panels:

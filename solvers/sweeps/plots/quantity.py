@@ -43,8 +43,7 @@ class Quantity:
     @property
     def unit(self) -> str:
         """Unit of the number."""
-        module = self.results.definition.module
-        return module.UNITS[self.component] if self.component else self.map.unit(module)
+        return self.map.unit(self.results.definition.module, self.component)
 
     @property
     def label(self) -> str:
@@ -63,22 +62,22 @@ class Quantity:
         values = self.results.maps[self.name][(*motions, *self.index)]
         if self.is_direction:
             return wrapped(values)
-        return np.abs(values) if self.map.colours.is_logarithmic else np.asarray(values)
+        return np.abs(values) if self.map.is_logarithmic else np.asarray(values)
 
     def colours(self, values: Array) -> tuple[str, Normalize]:
         """A colour map and its range: cyclic for directions, else by the map's colour scale."""
-        scale, finite = self.map.colours, values[np.isfinite(values)]
+        palette, finite = self.map.colour_map, values[np.isfinite(values)]
         if not finite.size:
             return "viridis", Normalize(0, 1)
-        if scale.is_logarithmic:
+        if self.map.is_logarithmic:
             sizes = np.abs(finite[finite != 0])
             low, high = np.percentile(sizes, PERCENTILES) if sizes.size else (1e-17, 1e-16)
-            return scale.colours or "viridis", LogNorm(low, max(high, low))
+            return palette or "viridis", LogNorm(low, max(high, low))
         if self.is_direction:
             return "twilight", Normalize(-np.pi, np.pi)
         low, high = np.percentile(finite, PERCENTILES)
-        if scale.colours:
-            return scale.colours, Normalize(min(low, 0.0), high)
+        if palette:
+            return palette, Normalize(min(low, 0.0), high)
         if low < 0 < high:
             return "RdBu_r", Normalize(-max(-low, high), max(-low, high))
         return "viridis", Normalize(low, high)
