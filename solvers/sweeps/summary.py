@@ -51,9 +51,9 @@ def summary(
         unit = own and f" {own}"
         lost = f"; {change.lost:.0%} exist with one tolerance only" if change.lost else ""
         yield (
-            f"{name}, {change.motions} motions repeated with rtol = {tighter_rtol(definition):g}: "
-            f"half of the values change by less than {change.median:.1g}{unit}, nine tenths by "
-            f"less than {change.most:.1g}{unit}{lost}"
+            f"{name}: of {change.motions} motions repeated with rtol = "
+            f"{tighter_rtol(definition):g}, half change by less than {change.median:.1g}{unit}, "
+            f"90 % by less than {change.most:.1g}{unit}{lost}"
         )
 
 
