@@ -6,10 +6,11 @@ import random
 import pytest
 import sympy as sp
 
+from derive.codegen import operation as op
 from derive.codegen.factorisation import Factorisation
-from derive.codegen.graph import Graph, Node
+from derive.codegen.graph import Graph
 from derive.codegen.lowering import Lowering
-from derive.codegen.operation import Operation
+from derive.codegen.node import Node
 from derive.codegen.translation import Translation, UnsupportedFunctionError
 
 a, b, c, d, x = sp.symbols("a b c d x", positive=True)
@@ -20,23 +21,22 @@ def evaluated(lowering: Lowering, values: dict[str, float]) -> list[float]:
     """The outputs by plain recursion: no names, no text, no order of ours."""
 
     def value(number: int) -> float:
-        operation: Operation = lowering.operations[number]
+        operation = lowering.operations[number]
         inner = [value(n) for n in operation.operands]
-        match operation.kind:
-            case "leaf":
-                return values[operation.label]
-            case "number":
-                return float(operation.value)
-            case "sum":
-                return math.fsum(
-                    float(k) * v for k, v in zip(operation.coefficients, inner, strict=True)
-                )
-            case "product":
+        match operation:
+            case op.Leaf(name=name):
+                return values[name]
+            case op.Constant(value=constant):
+                return float(constant)
+            case op.Sum(coefficients=coefficients):
+                return math.fsum(float(k) * v for k, v in zip(coefficients, inner, strict=True))
+            case op.Product():
                 return math.prod(inner)
-            case "quotient":
+            case op.Quotient():
                 return inner[0] / inner[1] if len(inner) == 2 else 1 / inner[0]
-            case _:
-                return FUNCTIONS[operation.label](*inner)
+            case op.Call(function=function):
+                return FUNCTIONS[function](*inner)
+        raise NotImplementedError(operation)
 
     return [value(n) for n in lowering.outputs]
 
@@ -44,20 +44,6 @@ def evaluated(lowering: Lowering, values: dict[str, float]) -> list[float]:
 def lowered(*expressions: sp.Expr, parameters: tuple[str, ...] = ()) -> Lowering:
     node = Translation(Graph())
     return Lowering([node(e) for e in expressions], parameters)
-
-
-def cost(lowering: Lowering) -> int:
-    used: set[int] = set()
-
-    def visit(number: int) -> None:
-        if number not in used:
-            used.add(number)
-            for operand in lowering.operations[number].operands:
-                visit(operand)
-
-    for output in lowering.outputs:
-        visit(output)
-    return sum(lowering.operations[n].cost() for n in used)
 
 
 def random_expression(generator: random.Random, depth: int) -> sp.Expr:
@@ -102,7 +88,7 @@ def test_lowered_expressions_have_the_value_of_the_original(seed: int) -> None:
     ],
 )
 def test_common_parts_are_computed_once(expressions: list[sp.Expr], operations: int) -> None:
-    assert cost(lowered(*expressions)) == operations
+    assert lowered(*expressions).cost[0] == operations
 
 
 def test_differences_that_would_cancel_become_squares() -> None:
@@ -162,8 +148,7 @@ def test_common_lengths_are_taken_out_of_rows_and_columns() -> None:
 
 
 def leaves(nodes: list[Node]) -> set[str]:
-    lowering = Lowering(nodes, ())
-    return {o.label for o in lowering.operations.values() if o.kind == "leaf"}
+    return {*Lowering(nodes, ()).inputs}
 
 
 def test_equal_terms_and_factors_under_names_of_their_own_are_brought_together() -> None:

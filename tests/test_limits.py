@@ -18,8 +18,7 @@ import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 import generated.swinging_atwood as atwood
 from derive import Derivation, load
-from derive.codegen.functions import contents
-from derive.codegen.python_backend import module as text_of
+from derive.codegen.writing import texts
 from solvers.integration.integrate import integrate
 
 G = 9.81
@@ -28,7 +27,7 @@ G = 9.81
 def made(name: str) -> dict[str, object]:
     """A module that does not ship."""
     scope: dict[str, object] = {"__name__": name}
-    exec(compile(text_of(contents(Derivation(load(name)))), name, "exec"), scope)
+    exec(compile(texts(Derivation(load(name)))[f"{name}.py"], name, "exec"), scope)
     return scope
 
 

@@ -13,9 +13,10 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from derive import Derivation, load
-from derive.codegen.assignments import number
-from derive.codegen.functions import body, contents
+from derive.codegen.functions import contents
 from derive.codegen.lagrangian_form import LagrangianForm
+from derive.codegen.notation import Notation
+from derive.codegen.writing import texts
 from derive.mechanics.specialisation import specialised as folded
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.system import System
@@ -36,9 +37,9 @@ def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def operations(name: str, function: str, **values: float) -> int:
     """What a call costs, without terms of the parameters alone."""
-    found = contents(Derivation(folded(load(name), values)), [function])
-    laid_out = body(found.functions[0], found.system)
-    return laid_out.operations - laid_out.constant_operations
+    (found,) = contents(Derivation(folded(load(name), values)), [function]).functions
+    total, constant = found.lowering.cost
+    return total - constant
 
 
 @pytest.mark.parametrize(("module", "params"), [
@@ -76,9 +77,10 @@ def test_folded_numbers_are_exact_and_rounded_once() -> None:
 
 
 def test_a_folded_number_is_written_so_that_it_is_rounded_once() -> None:
-    assert number(Fraction(981, 100)) == "(981.0/100.0)"  # as exact as the type that reads it
+    literal = Notation().literal
+    assert literal(Fraction(981, 100)) == "(981.0/100.0)"  # as exact as the type that reads it
     long = Fraction(1234567890123457581, 1000000000000010473)
-    assert float(number(long)) == float(long)
+    assert float(literal(long)) == float(long)
     assert float(long.numerator) / float(long.denominator) != float(long)
 
 
@@ -147,8 +149,6 @@ def test_it_is_made_once_and_a_damaged_one_again() -> None:
 
     def generator(name, values, functions):
         made.append(name)
-        from derive.commands.derive import texts
-
         return texts(Derivation(folded(load(name), values)), functions)
 
     def get(version: str = "1") -> ModuleType:

@@ -1,21 +1,21 @@
-"""Operations as named assignments: what gets a name, which one, and in what order.
+"""Operations as named assignments: which values have a name, which name, and in what order.
 
 A value is named when it is used more than once, or when writing it in place
-would make a line long. What depends on parameters alone always has one where
-the rest uses it. The expressions are valid in Python and in C alike.
+would make a line long. A value of the parameters alone is always named where
+other values use it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import count
-from math import isqrt
-from types import MappingProxyType
 
+from derive.codegen import operation as op
 from derive.codegen.lowering import Lowering
-from derive.codegen.operation import Operation
+from derive.codegen.notation import Notation
+from derive.codegen.operation import Operation, triangle_rows
 
 #: Longest expression that is written in place instead of named.
 IN_PLACE = 48
@@ -24,110 +24,88 @@ SUM, PRODUCT, ATOM = 1, 2, 3
 
 
 @dataclass(frozen=True)
-class Statement:
-    """A value with a name.
-
-    Attributes
-    ----------
-    name, text : str
-        The name and the expression; of ``factors`` and ``solved`` that of what is taken apart
-        or solved with.
-    kind : {"value", "factors", "solved"}
-        A number; a symmetric matrix taken apart; the solution with one that is.
-    parts : tuple of str
-        Entries of the matrix, its upper triangle row by row; or the right side.
-    """
+class Value:
+    """``name = text``."""
 
     name: str
     text: str
-    kind: str = "value"
-    parts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Factorisation:
+    """The factorisation of a symmetric matrix, given by its upper triangle row by row."""
+
+    name: str
+    entries: tuple[str, ...]
 
     @property
     def size(self) -> int:
-        """Rows of the matrix, or of the right side."""
-        count = len(self.parts)
-        return (isqrt(8 * count + 1) - 1) // 2 if self.kind == "factors" else count
+        """Number of rows of the matrix."""
+        return triangle_rows(len(self.entries))
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The solution of M x = right, with M factorised under the name `matrix`."""
+
+    name: str
+    matrix: str
+    entries: tuple[str, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of equations."""
+        return len(self.entries)
+
+
+Statement = Value | Factorisation | Solution
 
 
 @dataclass(frozen=True)
 class Assignments:
-    """A function's body, ready to be laid out in a language.
+    """The body of a function, in the notation of a target language.
 
     Attributes
     ----------
-    inputs : frozenset of str
-        Names of the leaves that are used.
-    called : frozenset of str
-        Names of the functions that are called.
     constants, terms : tuple of Statement
-        What has a name, that of the parameters alone first.
+        Named values of the parameters alone, and the other named values.
     outputs : tuple of str
         Expressions of the results.
-    operations, constant_operations : int
-        Arithmetic operations and function calls, and those of the parameters alone.
     """
 
-    inputs: frozenset[str]
-    called: frozenset[str]
     constants: tuple[Statement, ...]
     terms: tuple[Statement, ...]
     outputs: tuple[str, ...]
-    operations: int
-    constant_operations: int
 
     @property
-    def count(self) -> str:
-        """The number of operations, in words."""
-        return (
-            f"{self.operations} operations, {self.constant_operations} of them on parameters alone."
-        )
+    def statements(self) -> tuple[Statement, ...]:
+        """All named values."""
+        return self.constants + self.terms
 
 
-def assignments(
-    lowering: Lowering, taken: Collection[str], called: Mapping[str, str] = MappingProxyType({})
-) -> Assignments:
-    """Lay out `lowering`; no new name is one of those `taken`, and inputs are `called` so."""
-    writer = _Writer(lowering, taken, called)
+def assignments(lowering: Lowering, reserved: Collection[str], notation: Notation) -> Assignments:
+    """The assignments of `lowering`, without new names among those `reserved`."""
+    writer = _Writer(lowering, reserved, notation)
     outputs = tuple(writer.text(output, 0) for output in lowering.outputs)
-    used = [lowering.operations[n] for n in writer.uses]
-    return Assignments(
-        inputs=frozenset(o.label for o in used if o.kind == "leaf"),
-        called=frozenset(o.label for o in used if o.kind == "call"),
-        constants=tuple(writer.constants),
-        terms=tuple(writer.terms),
-        outputs=outputs,
-        operations=sum(o.cost() for o in used),
-        constant_operations=sum(o.cost() for o in used if o.constant),
-    )
-
-
-def number(value: Fraction) -> str:
-    """A constant as Python and C write it, exact where the machine's numbers are."""
-    above, below = float(value.numerator), float(value.denominator)
-    # a quotient of exact numbers is rounded once, in whatever type
-    if value == float(value) or (above, below) != (value.numerator, value.denominator):
-        return repr(float(value))
-    return f"({above!r}/{below!r})"
+    return Assignments(tuple(writer.constants), tuple(writer.terms), outputs)
 
 
 class _Writer:
-    def __init__(
-        self, lowering: Lowering, taken: Collection[str], called: Mapping[str, str]
-    ) -> None:
-        self._operations, self._taken, self._called = lowering.operations, set(taken), called
-        self._written: dict[int, tuple[str, int]] = {}
-        self._counters = {letter: count() for letter in ("c", "x", "factors", "solved")}
+    def __init__(self, lowering: Lowering, reserved: Collection[str], notation: Notation) -> None:
+        self._operations, self._notation = lowering.operations, notation
+        self._reserved = set(reserved)
+        self._texts: dict[int, tuple[str, int]] = {}
+        self._counters = {prefix: count() for prefix in ("c", "x", "factors", "solved")}
         self.constants: list[Statement] = []
         self.terms: list[Statement] = []
-        self.uses: dict[int, int] = {}
+        self._uses: dict[int, int] = {}
         self._hoisted: set[int] = set()
         for output in lowering.outputs:
             self._count(output)
 
     def _count(self, n: int) -> None:
-        self.uses[n] = self.uses.get(n, 0) + 1
-        if self.uses[n] == 1:
+        self._uses[n] = self._uses.get(n, 0) + 1
+        if self._uses[n] == 1:
             for operand in self._operations[n].operands:
                 self._count(operand)
                 if self._operations[operand].constant and not self._operations[n].constant:
@@ -135,72 +113,76 @@ class _Writer:
 
     def text(self, n: int, context: int) -> str:
         """The operation's name or expression, in brackets if it binds weaker than `context`."""
-        if n not in self._written:
-            self._written[n] = self._write(n)
-        text, precedence = self._written[n]
+        if n not in self._texts:
+            self._texts[n] = self._written(n)
+        text, precedence = self._texts[n]
         return f"({text})" if precedence < context else text
 
-    def _write(self, n: int) -> tuple[str, int]:
+    def _written(self, n: int) -> tuple[str, int]:
         operation = self._operations[n]
-        if operation.kind in ("factors", "solved"):
-            return self._parts(operation), ATOM
+        match operation:
+            case op.Factorised(operands):
+                entries = self._entries(operands)
+                statement = Factorisation(self._numbered("factors"), entries)
+                return self._named(operation, statement), ATOM
+            case op.Solution(operands):
+                matrix, *right = self._entries(operands)
+                solution = Solution(self._numbered("solved"), matrix, tuple(right))
+                return self._named(operation, solution), ATOM
         text, precedence = self._expression(operation)
-        in_place = self.uses[n] == 1 and n not in self._hoisted and len(text) <= IN_PLACE
-        if in_place or operation.kind in ("leaf", "number", "component"):
+        in_place = self._uses[n] == 1 and n not in self._hoisted and len(text) <= IN_PLACE
+        if in_place or isinstance(operation, op.Leaf | op.Constant | op.Component):
             return text, precedence
-        name = self._name(operation)
-        (self.constants if operation.constant else self.terms).append(Statement(name, text))
-        return name, ATOM
+        return self._named(operation, Value(self._name(operation), text)), ATOM
 
-    def _parts(self, operation: Operation) -> str:
-        """The name of a matrix taken apart, or of a solution."""
-        texts = [self.text(operand, 0) for operand in operation.operands]
-        matrix = texts.pop(0) if operation.kind == "solved" else ""
-        name = self._numbered(operation.kind)
-        statement = Statement(name, matrix, operation.kind, tuple(texts))
+    def _named(self, operation: Operation, statement: Statement) -> str:
         (self.constants if operation.constant else self.terms).append(statement)
-        return name
+        return statement.name
+
+    def _entries(self, operands: Collection[int]) -> tuple[str, ...]:
+        return tuple(self.text(operand, 0) for operand in operands)
 
     def _name(self, operation: Operation) -> str:
-        if operation.kind == "call":
+        if isinstance(operation, op.Call):
             argument = self.text(operation.operands[0], 0)
-            name = f"{operation.label}_{argument}"
-            if argument.isidentifier() and name not in self._taken:
-                self._taken.add(name)
+            name = f"{operation.function}_{argument}"
+            if argument.isidentifier() and name not in self._reserved:
+                self._reserved.add(name)
                 return name
         return self._numbered("c" if operation.constant else "x")
 
-    def _numbered(self, letter: str) -> str:
-        names = (f"{letter}{i}" for i in self._counters[letter])
-        return next(name for name in names if name not in self._taken)
+    def _numbered(self, prefix: str) -> str:
+        names = (f"{prefix}{i}" for i in self._counters[prefix])
+        return next(name for name in names if name not in self._reserved)
 
     def _expression(self, operation: Operation) -> tuple[str, int]:
-        match operation.kind:
-            case "leaf":
-                return self._called.get(operation.label, operation.label), ATOM
-            case "number":
-                return number(operation.value), ATOM
-            case "call":
-                return f"{operation.label}({self.text(operation.operands[0], 0)})", ATOM
-            case "component":
-                return f"{self.text(operation.operands[0], 0)}[{operation.value}]", ATOM
-            case "quotient":
-                *above, below = operation.operands
-                top = self.text(above[0], PRODUCT) if above else number(Fraction(1))
+        notation = self._notation
+        match operation:
+            case op.Leaf(name=name):
+                return notation.name(name), ATOM
+            case op.Constant(value=value):
+                return notation.literal(value), ATOM
+            case op.Call((argument,), function=function):
+                return notation.call(function, self.text(argument, 0)), ATOM
+            case op.Component((solution,), index=index):
+                return notation.component(self.text(solution, 0), index), ATOM
+            case op.Quotient((*above, below)):
+                top = self.text(above[0], PRODUCT) if above else notation.literal(Fraction(1))
                 return f"{top}/{self.text(below, ATOM)}", PRODUCT
-            case "product":
-                first, *rest = self._constants_first(operation.operands)
+            case op.Product(operands):
+                first, *rest = self._constants_first(operands)
                 factors = [self.text(first, PRODUCT), *(self.text(n, ATOM) for n in rest)]
                 return "*".join(factors), PRODUCT
+            case op.Sum(operands, coefficients=coefficients):
+                return self._sum(dict(zip(operands, coefficients, strict=True))), SUM
             case _:
-                return self._sum(operation), SUM
+                raise NotImplementedError(f"no text of a {type(operation).__name__} operation")
 
-    def _constants_first(self, operands: tuple[int, ...]) -> list[int]:
+    def _constants_first(self, operands: Collection[int]) -> list[int]:
         return sorted(operands, key=lambda n: (not self._operations[n].constant, n))
 
-    def _sum(self, operation: Operation) -> str:
-        coefficients = dict(zip(operation.operands, operation.coefficients, strict=True))
-        ordered = self._constants_first(operation.operands)
+    def _sum(self, coefficients: dict[int, Fraction]) -> str:
+        ordered = self._constants_first(coefficients)
         positive = [n for n in ordered if coefficients[n] > 0]
         negative = [n for n in ordered if coefficients[n] < 0]
         if not positive and all(c == -1 for c in coefficients.values()) and len(negative) > 1:
@@ -209,8 +191,8 @@ class _Writer:
         for n in positive + negative:
             sign = "-" if n in negative else "+"
             scale, context = abs(coefficients[n]), PRODUCT if text or n in negative else SUM
-            term = (
-                self.text(n, context) if scale == 1 else f"{number(scale)}*{self.text(n, PRODUCT)}"
-            )
+            term = self.text(n, context if scale == 1 else PRODUCT)
+            if scale != 1:
+                term = f"{self._notation.literal(scale)}*{term}"
             text += f" {sign} {term}" if text else f"{sign.strip('+')}{term}"
         return text

@@ -1,13 +1,14 @@
-"""Derivatives of nodes, in their own graph: what is equal is shared as soon as it is made."""
+"""Derivatives of nodes in their own graph, in which equal subexpressions are shared."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
 
-from derive.codegen.graph import Graph, Node
+from derive.codegen.graph import Graph
+from derive.codegen.node import Call, Leaf, Let, Node, Powers, Product, Sum
 
-#: Derivatives of functions by their argument, of the call's node and its argument.
+#: The derivative of each function by its argument, from the node of the call and the argument.
 OUTER: dict[str, Callable[[Node, Node], Node]] = {
     "sin": lambda call, x: call.graph.call("cos", x),
     "cos": lambda call, x: -call.graph.call("sin", x),
@@ -19,7 +20,7 @@ OUTER: dict[str, Callable[[Node, Node], Node]] = {
 
 
 class Differentiation:
-    """Partial derivatives of the nodes of one graph by its leaves."""
+    """Partial derivatives of the nodes of a graph with respect to its leaves."""
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
@@ -27,9 +28,9 @@ class Differentiation:
         self._derivatives: dict[tuple[Node, str], Node] = {}
 
     def leaves(self, node: Node) -> frozenset[str]:
-        """Names of all that `node` depends on."""
+        """Names of the leaves that `node` depends on."""
         if node not in self._leaves:
-            own = {node.content} if node.kind == "leaf" else set()
+            own = {node.name} if isinstance(node, Leaf) else set()
             self._leaves[node] = frozenset(own).union(*map(self.leaves, node.operands()))
         return self._leaves[node]
 
@@ -43,20 +44,20 @@ class Differentiation:
 
     def _derivative(self, node: Node, leaf: str) -> Node:
         graph = self._graph
-        match node.kind:
-            case "leaf":
+        match node:
+            case Leaf():
                 return graph.node(1)
-            case "let":
-                return self(node.content, leaf)
-            case "call":
-                function, argument = node.content
+            case Let(value):
+                return self(value, leaf)
+            case Call(function, argument):
                 return OUTER[function](node, argument) * self(argument, leaf)
-            case "sum":
-                return graph.sum([(self(term, leaf), number) for term, number in node.content])
-            case "product":
-                return graph.sum([
-                    (graph.product([*node.content, (factor, -1), (self(factor, leaf), 1)]), power)
-                    for factor, power in node.content
-                ])  # fmt: skip
-            case kind:
-                raise NotImplementedError(f"no derivative of a node of kind {kind}")
+            case Sum(terms):
+                return graph.sum([(self(term, leaf), number) for term, number in terms])
+            case Product(powers):
+                return graph.sum([(self._changed(powers, n, leaf), p) for n, p in powers])
+            case _:
+                raise NotImplementedError(f"no derivative of a {type(node).__name__} node")
+
+    def _changed(self, powers: Powers, factor: Node, leaf: str) -> Node:
+        """The product of `powers` with one `factor` replaced by its derivative."""
+        return self._graph.product([*powers, (factor, -1), (self(factor, leaf), 1)])

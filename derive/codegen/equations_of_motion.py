@@ -13,13 +13,14 @@ import sympy as sp
 
 from derive.codegen.differentiation import Differentiation
 from derive.codegen.factorisation import Solver, factorisation
-from derive.codegen.graph import Graph, Node
+from derive.codegen.graph import Graph
+from derive.codegen.node import Node
 from derive.codegen.rational import angles
 from derive.codegen.translation import Translation
 from derive.mechanics.derivation import Derivation
 
 
-class Mechanics:
+class EquationsOfMotion:
     """Energies, places and states as outputs of generated functions.
 
     Each method returns its outputs flat, in C order of the shape that

@@ -15,7 +15,8 @@ from functools import reduce
 from math import gcd, lcm
 from typing import Protocol
 
-from derive.codegen.graph import Graph, Node
+from derive.codegen.graph import Graph
+from derive.codegen.node import Let, Node
 
 #: From this size on a loop is as quick as straight-line code, which grows with its cube.
 LARGE = 16
@@ -42,7 +43,7 @@ class Loops:
 
     def __init__(self, graph: Graph, matrix: Sequence[Sequence[Node]]) -> None:
         self._graph = graph
-        self._factors = graph.factors(entry for i, row in enumerate(matrix) for entry in row[i:])
+        self._factors = graph.factorised(entry for i, row in enumerate(matrix) for entry in row[i:])
 
     def solve(self, right: Sequence[Node]) -> list[Node]:
         """The solution x of M x = `right`."""
@@ -86,7 +87,7 @@ class Factorisation:
     def _inverse(self, pivot: Node, is_shared: bool) -> Node:
         inverse = self._graph.power(pivot, -1)
         # one division instead of several, where nothing cancels
-        return self._graph.let(inverse) if is_shared and pivot.kind == "let" else inverse
+        return self._graph.let(inverse) if is_shared and isinstance(pivot, Let) else inverse
 
     def solve(self, right: Sequence[Node]) -> list[Node]:
         """The solution x of M x = `right`."""
@@ -123,7 +124,7 @@ def _content(matrix: Sequence[Sequence[Node]]) -> Fraction:
 def _common_scale(graph: Graph, matrix: Sequence[Sequence[Node]]) -> list[Node]:
     """Factors s of each row such that s_i s_j divides every entry (i, j)."""
     scales = [
-        {f: p // 2 for f, p in row[i].powers().items() if p > 1} for i, row in enumerate(matrix)
+        {f: p // 2 for f, p in row[i].exponents().items() if p > 1} for i, row in enumerate(matrix)
     ]
     for i, row in enumerate(matrix):
         for j, entry in enumerate(row):
@@ -131,6 +132,6 @@ def _common_scale(graph: Graph, matrix: Sequence[Sequence[Node]]) -> list[Node]:
                 scales[i] = {
                     f: p
                     for f, p in scales[i].items()
-                    if entry.powers().get(f, 0) >= p + scales[j].get(f, 0)
+                    if entry.exponents().get(f, 0) >= p + scales[j].get(f, 0)
                 }
     return [graph.product(scale.items()) for scale in scales]

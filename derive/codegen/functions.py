@@ -1,138 +1,155 @@
-"""The table of generated functions: what each takes, and what it returns."""
+"""The functions of generated modules: what each takes, returns, and when it exists."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Literal
 
-from derive.codegen.assignments import Assignments, assignments
-from derive.codegen.equations_of_motion import Mechanics
+from derive.codegen.equations_of_motion import EquationsOfMotion
 from derive.codegen.factorisation import LARGE
-from derive.codegen.graph import Node
 from derive.codegen.hamiltonian_form import HamiltonianForm
 from derive.codegen.lagrangian_form import LagrangianForm
 from derive.codegen.lowering import Lowering
-from derive.codegen.rational import opened
+from derive.codegen.rational import with_fewest_calls
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
 
 Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "parameters"]
 
-#: What is kept in place of the energy where positions depend on time.
-ENERGY = "Jacobi's integral qdot dL/dqdot - L, which is not T + V since positions depend on time"
 
-#: name, form of the state, shape of the result, first line of the docstring, what comes back
-TABLE: tuple[tuple[str, Form, str, str, str], ...] = (
-    (
-        "rhs", "lagrangian", "state",
+def _always(derivation: Derivation) -> bool:
+    return True
+
+
+def _no_detail(derivation: Derivation) -> str:
+    return ""
+
+
+def _energy(derivation: Derivation) -> str:
+    if TIME in derivation.variables:
+        return "Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time"
+    return "Total energy T + V"
+
+
+def _equilibrium(derivation: Derivation) -> str:
+    return f"q = ({', '.join(map(str, derivation.rest or ()))})"
+
+
+def _reactions(derivation: Derivation) -> str:
+    return ", ".join(symbol.name for symbol in derivation.system.reactions)
+
+
+@dataclass(frozen=True)
+class FunctionSpec:
+    """A function that a generated module may have.
+
+    Attributes
+    ----------
+    name : str
+        Its name, and that of the property of the equations of motion that gives its outputs.
+    form : {"lagrangian", "hamiltonian", "rational", "variational", "parameters"}
+        The form of the state ``y`` that it takes; ``parameters`` means none.
+    shape : str
+        Names of the lengths of the result's axes; empty for a number.
+    summary, returns : str
+        First line of its docstring, and what it returns; ``{}`` stands for `detail`.
+    detail : callable
+        The part of these texts that depends on the system.
+    exists : callable
+        Whether a system has it. One whose shape is ``rational`` also needs an angle.
+    """
+
+    name: str
+    form: Form
+    shape: str
+    summary: str
+    returns: str
+    detail: Callable[[Derivation], str] = _no_detail
+    exists: Callable[[Derivation], bool] = _always
+
+
+SPECS = (
+    FunctionSpec("rhs", "lagrangian", "state",
         "Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).",
-        "Time derivative of y: velocities, then accelerations from M qddot = f.",
-    ),
-    (
-        "jacobian", "lagrangian", "state state",
+        "Time derivative of y: velocities, then accelerations from M qddot = f."),
+    FunctionSpec("jacobian", "lagrangian", "state state",
         "Jacobian of `rhs`.",
-        "Entry [i][j] is the derivative of rhs[i] with respect to y[j].",
-    ),
-    (
-        "energy", "lagrangian", "",
-        "{energy}.",
-        "Energy in J.",
-    ),
-    (
-        "power", "lagrangian", "",
-        "Rate at which `energy` grows: work of applied forces, friction and what moves by itself.",
-        "Power in W.",
-    ),
-    (
-        "reactions", "lagrangian", "reactions",
-        "Forces that hold {held}, by Lagrange's multipliers.",
+        "Entry [i][j] is the derivative of rhs[i] with respect to y[j]."),
+    FunctionSpec("energy", "lagrangian", "",
+        "{}.",
+        "Energy in J.", _energy),
+    FunctionSpec("power", "lagrangian", "",
+        "Rate of change of `energy`: power of applied forces, friction and prescribed motion.",
+        "Power in W.", exists=lambda derivation: derivation.power != 0),
+    FunctionSpec("reactions", "lagrangian", "reactions",
+        "Forces that hold {} constant, by Lagrange's multipliers.",
         "One for each: a rod's tension, positive where it pulls.",
-    ),
-    (
-        "mass_matrix", "lagrangian", "q q",
+        _reactions, lambda derivation: bool(derivation.system.reactions)),
+    FunctionSpec("mass_matrix", "lagrangian", "q q",
         "Mass matrix M(q): the kinetic energy is qdot M qdot / 2.",
-        "M, symmetric and positive definite, row by row.",
-    ),
-    (
-        "positions", "lagrangian", "masses axes",
+        "M, symmetric and positive definite, row by row."),
+    FunctionSpec("positions", "lagrangian", "masses axes",
         "Positions of the masses.",
-        "One row a mass: its Cartesian components in m, the last one upwards.",
-    ),
-    (
-        "hamiltonian_state", "lagrangian", "state",
-        "State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).",
-        "Coordinates, then momenta p = M qdot.",
-    ),
-    (
-        "rhs_hamiltonian", "hamiltonian", "state",
+        "One row a mass: its Cartesian components in m, the last one upwards."),
+    FunctionSpec("hamiltonian_state", "lagrangian", "state",
+        "State (q, p) of the Hamiltonian form at y = (q, qdot).",
+        "Coordinates, then momenta p = M qdot."),
+    FunctionSpec("rhs_hamiltonian", "hamiltonian", "state",
         "Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).",
-        "Time derivative of y: velocities from M qdot = p, then -dH/dq.",
-    ),
-    (
-        "jacobian_hamiltonian", "hamiltonian", "state state",
+        "Time derivative of y: velocities from M qdot = p, then -dH/dq."),
+    # of a large system, n² entries of n terms each are too much text
+    FunctionSpec("jacobian_hamiltonian", "hamiltonian", "state state",
         "Jacobian of `rhs_hamiltonian`.",
         "Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].",
-    ),
-    (
-        "energy_hamiltonian", "hamiltonian", "",
+        exists=lambda derivation: len(derivation.system.q) < LARGE),
+    FunctionSpec("energy_hamiltonian", "hamiltonian", "",
         "Hamiltonian H(q, p): `energy` by momenta.",
-        "Energy in J.",
-    ),
-    (
-        "lagrangian_state", "hamiltonian", "state",
-        "State (q, qdot) of the Lagrangian form that belongs to y = (q, p).",
-        "Coordinates, then velocities from M qdot = p.",
-    ),
-    (
-        "rational_state", "lagrangian", "rational",
-        "State of the rational form that belongs to y = (q, qdot).",
-        "Sine and cosine of every angle, other coordinates, velocities.",
-    ),
-    (
-        "rhs_rational", "rational", "rational",
-        "Right-hand side of y' = rhs_rational(t, y, params): no function is called.",
-        "Time derivative of y.",
-    ),
-    (
-        "rhs_variational", "variational", "variational",
+        "Energy in J."),
+    FunctionSpec("lagrangian_state", "hamiltonian", "state",
+        "State (q, qdot) of the Lagrangian form at y = (q, p).",
+        "Coordinates, then velocities from M qdot = p."),
+    FunctionSpec("rational_state", "lagrangian", "rational",
+        "State of the rational form at y = (q, qdot).",
+        "Sine and cosine of every angle, other coordinates, velocities."),
+    FunctionSpec("rhs_rational", "rational", "rational",
+        "Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.",
+        "Time derivative of y."),
+    FunctionSpec("rhs_variational", "variational", "variational",
         "Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.",
-        "Time derivative of y: the motion's, then that of the change, to first order.",
-    ),
-    (
-        "equilibrium", "parameters", "q",
-        "Coordinates at rest.",
-        "q = {equilibrium}.",
-    ),
-    (
-        "linear", "parameters", "2 q q",
-        "Matrices of small motions x about rest at q = {equilibrium}.",
-        "M0 and K of M0 xddot + K x = 0.",
-    ),
+        "Time derivative of y: of the motion, then of the change, to first order."),
+    FunctionSpec("equilibrium", "parameters", "q",
+        "Coordinates at the equilibrium.",
+        "{}.", _equilibrium, lambda derivation: derivation.rest is not None),
+    FunctionSpec("linear", "parameters", "2 q q",
+        "Matrices of small displacements x from the equilibrium {}.",
+        "M0 and K of M0 xddot + K x = 0.", _equilibrium,
+        lambda derivation: derivation.rest is not None and derivation.is_sprung),
 )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Function:
-    """A function of a generated module.
+    """A function of the generated module of a system.
 
     Attributes
     ----------
+    system : System
+        The system.
     name, summary, returns : str
         Its name, the first line of its docstring, and what it returns.
     form : {"lagrangian", "hamiltonian", "rational", "variational", "parameters"}
-        Which state it takes as ``y``; ``parameters`` means none.
+        The form of the state ``y`` that it takes.
     state : tuple of str
-        Names of the components of ``y``, in order.
+        Names of the components of ``y``, in order; empty if it takes parameters alone.
     shape : tuple of int
         Shape of the result; ``()`` is a single number.
     lowering : Lowering
         The operations; its outputs are the result, flat in C order.
     """
 
+    system: System
     name: str
     summary: str
     returns: str
@@ -143,24 +160,28 @@ class Function:
 
     @property
     def depends_on_time(self) -> bool:
-        """Whether the result does."""
-        operations = self.lowering.operations.values()
-        return any(o.kind == "leaf" and o.label == TIME.name for o in operations)
+        """Whether the result depends on time."""
+        return TIME.name in self.lowering.inputs
+
+    @property
+    def cost(self) -> str:
+        """The number of operations, in words."""
+        operations, constant = self.lowering.cost
+        return f"{operations} operations, {constant} of them on parameters alone."
 
 
 @dataclass(frozen=True)
 class Contents:
-    """What the generated files of a system hold, whatever language they are in.
+    """What the generated files of a system contain, in any language.
 
     Attributes
     ----------
     derivation : Derivation
-        Where everything comes from.
+        The derivation of the system.
     states : dict of form to tuple of str
         Names of the components of ``y`` in each form that exists.
     functions : tuple of Function
-        The functions that exist: without angles there is no rational form, without a
-        known equilibrium no ``equilibrium`` and no ``linear``.
+        The functions that exist.
     """
 
     derivation: Derivation
@@ -174,96 +195,68 @@ class Contents:
 
 
 def contents(derivation: Derivation, only: Collection[str] | None = None) -> Contents:
-    """Everything that is generated for `derivation`, or `only` the functions of these names."""
-    system = derivation.system
-    states = _states(derivation)
+    """Everything that is generated for a derivation, or `only` the functions of these names."""
+    system, states = derivation.system, _states(derivation)
     sizes = {
         "q": len(system.q),
         "state": 2 * len(system.q),
-        "rational": len(states.get("rational", ())),
-        "variational": len(states["variational"]),
         "masses": len(system.masses),
         "axes": system.dimension,
         "reactions": len(system.reactions),
         "2": 2,
     }
-    parameters = {symbol.name for symbol in system.params}
-    return Contents(
-        derivation,
-        states,
-        tuple(
-            Function(
-                name,
-                _said(summary, derivation),
-                _said(returns, derivation),
-                form,
-                states.get(form, ()),
-                tuple(sizes[word] for word in shape.split()),
-                Lowering(_nodes(derivation, name, form), parameters),
-            )
-            for name, form, shape, summary, returns in TABLE
-            if (only is None or name in only)
-            and ("rational" not in (form, shape) or "rational" in states)
-            and (name not in EXISTS or EXISTS[name](derivation))
-        ),
+    sizes |= {
+        form: len(state) for form, state in states.items() if form in ("rational", "variational")
+    }
+    specs = [
+        spec
+        for spec in SPECS
+        if (only is None or spec.name in only)
+        and {*spec.shape.split()} <= {*sizes}
+        and spec.exists(derivation)
+    ]
+    functions = [_function(spec, derivation, states, sizes) for spec in specs]
+    return Contents(derivation, states, tuple(functions))
+
+
+def _function(
+    spec: FunctionSpec, derivation: Derivation,
+    states: dict[Form, tuple[str, ...]], sizes: dict[str, int],
+) -> Function:  # fmt: skip
+    system, detail = derivation.system, spec.detail(derivation)
+    return Function(
+        system,
+        spec.name,
+        spec.summary.format(detail),
+        spec.returns.format(detail),
+        spec.form,
+        states.get(spec.form, ()),
+        tuple(sizes[word] for word in spec.shape.split()),
+        _lowering(spec, derivation),
     )
 
 
-def _nodes(derivation: Derivation, name: str, form: Form) -> list[Node]:
-    """The outputs of a function, with as few calls as may be."""
-    of_form = HamiltonianForm if form == "hamiltonian" else LagrangianForm
-    return opened(getattr(of_form(derivation), name), [q.name for q in derivation.system.q])
-
-
-def _said(text: str, derivation: Derivation) -> str:
-    """A text with what it leaves open filled in."""
-    return re.sub(r"{(\w+)}", lambda found: WORDS[found[1]](derivation), text)
-
-
-#: What the texts of the table leave open.
-WORDS: dict[str, Callable[[Derivation], str]] = {
-    "equilibrium": lambda derivation: f"({', '.join(map(str, derivation.rest or ()))})",
-    "held": lambda derivation: ", ".join(s.name for s in derivation.system.reactions),
-    "energy": lambda derivation: ENERGY if TIME in derivation.variables else "Total energy T + V",
-}
-
-#: Functions that only some systems have, and which.
-EXISTS: dict[str, Callable[[Derivation], bool]] = {
-    "power": lambda derivation: derivation.power != 0,
-    "reactions": lambda derivation: bool(derivation.system.reactions),
-    # n² entries of n terms each: for a large system that is too much text
-    "jacobian_hamiltonian": lambda derivation: len(derivation.system.q) < LARGE,
-    "equilibrium": lambda derivation: derivation.rest is not None,
-    "linear": lambda derivation: derivation.rest is not None and derivation.is_sprung,
-}
-
-
-def named(stem: str, form: str) -> str:
-    """The name of a function in a form: ``rhs`` in Lagrange's form, else ``rhs_rational`` etc."""
-    return stem if form == "lagrangian" else f"{stem}_{form}"
+def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
+    # The order of nodes in a graph determines the order of terms. With one graph for each function,
+    # the code of a function does not depend on which others are generated.
+    form = HamiltonianForm if spec.form == "hamiltonian" else LagrangianForm
+    outputs = getattr(form(derivation), spec.name)
+    angles = [q.name for q in derivation.system.q]
+    parameters = {symbol.name for symbol in derivation.system.params}
+    return Lowering(with_fewest_calls(outputs, angles), parameters)
 
 
 def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
-    system, angles = derivation.system, Mechanics(derivation).angles
-    places = [
-        name
-        for q in system.q
-        for name in ([f"sin_{q.name}", f"cos_{q.name}"] if q in angles else [q.name])
-    ]
+    system, angles = derivation.system, EquationsOfMotion(derivation).angles
+    positions: list[str] = []
+    for q in system.q:
+        positions += [f"sin_{q.name}", f"cos_{q.name}"] if q in angles else [q.name]
     states: dict[Form, tuple[str, ...]] = {
         "lagrangian": tuple(s.name for s in system.q + system.qdot),
         "hamiltonian": tuple(s.name for s in system.q + system.p),
     }
-    rational = (*places, *(s.name for s in system.qdot))
+    rational = (*positions, *(s.name for s in system.qdot))
     if angles:
         states["rational"] = rational
     states["variational"] = (*rational, *(s.name for s in system.variations))
     return states
-
-
-def body(
-    part: Function, system: System, called: Mapping[str, str] = MappingProxyType({})
-) -> Assignments:
-    """The function's assignments; what it takes and the parameters are `called` as they are."""
-    taken = {*part.state, *(s.name for s in system.params), "t", "y", "state", "params", "result"}
-    return assignments(part.lowering, taken, called)

@@ -17,139 +17,78 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import reduce
 from math import gcd
-from typing import Any
+from typing import Any, TypeVar
 
-Number = int | Fraction
-Factors = tuple[tuple["Node", int], ...]
+from derive.codegen.node import (
+    Call,
+    Component,
+    Constant,
+    Factorised,
+    Leaf,
+    Let,
+    Node,
+    Number,
+    Operand,
+    Product,
+    Solution,
+    Sum,
+)
+
+Kind = TypeVar("Kind", bound=Node)
 
 PARTNER = {"sin": "cos", "cos": "sin"}
-
-
-class Node:
-    """One value of a computation. Compare nodes by identity; combine them with ``+ - * /``.
-
-    Attributes
-    ----------
-    kind : {"leaf", "number", "sum", "product", "call", "let", "factors", "solved", "component"}
-    content : the name, the number, the terms, the factors, (function, argument); entries of a
-        matrix, (factors, right side), or (solved, index)
-    rank : order of creation; operands have a lower rank than what uses them
-    """
-
-    __slots__ = ("content", "graph", "kind", "rank")
-
-    def __init__(self, graph: Graph, kind: str, content: Any, rank: int) -> None:
-        self.graph, self.kind, self.content, self.rank = graph, kind, content, rank
-
-    def __add__(self, other: Operand) -> Node:
-        return self.graph.sum([(self, 1), (self.graph.node(other), 1)])
-
-    def __sub__(self, other: Operand) -> Node:
-        return self.graph.sum([(self, 1), (self.graph.node(other), -1)])
-
-    def __mul__(self, other: Operand) -> Node:
-        return self.graph.product([(self, 1), (self.graph.node(other), 1)])
-
-    def __truediv__(self, other: Operand) -> Node:
-        return self.graph.product([(self, 1), (self.graph.node(other), -1)])
-
-    def __neg__(self) -> Node:
-        return self.graph.sum([(self, -1)])
-
-    def is_number(self, value: Number) -> bool:
-        """Tell whether this is the constant `value`."""
-        return self.kind == "number" and self.content == value
-
-    def scaled(self) -> tuple[Fraction, Node | None]:
-        """Split off the numeric factor: ``-2*x`` is ``(-2, x)``, ``3`` is ``(3, None)``."""
-        if self.kind == "number":
-            return self.content, None
-        if self.kind == "sum" and len(self.content) == 1:
-            term, coefficient = self.content[0]
-            return coefficient, term
-        return Fraction(1), self
-
-    def factors(self) -> Factors:
-        """The node as a product of powers."""
-        return self.content if self.kind == "product" else ((self, 1),)
-
-    def powers(self) -> dict[Node, int]:
-        """Powers of its factors, the number left out."""
-        rest = self.scaled()[1]
-        return {} if rest is None else dict(rest.factors())
-
-    def operands(self) -> tuple[Node, ...]:
-        """The nodes that this one is computed from."""
-        if self.kind in ("sum", "product"):
-            return tuple(node for node, _ in self.content)
-        match self.kind:
-            case "call":
-                return (self.content[1],)
-            case "let":
-                return (self.content,)
-            case "factors":
-                return self.content
-            case "solved":
-                return (self.content[0], *self.content[1])
-            case "component":
-                return (self.content[0],)
-            case _:
-                return ()
-
-
-Operand = Node | int | Fraction
 
 
 class Graph:
     """The interned nodes of one computation."""
 
     def __init__(self) -> None:
-        self._nodes: dict[tuple[str, Any], Node] = {}
+        self._nodes: dict[tuple[Any, ...], Any] = {}
 
-    def _intern(self, kind: str, content: Any) -> Node:
-        key = (kind, content)
+    def _intern(self, kind: type[Kind], *content: Any) -> Kind:
+        key = (kind, *content)
         if key not in self._nodes:
-            self._nodes[key] = Node(self, kind, content, len(self._nodes))
+            self._nodes[key] = kind(*content, graph=self, rank=len(self._nodes))
         return self._nodes[key]
 
     def leaf(self, name: str) -> Node:
-        """An input, by name."""
-        return self._intern("leaf", name)
+        """The input of this name."""
+        return self._intern(Leaf, name)
 
     def node(self, value: Operand) -> Node:
-        """A node as it is, a number as a node."""
-        return value if isinstance(value, Node) else self._intern("number", Fraction(value))
+        """`value` as a node."""
+        return value if isinstance(value, Node) else self._intern(Constant, Fraction(value))
 
     def let(self, value: Node) -> Node:
-        """`value` under a name of its own: products and sums do not look inside."""
+        """`value` with its own name: sums and products are not merged with it."""
         coefficient, rest = value.scaled()
-        if rest is None or rest.kind in ("leaf", "let"):
+        if rest is None or isinstance(rest, Leaf | Let):
             return value
-        return self._scale(self._intern("let", rest), coefficient)
+        return self._scale(self._intern(Let, rest), coefficient)
 
     def call(self, function: str, argument: Node) -> Node:
-        """``function(argument)``, an odd or even function's sign taken outside."""
+        """``function(argument)``; the sign of the argument of a sine or cosine is moved outside."""
         coefficient, rest = argument.scaled()
         if function in PARTNER and rest is not None and coefficient < 0:
-            positive = self._intern("call", (function, -argument))
+            positive = self._intern(Call, function, -argument)
             return -positive if function == "sin" else positive
-        return self._intern("call", (function, argument))
+        return self._intern(Call, function, argument)
 
-    def factors(self, upper: Iterable[Node]) -> Node:
-        """A symmetric matrix taken apart by a loop: its upper triangle, row by row."""
-        return self._intern("factors", tuple(upper))
+    def factorised(self, upper: Iterable[Node]) -> Factorised:
+        """The factorisation of a symmetric matrix, given by its upper triangle row by row."""
+        return self._intern(Factorised, tuple(upper))
 
-    def solution(self, factors: Node, right: Iterable[Node]) -> list[Node]:
-        """What the matrix of `factors` takes to the right side."""
-        solved = self._intern("solved", (factors, tuple(right)))
-        return [self._intern("component", (solved, i)) for i in range(len(solved.content[1]))]
+    def solution(self, matrix: Node, right: Iterable[Node]) -> list[Node]:
+        """The components of the solution x of M x = `right`, with M factorised."""
+        solution = self._intern(Solution, matrix, tuple(right))
+        return [self._intern(Component, solution, i) for i in range(len(solution.right))]
 
     def power(self, base: Node, exponent: int) -> Node:
         """``base**exponent``."""
         return self.product([(base, exponent)])
 
     def product(self, factors: Iterable[tuple[Node, int]]) -> Node:
-        """The product of powers, common factors cancelled."""
+        """The product of powers; common factors are cancelled."""
         coefficient = Fraction(1)
         powers: dict[Node, int] = {}
         for factor, power in factors:
@@ -168,17 +107,17 @@ class Graph:
             return self.node(1)
         if len(kept) == 1 and kept[0][1] == 1:
             return kept[0][0]
-        return self._intern("product", tuple(kept))
+        return self._intern(Product, tuple(kept))
 
     def _scale(self, node: Node, coefficient: Fraction) -> Node:
-        if node.kind == "number":
-            return self.node(node.content * coefficient)
+        if isinstance(node, Constant):
+            return self.node(node.value * coefficient)
         if coefficient == 1:
             return node
-        return self._intern("sum", ((node, coefficient),))
+        return self._intern(Sum, ((node, coefficient),))
 
     def sum(self, terms: Iterable[tuple[Node, Number]]) -> Node:
-        """The sum of coefficient times node, its content taken outside."""
+        """The sum of coefficient times node; its content is moved outside."""
         collected: dict[Node, Fraction] = {}
         one = self.node(1)
         for node, number in terms:
@@ -198,9 +137,9 @@ class Graph:
     def spread(self, node: Node, number: Fraction) -> Node:
         """`number` times `node`, multiplied into every term of a sum."""
         coefficient, rest = node.scaled()
-        if rest is None or rest.kind != "sum":
+        if not isinstance(rest, Sum):
             return self.sum([(node, number)])
-        return self.sum([(term, c * coefficient * number) for term, c in rest.content])
+        return self.sum([(term, c * coefficient * number) for term, c in rest.terms])
 
     def _primitive(self, terms: Mapping[Node, Fraction]) -> Node:
         ordered = sorted(terms.items(), key=lambda item: item[0].rank)
@@ -216,7 +155,7 @@ class Graph:
             reduce(gcd, (c.numerator for _, c in ordered)),
             reduce(gcd, (c.denominator for _, c in ordered)),
         )
-        # of s and -s the one with more plus signs is the node
+        # of s and -s, the one with more plus signs is the node
         negative = sum(c < 0 for _, c in ordered)
         if 2 * negative > len(ordered) or (2 * negative == len(ordered) and ordered[0][1] < 0):
             content = -content
@@ -229,8 +168,8 @@ class Graph:
                 node = self._monomial(quotient)
             rest.append((node, coefficient / content))
         rest.sort(key=lambda item: item[0].rank)
-        primitive = self._intern("sum", tuple(rest))
-        # the sum that is left may be one of the common factors
+        primitive = self._intern(Sum, tuple(rest))
+        # the remaining sum may be one of the common factors
         powers = {**common, primitive: common.get(primitive, 0) + 1}
         return self._scale(self._monomial(powers), content)
 
@@ -238,27 +177,26 @@ class Graph:
         """Replace ``a - a*cos(x)**2`` by ``a*sin(x)**2``, and with sine and cosine exchanged."""
         for node, coefficient in terms.items():
             for factor, power in node.factors():
-                if factor.kind != "call" or factor.content[0] not in PARTNER or power != 2:
+                if power != 2 or not isinstance(factor, Call) or factor.function not in PARTNER:
                     continue
-                function, argument = factor.content
                 rest = self.product([(node, 1), (factor, -2)])
-                opened = self._opened(terms, rest)
-                if opened is not None and opened.get(rest) == -coefficient:
-                    partner = self._intern("call", (PARTNER[function], argument))
-                    turned = self.product([(rest, 1), (partner, 2)])
-                    opened = {n: c for n, c in opened.items() if n not in (rest, node)}
-                    opened[turned] = opened.get(turned, Fraction(0)) - coefficient
-                    return opened
+                expanded = self._expanded(terms, rest)
+                if expanded is not None and expanded.get(rest) == -coefficient:
+                    partner = self._intern(Call, PARTNER[factor.function], factor.argument)
+                    replaced = self.product([(rest, 1), (partner, 2)])
+                    expanded = {n: c for n, c in expanded.items() if n not in (rest, node)}
+                    expanded[replaced] = expanded.get(replaced, Fraction(0)) - coefficient
+                    return expanded
         return terms
 
-    def _opened(self, terms: dict[Node, Fraction], wanted: Node) -> dict[Node, Fraction] | None:
-        """`terms` with the one nested sum expanded that holds `wanted`, if any does."""
-        if wanted in terms:
+    def _expanded(self, terms: dict[Node, Fraction], term: Node) -> dict[Node, Fraction] | None:
+        """`terms` with the nested sum expanded that contains `term`; None if there is none."""
+        if term in terms:
             return dict(terms)
         for node, coefficient in terms.items():
-            if node.kind == "sum" and wanted in dict(node.content):
-                opened = {n: c for n, c in terms.items() if n is not node}
-                for inner, c in node.content:
-                    opened[inner] = opened.get(inner, Fraction(0)) + c * coefficient
-                return opened
+            if isinstance(node, Sum) and term in node.operands():
+                expanded = {n: c for n, c in terms.items() if n is not node}
+                for inner, c in node.terms:
+                    expanded[inner] = expanded.get(inner, Fraction(0)) + c * coefficient
+                return expanded
         return None

@@ -8,14 +8,14 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.equations_of_motion import Mechanics
-from derive.codegen.graph import Node
+from derive.codegen.equations_of_motion import EquationsOfMotion
+from derive.codegen.node import Node
 from derive.codegen.translation import Translation
 
 HALF = Fraction(1, 2)
 
 
-class HamiltonianForm(Mechanics):
+class HamiltonianForm(EquationsOfMotion):
     """Rates and energy of (q, p)."""
 
     @cached_property

@@ -8,14 +8,14 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.equations_of_motion import Mechanics
-from derive.codegen.graph import Node
+from derive.codegen.equations_of_motion import EquationsOfMotion
+from derive.codegen.node import Node
 from derive.codegen.rational import rationalised
 
 HALF = Fraction(1, 2)
 
 
-class LagrangianForm(Mechanics):
+class LagrangianForm(EquationsOfMotion):
     """Rates of (q, q̇), of (sin q, cos q, q̇), and of small changes of these."""
 
     @cached_property

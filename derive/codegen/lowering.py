@@ -1,24 +1,36 @@
 """From the n-ary graph to straight-line operations.
 
-Two choices are made here. Factors and terms that depend on parameters alone
-are grouped, so that they can be computed once a run; a division by parameters
-becomes a product with their inverse for the same reason. Then parts that
-several products or sums have in common (``a*b*c`` and ``a*b*d`` share ``a*b``)
-become operations of their own.
+Factors and terms that depend on parameters alone are grouped, so that they can
+be computed once a run; a division by parameters becomes a product with their
+reciprocal for the same reason. Then parts that several products or sums have in
+common (``a*b*c`` and ``a*b*d`` share ``a*b``) become separate operations.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import TypeVar
+from functools import cached_property
+from typing import Any, TypeVar
 
-from derive.codegen.graph import Node
-from derive.codegen.operation import Operation
+from derive.codegen import operation as op
+from derive.codegen.node import (
+    Call,
+    Component,
+    Constant,
+    Factorised,
+    Leaf,
+    Let,
+    Node,
+    Product,
+    Solution,
+    Sum,
+)
 from derive.codegen.sharing import share_pairs
 
 ONE = Fraction(1)
 Count = TypeVar("Count", int, Fraction)
+Term = tuple[int, Fraction]
 
 
 class Lowering:
@@ -26,19 +38,52 @@ class Lowering:
 
     Attributes
     ----------
-    operations : dict of number to Operation, in no particular order
-    outputs : the operations' numbers, in the order of the given nodes
+    operations : dict of int to Operation
+        By number, in no particular order.
+    outputs : tuple of int
+        The number of the operation that computes each of the given nodes.
     """
 
     def __init__(self, outputs: Sequence[Node], parameters: Collection[str]) -> None:
-        self.operations: dict[int, Operation] = {}
+        self.operations: dict[int, op.Operation] = {}
         self._parameters = parameters
-        self._numbers: dict[Operation, int] = {}
+        self._numbers: dict[op.Operation, int] = {}
         self._lowered: dict[Node, int] = {}
         self.outputs = tuple(self._lower(node) for node in outputs)
         share_pairs(self.operations)
 
-    def _add(self, operation: Operation) -> int:
+    @cached_property
+    def used(self) -> tuple[op.Operation, ...]:
+        """The operations that the outputs depend on."""
+        numbers, pending = set(self.outputs), list(self.outputs)
+        while pending:
+            new = set(self.operations[pending.pop()].operands) - numbers
+            numbers |= new
+            pending += new
+        return tuple(self.operations[n] for n in numbers)
+
+    @property
+    def inputs(self) -> frozenset[str]:
+        """Names of the leaves."""
+        return frozenset(o.name for o in self.used if isinstance(o, op.Leaf))
+
+    @property
+    def functions(self) -> frozenset[str]:
+        """Names of the functions that are called."""
+        return frozenset(o.function for o in self.used if isinstance(o, op.Call))
+
+    @property
+    def cost(self) -> tuple[int, int]:
+        """Arithmetic operations and calls: their number, and how many are of parameters alone."""
+        costs = [(o.cost(), o.constant) for o in self.used]
+        return sum(cost for cost, _ in costs), sum(cost for cost, constant in costs if constant)
+
+    def _add(self, kind: type[op.Operation], operands: Iterable[int], *content: Any) -> int:
+        operands = tuple(operands)
+        constant = all(self.operations[n].constant for n in operands)
+        return self._register(kind(operands, constant, *content))
+
+    def _register(self, operation: op.Operation) -> int:
         number = self._numbers.setdefault(operation, len(self._numbers))
         self.operations[number] = operation
         return number
@@ -49,45 +94,41 @@ class Lowering:
         return self._lowered[node]
 
     def _operation(self, node: Node) -> int:
-        match node.kind:
-            case "leaf":
-                constant = node.content in self._parameters
-                return self._add(Operation("leaf", label=node.content, constant=constant))
-            case "number":
-                return self._number(node.content)
-            case "let":
-                return self._lower(node.content)
-            case "call":
-                function, argument = node.content
-                operands = (self._lower(argument),)
-                constant = self._constant(operands)
-                return self._add(Operation("call", operands, label=function, constant=constant))
-            case "factors" | "solved":
-                parts = tuple(self._lower(operand) for operand in node.operands())
-                constant = self._constant(parts)
-                return self._add(Operation(node.kind, parts, constant=constant))
-            case "component":
-                solved, index = self._lower(node.content[0]), Fraction(node.content[1])
-                constant = self._constant((solved,))
-                return self._add(Operation("component", (solved,), value=index, constant=constant))
-            case "sum":
-                terms = _merged([self._term(term, c) for term, c in node.content])
-                return self._sum(terms) if terms else self._number(0)
+        match node:
+            case Leaf(name):
+                return self._register(op.Leaf((), name in self._parameters, name))
+            case Constant(value):
+                return self._constant(value)
+            case Let(inner):
+                return self._lower(inner)
+            case Call(function, argument):
+                return self._add(op.Call, [self._lower(argument)], function)
+            case Factorised(upper):
+                return self._add(op.Factorised, map(self._lower, upper))
+            case Solution():
+                return self._add(op.Solution, map(self._lower, node.operands()))
+            case Component(solution, index):
+                return self._add(op.Component, [self._lower(solution)], index)
+            case Sum(terms):
+                merged = _merged([self._term(term, c) for term, c in terms])
+                return self._sum(merged) if merged else self._constant(0)
+            case Product(powers):
+                factors = _merged([(self._lower(factor), p) for factor, p in powers])
+                return self._product(factors) if factors else self._constant(1)
             case _:
-                powers = _merged([(self._lower(factor), p) for factor, p in node.content])
-                return self._product(powers) if powers else self._number(1)
+                raise NotImplementedError(f"no operation for a {type(node).__name__} node")
 
-    def _number(self, value: Fraction | int) -> int:
-        return self._add(Operation("number", value=Fraction(value), constant=True))
+    def _constant(self, value: Fraction | int) -> int:
+        return self._add(op.Constant, (), Fraction(value))
 
-    def _term(self, node: Node, coefficient: Fraction) -> tuple[int, Fraction]:
-        """A term of a sum; a number is one, and no multiple of 1."""
-        if node.kind == "number":
-            value = node.content * coefficient
-            return self._number(abs(value)), ONE if value > 0 else -ONE
+    def _term(self, node: Node, coefficient: Fraction) -> Term:
+        """A term of a sum; a number is a term itself, not a multiple of 1."""
+        if isinstance(node, Constant):
+            value = node.value * coefficient
+            return self._constant(abs(value)), ONE if value > 0 else -ONE
         return self._lower(node), coefficient
 
-    def _sum(self, terms: list[tuple[int, Fraction]]) -> int:
+    def _sum(self, terms: list[Term]) -> int:
         for part in self._parts(terms):
             if 1 < len(part) < len(terms):
                 scale = abs(part[0][1]) if len({abs(c) for _, c in part}) == 1 else ONE
@@ -96,18 +137,13 @@ class Lowering:
         operands, coefficients = zip(*sorted(terms), strict=True)
         if coefficients == (ONE,):
             return operands[0]
-        return self._add(
-            Operation("sum", operands, coefficients, constant=self._constant(operands))
-        )
+        return self._add(op.Sum, operands, coefficients)
 
-    def _parts(self, terms: list[tuple[int, Fraction]]) -> Iterator[list[tuple[int, Fraction]]]:
-        """Terms that are better added up first: the constants, those of one coefficient."""
+    def _parts(self, terms: list[Term]) -> Iterator[list[Term]]:
+        """Terms to add first: the constants, then those with a common coefficient."""
         yield [t for t in terms if self.operations[t[0]].constant]
         for scale in {abs(c): None for _, c in terms if abs(c) != 1}:
             yield [t for t in terms if abs(t[1]) == scale]
-
-    def _constant(self, operands: Iterable[int]) -> bool:
-        return all(self.operations[n].constant for n in operands)
 
     def _product(self, powers: list[tuple[int, int]]) -> int:
         above = [n for n, power in powers for _ in range(power)]
@@ -127,16 +163,14 @@ class Lowering:
             factors = [self._factors(constant), *(n for n in factors if n not in constant)]
         if len(factors) == 1:
             return factors[0]
-        operands = tuple(sorted(factors))
-        return self._add(Operation("product", operands, constant=self._constant(operands)))
+        return self._add(op.Product, sorted(factors))
 
     def _quotient(self, above: int | None, below: int) -> int:
-        operands = (below,) if above is None else (above, below)
-        return self._add(Operation("quotient", operands, constant=self._constant(operands)))
+        return self._add(op.Quotient, (below,) if above is None else (above, below))
 
 
 def _merged(parts: list[tuple[int, Count]]) -> list[tuple[int, Count]]:
-    """Terms or factors, each but once: a ``let`` may hide that two are the same."""
+    """Terms or factors without repetitions, which a `Let` may have concealed."""
     totals: dict[int, Count] = {}
     for number, count in parts:
         totals[number] = totals[number] + count if number in totals else count

@@ -1,76 +1,57 @@
-"""The rational form: sines and cosines as coordinates, no function left to call.
+"""The rational form: sines and cosines as state variables, without function calls.
 
-Sines and cosines of integer sums of angles are polynomials in the sines and
-cosines of the angles. Where equations know a coordinate in no other way, the
-pair (sin q, cos q) can take its place in the state.
+Sines and cosines of integer combinations of angles are polynomials in the sines
+and cosines of the angles. Where equations depend on a coordinate in no other
+way, the pair (sin q, cos q) can replace it in the state.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
-from derive.codegen.graph import Graph, Node
+from derive.codegen.graph import Graph
+from derive.codegen.node import (
+    Call,
+    Component,
+    Constant,
+    Factorised,
+    Leaf,
+    Let,
+    Node,
+    Product,
+    Sum,
+)
 
 Pair = tuple[Node, Node]
 
 
 def angles(nodes: Sequence[Node], coordinates: Collection[str]) -> frozenset[str]:
-    """Those of `coordinates` that `nodes` know through sines and cosines of their sums only."""
-    found = frozenset(coordinates)
+    """Those of `coordinates` on which `nodes` depend only by sines and cosines of their sums."""
+    candidates = frozenset(coordinates)
     while True:
-        # a sum that holds one coordinate known otherwise spoils those beside it
-        spoilt = {name for node in nodes for name in _seen_plainly(node, found, set())}
-        if not spoilt & found:
-            return found
-        found -= spoilt
+        # a coordinate that occurs otherwise excludes those in the same argument
+        excluded = {name for node in nodes for name in _other_leaves(node, candidates, set())}
+        if not excluded & candidates:
+            return candidates
+        candidates -= excluded
 
 
-def rationalised(nodes: Sequence[Node], names: Collection[str]) -> list[Node]:
-    """`nodes` in a new graph, with leaves ``sin_q`` and ``cos_q`` for each q of `names`.
-
-    These are the state of the rational form.
-
-    Parameters
-    ----------
-    nodes : sequence of Node
-        What knows the coordinates in `names` through sines and cosines of their sums only.
-    names : collection of str
-        Names of such coordinates, as `angles` finds them.
-
-    Returns
-    -------
-    list of Node
-        One for each of `nodes`.
-    """
-    rewriting = _Rewriting(Graph(), names)
+def rationalised(nodes: Sequence[Node], angles: Collection[str]) -> list[Node]:
+    """`nodes` in a new graph, with leaves ``sin_q`` and ``cos_q`` for each of the `angles`."""
+    rewriting = _Rewriting(Graph(), angles)
     return [rewriting(node) for node in nodes]
 
 
-def opened(nodes: Sequence[Node], names: Collection[str]) -> list[Node]:
-    """`nodes`, or if that calls fewer functions, the same with sums of angles opened.
-
-    A long chain knows all differences of its angles; their sines and cosines follow from
-    those of the angles themselves by sums and products, which are quicker.
-
-    Parameters
-    ----------
-    nodes : sequence of Node
-        Of one graph.
-    names : collection of str
-        Names of the coordinates that are angles.
-
-    Returns
-    -------
-    list of Node
-        One for each of `nodes`; those that are opened are in a new graph.
-    """
-    rewriting = _Rewriting(Graph(), names, called=True)
+def with_fewest_calls(nodes: Sequence[Node], angles: Collection[str]) -> list[Node]:
+    """`nodes`, with sines and cosines of sums expanded in a new graph if that needs fewer calls."""
+    # a long chain has differences of all its angles, whose sines follow without further calls
+    rewriting = _Rewriting(Graph(), angles, as_calls=True)
     rewritten = [rewriting(node) for node in nodes]
     return rewritten if _calls(rewritten) < _calls(nodes) else list(nodes)
 
 
 def _calls(nodes: Sequence[Node]) -> int:
-    """How many functions are called."""
+    """Number of function calls."""
     visited: set[Node] = set()
     waiting = list(nodes)
     while waiting:
@@ -78,38 +59,40 @@ def _calls(nodes: Sequence[Node]) -> int:
         if node not in visited:
             visited.add(node)
             waiting += node.operands()
-    return sum(node.kind == "call" for node in visited)
+    return sum(isinstance(node, Call) for node in visited)
 
 
-def _seen_plainly(node: Node, names: frozenset[str], visited: set[Node]) -> Iterator[str]:
+def _other_leaves(node: Node, names: frozenset[str], visited: set[Node]) -> Iterator[str]:
+    """Leaves outside the sines and cosines of integer combinations of `names`."""
     if node in visited:
         return
     visited.add(node)
-    if node.kind == "leaf":
-        yield node.content
+    if isinstance(node, Leaf):
+        yield node.name
     elif _multiples(node, names) is None:
         for operand in node.operands():
-            yield from _seen_plainly(operand, names, visited)
+            yield from _other_leaves(operand, names, visited)
 
 
 def _multiples(node: Node, names: Collection[str]) -> dict[str, int] | None:
-    """The integer coefficients of a sine's or cosine's argument, if that is what `node` is."""
-    if node.kind != "call" or node.content[0] not in ("sin", "cos"):
+    """The coefficients if `node` is the sine or cosine of an integer combination of `names`."""
+    if not isinstance(node, Call) or node.function not in ("sin", "cos"):
         return None
-    coefficient, rest = node.content[1].scaled()
-    if rest is None:
-        return None
-    terms = rest.content if rest.kind == "sum" else ((rest, 1),)
-    multiples = {term.content: coefficient * number for term, number in terms}
-    whole = all(m.denominator == 1 for m in multiples.values())
-    if whole and all(term.kind == "leaf" and term.content in names for term, _ in terms):
-        return {name: int(multiple) for name, multiple in multiples.items()}
-    return None
+    coefficient, rest = node.argument.scaled()
+    multiples: dict[str, int] = {}
+    for term, number in rest.terms if isinstance(rest, Sum) else ((rest, 1),):
+        multiple = coefficient * number
+        if not isinstance(term, Leaf) or term.name not in names or multiple.denominator != 1:
+            return None
+        multiples[term.name] = int(multiple)
+    return multiples
 
 
 class _Rewriting:
-    def __init__(self, graph: Graph, names: Collection[str], *, called: bool = False) -> None:
-        self._graph, self._names, self._called = graph, names, called
+    """Sums of angles expanded: their sines and cosines become leaves, or calls of their own."""
+
+    def __init__(self, graph: Graph, names: Collection[str], *, as_calls: bool = False) -> None:
+        self._graph, self._names, self._as_calls = graph, names, as_calls
         self._nodes: dict[Node, Node] = {}
         self._pairs: dict[tuple[tuple[str, int], ...], Pair] = {}
 
@@ -119,48 +102,49 @@ class _Rewriting:
         return self._nodes[node]
 
     def _rewritten(self, node: Node) -> Node:
-        multiples = _multiples(node, self._names)
-        if multiples is not None:
-            sine, cosine = self._pair(tuple(multiples.items()))
-            return sine if node.content[0] == "sin" else cosine
-        match node.kind:
-            case "leaf":
-                return self._graph.leaf(node.content)
-            case "number":
-                return self._graph.node(node.content)
-            case "let":
-                return self._graph.let(self(node.content))
-            case "call":
-                return self._graph.call(node.content[0], self(node.content[1]))
-            case "factors":
-                return self._graph.factors([self(entry) for entry in node.content])
-            case "component":
-                solved, index = node.content
-                factors, right = solved.content
-                return self._graph.solution(self(factors), [self(part) for part in right])[index]
-            case "sum":
-                return self._graph.sum([(self(term), number) for term, number in node.content])
+        graph = self._graph
+        match node:
+            case Leaf(name):
+                return graph.leaf(name)
+            case Constant(value):
+                return graph.node(value)
+            case Let(value):
+                return graph.let(self(value))
+            case Call(function, argument):
+                multiples = _multiples(node, self._names)
+                if multiples is None:
+                    return graph.call(function, self(argument))
+                return self._pair(tuple(multiples.items()))[function == "cos"]
+            case Sum(terms):
+                return graph.sum([(self(term), number) for term, number in terms])
+            case Product(powers):
+                return graph.product([(self(factor), power) for factor, power in powers])
+            case Factorised(upper):
+                return graph.factorised([self(entry) for entry in upper])
+            case Component(solution, index):
+                matrix, *right = (self(operand) for operand in solution.operands())
+                return graph.solution(matrix, right)[index]
             case _:
-                return self._graph.product([(self(factor), p) for factor, p in node.content])
+                raise NotImplementedError(f"no rational form of a {type(node).__name__} node")
 
     def _pair(self, multiples: tuple[tuple[str, int], ...]) -> Pair:
-        """Sine and cosine of a sum of multiples of angles, by the addition theorems."""
+        """Sine and cosine of an integer combination of angles, by the addition theorems."""
         if multiples not in self._pairs:
             (name, multiple), *others = multiples
-            step = 1 if multiple > 0 else -1
+            sign = 1 if multiple > 0 else -1
             sine, cosine = (self._wave(function, name) for function in ("sin", "cos"))
-            first = (sine, cosine) if step == 1 else (-sine, cosine)
-            rest = tuple([(name, multiple - step)] if multiple != step else []) + tuple(others)
+            first = (sine, cosine) if sign == 1 else (-sine, cosine)
+            rest = tuple([(name, multiple - sign)] if multiple != sign else []) + tuple(others)
             self._pairs[multiples] = self._added(first, self._pair(rest)) if rest else first
         return self._pairs[multiples]
 
     def _wave(self, function: str, name: str) -> Node:
-        if self._called:
+        if self._as_calls:
             return self._graph.call(function, self._graph.leaf(name))
         return self._graph.leaf(f"{function}_{name}")
 
     def _added(self, a: Pair, b: Pair) -> Pair:
-        # under names of their own, since both are used more than once in most equations
+        # named, since most equations use both more than once
         return (
             self._graph.let(a[0] * b[1] + a[1] * b[0]),
             self._graph.let(a[1] * b[1] - a[0] * b[0]),

@@ -1,9 +1,9 @@
-"""Pairs of operands that several sums or products hold become operations of their own.
+"""Pairs of operands that several sums or products contain become separate operations.
 
 Greedy, as in two-term common-subexpression extraction for linear transforms:
-the pair held most often goes first, the one with the lower numbers on a tie, so
-that the result depends on the operations alone. A queue with late corrections
-keeps the work near linear in the number of pairs.
+the most frequent pair comes first, on a tie the one with the lower numbers, so
+that the result depends on the operations alone. A queue with deferred
+corrections keeps the work nearly linear in the number of pairs.
 """
 
 from __future__ import annotations
@@ -13,9 +13,11 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from itertools import combinations
 
-from derive.codegen.operation import Operation
+from derive.codegen.operation import Operation, Product, Sum
 
-Pair = tuple[str, int, int, Fraction]
+#: Whether it is in a sum, two operands, and in a sum the ratio of their coefficients.
+Pair = tuple[bool, int, int, Fraction]
+ONE = Fraction(1)
 
 
 def share_pairs(operations: dict[int, Operation]) -> None:
@@ -33,11 +35,11 @@ def share_pairs(operations: dict[int, Operation]) -> None:
             if len(holders[pair]) > 1:
                 heappush(queue, (-len(holders[pair]), pair))
             continue
-        wanted = _operation_of(pair, operations)
-        if wanted not in known:
-            known[wanted] = len(operations)
-            operations[len(operations)] = wanted
-        number = known[wanted]
+        shared = _operation_of(pair, operations)
+        if shared not in known:
+            known[shared] = len(operations)
+            operations[len(operations)] = shared
+        number = known[shared]
         for holder in sorted(holders[pair] - {number}):
             for old in _pairs(operations[holder]):
                 holders[old].discard(holder)
@@ -52,31 +54,30 @@ def share_pairs(operations: dict[int, Operation]) -> None:
 
 
 def _pairs(operation: Operation) -> set[Pair]:
-    if operation.kind == "product":
-        return {
-            ("product", a, b, Fraction(1)) for a, b in combinations(sorted(operation.operands), 2)
-        }
-    if operation.kind == "sum":
-        terms = sorted(zip(operation.operands, operation.coefficients, strict=True))
-        return {("sum", a, b, cb / ca) for (a, ca), (b, cb) in combinations(terms, 2)}
-    return set()
+    match operation:
+        case Product(operands):
+            return {(False, a, b, ONE) for a, b in combinations(sorted(operands), 2)}
+        case Sum(operands, _, coefficients):
+            terms = sorted(zip(operands, coefficients, strict=True))
+            return {(True, a, b, cb / ca) for (a, ca), (b, cb) in combinations(terms, 2)}
+        case _:
+            return set()
 
 
 def _operation_of(pair: Pair, operations: dict[int, Operation]) -> Operation:
-    kind, a, b, ratio = pair
-    coefficients = (Fraction(1), ratio) if kind == "sum" else ()
+    in_sum, a, b, ratio = pair
     constant = operations[a].constant and operations[b].constant
-    return Operation(kind, (a, b), coefficients, constant=constant)
+    return Sum((a, b), constant, (ONE, ratio)) if in_sum else Product((a, b), constant)
 
 
 def _without(operation: Operation, pair: Pair, number: int) -> Operation:
-    """`operation` with the pair's two operands replaced by the one that computes them."""
-    kind, a, b, _ = pair
-    if kind == "product":
-        factors = list(operation.operands)
+    """`operation` with the two operands of `pair` replaced by operation `number`."""
+    _, a, b, _ = pair
+    if not isinstance(operation, Sum):
+        factors = [*operation.operands, number]
         factors.remove(a)
         factors.remove(b)
-        return replace(operation, operands=tuple(sorted([*factors, number])))
+        return replace(operation, operands=tuple(sorted(factors)))
     terms = dict(zip(operation.operands, operation.coefficients, strict=True))
     coefficient = terms.pop(a)
     del terms[b]

@@ -8,7 +8,8 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from derive.codegen.graph import Graph, Node
+from derive.codegen.graph import Graph
+from derive.codegen.node import Node
 
 #: Functions that generated code may call, under the names of ``math`` and C99.
 FUNCTIONS: dict[type[sp.Expr], str] = {

@@ -1,4 +1,4 @@
-"""Generated files of a system."""
+"""The generated files of a system, one for each target language."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 
-from derive.codegen.c_backend import header
-from derive.codegen.functions import contents
-from derive.codegen.python_backend import module
+from derive.codegen.backend import find_backends
+from derive.codegen.functions import Contents, contents
 from derive.codegen.tree import Tree
 from derive.mechanics.derivation import Derivation
 from derive.system.system import System
@@ -16,31 +15,36 @@ from derive.system.system import System
 
 def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str, str]:
     """The generated files of a system by name, with all functions or `only` some."""
-    generated, name = contents(derivation, only), derivation.system.name
-    return {f"{name}.py": module(generated), f"{name}.h": header(generated)}
+    return files(contents(derivation, only))
+
+
+def files(generated: Contents) -> dict[str, str]:
+    """The texts of the generated files by name, in every target language."""
+    name = generated.system.name
+    return {f"{name}{backend.suffix}": backend.file(generated) for backend in find_backends()}
 
 
 def write(system: System, folder: str | PathLike[str]) -> Path:
-    """Write the module and the C header of a system; either is there whole or not at all.
+    """Write the module and the C header of a system, each completely or not at all.
 
     Parameters
     ----------
     system : System
-        What is derived.
+        The system to derive.
     folder : path
-        Where to, made if it is missing; ``import`` finds the module where it is on Python's
-        path.
+        The folder, created if it is missing; ``import`` finds the module if the folder is on
+        Python's path.
 
     Returns
     -------
     Path
-        The module.
+        The path of the module.
 
     Raises
     ------
     SystemDefinitionError
-        When a coordinate moves no mass, or moves the masses only as others do; when a force
-        is left at the equilibrium that the system gives.
+        When a coordinate moves no mass, or moves the masses only as others do; when the
+        system's equilibrium is not one.
     UnsupportedFunctionError
         When an expression has no counterpart in generated code.
     OSError

@@ -18,9 +18,8 @@ from sympy.physics.mechanics import (
     dynamicsymbols,
 )
 
-from derive.codegen.c_backend import header
 from derive.codegen.functions import contents
-from derive.codegen.python_backend import module
+from derive.codegen.writing import files
 from derive.mechanics.derivation import Derivation
 from derive.system.catalogue import load
 
@@ -39,8 +38,9 @@ def chain(n: int, form: str = "") -> tuple[float, float, str, str]:
     begin = time.perf_counter()
     generated = contents(Derivation(load(f"chain_{n}")), (f"rhs{form}",))
     derived = time.perf_counter()
-    python, c = module(generated), header(generated)
-    return derived - begin, time.perf_counter() - derived, python, c
+    texts = files(generated)
+    seconds = time.perf_counter() - derived
+    return derived - begin, seconds, texts[f"chain_{n}.py"], texts[f"chain_{n}.h"]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,66 @@
+"""A target language: one file in `derive.codegen.backends` with one `Backend`."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import ClassVar
+
+from derive.codegen import backends
+from derive.codegen.assignments import Assignments, Statement, assignments
+from derive.codegen.functions import Contents, Function
+from derive.codegen.notation import Notation
+
+#: Names that generated functions use themselves.
+RESERVED = ("t", "y", "state", "params", "result")
+
+
+class Backend(Notation, ABC):
+    """What a target language adds to the notation of expressions.
+
+    A file in the folder ``derive/codegen/backends`` defines a subclass and ``backend``, its
+    instance; nothing is registered.
+    """
+
+    #: Ending of the generated files' names, such as ``.py``.
+    suffix: ClassVar[str]
+
+    @abstractmethod
+    def file(self, contents: Contents) -> str:
+        """The text of the generated file of a system."""
+
+    @abstractmethod
+    def comment(self, text: str) -> str:
+        """A comment on a line of its own, in the body of a function."""
+
+    @abstractmethod
+    def statement(self, statement: Statement, function: Function) -> Iterable[str]:
+        """The lines that compute a named value, in the body of a function."""
+
+    def assignments(self, function: Function) -> Assignments:
+        """The assignments of a function, in the notation of this language."""
+        parameters = (symbol.name for symbol in function.system.params)
+        reserved = {*RESERVED, *function.state, *parameters}
+        return assignments(function.lowering, reserved, self)
+
+    def body(self, function: Function, inputs: Iterable[str], assigned: Assignments) -> list[str]:
+        """The lines of a function's body, from the given lines of its inputs to the outputs."""
+        lines = [self.comment("inputs"), *inputs]
+        blocks = {
+            "terms of the parameters alone": assigned.constants,
+            "intermediate terms": assigned.terms,
+        }
+        for title, statements in blocks.items():
+            if statements:
+                lines.append(self.comment(title))
+                for statement in statements:
+                    lines += self.statement(statement, function)
+        return [*lines, self.comment("outputs")]
+
+
+def find_backends() -> list[Backend]:
+    """The backends of all target languages, found by their files."""
+    modules = sorted(module.name for module in iter_modules(backends.__path__))
+    return [import_module(f"{backends.__name__}.{name}").backend for name in modules]

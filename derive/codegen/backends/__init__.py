@@ -1,0 +1,1 @@
+"""Target languages, one file each; a file defines `backend` and is found by its place here."""

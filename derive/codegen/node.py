@@ -1,0 +1,169 @@
+"""Nodes of the expression graph: one small frozen class for each kind of value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from derive.codegen.graph import Graph
+
+Number = int | Fraction
+Terms = tuple[tuple["Node", Fraction], ...]
+Powers = tuple[tuple["Node", int], ...]
+ONE = Fraction(1)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Node:
+    """One value of a computation. Compare nodes by identity; combine them with ``+ - * /``.
+
+    Attributes
+    ----------
+    graph : Graph
+        The graph that interns the node.
+    rank : int
+        Order of creation: operands have a lower rank than the nodes that use them.
+    """
+
+    graph: Graph = field(kw_only=True, repr=False)
+    rank: int = field(kw_only=True)
+
+    def __add__(self, other: Operand) -> Node:
+        return self.graph.sum([(self, 1), (self.graph.node(other), 1)])
+
+    def __sub__(self, other: Operand) -> Node:
+        return self.graph.sum([(self, 1), (self.graph.node(other), -1)])
+
+    def __mul__(self, other: Operand) -> Node:
+        return self.graph.product([(self, 1), (self.graph.node(other), 1)])
+
+    def __truediv__(self, other: Operand) -> Node:
+        return self.graph.product([(self, 1), (self.graph.node(other), -1)])
+
+    def __neg__(self) -> Node:
+        return self.graph.sum([(self, -1)])
+
+    def is_number(self, value: Number) -> bool:
+        """Whether this is the constant `value`."""
+        return isinstance(self, Constant) and self.value == value
+
+    def scaled(self) -> tuple[Fraction, Node | None]:
+        """Numeric factor and the rest: ``-2*x`` is ``(-2, x)``, ``3`` is ``(3, None)``."""
+        return ONE, self
+
+    def factors(self) -> Powers:
+        """The node as a product of powers."""
+        return ((self, 1),)
+
+    def exponents(self) -> dict[Node, int]:
+        """Exponents of the factors, without the numeric factor."""
+        rest = self.scaled()[1]
+        return {} if rest is None else dict(rest.factors())
+
+    def operands(self) -> tuple[Node, ...]:
+        """The nodes that this one is computed from."""
+        return ()
+
+
+Operand = Node | Number
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Leaf(Node):
+    """An input."""
+
+    name: str
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Constant(Node):
+    """An exact number."""
+
+    value: Fraction
+
+    def scaled(self) -> tuple[Fraction, Node | None]:
+        return self.value, None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sum(Node):
+    """Σ coefficient · node; a single term is a multiple."""
+
+    terms: Terms
+
+    def scaled(self) -> tuple[Fraction, Node | None]:
+        if len(self.terms) > 1:
+            return ONE, self
+        ((node, coefficient),) = self.terms
+        return coefficient, node
+
+    def operands(self) -> tuple[Node, ...]:
+        return tuple(node for node, _ in self.terms)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Product(Node):
+    """Π node^exponent, with integer exponents other than 0."""
+
+    powers: Powers
+
+    def factors(self) -> Powers:
+        return self.powers
+
+    def operands(self) -> tuple[Node, ...]:
+        return tuple(node for node, _ in self.powers)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Call(Node):
+    """``function(argument)``, by the name of the function in C99."""
+
+    function: str
+    argument: Node
+
+    def operands(self) -> tuple[Node, ...]:
+        return (self.argument,)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Let(Node):
+    """A named value: sums and products are not merged with it."""
+
+    value: Node
+
+    def operands(self) -> tuple[Node, ...]:
+        return (self.value,)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Factorised(Node):
+    """The L D Lᵀ factorisation, by a loop, of a symmetric matrix."""
+
+    upper: tuple[Node, ...]  # its upper triangle, row by row
+
+    def operands(self) -> tuple[Node, ...]:
+        return self.upper
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Solution(Node):
+    """The solution x of M x = `right`, with M factorised."""
+
+    matrix: Node
+    right: tuple[Node, ...]
+
+    def operands(self) -> tuple[Node, ...]:
+        return (self.matrix, *self.right)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Component(Node):
+    """One component of a solution."""
+
+    solution: Solution
+    index: int
+
+    def operands(self) -> tuple[Node, ...]:
+        return (self.solution,)
