@@ -109,16 +109,16 @@
            - l2*l3*m3*theta2_dot**2*sin(theta2 - theta3) + l3**2*m3*theta3_ddot
            + l3*m3*x_ddot*cos(theta3) = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[8] = {...}, rate[8], params[8] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81};
        cart_3_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_CART_3_H
 #define HOLONOMIC_CART_3_H
@@ -577,7 +577,7 @@ static inline void cart_3_positions(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    53 operations, 7 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void cart_3_hamiltonian_state(
@@ -1017,7 +1017,7 @@ static inline void cart_3_energy_hamiltonian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    98 operations, 9 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void cart_3_lagrangian_state(
@@ -1091,7 +1091,7 @@ static inline void cart_3_lagrangian_state(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    6 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void cart_3_rational_state(
@@ -1123,7 +1123,7 @@ static inline void cart_3_rational_state(
 }
 #endif
 
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    134 operations, 13 of them on parameters alone.
    Time derivative of y. */
 static inline void cart_3_rhs_rational(
@@ -1208,7 +1208,7 @@ static inline void cart_3_rhs_rational(
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    279 operations, 13 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void cart_3_rhs_variational(
     cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {
@@ -1348,7 +1348,7 @@ static inline void cart_3_rhs_variational(
     (void)t;
 }
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0, 0, 0, 0). */
 static inline void cart_3_equilibrium(
@@ -1363,7 +1363,7 @@ static inline void cart_3_equilibrium(
     (void)params;
 }
 
-/* Matrices of small motions x about rest at q = (0, 0, 0, 0).
+/* Matrices of small displacements x from the equilibrium q = (0, 0, 0, 0).
    15 operations, 15 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void cart_3_linear(

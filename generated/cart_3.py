@@ -110,9 +110,9 @@ Equations of motion:
         + l3*m3*x_ddot*cos(theta3) = 0
 
 Each function takes one state as plain numbers and returns plain numbers, which is fastest for
-one state. With ``_many`` after its name it takes NumPy arrays, state first: y of shape
-(8, ...), each parameter a number or an array of shape (...); in the result the axes of a
-single result come first.
+one state. Its variant ``_many`` takes NumPy arrays, with the state along the first axis: y of
+shape (8, ...), each parameter a number or an array of shape (...). In its result the axes
+of a single result come first.
 """
 
 from __future__ import annotations
@@ -274,12 +274,12 @@ UNITS = {
 
 
 def params(**values: float) -> Vector:
-    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+    """Parameters in the order of `PARAMETERS`: the given values, and defaults for the others.
 
     Raises
     ------
     TypeError
-        When a name is not that of a parameter.
+        When there is no parameter of a given name.
     """
     for name in values:
         if name not in PARAMETERS:
@@ -1065,7 +1065,7 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+    """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
     53 operations, 7 of them on parameters alone.
 
@@ -1830,7 +1830,7 @@ def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+    """State (q, qdot) of the Lagrangian form at y = (q, p).
 
     98 operations, 9 of them on parameters alone.
 
@@ -1946,7 +1946,7 @@ def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State of the rational form that belongs to y = (q, qdot).
+    """State of the rational form at y = (q, qdot).
 
     6 operations, 0 of them on parameters alone.
 
@@ -2008,7 +2008,7 @@ def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+    """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
     134 operations, 13 of them on parameters alone.
 
@@ -2175,7 +2175,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: the motion's, then that of the change, to first order.
+        Time derivative of y: of the motion, then of the change, to first order.
     """
     # inputs
     _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y.tolist() if hasattr(y, "tolist") else y
@@ -2418,7 +2418,7 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at rest.
+    """Coordinates at the equilibrium.
 
     0 operations, 0 of them on parameters alone.
 
@@ -2445,7 +2445,7 @@ def equilibrium_many(params: Arrays) -> Array:
 
 
 def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small motions x about rest at q = (0, 0, 0, 0).
+    """Matrices of small displacements x from the equilibrium q = (0, 0, 0, 0).
 
     15 operations, 15 of them on parameters alone.
 

@@ -88,16 +88,16 @@
            + l2*l3*m3*theta2_ddot*cos(theta2 - theta3)
            - l2*l3*m3*theta2_dot**2*sin(theta2 - theta3) + l3**2*m3*theta3_ddot = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[6] = {...}, rate[6], params[7] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81};
        chain_3_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_CHAIN_3_H
 #define HOLONOMIC_CHAIN_3_H
@@ -458,7 +458,7 @@ static inline void chain_3_positions(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    34 operations, 6 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void chain_3_hamiltonian_state(
@@ -781,7 +781,7 @@ static inline void chain_3_energy_hamiltonian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    51 operations, 7 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void chain_3_lagrangian_state(
@@ -835,7 +835,7 @@ static inline void chain_3_lagrangian_state(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    6 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void chain_3_rational_state(
@@ -864,7 +864,7 @@ static inline void chain_3_rational_state(
 }
 #endif
 
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    94 operations, 11 of them on parameters alone.
    Time derivative of y. */
 static inline void chain_3_rhs_rational(
@@ -933,7 +933,7 @@ static inline void chain_3_rhs_rational(
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    193 operations, 11 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void chain_3_rhs_variational(
     chain_3_real t, const chain_3_real *state,
     const chain_3_real *params, chain_3_real *result)
@@ -1050,7 +1050,7 @@ static inline void chain_3_rhs_variational(
     (void)t;
 }
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0, 0, 0). */
 static inline void chain_3_equilibrium(
@@ -1064,7 +1064,7 @@ static inline void chain_3_equilibrium(
     (void)params;
 }
 
-/* Matrices of small motions x about rest at q = (0, 0, 0).
+/* Matrices of small displacements x from the equilibrium q = (0, 0, 0).
    14 operations, 14 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void chain_3_linear(

@@ -69,16 +69,16 @@
            + d*k*l*cos(theta2) + g*l*m*sin(theta2) - k*l**2*sin(theta1)*cos(theta2)
            + k*l**2*sin(theta2)*cos(theta1) + l**2*m*theta2_ddot = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[4] = {...}, rate[4], params[5] = {1.0, 1.0, 1.0, 1.0, 9.81};
        coupled_pendulums_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_COUPLED_PENDULUMS_H
 #define HOLONOMIC_COUPLED_PENDULUMS_H
@@ -329,7 +329,7 @@ static inline void coupled_pendulums_positions(
 }
 #endif
 
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    4 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void coupled_pendulums_hamiltonian_state(
@@ -534,7 +534,7 @@ static inline void coupled_pendulums_energy_hamiltonian(
 }
 #endif
 
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    7 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void coupled_pendulums_lagrangian_state(
@@ -560,7 +560,7 @@ static inline void coupled_pendulums_lagrangian_state(
 }
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    4 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void coupled_pendulums_rational_state(
@@ -585,7 +585,7 @@ static inline void coupled_pendulums_rational_state(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    68 operations, 8 of them on parameters alone.
    Time derivative of y. */
 static inline void coupled_pendulums_rhs_rational(
@@ -644,7 +644,7 @@ static inline void coupled_pendulums_rhs_rational(
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    123 operations, 8 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void coupled_pendulums_rhs_variational(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
     const coupled_pendulums_real *params, coupled_pendulums_real *result)
@@ -714,7 +714,7 @@ static inline void coupled_pendulums_rhs_variational(
 }
 #endif
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void coupled_pendulums_equilibrium(
@@ -727,7 +727,7 @@ static inline void coupled_pendulums_equilibrium(
     (void)params;
 }
 
-/* Matrices of small motions x about rest at q = (0, 0).
+/* Matrices of small displacements x from the equilibrium q = (0, 0).
    8 operations, 8 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void coupled_pendulums_linear(

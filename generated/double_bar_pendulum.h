@@ -61,16 +61,16 @@
        g*l2*m2*sin(theta2)/2 + l1*l2*m2*theta1_ddot*cos(theta1 - theta2)/2
            - l1*l2*m2*theta1_dot**2*sin(theta1 - theta2)/2 + l2**2*m2*theta2_ddot/3 = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[4] = {...}, rate[4], params[5] = {1.0, 1.0, 1.0, 1.0, 9.81};
        double_bar_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_DOUBLE_BAR_PENDULUM_H
 #define HOLONOMIC_DOUBLE_BAR_PENDULUM_H
@@ -305,7 +305,7 @@ static inline void double_bar_pendulum_positions(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    19 operations, 4 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void double_bar_pendulum_hamiltonian_state(
@@ -490,7 +490,7 @@ static inline void double_bar_pendulum_energy_hamiltonian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    27 operations, 6 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void double_bar_pendulum_lagrangian_state(
@@ -525,7 +525,7 @@ static inline void double_bar_pendulum_lagrangian_state(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    4 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void double_bar_pendulum_rational_state(
@@ -549,7 +549,7 @@ static inline void double_bar_pendulum_rational_state(
 }
 #endif
 
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    46 operations, 8 of them on parameters alone.
    Time derivative of y. */
 static inline void double_bar_pendulum_rhs_rational(
@@ -594,7 +594,7 @@ static inline void double_bar_pendulum_rhs_rational(
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    90 operations, 8 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void double_bar_pendulum_rhs_variational(
     double_bar_pendulum_real t, const double_bar_pendulum_real *state,
     const double_bar_pendulum_real *params, double_bar_pendulum_real *result)
@@ -660,7 +660,7 @@ static inline void double_bar_pendulum_rhs_variational(
     (void)t;
 }
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void double_bar_pendulum_equilibrium(
@@ -673,7 +673,7 @@ static inline void double_bar_pendulum_equilibrium(
     (void)params;
 }
 
-/* Matrices of small motions x about rest at q = (0, 0).
+/* Matrices of small displacements x from the equilibrium q = (0, 0).
    15 operations, 15 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void double_bar_pendulum_linear(

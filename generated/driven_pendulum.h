@@ -44,16 +44,16 @@
    Equations of motion:
        c*theta_dot + l**2*m*theta_ddot - l*m*(Omega**2*a*cos(Omega*t) - g)*sin(theta) = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[2] = {...}, rate[2], params[6] = {1.0, 1.0, 0.1, 100.0, 0.0, 9.81};
        driven_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_DRIVEN_PENDULUM_H
 #define HOLONOMIC_DRIVEN_PENDULUM_H
@@ -140,7 +140,7 @@ static inline void driven_pendulum_jacobian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Jacobi's integral qdot dL/dqdot - L, which is not T + V since positions depend on time.
+/* Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time.
    21 operations, 6 of them on parameters alone.
    Energy in J. */
 static inline void driven_pendulum_energy(
@@ -171,7 +171,7 @@ static inline void driven_pendulum_energy(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Rate at which `energy` grows: work of applied forces, friction and what moves by itself.
+/* Rate of change of `energy`: power of applied forces, friction and prescribed motion.
    22 operations, 6 of them on parameters alone.
    Power in W. */
 static inline void driven_pendulum_power(
@@ -242,7 +242,7 @@ static inline void driven_pendulum_positions(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    10 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void driven_pendulum_hamiltonian_state(
@@ -380,7 +380,7 @@ static inline void driven_pendulum_energy_hamiltonian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    13 operations, 5 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void driven_pendulum_lagrangian_state(
@@ -406,7 +406,7 @@ static inline void driven_pendulum_lagrangian_state(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void driven_pendulum_rational_state(
@@ -426,7 +426,7 @@ static inline void driven_pendulum_rational_state(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    21 operations, 7 of them on parameters alone.
    Time derivative of y. */
 static inline void driven_pendulum_rhs_rational(
@@ -461,7 +461,7 @@ static inline void driven_pendulum_rhs_rational(
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    31 operations, 7 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void driven_pendulum_rhs_variational(
     driven_pendulum_real t, const driven_pendulum_real *state,
     const driven_pendulum_real *params, driven_pendulum_real *result)
@@ -499,7 +499,7 @@ static inline void driven_pendulum_rhs_variational(
 }
 #endif
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0). */
 static inline void driven_pendulum_equilibrium(

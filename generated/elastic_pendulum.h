@@ -53,16 +53,16 @@
        -g*m*cos(theta) - k*l + k*r - m*r*theta_dot**2 + m*r_ddot = 0
        g*m*r*sin(theta) + m*r**2*theta_ddot + 2*m*r*r_dot*theta_dot = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[4] = {...}, rate[4], params[4] = {1.0, 100.0, 1.0, 9.81};
        elastic_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_ELASTIC_PENDULUM_H
 #define HOLONOMIC_ELASTIC_PENDULUM_H
@@ -229,7 +229,7 @@ static inline void elastic_pendulum_positions(
 }
 #endif
 
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    4 operations, 0 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void elastic_pendulum_hamiltonian_state(
@@ -359,7 +359,7 @@ static inline void elastic_pendulum_energy_hamiltonian(
 }
 #endif
 
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    5 operations, 1 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void elastic_pendulum_lagrangian_state(
@@ -383,7 +383,7 @@ static inline void elastic_pendulum_lagrangian_state(
 }
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void elastic_pendulum_rational_state(
@@ -406,7 +406,7 @@ static inline void elastic_pendulum_rational_state(
 }
 #endif
 
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    21 operations, 3 of them on parameters alone.
    Time derivative of y. */
 static inline void elastic_pendulum_rhs_rational(
@@ -440,7 +440,7 @@ static inline void elastic_pendulum_rhs_rational(
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    46 operations, 3 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void elastic_pendulum_rhs_variational(
     elastic_pendulum_real t, const elastic_pendulum_real *state,
     const elastic_pendulum_real *params, elastic_pendulum_real *result)
@@ -485,7 +485,7 @@ static inline void elastic_pendulum_rhs_variational(
     (void)t;
 }
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    4 operations, 4 of them on parameters alone.
    q = (g*m/k + l, 0). */
 static inline void elastic_pendulum_equilibrium(
@@ -501,7 +501,7 @@ static inline void elastic_pendulum_equilibrium(
     result[1] = ELASTIC_PENDULUM_NUMBER(0.0);
 }
 
-/* Matrices of small motions x about rest at q = (g*m/k + l, 0).
+/* Matrices of small displacements x from the equilibrium q = (g*m/k + l, 0).
    7 operations, 7 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void elastic_pendulum_linear(

@@ -73,16 +73,16 @@
            + m*y**3*y_dot**2/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4)
            + m*y*y_dot**2/(l**2 - x**2 - y**2) + m*y_ddot*(y**2/(l**2 - x**2 - y**2) + 1) = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[4] = {...}, rate[4], params[5] = {28.0, 67.0, 9.81, 7.292e-05, 0.8527};
        foucault_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_FOUCAULT_PENDULUM_H
 #define HOLONOMIC_FOUCAULT_PENDULUM_H
@@ -310,7 +310,7 @@ static inline void foucault_pendulum_jacobian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Jacobi's integral qdot dL/dqdot - L, which is not T + V since positions depend on time.
+/* Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time.
    41 operations, 5 of them on parameters alone.
    Energy in J. */
 static inline void foucault_pendulum_energy(
@@ -407,7 +407,7 @@ static inline void foucault_pendulum_positions(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    38 operations, 3 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void foucault_pendulum_hamiltonian_state(
@@ -706,7 +706,7 @@ static inline void foucault_pendulum_energy_hamiltonian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    45 operations, 4 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void foucault_pendulum_lagrangian_state(
@@ -751,7 +751,7 @@ static inline void foucault_pendulum_lagrangian_state(
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    370 operations, 10 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void foucault_pendulum_rhs_variational(
     foucault_pendulum_real t, const foucault_pendulum_real *state,
     const foucault_pendulum_real *params, foucault_pendulum_real *result)

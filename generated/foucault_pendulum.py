@@ -74,9 +74,9 @@ Equations of motion:
         + m*y*y_dot**2/(l**2 - x**2 - y**2) + m*y_ddot*(y**2/(l**2 - x**2 - y**2) + 1) = 0
 
 Each function takes one state as plain numbers and returns plain numbers, which is fastest for
-one state. With ``_many`` after its name it takes NumPy arrays, state first: y of shape
-(4, ...), each parameter a number or an array of shape (...); in the result the axes of a
-single result come first.
+one state. Its variant ``_many`` takes NumPy arrays, with the state along the first axis: y of
+shape (4, ...), each parameter a number or an array of shape (...). In its result the axes
+of a single result come first.
 """
 
 from __future__ import annotations
@@ -163,12 +163,12 @@ UNITS = {
 
 
 def params(**values: float) -> Vector:
-    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+    """Parameters in the order of `PARAMETERS`: the given values, and defaults for the others.
 
     Raises
     ------
     TypeError
-        When a name is not that of a parameter.
+        When there is no parameter of a given name.
     """
     for name in values:
         if name not in PARAMETERS:
@@ -568,7 +568,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def energy(t: float, y: Numbers, params: Numbers) -> float:
-    """Jacobi's integral qdot dL/dqdot - L, which is not T + V since positions depend on time.
+    """Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time.
 
     41 operations, 5 of them on parameters alone.
 
@@ -751,7 +751,7 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+    """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
     38 operations, 3 of them on parameters alone.
 
@@ -1300,7 +1300,7 @@ def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+    """State (q, qdot) of the Lagrangian form at y = (q, p).
 
     45 operations, 4 of them on parameters alone.
 
@@ -1388,7 +1388,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: the motion's, then that of the change, to first order.
+        Time derivative of y: of the motion, then of the change, to first order.
     """
     # inputs
     x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y.tolist() if hasattr(y, "tolist") else y

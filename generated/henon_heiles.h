@@ -40,16 +40,16 @@
        2*x*y + x + x_ddot = 0
        x**2 - y**2 + y + y_ddot = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[4] = {...}, rate[4], params[0] = {};
        henon_heiles_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_HENON_HEILES_H
 #define HOLONOMIC_HENON_HEILES_H
@@ -187,7 +187,7 @@ static inline void henon_heiles_positions(
     (void)params;
 }
 
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    0 operations, 0 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void henon_heiles_hamiltonian_state(
@@ -285,7 +285,7 @@ static inline void henon_heiles_energy_hamiltonian(
     (void)params;
 }
 
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    0 operations, 0 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void henon_heiles_lagrangian_state(
@@ -308,7 +308,7 @@ static inline void henon_heiles_lagrangian_state(
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    21 operations, 0 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void henon_heiles_rhs_variational(
     henon_heiles_real t, const henon_heiles_real *state,
     const henon_heiles_real *params, henon_heiles_real *result)
@@ -337,7 +337,7 @@ static inline void henon_heiles_rhs_variational(
     (void)params;
 }
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void henon_heiles_equilibrium(
@@ -350,7 +350,7 @@ static inline void henon_heiles_equilibrium(
     (void)params;
 }
 
-/* Matrices of small motions x about rest at q = (0, 0).
+/* Matrices of small displacements x from the equilibrium q = (0, 0).
    0 operations, 0 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void henon_heiles_linear(

@@ -41,9 +41,9 @@ Equations of motion:
     x**2 - y**2 + y + y_ddot = 0
 
 Each function takes one state as plain numbers and returns plain numbers, which is fastest for
-one state. With ``_many`` after its name it takes NumPy arrays, state first: y of shape
-(4, ...), each parameter a number or an array of shape (...); in the result the axes of a
-single result come first.
+one state. Its variant ``_many`` takes NumPy arrays, with the state along the first axis: y of
+shape (4, ...), each parameter a number or an array of shape (...). In its result the axes
+of a single result come first.
 """
 
 from __future__ import annotations
@@ -115,12 +115,12 @@ UNITS = {
 
 
 def params(**values: float) -> Vector:
-    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+    """Parameters in the order of `PARAMETERS`: the given values, and defaults for the others.
 
     Raises
     ------
     TypeError
-        When a name is not that of a parameter.
+        When there is no parameter of a given name.
     """
     for name in values:
         if name not in PARAMETERS:
@@ -322,7 +322,7 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+    """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
     0 operations, 0 of them on parameters alone.
 
@@ -482,7 +482,7 @@ def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+    """State (q, qdot) of the Lagrangian form at y = (q, p).
 
     0 operations, 0 of them on parameters alone.
 
@@ -528,7 +528,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: the motion's, then that of the change, to first order.
+        Time derivative of y: of the motion, then of the change, to first order.
     """
     # inputs
     x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y.tolist() if hasattr(y, "tolist") else y
@@ -569,7 +569,7 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at rest.
+    """Coordinates at the equilibrium.
 
     0 operations, 0 of them on parameters alone.
 
@@ -595,7 +595,7 @@ def equilibrium_many(params: Arrays) -> Array:
 
 
 def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small motions x about rest at q = (0, 0).
+    """Matrices of small displacements x from the equilibrium q = (0, 0).
 
     0 operations, 0 of them on parameters alone.
 

@@ -40,16 +40,16 @@
    Equations of motion:
        -Omega**2*R**2*m*sin(theta)*cos(theta) + R**2*m*theta_ddot + R*g*m*sin(theta) = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[2] = {...}, rate[2], params[4] = {1.0, 1.0, 4.0, 9.81};
        rotating_hoop_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_ROTATING_HOOP_H
 #define HOLONOMIC_ROTATING_HOOP_H
@@ -130,7 +130,7 @@ static inline void rotating_hoop_jacobian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Jacobi's integral qdot dL/dqdot - L, which is not T + V since positions depend on time.
+/* Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time.
    15 operations, 3 of them on parameters alone.
    Energy in J. */
 static inline void rotating_hoop_energy(
@@ -195,7 +195,7 @@ static inline void rotating_hoop_positions(
 }
 #endif
 
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    3 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void rotating_hoop_hamiltonian_state(
@@ -303,7 +303,7 @@ static inline void rotating_hoop_energy_hamiltonian(
 }
 #endif
 
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    5 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void rotating_hoop_lagrangian_state(
@@ -325,7 +325,7 @@ static inline void rotating_hoop_lagrangian_state(
 }
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void rotating_hoop_rational_state(
@@ -344,7 +344,7 @@ static inline void rotating_hoop_rational_state(
 }
 #endif
 
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    11 operations, 3 of them on parameters alone.
    Time derivative of y. */
 static inline void rotating_hoop_rhs_rational(
@@ -370,7 +370,7 @@ static inline void rotating_hoop_rhs_rational(
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    18 operations, 3 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void rotating_hoop_rhs_variational(
     rotating_hoop_real t, const rotating_hoop_real *state,
     const rotating_hoop_real *params, rotating_hoop_real *result)
@@ -399,7 +399,7 @@ static inline void rotating_hoop_rhs_variational(
     (void)t;
 }
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0). */
 static inline void rotating_hoop_equilibrium(
@@ -411,7 +411,7 @@ static inline void rotating_hoop_equilibrium(
     (void)params;
 }
 
-/* Matrices of small motions x about rest at q = (0).
+/* Matrices of small displacements x from the equilibrium q = (0).
    6 operations, 6 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void rotating_hoop_linear(

@@ -39,16 +39,16 @@
    Equations of motion:
        g*l*m*sin(theta) + l**2*m*theta_ddot = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[2] = {...}, rate[2], params[3] = {1.0, 2.0, 9.81};
        single_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_SINGLE_PENDULUM_H
 #define HOLONOMIC_SINGLE_PENDULUM_H
@@ -143,7 +143,7 @@ static inline void single_pendulum_energy(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Forces that hold l, by Lagrange's multipliers.
+/* Forces that hold l constant, by Lagrange's multipliers.
    6 operations, 0 of them on parameters alone.
    One for each: a rod's tension, positive where it pulls. */
 static inline void single_pendulum_reactions(
@@ -196,7 +196,7 @@ static inline void single_pendulum_positions(
 }
 #endif
 
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    3 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void single_pendulum_hamiltonian_state(
@@ -292,7 +292,7 @@ static inline void single_pendulum_energy_hamiltonian(
 }
 #endif
 
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    5 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void single_pendulum_lagrangian_state(
@@ -314,7 +314,7 @@ static inline void single_pendulum_lagrangian_state(
 }
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    2 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void single_pendulum_rational_state(
@@ -333,7 +333,7 @@ static inline void single_pendulum_rational_state(
 }
 #endif
 
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    7 operations, 1 of them on parameters alone.
    Time derivative of y. */
 static inline void single_pendulum_rhs_rational(
@@ -357,7 +357,7 @@ static inline void single_pendulum_rhs_rational(
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    11 operations, 1 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void single_pendulum_rhs_variational(
     single_pendulum_real t, const single_pendulum_real *state,
     const single_pendulum_real *params, single_pendulum_real *result)
@@ -381,7 +381,7 @@ static inline void single_pendulum_rhs_variational(
     (void)t;
 }
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0). */
 static inline void single_pendulum_equilibrium(
@@ -393,7 +393,7 @@ static inline void single_pendulum_equilibrium(
     (void)params;
 }
 
-/* Matrices of small motions x about rest at q = (0).
+/* Matrices of small displacements x from the equilibrium q = (0).
    3 operations, 3 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void single_pendulum_linear(

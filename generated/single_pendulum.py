@@ -40,9 +40,9 @@ Equations of motion:
     g*l*m*sin(theta) + l**2*m*theta_ddot = 0
 
 Each function takes one state as plain numbers and returns plain numbers, which is fastest for
-one state. With ``_many`` after its name it takes NumPy arrays, state first: y of shape
-(2, ...), each parameter a number or an array of shape (...); in the result the axes of a
-single result come first.
+one state. Its variant ``_many`` takes NumPy arrays, with the state along the first axis: y of
+shape (2, ...), each parameter a number or an array of shape (...). In its result the axes
+of a single result come first.
 """
 
 from __future__ import annotations
@@ -126,12 +126,12 @@ UNITS = {
 
 
 def params(**values: float) -> Vector:
-    """Parameters in the order of `PARAMETERS`: those given by name, and the others' defaults.
+    """Parameters in the order of `PARAMETERS`: the given values, and defaults for the others.
 
     Raises
     ------
     TypeError
-        When a name is not that of a parameter.
+        When there is no parameter of a given name.
     """
     for name in values:
         if name not in PARAMETERS:
@@ -267,7 +267,7 @@ def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def reactions(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Forces that hold l, by Lagrange's multipliers.
+    """Forces that hold l constant, by Lagrange's multipliers.
 
     6 operations, 0 of them on parameters alone.
 
@@ -374,7 +374,7 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+    """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
     3 operations, 2 of them on parameters alone.
 
@@ -550,7 +550,7 @@ def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+    """State (q, qdot) of the Lagrangian form at y = (q, p).
 
     5 operations, 3 of them on parameters alone.
 
@@ -591,7 +591,7 @@ def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
-    """State of the rational form that belongs to y = (q, qdot).
+    """State of the rational form at y = (q, qdot).
 
     2 operations, 0 of them on parameters alone.
 
@@ -626,7 +626,7 @@ def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+    """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
     7 operations, 1 of them on parameters alone.
 
@@ -688,7 +688,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: the motion's, then that of the change, to first order.
+        Time derivative of y: of the motion, then of the change, to first order.
     """
     # inputs
     sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
@@ -725,7 +725,7 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at rest.
+    """Coordinates at the equilibrium.
 
     0 operations, 0 of them on parameters alone.
 
@@ -752,7 +752,7 @@ def equilibrium_many(params: Arrays) -> Array:
 
 
 def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small motions x about rest at q = (0).
+    """Matrices of small displacements x from the equilibrium q = (0).
 
     3 operations, 3 of them on parameters alone.
 

@@ -53,16 +53,16 @@
        g*l*m*sin(theta) - l**2*m*phi_dot**2*sin(theta)*cos(theta) + l**2*m*theta_ddot = 0
        l**2*m*phi_ddot*sin(theta)**2 + 2*l**2*m*phi_dot*theta_dot*sin(theta)*cos(theta) = 0
 
-   Each function writes its results, row by row, to `result`; nothing is allocated and nothing is
-   kept. Use it from C99 or C++ by including this file and linking with -lm:
+   Each function writes its results, row by row, to `result`. It allocates no memory and has no
+   state of its own. Include this file from C99 or C++ and link with -lm:
 
        double state[4] = {...}, rate[4], params[3] = {1.0, 1.0, 9.81};
        spherical_pendulum_rhs(0.0, state, params, rate);
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have that type, too), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes as many states at once. With a vector
-   define HOLONOMIC_VECTOR, too: it leaves out functions that call the mathematical library. */
+   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
+   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
+   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_SPHERICAL_PENDULUM_H
 #define HOLONOMIC_SPHERICAL_PENDULUM_H
@@ -237,7 +237,7 @@ static inline void spherical_pendulum_positions(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, p) of the Hamiltonian form that belongs to y = (q, qdot).
+/* State (q, p) of the Hamiltonian form at y = (q, qdot).
    7 operations, 2 of them on parameters alone.
    Coordinates, then momenta p = M qdot. */
 static inline void spherical_pendulum_hamiltonian_state(
@@ -375,7 +375,7 @@ static inline void spherical_pendulum_energy_hamiltonian(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State (q, qdot) of the Lagrangian form that belongs to y = (q, p).
+/* State (q, qdot) of the Lagrangian form at y = (q, p).
    10 operations, 3 of them on parameters alone.
    Coordinates, then velocities from M qdot = p. */
 static inline void spherical_pendulum_lagrangian_state(
@@ -404,7 +404,7 @@ static inline void spherical_pendulum_lagrangian_state(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* State of the rational form that belongs to y = (q, qdot).
+/* State of the rational form at y = (q, qdot).
    4 operations, 0 of them on parameters alone.
    Sine and cosine of every angle, other coordinates, velocities. */
 static inline void spherical_pendulum_rational_state(
@@ -428,7 +428,7 @@ static inline void spherical_pendulum_rational_state(
 }
 #endif
 
-/* Right-hand side of y' = rhs_rational(t, y, params): no function is called.
+/* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
    18 operations, 1 of them on parameters alone.
    Time derivative of y. */
 static inline void spherical_pendulum_rhs_rational(
@@ -461,7 +461,7 @@ static inline void spherical_pendulum_rhs_rational(
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
    49 operations, 1 of them on parameters alone.
-   Time derivative of y: the motion's, then that of the change, to first order. */
+   Time derivative of y: of the motion, then of the change, to first order. */
 static inline void spherical_pendulum_rhs_variational(
     spherical_pendulum_real t, const spherical_pendulum_real *state,
     const spherical_pendulum_real *params, spherical_pendulum_real *result)
@@ -507,7 +507,7 @@ static inline void spherical_pendulum_rhs_variational(
     (void)t;
 }
 
-/* Coordinates at rest.
+/* Coordinates at the equilibrium.
    0 operations, 0 of them on parameters alone.
    q = (0, 0). */
 static inline void spherical_pendulum_equilibrium(
@@ -520,7 +520,7 @@ static inline void spherical_pendulum_equilibrium(
     (void)params;
 }
 
-/* Matrices of small motions x about rest at q = (0, 0).
+/* Matrices of small displacements x from the equilibrium q = (0, 0).
    3 operations, 3 of them on parameters alone.
    M0 and K of M0 xddot + K x = 0. */
 static inline void spherical_pendulum_linear(
