@@ -1,5 +1,9 @@
 from solvers.app.modules import build as build
 from solvers.app.modules import load as load
+from solvers.app.scenes import load_scene as load_scene
+from solvers.app.scenes import load_sweep as load_sweep
+from solvers.app.scenes import run_scene as run_scene
+from solvers.app.scenes import sweep as sweep
 from solvers.integration.ensemble import ensemble as ensemble
 from solvers.integration.events import Event as Event
 from solvers.integration.events import Extremum as Extremum
@@ -9,6 +13,9 @@ from solvers.integration.prepare import prepare as prepare
 from solvers.integration.solution import Ensemble as Ensemble
 from solvers.integration.solution import Solution as Solution
 from solvers.integration.solution import Status as Status
+from solvers.io.figures import panels as panels
+from solvers.io.figures import save as save
+from solvers.scenes.run import SceneResult as SceneResult
 from solvers.scenes.scene import Scene as Scene
 from solvers.sweeps.axes import Grid as Grid
 from solvers.sweeps.axes import Random as Random
@@ -21,6 +28,6 @@ from solvers.sweeps.maps.lyapunov import Lyapunov as Lyapunov
 from solvers.sweeps.maps.samples import Samples as Samples
 from solvers.sweeps.maps.section import Section as Section
 from solvers.sweeps.pool import Pool as Pool
+from solvers.sweeps.results import Results as Results
 from solvers.sweeps.run import partial_results as partial_results
-from solvers.sweeps.run import sweep as sweep
 from solvers.sweeps.sweep import Sweep as Sweep

@@ -217,6 +217,15 @@ class RigidBody(PointMass):
     SystemDefinitionError
         When the mass cannot be positive, or the moment of inertia is negative; when the
         position has not two components, or something is neither an expression nor a number.
+
+    Examples
+    --------
+    >>> from sympy import cos, sin, symbols
+    >>> from derive import RigidBody
+    >>> m, length, theta = symbols("m l theta", real=True, positive=True)
+    >>> centre = (length * sin(theta) / 2, -length * cos(theta) / 2)
+    >>> RigidBody(m, centre, inertia=m * length**2 / 12, angle=theta).inertia
+    l**2*m/12
     """
 
     inertia: sp.Expr

@@ -33,7 +33,25 @@ class Momentum(sp.Symbol):
 
 
 def velocity(coordinate: sp.Symbol) -> Rate:
-    """The symbol of a coordinate's first time derivative."""
+    """The symbol of a coordinate's first time derivative.
+
+    Parameters
+    ----------
+    coordinate : sympy.Symbol
+        A coordinate.
+
+    Returns
+    -------
+    sympy.Symbol
+        Named as the coordinate, with ``_dot``.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> from derive import velocity
+    >>> velocity(Symbol("theta1", real=True))
+    theta1_dot
+    """
     return Rate(f"{coordinate.name}_dot", real=True)
 
 

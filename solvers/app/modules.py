@@ -84,6 +84,13 @@ def build(system: System) -> GeneratedModule:
         When its equations contain a power that generated code does not have.
     OSError
         When the module cannot be written to the cache.
+
+    Examples
+    --------
+    >>> import derive
+    >>> from solvers import build
+    >>> build(derive.load("chain_4")).COORDINATES
+    ('theta1', 'theta2', 'theta3', 'theta4')
     """
     from derive import Derivation
     from derive.codegen.writing import texts

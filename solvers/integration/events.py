@@ -86,6 +86,14 @@ class Extremum(Event):
     ------
     ValueError
         When it is no velocity.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import Extremum, integrate
+    >>> motion = integrate(sp, (0, 5), (0.5, 0), sp.DEFAULTS, events=Extremum(sp, "theta_dot"))
+    >>> round(float(motion.y_events[0][0][0]), 6)
+    -0.5
     """
 
     value: float = 0.0

@@ -37,6 +37,14 @@ def ode_solver(method: str) -> type[OdeSolver]:
         For a method without error estimate, or an implicit one.
     solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
+
+    Examples
+    --------
+    >>> from scipy.integrate import solve_ivp
+    >>> from solvers import ode_solver
+    >>> decay = solve_ivp(lambda t, y: -y, (0, 1), [1.0], method=ode_solver("dp54"), rtol=1e-9)
+    >>> f"{decay.y[0, -1]:.6f}"
+    '0.367879'
     """
     tableau = load(method)
     if not tableau.b_hat or not tableau.is_explicit:

@@ -12,7 +12,15 @@ Array = NDArray[np.float64]
 
 
 class Status(Enum):
-    """How an integration ended."""
+    """How an integration ended.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import Status, integrate
+    >>> integrate(sp, (0, 5), (0.5, 0), sp.DEFAULTS).status is Status.FINISHED
+    True
+    """
 
     FINISHED = "the end of the time span was reached"
     EVENT = "an event that ends the integration occurred"
@@ -53,6 +61,14 @@ class Solution:
         ``compiled``, ``python`` or ``scipy``.
     end : pair of float and ndarray
         Time in s and state where it ended, from which another integration can go on.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import integrate
+    >>> motion = integrate(sp, (0, 5), (0.5, 0), sp.DEFAULTS, t_eval=[0, 2.5, 5])
+    >>> motion.y.shape, motion.success
+    ((2, 3), True)
     """
 
     t: Array
@@ -103,6 +119,14 @@ class Ensemble:
         Steps taken, steps tried in vain, evaluations of the right-hand side.
     run : str
         Method, form, step control, and what ran it.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import ensemble
+    >>> motions = ensemble(sp, (0, 5), [(0.5, 0), (1.0, 0)], sp.DEFAULTS)
+    >>> motions.y.shape, {status.name for status in motions.status}
+    ((2, 2), {'FINISHED'})
     """
 
     t: Array

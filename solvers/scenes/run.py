@@ -32,7 +32,7 @@ class SceneResult:
     ----------
     scene : Scene
         What was asked.
-    choice : ModelSelection
+    selection : ModelSelection
         Which model was taken, and why no smaller one.
     t : ndarray of shape (samples,)
         Times in s.
@@ -46,6 +46,13 @@ class SceneResult:
         What the full equations take for a motion of this length, by the record of charts.
     general_seconds : float
         What general code takes where specialised code was made; NaN elsewhere.
+
+    Examples
+    --------
+    >>> from solvers import run_scene
+    >>> result = run_scene("single")
+    >>> result.t[-1], result.is_met
+    (np.float64(10.0), True)
     """
 
     scene: Scene

@@ -34,6 +34,14 @@ class Results:
         Quantities that vary: the values along each axis of a grid, else of each motion.
     status : ndarray of int
         Status of each motion, as an index of `solvers.sweeps.job.STATUSES`.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import Final, Grid, Sweep, sweep
+    >>> definition = Sweep(sp, Grid({"theta": [0.1, 0.2]}), {"end": Final(("theta",))}, duration=5)
+    >>> sweep(definition, "ends").count
+    {'finished': 2}
     """
 
     definition: Sweep

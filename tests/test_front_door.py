@@ -1,0 +1,83 @@
+"""The front doors: every public name from `derive`, `solvers` and `holonomic`, loaded on use."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import derive
+import holonomic
+import solvers
+from solvers import Grid, load_scene, load_sweep, run_scene, sweep
+from solvers.app.scenes import shipped
+from solvers.io.toml_input import InputError
+from solvers.sweeps import reading
+
+HEAVY = ("sympy", "numpy", "scipy", "matplotlib")
+
+
+def loaded(code: str) -> set[str]:
+    """Numerical packages that a new process loads for these statements."""
+    report = f"print(*({set(HEAVY)!r} & {{*sys.modules}}))"
+    argv = [sys.executable, "-c", f"import sys\n{code}\n{report}"]
+    return {*subprocess.run(argv, capture_output=True, text=True, check=True).stdout.split()}
+
+
+@pytest.mark.parametrize("package", ["derive", "solvers", "holonomic"])
+def test_importing_and_completing_load_no_numerical_package(package: str) -> None:
+    assert loaded(f"import {package}; dir({package}); {package}.__all__") == set()
+
+
+@pytest.mark.parametrize(("statement", "packages"), [
+    ("from solvers import integrate, ensemble, prepare, ode_solver, Event", {"numpy", "scipy"}),
+    ("from holonomic import Scene, Sweep, run_scene, sweep, load", {"numpy", "scipy"}),
+    ("from derive import System, PointMass, Derivation, load, write", {"sympy"}),
+])  # fmt: skip
+def test_a_name_loads_only_the_packages_that_it_needs(statement: str, packages: set[str]) -> None:
+    assert loaded(statement) <= packages
+
+
+def test_holonomic_offers_all_public_names() -> None:
+    assert {*dir(holonomic)} >= {*dir(derive), *dir(solvers)}
+    for name in {*derive.__all__} - {*solvers.__all__}:
+        assert getattr(holonomic, name) is getattr(derive, name)
+    for name in solvers.__all__:
+        assert getattr(holonomic, name) is getattr(solvers, name)
+
+
+@pytest.mark.parametrize("package", [derive, solvers, holonomic])
+def test_an_unknown_name_raises_an_attribute_error(package: object) -> None:
+    with pytest.raises(AttributeError, match="has no attribute 'intergate'"):
+        _ = package.intergate  # type: ignore[attr-defined]
+
+
+def test_a_scene_runs_by_name_by_file_and_as_an_object() -> None:
+    by_name = run_scene("single")
+    by_file = run_scene(shipped.FILES / "single.toml")
+    as_object = run_scene(load_scene("single"))
+    assert by_name.is_met
+    assert np.array_equal(by_name.y, by_file.y)
+    assert np.array_equal(by_name.y, as_object.y)
+    with pytest.raises(InputError, match="did you mean 'single'"):
+        run_scene("singel")
+
+
+def test_specialised_code_needs_no_further_argument() -> None:
+    scene = replace(load_scene("report"), duration=0.5, code="specialised")
+    assert run_scene(scene).is_met
+
+
+def test_a_sweep_runs_by_file_and_as_an_object(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="did you mean 'flips'"):
+        sweep("filps", tmp_path)
+    path = tmp_path / "few.toml"
+    text = (reading.FILES / "flips.toml").read_text(encoding="utf-8")
+    path.write_text(text.replace("512", "8"), encoding="utf-8")
+    by_file = sweep(path, tmp_path / "file")
+    assert by_file.status.shape == (8, 8)
+    as_object = sweep(load_sweep(path), tmp_path / "object")
+    assert np.array_equal(by_file.maps["flip"], as_object.maps["flip"], equal_nan=True)
+    assert isinstance(load_sweep("flips").axes, Grid)
