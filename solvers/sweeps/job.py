@@ -90,3 +90,9 @@ class Job:
         # quantities that vary on no grid are stored beside the results
         columns = [(name, "<f8") for name in self.columns]
         return np.dtype([("status", "i1"), *columns, *fields])
+
+
+def status_table() -> str:
+    """A Markdown table of the statuses of a motion."""
+    rows = [f"| {code} | {status} |\n" for code, status in enumerate(STATUSES)]
+    return "| number | status |\n|---|---|\n" + "".join(rows)

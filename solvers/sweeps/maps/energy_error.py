@@ -12,8 +12,7 @@ from solvers.sweeps.maps import Array, Map, Motions
 class EnergyError(Map):
     """Energy at the end minus energy at the start, in J.
 
-    Where forces or friction change the energy, the difference is no error: a
-    `solvers.sweeps.sweep.Sweep` of such a system raises `ValueError`.
+    Systems with friction or driving, which change the energy, are refused.
 
     Examples
     --------

@@ -18,7 +18,7 @@ class Extremes(ComponentMap):
     Parameters
     ----------
     of : tuple of str
-        Coordinates; a `solvers.sweeps.sweep.Sweep` raises `ValueError` for other names.
+        The coordinates.
 
     Examples
     --------

@@ -19,16 +19,16 @@ from solvers.sweeps.maps import Array, Map, Motions
 class First(Map):
     """Time in s at which one of the components `of` first crosses one of its values.
 
-    Two crossings within one step are not detected.
+    Two crossings within one step are not detected. Motions with less energy than every position
+    at rest of a `barrier` are not integrated.
 
     Parameters
     ----------
     of : mapping of str to tuple of float
         Values by component.
     barrier : tuple of mapping of str to float
-        Positions at rest, by coordinate, at least one of which every motion must pass in energy
-        before a crossing can occur; coordinates that are not named are 0. Motions with less
-        energy than the lowest are not integrated if the sweep has no other map.
+        Positions that include the lowest on every way to a crossing; coordinates that are not
+        named are 0. It excludes motions only if the sweep has no other map.
 
     Examples
     --------

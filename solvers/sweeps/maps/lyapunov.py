@@ -12,10 +12,14 @@ from solvers.sweeps.maps import Array, Map, Motions
 class Lyapunov(Map):
     """Lyapunov exponent ln(|δ|/|δ₀|)/t in 1/s over the duration of the motion.
 
-    The small change δ of the state follows the variational equations from δ₀, whose components
-    are all equal; its length is taken in units of m, rad and s. The limit of long times is the
-    largest exponent, for almost every δ₀ (G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn,
-    Meccanica 15 (1980) 9-20). In regular motion it decreases as ln t/t.
+    The components of the initial small change δ₀ of the state are all equal, in m, rad and s. In
+    regular motion the exponent decreases as ln t/t.
+
+    Notes
+    -----
+    The change follows the variational equations. The limit of long times is the largest exponent
+    for almost every δ₀ (G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15
+    (1980) 9-20).
 
     Examples
     --------

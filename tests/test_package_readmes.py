@@ -1,0 +1,80 @@
+"""READMEs of packages: their snippets run, their links exist, and their tables match the code."""
+
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from solvers.app.modules import load as load_module
+from solvers.sweeps import map_kinds, reading
+from solvers.sweeps.job import status_table
+from solvers.sweeps.run import sweep
+
+ROOT = Path(__file__).parent.parent
+ALL = [p for package in ("derive", "solvers") for p in sorted((ROOT / package).rglob("*.md"))]
+#: The README of solvers describes arguments that do not exist yet.
+READMES = [path for path in ALL if path != ROOT / "solvers" / "README.md"]
+
+
+def blocks(path: Path, language: str) -> list[str]:
+    """Code blocks of a README in a language."""
+    text = path.read_text(encoding="utf-8")
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+
+
+def snippets() -> Iterator[object]:
+    for path in READMES:
+        for k, text in enumerate(blocks(path, "python")):
+            yield pytest.param(path, text, id=f"{path.parent.relative_to(ROOT)}-{k}")
+
+
+@pytest.mark.parametrize(("path", "snippet"), [*snippets()])
+def test_a_snippet_runs(
+    path: Path, snippet: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    exec(compile(snippet, str(path), "exec"), {"__name__": "__main__"})
+
+
+@pytest.mark.parametrize("path", READMES, ids=lambda path: str(path.parent.relative_to(ROOT)))
+def test_every_link_exists(path: Path) -> None:
+    text = re.sub(r"```.*?```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+    for link in re.findall(r"\]\((?!https?:|#)([^)#]*)", text):
+        assert (path.parent / link).exists(), link
+
+
+SWEEPS = ROOT / "solvers" / "sweeps" / "README.md"
+
+
+@pytest.mark.parametrize(
+    ("marker", "table"),
+    [("map kinds", map_kinds.markdown_table), ("statuses of motions", status_table)],
+)
+def test_a_generated_table_is_current(marker: str, table: object) -> None:
+    between = rf"<!-- {marker} -->\n(.*)<!-- end of {marker} -->"
+    (written,) = re.findall(between, SWEEPS.read_text(encoding="utf-8"), re.DOTALL)
+    assert callable(table)
+    assert written == table()
+
+
+def test_the_keys_and_sweeps_of_the_readme_are_those_of_the_code() -> None:
+    text = SWEEPS.read_text(encoding="utf-8")
+    keys = text.partition("| key | meaning | default |")[2].partition("\n\n")[0]
+    listed = re.findall(
+        r"`\[?([a-z_]+)", " ".join(row.split("|")[1] for row in keys.split("\n")[2:])
+    )
+    assert sorted(listed) == sorted(reading.KEYS)
+    shipped = text.partition("sweeps ship: ")[2].partition(". Their")[0]
+    assert {*re.findall(r"`(\w+)`", shipped)} == {*reading.names()}
+
+
+def test_the_sweep_file_of_the_readme_runs(tmp_path: Path) -> None:
+    (file,) = blocks(SWEEPS, "toml")
+    (tmp_path / "my_sweep.toml").write_text(file)
+    definition = reading.find(str(tmp_path / "my_sweep.toml"), load_module)
+    results = sweep(definition, tmp_path / "out")
+    assert results.maps["highest"].shape == (50, 40, 1, 2)
+    assert results.count == {"finished": 2000}
