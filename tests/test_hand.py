@@ -10,11 +10,11 @@ from mutation import Mutation
 
 from derive import Derivation, load, names
 from derive.system.catalogue import published
-from derive.system.tables import TableError
 from derive.verification.hand.equations import judge
 from derive.verification.hand.judgement import judged
 from derive.verification.hand.meaning import Meaning
 from solvers.app.cli import main
+from solvers.io.toml_input import InputError
 
 
 @pytest.mark.parametrize("name", names())
@@ -169,7 +169,7 @@ def test_the_command_tells_what_is_wrong_and_exits_so(
 def test_files_that_make_no_sense_are_refused(text: str, words: str, tmp_path: Path) -> None:
     path = tmp_path / "hand.toml"
     path.write_text(text)
-    with pytest.raises(TableError, match=words):
+    with pytest.raises(InputError, match=words):
         judge(path)
 
 

@@ -32,7 +32,7 @@ from solvers.sweeps.reading import find
     (('of = ["theta1", "theta2"]', 'of = ["theta1", "thta2"]'), "'thta2' .did you mean 'theta2'"),
     (('of = ["theta1", "theta2"]', ""), "maps.end.of = .. must list different components"),
     (("[maps.end]", "rtol = true\n[maps.end]"), "no key 'rtol'|rtol"),
-    (("[axes]", "method = 5\n[axes]"), "method = 5 must be text in quotes"),
+    (("[axes]", "method = 5\n[axes]"), "method = 5 must be a text in quotes"),
     (("[axes]", 'method = "rk4"\n[axes]'), "does not estimate its error: use one of bs32"),
     (("[axes]", "max_steps = 0\n[axes]"), "max_steps = 0 must be a whole number from 1"),
     (('kind = "final"', 'kind = ["final"]'), "kind = .'final'. must be one of"),

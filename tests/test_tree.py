@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.codegen.tree import PASSAGE, Tree
+from derive.codegen.tree import Tree
 from derive.commands.derive import main, planned
 
 ROOT = Path(__file__).parent.parent
@@ -150,15 +150,16 @@ def test_the_next_run_removes_what_a_killed_one_left_and_spares_a_living_one(
     tmp_path: Path,
 ) -> None:
     sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
-    living = tmp_path / f"{PASSAGE}{sleeper.pid}-x"
-    living.mkdir()
+    temporary = tmp_path / f".a.py.{sleeper.pid}"
+    temporary.write_text("")
     tree = Tree(tmp_path, {"a.py": "a\n"}, complete=True)
     tree.write()
-    assert living.is_dir()
+    assert temporary.exists()
+    assert tree.orphans() == []
     sleeper.kill()
     sleeper.wait()
     tree.write()
-    assert not living.exists()
+    assert not temporary.exists()
 
 
 def test_killing_it_at_any_moment_leaves_whole_files(tmp_path: Path) -> None:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import unified_diff
 from pathlib import Path
 
-#: Names of the folders that hold files on their way; the number of the process follows.
-PASSAGE = ".holonomic-"
+from solvers.io.atomic_write import is_temporary, remove_abandoned, write_texts
 
 
 @dataclass(frozen=True)
@@ -68,9 +64,7 @@ class Tree:
         return sorted(
             path
             for path in self.folder.iterdir()
-            if path.name not in self.texts
-            and path.name != "__pycache__"
-            and not path.name.startswith(PASSAGE)
+            if path.name not in self.texts and path.name != "__pycache__" and not is_temporary(path)
         )
 
     def write(self) -> list[Path]:
@@ -90,21 +84,9 @@ class Tree:
             When the folder cannot be written to.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
-        _remove_abandoned(self.folder)
+        remove_abandoned(self.folder)
         changed = [d.path.name for d in self.differences() if d.reason != "orphan"]
-        if not changed:
-            return []
-        passage = Path(tempfile.mkdtemp(prefix=f"{PASSAGE}{os.getpid()}-", dir=self.folder))
-        try:
-            for name in changed:
-                with open(passage / name, "w", encoding="utf-8", newline="\n") as file:
-                    file.write(self.texts[name])
-                    file.flush()
-                    os.fsync(file.fileno())
-            for name in changed:
-                os.replace(passage / name, self.folder / name)
-        finally:
-            shutil.rmtree(passage, ignore_errors=True)
+        write_texts(self.folder, {name: self.texts[name] for name in changed})
         return [self.folder / name for name in changed]
 
     @staticmethod
@@ -118,20 +100,3 @@ class Tree:
         after = text.splitlines(keepends=True)
         diff = "".join(unified_diff(before, after, f"{path.name} as it is", "as generated", n=1))
         return Difference(path, "differs", diff or "only line ends or the final newline differ\n")
-
-
-def _remove_abandoned(folder: Path) -> None:
-    for passage in folder.glob(f"{PASSAGE}*"):
-        if passage.is_dir() and not _is_alive(passage.name):
-            shutil.rmtree(passage, ignore_errors=True)
-
-
-def _is_alive(passage: str) -> bool:
-    number = passage.removeprefix(PASSAGE).partition("-")[0]
-    try:
-        os.kill(int(number), 0)
-    except (ProcessLookupError, ValueError):
-        return False
-    except PermissionError:
-        return True
-    return True

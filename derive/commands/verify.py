@@ -26,7 +26,7 @@ def verify(names: Sequence[str], *, as_json: bool) -> int:
 
     Raises
     ------
-    TableError
+    InputError
         When a file is no hand derivation, or a system has no published equations.
     ExpressionError
         When a parameter is set to what is no formula.

@@ -14,7 +14,8 @@ from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import Coordinate, Parameter, PointMass, RigidBody, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
-from derive.system.tables import Table, TableError, read
+from derive.system.tables import Table, read
+from solvers.io.toml_input import InputError
 
 KEYS = (
     "name", "title", "coordinates", "parameters", "definitions", "masses", "potential", "gravity",
@@ -43,7 +44,7 @@ def read_system(path: Path) -> System:
     """
     try:
         return _system(path.stem, Table(str(path), read(path), KEYS))
-    except (TableError, ExpressionError, SystemDefinitionError) as error:
+    except (InputError, ExpressionError, SystemDefinitionError) as error:
         message = str(error)
         raise SystemDefinitionError(
             message if message.startswith(str(path)) else f"{path}: {message}"
@@ -53,10 +54,10 @@ def read_system(path: Path) -> System:
 def _system(stem: str, table: Table) -> System:
     name = table.text("name", stem)
     if not IDENTIFIER.match(name):
-        raise TableError(f'{name[:50]!r} cannot be the system\'s name: give another, name = "…"')
+        raise InputError(f'{name[:50]!r} cannot be the system\'s name: give another, name = "…"')
     for key in ("coordinates", "masses"):
         if key not in table.values:
-            raise TableError(f"{key!r} is missing: a system needs coordinates and masses")
+            raise InputError(f"{key!r} is missing: a system needs coordinates and masses")
     coordinates = [
         Coordinate(
             _symbol(key, name, positive=row.flag("positive", default=False)),
@@ -74,11 +75,11 @@ def _system(stem: str, table: Table) -> System:
     for key, text in table.entries("definitions").items():
         check_name(key, name)
         if key in scope:
-            raise TableError(f"definitions.{key}: that name is taken")
+            raise InputError(f"definitions.{key}: that name is taken")
         try:
             scope[key] = _value(f"definitions.{key}", text, scope)
-        except TableError as error:
-            raise TableError(f"{error}; a definition may use those above it") from error
+        except InputError as error:
+            raise InputError(f"{error}; a definition may use those above it") from error
 
     def optional(key: str) -> sp.Expr | None:
         return _value(key, table.formula(key), scope) if key in table.values else None
@@ -87,7 +88,7 @@ def _system(stem: str, table: Table) -> System:
         given = table.entries(key)
         known = [c.symbol.name for c in coordinates]
         for other in set(given) - set(known):
-            raise TableError(f"{key}.{other[:50]}: coordinates are {', '.join(known)}")
+            raise InputError(f"{key}.{other[:50]}: coordinates are {', '.join(known)}")
         texts = [given.get(coordinate, "0") for coordinate in known]
         return [_value(key, text, scope) for text in texts] if given else None
 
@@ -124,11 +125,11 @@ def _parameter(key: str, system: str, row: Table) -> Parameter:
     unit = row.text("unit", "1")
     try:
         value = float(_value(row.name, row.formula("value"), FUNCTIONS))
-    except TableError as error:
-        raise TableError(f"{error}; value is a number, its unit stands in unit = …") from error
+    except InputError as error:
+        raise InputError(f"{error}; value is a number, its unit stands in unit = …") from error
     is_positive = row.flag("positive", default=unit in POSITIVE_UNITS)
     if not isfinite(value) or (is_positive and value <= 0):
-        raise TableError(
+        raise InputError(
             f"{row.name} = {value} must be a {'positive' if is_positive else 'finite'} number"
         )
     symbol = _symbol(key, system, positive=is_positive)
@@ -144,7 +145,7 @@ def _value(place: str, text: str, scope: Mapping[str, Any]) -> sp.Expr:
     try:
         value = parse(text, scope)
     except ExpressionError as error:
-        raise TableError(f"{place}: {error}") from error
+        raise InputError(f"{place}: {error}") from error
     if not isinstance(value, sp.Expr):
-        raise TableError(f"{place}: {text[:50]!r} must be a number, not a column or matrix")
+        raise InputError(f"{place}: {text[:50]!r} must be a number, not a column or matrix")
     return value

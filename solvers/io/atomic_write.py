@@ -1,23 +1,27 @@
-"""Files that are there whole or not at all."""
+"""Files that are written completely or not at all."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO
 
+#: Names of files being written: a dot, the final name, and the number of the process.
+TEMPORARY = re.compile(r"\..+\.(\d+)")
+
 
 def write_text(path: Path, text: str | bytes) -> Path:
-    """Write a file beside its name first, then move it into place.
+    """Write a file under a temporary name, then move it into place.
 
     Parameters
     ----------
     path : Path
-        Its name; missing folders are made, and what stands there is replaced.
+        Its name. Missing folders are created, and an existing file is replaced.
     text : str or bytes
-        What it is to hold; text becomes UTF-8.
+        Its content; text is encoded as UTF-8.
 
     Returns
     -------
@@ -27,42 +31,78 @@ def write_text(path: Path, text: str | bytes) -> Path:
     Raises
     ------
     OSError
-        When it cannot be written; then nothing has changed.
+        When it cannot be written; an existing file is unchanged.
     """
     with replacing(path) as file:
         file.write(text.encode() if isinstance(text, str) else text)
     return path
 
 
+def write_texts(folder: Path, texts: Mapping[str, str]) -> None:
+    """Write files by name; all are complete on disk before the first is moved into place."""
+    with ExitStack() as stack:
+        for name, text in texts.items():
+            file = stack.enter_context(replacing(folder / name))
+            file.write(text.encode())
+            _flush(file)
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[IO[bytes]]:
-    """A file to write to, which is moved into place when it is whole.
+    """A file to write to, which is moved into place when it is complete.
 
     Parameters
     ----------
     path : Path
-        Its name; missing folders are made, and what stands there is replaced.
+        Its name. Missing folders are created, and an existing file is replaced.
 
     Yields
     ------
     binary file
-        Open for writing, beside `path`.
+        Open for writing, in the same folder.
 
     Raises
     ------
     OSError
-        When it cannot be written; then nothing has changed.
+        When it cannot be written; an existing file is unchanged.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    passage = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        with open(passage, "wb") as file:
+        with open(temporary, "wb") as file:
             yield file
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(passage, path)
+            _flush(file)
+        os.replace(temporary, path)
     except OSError as error:
-        error.filename = error.filename or str(path)  # a full disk does not say where it is
+        error.filename = error.filename or str(path)  # a full disk does not name the file
         raise
     finally:
-        passage.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
+
+
+def _flush(file: IO[bytes]) -> None:
+    file.flush()
+    os.fsync(file.fileno())
+
+
+def is_temporary(path: Path) -> bool:
+    """Whether a name is that of a file being written."""
+    return TEMPORARY.fullmatch(path.name) is not None
+
+
+def remove_abandoned(folder: Path) -> None:
+    """Remove temporary files of processes that no longer run."""
+    for path in folder.iterdir():
+        process = TEMPORARY.fullmatch(path.name)
+        if process and not _is_running(int(process[1])):
+            path.unlink(missing_ok=True)
+
+
+def _is_running(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return True

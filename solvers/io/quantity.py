@@ -1,4 +1,4 @@
-"""Numbers with units, as somebody wrote them: ``90 deg``, ``pi/2``, ``-1.5 m/s``.
+"""Numbers with units from text: ``90 deg``, ``pi/2``, ``-1.5 m/s``.
 
 Text is parsed by rule and never executed: an expression is numbers, ``pi``, ``+ - * / **`` and
 brackets, and a unit is a product of names from a table.
@@ -12,12 +12,14 @@ import re
 from collections.abc import Callable
 from math import inf, isfinite, pi
 
-Kind = tuple[int, ...]  # powers of m, kg, s, rad
+from solvers.io.suggestion import shortened
 
-#: Longest text; nothing that somebody writes as a number is longer.
-LONGEST = 100
-#: Units by name: how many of the first in kind, and powers of m, kg, s, rad.
-UNITS: dict[str, tuple[float, Kind]] = {
+Dimension = tuple[int, ...]  # powers of m, kg, s, rad
+
+#: Characters of the longest number.
+MAX_LENGTH = 100
+#: Units by name: the factor to SI units, and powers of m, kg, s, rad.
+UNITS: dict[str, tuple[float, Dimension]] = {
     "1": (1.0, (0, 0, 0, 0)),
     "m": (1.0, (1, 0, 0, 0)),
     "cm": (0.01, (1, 0, 0, 0)),
@@ -50,15 +52,7 @@ OPERATORS: dict[type[ast.AST], Callable[[float, float], float]] = {
 
 
 class QuantityError(ValueError):
-    """A text is no number, or its unit is of another kind."""
-
-
-def shortened(value: object) -> str:
-    """What somebody wrote, in short."""
-    try:
-        return repr(value)[:50]
-    except ValueError:  # Python writes no number of thousands of digits
-        return "a number of thousands of digits"
+    """A text is not a number, or its unit has another dimension."""
 
 
 def quantity(value: object, unit: str) -> float:
@@ -67,45 +61,47 @@ def quantity(value: object, unit: str) -> float:
     Parameters
     ----------
     value : int, float or str
-        A number is in `unit` already; a text may end in another unit of its kind.
+        A number in `unit`, or a text, which may end in another unit of the same dimension.
     unit : str
         Such as ``rad`` or ``m/s^2``.
 
     Returns
     -------
     float
-        It is finite.
+        A finite number.
 
     Raises
     ------
     QuantityError
-        When it is no finite number, or of another kind.
+        When `value` is not a finite number, or has another dimension.
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise QuantityError(f"{shortened(value)} is no number: write a number in {unit}, or a text "
-                            f'such as "1/2 {unit}"')  # fmt: skip
+        raise QuantityError(
+            f"{shortened(value)} is no number: write a number in {unit}, or a text "
+            f'such as "1/2 {unit}"'
+        )
     if not isinstance(value, str):
         number = float(value) if abs(value) < 1e308 else inf
     else:
-        number = _written(value, unit)
+        number = _parsed(value, unit)
     if not isfinite(number):
         raise QuantityError(f"{shortened(value)} is not finite")
     return number
 
 
-def _written(text: str, unit: str) -> float:
-    if len(text) > LONGEST:
+def _parsed(text: str, unit: str) -> float:
+    if len(text) > MAX_LENGTH:
         raise QuantityError(f"{text[:20]!r}... is longer than a number: {len(text)} characters")
     text = text.strip().replace("°", " deg")
-    found = UNIT.search(text)
+    match = UNIT.search(text)
     factor = 1.0
-    if found and found[1] != "pi":
-        scale, given = _unit(found[1])
-        own, wanted = _unit(unit)
-        if given != wanted:
+    if match and match[1] != "pi":
+        scale, dimension = _unit(match[1])
+        own, expected = _unit(unit)
+        if dimension != expected:
             kind = "a number without a unit" if unit == "1" else f"{unit} or a unit of that kind"
             raise QuantityError(f"{text!r} has another unit: give {kind}")
-        factor, text = scale / own, text[: found.start()].strip()
+        factor, text = scale / own, text[: match.start()].strip()
     try:
         return factor * _value(ast.parse(text, mode="eval").body)
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
@@ -137,15 +133,15 @@ def _value(node: ast.AST) -> float:
     raise ValueError(f"{type(node).__name__} is not allowed")
 
 
-def _unit(text: str) -> tuple[float, Kind]:
-    """How many of the first in kind, and the kind."""
+def _unit(text: str) -> tuple[float, Dimension]:
+    """The factor to SI units, and the dimension."""
     scale = 1.0
-    kind: Kind = (0, 0, 0, 0)
+    dimension: Dimension = (0, 0, 0, 0)
     for sign, name, power in PART.findall(text):
         if name not in UNITS:
             raise QuantityError(f"unit {name!r} is not known: use {KNOWN}")
         size, powers = UNITS[name]
         count = int(power or 1) * (-1 if sign == "/" else 1)
         scale *= size**count
-        kind = tuple(a + count * b for a, b in zip(kind, powers, strict=True))
-    return scale, kind
+        dimension = tuple(a + count * b for a, b in zip(dimension, powers, strict=True))
+    return scale, dimension

@@ -1,4 +1,4 @@
-"""What somebody may have meant."""
+"""Suggestions and quotations in messages about wrong input."""
 
 from __future__ import annotations
 
@@ -7,7 +7,15 @@ from difflib import get_close_matches
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """The nearest known name, whatever its capitals, as it ends a message; empty if none is."""
-    small = {one.lower(): one for one in known}
-    found = [small[one] for one in get_close_matches(name.lower(), small, n=1)]
-    return f" (did you mean {found[0]!r}?)" if found else ""
+    """The closest known name, ignoring case, as the end of a message; empty if none is close."""
+    by_lower = {other.lower(): other for other in known}
+    close = get_close_matches(name.lower(), by_lower, n=1)
+    return f" (did you mean {by_lower[close[0]]!r}?)" if close else ""
+
+
+def shortened(value: object) -> str:
+    """A value as a message quotes it: its first fifty characters."""
+    try:
+        return repr(value)[:50]
+    except ValueError:  # Python writes no number of thousands of digits
+        return "a number of thousands of digits"

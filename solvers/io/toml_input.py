@@ -1,4 +1,4 @@
-"""What a TOML file says, read strictly: what makes no sense is refused with its name and value."""
+"""TOML files, read strictly: a wrong entry is refused with its name, its value and the choices."""
 
 from __future__ import annotations
 
@@ -7,45 +7,47 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from solvers.io.quantity import QuantityError, quantity, shortened
-from solvers.io.suggestion import did_you_mean
+from solvers.io.quantity import QuantityError, quantity
+from solvers.io.suggestion import did_you_mean, shortened
 
-#: Bytes of the largest file, and characters of the longest text.
-LARGEST, LONGEST = 100_000, 2000
+#: Bytes of the largest input file, and characters of the longest text.
+MAX_BYTES, MAX_TEXT = 500_000, 2000
+#: How messages about TOML end for files of quantities.
+QUANTITY_HINT = "a number with a unit stands in quotes, and a decimal point is a point"
 
-Said = TypeVar("Said")
+T = TypeVar("T")
 
 
 class InputError(ValueError):
-    """A file that makes no sense; the message says which key, its value and what is allowed."""
+    """An invalid input file; the message names the key, its value and the choices."""
 
 
 def names(folder: Path) -> tuple[str, ...]:
-    """Names of the files in a folder, in alphabetical order."""
+    """Names of the TOML files in a folder, in alphabetical order."""
     return tuple(sorted(path.stem for path in folder.glob("*.toml")))
 
 
 def path(kind: str, name: str, folder: Path) -> Path:
-    """The file that is meant by a name: one of a folder, or somebody's own, which ends in .toml.
+    """The path of a file in `folder` without its suffix, or of any file that ends in .toml.
 
     Parameters
     ----------
     kind : str
-        What it is, in a message: ``scene`` or ``sweep``.
+        ``scene`` or ``sweep``, for messages.
     name : str
-        What somebody wrote.
+        A name in the folder, or a path.
     folder : Path
-        The folder.
+        The folder of the files that ship.
 
     Returns
     -------
     Path
-        Somebody's own need not be there.
+        The file need not exist if `name` is a path.
 
     Raises
     ------
     InputError
-        When there is none.
+        When `name` is neither.
     """
     known = names(folder)
     if name in known:
@@ -59,39 +61,66 @@ def path(kind: str, name: str, folder: Path) -> Path:
     )
 
 
-def read(path: Path, meaning: Callable[[Mapping[str, Any]], Said]) -> Said:
-    """What a file means.
+def read_table(path: Path, hint: str) -> dict[str, Any]:
+    """The table of a TOML file.
+
+    Parameters
+    ----------
+    path : Path
+        A file of at most `MAX_BYTES` bytes.
+    hint : str
+        Advice at the end of the message about a file that is not TOML.
+
+    Returns
+    -------
+    dict
+        Values by key.
+
+    Raises
+    ------
+    InputError
+        When it is not a file, is too large or is not TOML; the message begins with the path.
+    OSError
+        When the file cannot be read.
+    """
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path} is no file")
+    if path.stat().st_size > MAX_BYTES:
+        raise InputError(f"{path} has more than {MAX_BYTES} bytes")
+    try:
+        return tomllib.loads(path.read_bytes().decode())
+    except (ValueError, RecursionError) as error:  # also a number of thousands of digits
+        raise InputError(f"{path} is no TOML file: {error}; {hint}") from error
+
+
+def read(path: Path, interpret: Callable[[Mapping[str, Any]], T]) -> T:
+    """Read a TOML file and interpret its table.
 
     Parameters
     ----------
     path : Path
         A TOML file.
-    meaning : callable
-        Takes its table; raises `ValueError` when that makes no sense.
+    interpret : callable
+        Takes the table; raises `ValueError` when it is invalid.
 
     Returns
     -------
     object
-        What `meaning` gives.
+        The result of `interpret`.
 
     Raises
     ------
     InputError
-        When it is not there or makes no sense; the message begins with the path.
+        When the file does not exist or is invalid; the message begins with the path.
     OSError
         When the file cannot be read.
     """
     try:
-        if path.stat().st_size > LARGEST:
-            raise InputError(f"it has more than {LARGEST} bytes")
-        return meaning(tomllib.loads(path.read_bytes().decode()))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(
-            f"{path} is no TOML file: {error}; a number with a unit stands in quotes, and a "
-            "decimal point is a point"
-        ) from error
-    except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+        table = read_table(path, QUANTITY_HINT)
+        try:
+            return interpret(table)
+        except ValueError as error:
+            raise InputError(f"{path}: {error}") from error
     except FileNotFoundError as error:
         raise InputError(f"{error.filename}: there is no such file") from error
 
@@ -99,14 +128,11 @@ def read(path: Path, meaning: Callable[[Mapping[str, Any]], Said]) -> Said:
 def check_keys(
     where: str, given: Mapping[str, Any], known: Sequence[str], above: Sequence[str] = ()
 ) -> None:
-    """Refuse unknown keys; those of `above` belong above the first table of the file."""
+    """Refuse unknown keys; those in `above` belong above the first table of the file."""
     for key in given:
         if key not in known:
-            hint = (
-                f": {key!r} belongs above the first [table]"
-                if key in above
-                else did_you_mean(key, known)
-            )
+            place = f": {key!r} belongs above the first [table]"
+            hint = place if key in above else did_you_mean(key, known)
             raise InputError(f"{where} has no key {key[:50]!r}{hint}; known are {', '.join(known)}")
 
 
@@ -117,13 +143,15 @@ def table(key: str, value: object) -> dict[str, Any]:
     return value
 
 
-def text(key: str, value: object) -> str:
-    """A printable text."""
-    if not isinstance(value, str):
-        raise InputError(f"{key} = {shortened(value)} must be text in quotes")
-    if len(value) > LONGEST or not all(c.isprintable() or c in "\n\t" for c in value):
-        raise InputError(f"{key} = {shortened(value)} must be up to {LONGEST} printable characters")
-    return value
+def text(key: str, value: object, where: str = "", most: int = MAX_TEXT) -> str:
+    """A printable text of up to `most` characters."""
+    is_text = isinstance(value, str) and all(c.isprintable() or c in "\n\t" for c in value)
+    if not is_text or len(str(value)) > most:
+        raise InputError(
+            f"{key} = {shortened(value)}{where} must be a text in quotes, of up to {most} "
+            "printable characters"
+        )
+    return str(value)
 
 
 def texts(key: str, value: object, most: int) -> tuple[str, ...]:
@@ -136,19 +164,19 @@ def texts(key: str, value: object, most: int) -> tuple[str, ...]:
 
 
 def number(key: str, value: object, unit: str) -> float:
-    """A number in `unit`, or a text that says one."""
+    """A number in `unit`, or a text such as ``90 deg``."""
     try:
         return quantity(value, unit)
     except QuantityError as error:
         raise InputError(f"{key}: {error}") from error
 
 
-def positive(key: str, value: object, unit: str, way: str = "") -> float:
-    """A positive number; `way` says what else can be meant by 0."""
-    found = number(key, value, unit)
-    if found <= 0:
-        raise InputError(f"{key} = {value} must be positive, in {unit}{way}")
-    return found
+def positive(key: str, value: object, unit: str, hint: str = "") -> float:
+    """A positive number; the message of refusal ends with `hint`."""
+    result = number(key, value, unit)
+    if result <= 0:
+        raise InputError(f"{key} = {value} must be positive, in {unit}{hint}")
+    return result
 
 
 def whole(key: str, value: object, least: int, most: int) -> int:

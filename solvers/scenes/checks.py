@@ -9,8 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
-from solvers.io.quantity import shortened
-from solvers.io.suggestion import did_you_mean
+from solvers.io.suggestion import did_you_mean, shortened
 from solvers.runge_kutta.catalogue import SCIPY, UnknownMethodError, load
 
 #: Samples that fit into memory, and the finest accuracy.

@@ -10,7 +10,7 @@ from typing import Any
 
 from solvers.equations.module import GeneratedModule
 from solvers.io import toml_input
-from solvers.io.quantity import shortened
+from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError
 from solvers.scenes.checks import check_samples
 from solvers.scenes.scene import Scene

@@ -11,8 +11,7 @@ from pkgutil import iter_modules
 from typing import Any
 
 from solvers.equations.module import GeneratedModule
-from solvers.io.quantity import shortened
-from solvers.io.suggestion import did_you_mean
+from solvers.io.suggestion import did_you_mean, shortened
 from solvers.io.toml_input import InputError, check_keys
 from solvers.sweeps import maps
 from solvers.sweeps.map_table import MapTable

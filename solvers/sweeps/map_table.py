@@ -8,8 +8,7 @@ from typing import Any
 
 from solvers.equations.module import GeneratedModule
 from solvers.io import toml_input
-from solvers.io.quantity import shortened
-from solvers.io.suggestion import did_you_mean
+from solvers.io.suggestion import did_you_mean, shortened
 from solvers.io.toml_input import InputError
 
 #: Largest number of values of one motion.

@@ -13,9 +13,10 @@ from derive.mechanics.derivation import Derivation
 from derive.mechanics.specialisation import substituted
 from derive.system.catalogue import load, published
 from derive.system.system import System
-from derive.system.tables import Table, TableError, read
+from derive.system.tables import Table, read
 from derive.verification.hand.judgement import VALUES, Judgement, judged
 from derive.verification.hand.meaning import Meaning
+from solvers.io.toml_input import InputError
 
 #: Of these formulas each coordinate has one; of the others the system has.
 EACH = ("momenta", "accelerations", "hamilton")
@@ -58,7 +59,7 @@ def judge(source: str | Path) -> HandDerivation:
 
     Raises
     ------
-    TableError
+    InputError
         When it is no such file, or names what a system has not.
     ExpressionError
         When a parameter is set to what is no formula.
@@ -77,7 +78,7 @@ def judge(source: str | Path) -> HandDerivation:
         for place, kind, key, text in _equations(table, system)
     ]
     if not found:
-        raise TableError(f"{path} has no equations: give some of {', '.join(EQUATIONS)}")
+        raise InputError(f"{path} has no equations: give some of {', '.join(EQUATIONS)}")
     return HandDerivation(name, table.text("source", ""), table.text("note", ""), tuple(found))
 
 
@@ -86,7 +87,7 @@ def _tables(source: str) -> dict[str, Any]:
         return read(Path(source))
     text = published(source)
     if not text:
-        raise TableError(f"the file of system {source!r} has no published equations")
+        raise InputError(f"the file of system {source!r} has no published equations")
     return tomllib.loads(text)
 
 
@@ -96,7 +97,7 @@ def _equalled(table: Table, system: System) -> System:
     values = {}
     for name, text in table.entries("equal").items():
         if name not in symbols:
-            raise TableError(f"equal.{name[:50]}: parameters are {', '.join(symbols)}")
+            raise InputError(f"equal.{name[:50]}: parameters are {', '.join(symbols)}")
         values[symbols[name]] = parse(text, symbols | FUNCTIONS)
     return substituted(system, values)
 

@@ -14,7 +14,7 @@ from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
-from derive.system.tables import TableError
+from solvers.io.toml_input import InputError
 
 #: Digits of numbers, and what counts as zero there.
 DIGITS, TINY = 40, sp.Float("1e-30")
@@ -58,7 +58,7 @@ class Meaning:
             try:
                 value = parse(text, own)
             except ValueError as error:
-                raise TableError(f"names.{name}: {error}") from error
+                raise InputError(f"names.{name}: {error}") from error
             theirs[name] = value
             if value in self.system.q:
                 theirs[f"p_{name}"] = dict(zip(self.system.q, self.system.p, strict=True))[value]
