@@ -1,7 +1,8 @@
-"""Speed against accuracy: curves, their frontier, and what they say of claims."""
+"""Work-precision curves, their frontier, and the findings that follow from them."""
 
 import json
 from dataclasses import replace
+from functools import partial
 from math import inf, isnan, nan
 from pathlib import Path
 from types import ModuleType
@@ -17,13 +18,14 @@ from solvers.integration.timing import timed_run, work_at
 from solvers.io.figures import save
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.scenes.shipped import find
-from solvers.studies.work_precision import measurement, peers, plots
+from solvers.studies.work_precision import measurement, peers
 from solvers.studies.work_precision.curve import Curve, Point
-from solvers.studies.work_precision.findings import Charted, misled, turnings, wrong_from
 from solvers.studies.work_precision.frontier import frontier
-from solvers.studies.work_precision.measurement import combinations, curves, judged
-from solvers.studies.work_precision.reference import Reference, reference
-from solvers.studies.work_precision.summary import told
+from solvers.studies.work_precision.measurement import combinations, curves
+from solvers.studies.work_precision.misleading_energy import misleading_energy, wrong_above
+from solvers.studies.work_precision.reference import Reference
+from solvers.studies.work_precision.rounding_limit import rounding_limits
+from solvers.studies.work_precision.scene_curves import SceneCurves
 
 REPORT = find("report", load_module)
 
@@ -32,14 +34,14 @@ REPORT = find("report", load_module)
 def few_settings(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measurement, "TOLERANCES", 10.0 ** -np.arange(1, 9))
     monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(12))
-    # what is run must not depend on how fast the machine is
+    # the runs must not depend on the speed of the machine
     monkeypatch.setattr(measurement, "LONGEST", dict.fromkeys(measurement.LONGEST, inf))
-    monkeypatch.setattr(measurement, "LONGEST_RULE", inf)
+    monkeypatch.setattr(measurement, "LONGEST_REPORT", inf)
 
 
 @pytest.fixture(scope="module")
 def truth() -> Reference:
-    return reference(find("report", load_module))
+    return Reference.of(find("report", load_module))
 
 
 def point(seconds: float, error: float, energy: float = 1.0) -> Point:
@@ -50,23 +52,25 @@ def curve(method: str, form: str, backend: str, *points: Point) -> Curve:
     return Curve("scene", method, form, backend, list(points))
 
 
-def test_two_independent_references_agree_to_the_digits_that_charts_rely_on() -> None:
-    # curves end at 1e-13 (1e-7 after 20 s of chaos); references know a hundred times more
+def test_independent_references_agree_more_closely_than_curves_need() -> None:
+    # curves end at 1e-13 (1e-7 after 20 s of chaos), a hundred times the error of references
     for name, least in (("report", 1e-15), ("long", 1e-9), ("single", 1e-13)):
         one = find(name, load_module)
-        found = reference(one)
+        found = Reference.of(one)
         assert found.global_error < 1e-14
-        assert max(found.apart.values()) < (least if np.finfo(np.longdouble).nmant > 60 else 1e-6)
+        assert max(found.differences.values()) < (
+            least if np.finfo(np.longdouble).nmant > 60 else 1e-6
+        )
 
 
-def test_the_reference_s_own_error_is_found_by_fewer_digits(
+def test_the_error_of_the_reference_is_estimated_with_fewer_digits(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("solvers.studies.work_precision.reference.FEWER", 8)
-    assert 1e-10 < reference(find("report", load_module)).global_error < 1e-4
+    assert 1e-10 < Reference.of(find("report", load_module)).global_error < 1e-4
 
 
-def test_curves_measure_the_error_beside_the_reference(truth: Reference) -> None:
+def test_curves_contain_the_error_relative_to_the_reference(truth: Reference) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
               ("dp54", "hamiltonian", "python"), ("DOP853", "lagrangian", "scipy")]  # fmt: skip
     found = curves(find("report", load_module), truth, wanted)
@@ -77,9 +81,9 @@ def test_curves_measure_the_error_beside_the_reference(truth: Reference) -> None
         assert all(a.work_rhs < b.work_rhs for a, b in zip(c.points, c.points[1:], strict=False))
         for p in c.points:
             assert p.work_seconds > 0
-            # a right trajectory has the right energy; the reverse does not follow
+            # a right trajectory has the right energy; the converse is false
             assert p.energy_error < 10 * p.global_error
-    # the fixed step's order is seen in the curve, and the error is the run's own
+    # the curve shows the order of the method, and the error of the run
     rk4 = found[0].points
     late = [p for p in rk4 if 1e-9 < p.global_error < 1e-4]
     order = np.log(late[0].global_error / late[-1].global_error) / np.log(
@@ -102,38 +106,38 @@ def test_every_method_form_and_backend_is_charted() -> None:
     assert len(found) == len(list(combinations(dp))) == 13 * 3 * 2 + 5 * 2 * 2 + 6 * 3
 
 
-def test_a_run_that_means_nothing_is_no_point(truth: Reference) -> None:
-    judge = judged(find("report", load_module), truth)
-    run = timed_run(dp, dp.DEFAULTS, REPORT.y0, 5.0, method="rk4", form="lagrangian",
-                   backend="compiled", h=0.1)  # fmt: skip
+def test_runs_with_a_large_error_are_left_out(truth: Reference) -> None:
+    point_of = partial(measurement.point, find("report", load_module), truth)
+    options = {"method": "rk4", "form": "lagrangian", "backend": "compiled"}
+    run = timed_run(dp, dp.DEFAULTS, REPORT.y0, 5.0, h=0.1, **options)
     assert run
-    assert judge({"h": 0.1}, run.work_seconds, run.work_rhs, run.end)
-    assert judge({}, 1.0, None, np.full(4, nan)) is None
-    assert judge({}, 1.0, None, run.end + 11) is None
-    # what the reference does not know either is no error of a run
-    exact = judge({}, 1.0, None, truth.end)
+    assert point_of({"h": 0.1}, run.work_seconds, run.work_rhs, run.end)
+    assert point_of({}, 1.0, None, np.full(4, nan)) is None
+    assert point_of({}, 1.0, None, run.end + 11) is None
+    # the error of a run is not known below that of the reference
+    exact = point_of({}, 1.0, None, truth.end)
     assert exact
     assert exact.global_error == truth.global_error
 
 
-def test_work_is_interpolated_and_luck_does_not_count() -> None:
+def test_work_is_interpolated_and_lucky_runs_do_not_count() -> None:
     errors, works = [1e-2, 1e-4, 1e-6], [1.0, 10.0, 100.0]
     assert work_at(1e-3, errors, works) == pytest.approx(10**0.5)
     assert isnan(work_at(1e-7, errors, works))
     assert isnan(work_at(1.0, errors, works))
-    # the second run was lucky: its error comes back
+    # the second run is lucky: a dearer one has a larger error
     lucky = [1e-2, 1e-9, 1e-3, 1e-10], [*works, 1000.0]
     assert work_at(1e-4, *lucky) == pytest.approx(100 ** (6 / 7) * 1000 ** (1 / 7))
     assert work_at(2e-3, *lucky) == pytest.approx(10 ** (1 - np.log10(2)))
-    # even the least error was luck if it is not seen again
+    # even the least error is luck if no other run has it
     assert work_at(1e-6, [1e-2, 1e-3, 1e-7, 1e-5, 1e-6], [1, 2, 3, 4, 5]) == pytest.approx(5)
     assert isnan(work_at(1e-6, [*errors, 1e-5], [*works, 1e3]))
-    # behind the two best neighbours, dearer runs are wasted
+    # runs dearer than the two best neighbours do not count
     assert work_at(2e-6, [*errors, 2e-6, 1e-5], [*works, 1e3, 1e4]) == pytest.approx(100)
     assert isnan(work_at(1e-6, [], []))
 
 
-def test_the_frontier_names_the_cheapest_and_what_each_choice_is_worth() -> None:
+def test_the_frontier_contains_the_cheapest_and_the_cost_of_alternatives() -> None:
     found = frontier([
         curve("a", "x", "c", point(1, 1e-1), point(10, 1e-3)),
         curve("a", "x", "p", point(100, 1e-1), point(1000, 1e-3)),
@@ -143,68 +147,68 @@ def test_the_frontier_names_the_cheapest_and_what_each_choice_is_worth() -> None
     rough, middle, fine = found
     assert [b.global_error for b in found] == [1e-1, 1e-2, 1e-3]
     assert (rough.method, rough.form, rough.backend) == ("a", "x", "c")
-    assert rough.worth == {
+    assert rough.cost_ratios == {
         "method": {"b": pytest.approx(2)}, "form": {"y": pytest.approx(2)},
         "backend": {"p": pytest.approx(100)},
     }  # fmt: skip
     assert (fine.method, fine.work_seconds, fine.work_rhs) == ("b", 6, 600)
-    assert fine.worth["method"] == {"a": pytest.approx(10 / 6)}
+    assert fine.cost_ratios["method"] == {"a": pytest.approx(10 / 6)}
     assert middle.method == "a"  # 10^(1/2) against 18^(1/2)
 
 
-def test_shorter_steps_are_better_until_rounding_turns_the_curve() -> None:
+def test_shorter_steps_are_better_until_rounding_dominates() -> None:
     def rk4(h: float) -> Point:
         return Point({"h": h}, 1 / h, int(1 / h), h**4 + 1e-16 / h, 1.0)
 
     steps = 2.0 ** -np.arange(2, 18)
-    (found,) = turnings([curve("rk4", "lagrangian", "compiled", *map(rk4, steps))])
+    (found,) = rounding_limits([curve("rk4", "lagrangian", "compiled", *map(rk4, steps))])
     assert found.order == pytest.approx(4, abs=0.1)
     assert found.h == pytest.approx((1e-16 / 4) ** (1 / 5), rel=0.5)
     assert found.finest_error > 10 * found.global_error
-    # Euler's method, for which nothing has begun to fall
+    # Euler's method, whose error does not fall yet
     flat = [Point({"h": h}, 1 / h, int(1 / h), 1.0, 1.0) for h in steps]
-    (none,) = turnings([curve("rk1", "lagrangian", "compiled", *flat)])
+    (none,) = rounding_limits([curve("rk1", "lagrangian", "compiled", *flat)])
     assert isnan(none.order)
 
 
-def test_in_the_report_s_scene_rounding_turns_rk4(
+def test_in_the_report_s_scene_rounding_limits_rk4(
     truth: Reference, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(19))
     found = curves(find("report", load_module), truth, [("rk4", "lagrangian", "compiled")])
-    (turning,) = turnings(found)
-    assert turning.order == pytest.approx(load("rk4").order, abs=0.3)
-    assert 1e-6 < turning.h < 1e-3
-    assert turning.global_error < 1e-11
-    assert turning.finest_error > 2 * turning.global_error
+    (limit,) = rounding_limits(found)
+    assert limit.order == pytest.approx(load("rk4").order, abs=0.3)
+    assert 1e-6 < limit.h < 1e-3
+    assert limit.global_error < 1e-11
+    assert limit.finest_error > 2 * limit.global_error
 
 
-def test_a_small_energy_error_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_small_energy_error_can_be_misleading(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measurement, "TOLERANCES", 10.0 ** -np.arange(1, 14))
     one = find("long", load_module)
-    truth = reference(one)
+    truth = Reference.of(one)
     wanted = [("gauss2", "hamiltonian", "compiled"), ("verner98", "rational", "compiled")]
     found = curves(one, truth, wanted)
-    case = misled(found, one, truth)
+    case = misleading_energy(found, one, truth)
     assert case
     assert case.energy_error < 1e-7
-    assert case.global_error > wrong_from(one, truth) == 0.1
+    assert case.global_error > wrong_above(one, truth) == 0.1
     right = [c for c in found if c.method == "verner98"]
     right = [replace(right[0], points=[p for p in right[0].points if p.global_error < 0.1])]
-    assert misled(right, one, truth) is None
+    assert misleading_energy(right, one, truth) is None
     # in small motion a small error is large
     small = find("small", load_module)
-    assert wrong_from(small, reference(small)) < 0.01
+    assert wrong_above(small, Reference.of(small)) < 0.01
 
 
-def test_energy_that_is_not_kept_is_no_case(truth: Reference) -> None:
+def test_a_large_energy_error_is_not_misleading(truth: Reference) -> None:
     found = curves(find("report", load_module), truth, [("rk1", "lagrangian", "compiled")])
     assert min(p.energy_error for p in found[0].points) < 1
-    assert misled(found, find("report", load_module), truth) is None
+    assert misleading_energy(found, find("report", load_module), truth) is None
 
 
-def test_other_programs_join_when_they_are_there(truth: Reference) -> None:
-    # the state of the fastest form; sine and cosine give back their angle
+def test_installed_programs_have_curves(truth: Reference) -> None:
+    # the state of the fastest form, which holds sine and cosine of each angle
     end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
 
     class Package(ModuleType):
@@ -228,21 +232,18 @@ def test_other_programs_join_when_they_are_there(truth: Reference) -> None:
     assert peers.curves(find("report", load_module), truth, lambda _: None) == []
 
 
-def test_pictures_and_text_show_what_was_measured(truth: Reference, tmp_path: Path) -> None:
+def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Path) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
               ("verner87", "rational", "python"), ("DOP853", "rational", "scipy")]  # fmt: skip
     found = curves(find("report", load_module), truth, wanted)
-    for name in ("work_precision", "steps", "energy"):
-        figure = (
-            plots.energy("title", found, 0.1)
-            if name == "energy"
-            else getattr(plots, name)("title", found)
-        )
-        lines = sum(len(axes.lines) for axes in figure.axes)
-        assert lines >= 1
+    study = SceneCurves.of(find("report", load_module), truth, found)
+    plots = study.plots()
+    assert [*plots] == ["work_precision_report", "steps_report", "energy_report"]
+    for name, figure in plots.items():
+        assert sum(len(axes.lines) for axes in figure.axes) >= 1
         save(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000
-    text = "\n".join(told(Charted.of(find("report", load_module), truth, found)))
+    text = "\n".join(study.summary())
     assert "reference: Taylor series, 32 digits, own error" in text
     assert "verner87, rational " in text
     assert "rk4: error falls as h^4" in text

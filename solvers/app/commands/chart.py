@@ -12,8 +12,8 @@ from solvers.app.commands import options
 if TYPE_CHECKING:
     from solvers.io.progress import Progress
     from solvers.scenes.scene import Scene
-    from solvers.studies.work_precision.findings import Charted
-    from solvers.studies.work_precision.measurement import Combination
+    from solvers.studies.work_precision.curve import Combination
+    from solvers.studies.work_precision.scene_curves import SceneCurves
 
 SUMMARY = "chart speed against accuracy"
 DEFAULT = ("report", "long", "single")
@@ -38,8 +38,7 @@ def run(arguments: Namespace) -> int:
     """Measure, plot and print."""
     from solvers.io.atomic_write import write_text
     from solvers.scenes.models.method_choice import RECORD
-    from solvers.studies.work_precision.record import recorded
-    from solvers.studies.work_precision.summary import told
+    from solvers.studies.work_precision.scene_curves import record
 
     results, plots = [], []
     for scene in options.selected_scenes(arguments, DEFAULT):
@@ -48,33 +47,33 @@ def run(arguments: Namespace) -> int:
         results.append(result)
         plots += paths
         if not arguments.json:
-            print(*told(result), f"plots: {', '.join(paths)}", "", sep="\n", flush=True)
+            print(*result.summary(), f"plots: {', '.join(paths)}", "", sep="\n", flush=True)
     if arguments.record:
-        write_text(RECORD, recorded(results))
+        write_text(RECORD, record(results))
     if arguments.json:
         options.print_json(_as_json(results, plots))
     return 0
 
 
-def _measured(scene: Scene, *, compiled_only: bool) -> Charted:
+def _measured(scene: Scene, *, compiled_only: bool) -> SceneCurves:
     from solvers.app.packages import optional_package
     from solvers.io.progress import Progress
     from solvers.studies.work_precision import peers
-    from solvers.studies.work_precision.findings import Charted
     from solvers.studies.work_precision.measurement import combinations, curves
-    from solvers.studies.work_precision.reference import reference
+    from solvers.studies.work_precision.reference import Reference
+    from solvers.studies.work_precision.scene_curves import SceneCurves
 
     with Progress() as report:
         report(f"{scene.name}: reference")
-        truth = reference(scene)
+        reference = Reference.of(scene)
         selected = list(combinations(scene.module))
         if compiled_only:
             selected = [combination for combination in selected if combination[2] == "compiled"]
-        measured = curves(scene, truth, _reported(scene.name, selected, report))
+        measured = curves(scene, reference, _reported(scene.name, selected, report))
         if not compiled_only:
             report(f"{scene.name}: other programs")
-            measured += peers.curves(scene, truth, optional_package)
-        return Charted.of(scene, truth, measured)
+            measured += peers.curves(scene, reference, optional_package)
+        return SceneCurves.of(scene, reference, measured)
 
 
 def _reported(
@@ -86,33 +85,24 @@ def _reported(
         yield combination
 
 
-def _write_plots(result: Charted, folder: Path) -> list[str]:
+def _write_plots(result: SceneCurves, folder: Path) -> list[str]:
     from solvers.io.figures import save
-    from solvers.studies.work_precision import plots
-    from solvers.studies.work_precision.findings import wrong_from
 
-    scene, curves = result.scene, result.curves
-    wrong = wrong_from(scene, result.reference)
-    figures = {
-        "work_precision": plots.work_precision(f"Cost of accuracy: {scene.title}", curves),
-        "steps": plots.steps(f"Shorter steps: {scene.title}", curves),
-        "energy": plots.energy(f"Energy and trajectory: {scene.title}", curves, wrong),
-    }
-    paths = [folder / f"{name}_{scene.name}.png" for name in figures]
-    for path, figure in zip(paths, figures.values(), strict=True):
+    plots = {folder / f"{name}.png": figure for name, figure in result.plots().items()}
+    for path, figure in plots.items():
         save(figure, path)
-    return list(map(str, paths))
+    return list(map(str, plots))
 
 
-def _as_json(results: Sequence[Charted], plots: Sequence[str]) -> dict[str, Any]:
+def _as_json(results: Sequence[SceneCurves], plots: Sequence[str]) -> dict[str, Any]:
     from solvers.studies.work_precision.reference import Reference
 
     frontiers = [(*result.frontier, *result.frontier_rhs) for result in results]
     return {
         "curves": [curve for result in results for curve in result.curves],
         "frontier": [best for frontier in frontiers for best in frontier],
-        "turnings": {result.scene.name: result.turnings for result in results},
-        "misled": {result.scene.name: result.misled for result in results},
+        "rounding_limits": {result.scene.name: result.rounding_limits for result in results},
+        "misleading_energy": {result.scene.name: result.misleading_energy for result in results},
         "pictures": plots,
         "reference": {
             "method": Reference.METHOD,

@@ -11,9 +11,9 @@ from solvers.app.demo.html import pair, svg_image, table
 from solvers.app.demo.stage import Number, Stage
 from solvers.io.figures import COLOURS, panels
 from solvers.scenes.scene import Scene
-from solvers.studies.work_precision.curve import Curve
-from solvers.studies.work_precision.measurement import Combination, curves
-from solvers.studies.work_precision.reference import reference
+from solvers.studies.work_precision.curve import Combination, Curve
+from solvers.studies.work_precision.measurement import curves
+from solvers.studies.work_precision.reference import Reference
 
 #: The compared methods: the report's, some with step control, and SciPy's.
 COMPARED: dict[Combination, str] = {
@@ -30,7 +30,7 @@ ERROR = 1e-6
 
 def cost(scene: Scene) -> Stage:
     """Measure seconds against errors; nothing else should run on the machine meanwhile."""
-    truth = reference(scene)
+    truth = Reference.of(scene)
     measured = curves(scene, truth, COMPARED)
     seconds = {_name(curve): curve.at(ERROR) for curve in measured}
     seconds = {name: cost for name, cost in seconds.items() if isfinite(cost)}
@@ -68,4 +68,4 @@ def plot(measured: Sequence[Curve]) -> Figure:
 
 
 def _name(curve: Curve) -> str:
-    return COMPARED[curve.method, curve.form, curve.backend]
+    return COMPARED[curve.combination]

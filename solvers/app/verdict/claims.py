@@ -20,7 +20,7 @@ from solvers.app.verdict.claim import (
     judged,
 )
 from solvers.app.verdict.evidence import Evidence
-from solvers.studies.work_precision.measurement import REPORT
+from solvers.studies.work_precision.measurement import REPORT_METHODS
 
 
 def claims(evidence: Evidence) -> list[Claim]:
@@ -34,7 +34,7 @@ def _chapter_3(e: Evidence) -> list[Claim]:
     steps = [0.2, 0.1, 0.08, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 5e-4]
     errors = [e.error("RK4", h) for h in steps]
     crossings = [int(np.sum(np.diff(np.sign(e.stepped("RK4", h)[0])) != 0)) for h in (0.01, 0.005)]
-    methods = [e.error(name, 0.01) for name in REPORT]
+    methods = [e.error(name, 0.01) for name in REPORT_METHODS]
     ratios = [e.liveliness(setting) for setting in (e.first, e.prose)]
     return [
         Claim("3.1a", "the figure of the Lagrangian belongs to m = 1 kg, l = 2 m, g = 9.81",

@@ -18,7 +18,7 @@ from solvers.references.extrapolation import extrapolated
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import load
 from solvers.studies.failure_modes.lyapunov import Mean, lyapunov
-from solvers.studies.work_precision.measurement import REPORT
+from solvers.studies.work_precision.measurement import REPORT_METHODS
 
 Array = NDArray[np.float64]
 
@@ -100,7 +100,7 @@ class Evidence:
     ) -> Array:
         solution = integrate(
             self._module, (0.0, setting.duration), setting.y0, setting.params,
-            method=REPORT[method], form="lagrangian", h=h, t_eval=times,
+            method=REPORT_METHODS[method], form="lagrangian", h=h, t_eval=times,
         )  # fmt: skip
         if not solution.success:
             raise RuntimeError(f"{method} with h = {h}: {solution.message}")

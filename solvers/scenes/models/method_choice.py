@@ -100,7 +100,7 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
     others = ", ".join(
         f"{name} {factor:.2g} x"
         for choice in ("method", "form")
-        for name, factor in list(best["worth"][choice].items())[:2]
+        for name, factor in list(best["cost_ratios"][choice].items())[:2]
     )
     return MethodChoice(
         best["method"],

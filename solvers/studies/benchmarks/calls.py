@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from solvers.integration.compiled.compiler import build
-from solvers.studies.benchmarks import peers
+from solvers.studies import heyoka as peers
 
 #: Motions at once in a vector of doubles.
 LANES = 8

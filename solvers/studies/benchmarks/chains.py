@@ -11,7 +11,7 @@ import numpy as np
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import prepare
 from solvers.references.taylor import taylor
-from solvers.studies.benchmarks import peers
+from solvers.studies import heyoka as peers
 from solvers.studies.benchmarks.calls import Calls, Evaluations, lanes, single, textbook
 from solvers.studies.benchmarks.curves import timed
 from solvers.studies.benchmarks.growth import Maker

@@ -22,7 +22,7 @@ from solvers.equations.module import GeneratedModule, function
 from solvers.integration.ensemble import ensemble
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.timing import work_at
-from solvers.studies.benchmarks import peers
+from solvers.studies import heyoka as peers
 
 Array = NDArray[np.float64]
 

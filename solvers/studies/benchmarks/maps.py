@@ -24,7 +24,7 @@ from solvers.integration import validation
 from solvers.integration.compiled.kernel import Batch, kernel
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
-from solvers.studies.benchmarks import peers
+from solvers.studies import heyoka as peers
 from solvers.sweeps.axes import Random
 from solvers.sweeps.barrier import is_below
 from solvers.sweeps.maps.first import First

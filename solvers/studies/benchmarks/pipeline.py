@@ -25,7 +25,7 @@ from solvers.integration.compiled.native import equations
 from solvers.integration.prepare import prepare
 from solvers.integration.timing import median_seconds
 from solvers.runge_kutta.catalogue import load
-from solvers.studies.benchmarks import peers
+from solvers.studies import heyoka as peers
 from solvers.studies.benchmarks.curves import END, FINAL, START
 
 Array = NDArray[np.float64]

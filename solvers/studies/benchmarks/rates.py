@@ -19,7 +19,7 @@ from solvers.integration.compiled.layout import SOURCES
 from solvers.integration.compiled.native import equations
 from solvers.integration.ensemble import ensemble
 from solvers.runge_kutta.catalogue import load
-from solvers.studies.benchmarks import peers
+from solvers.studies import heyoka as peers
 from solvers.studies.benchmarks.curves import END, MOTIONS, START, timed
 
 

@@ -1,10 +1,14 @@
-"""A work-precision curve: what a smaller error costs."""
+"""A work-precision curve: cost against global error."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from solvers.integration.timing import work_at
+
+#: Names of a method, a form and a backend.
+Combination = tuple[str, str, str]
 
 
 @dataclass(frozen=True)
@@ -14,15 +18,15 @@ class Point:
     Attributes
     ----------
     setting : dict
-        ``rtol``, for steps that are controlled, or ``h``.
+        ``rtol`` for controlled steps, else ``h``.
     work_seconds : float
         Its time, without preparation.
     work_rhs : int or None
-        Right-hand sides, where they are known.
+        Evaluations of the right-hand side, where they are known.
     global_error : float
-        Of the state at the end, in rad and rad/s: the largest component.
+        Largest component of the error of the final state, in rad and rad/s.
     energy_error : float
-        At the end, in parts of the energy at the beginning above rest.
+        At the end, relative to the initial energy above that of the equilibrium.
     """
 
     setting: dict[str, float]
@@ -34,14 +38,14 @@ class Point:
 
 @dataclass(frozen=True)
 class Curve:
-    """Runs of one combination on one scene, from cheap to dear.
+    """Runs of one combination on one scene, by rising cost.
 
     Attributes
     ----------
     scene, method, form, backend : str
-        Which.
+        Names.
     points : list of Point
-        Its runs.
+        The runs.
     """
 
     scene: str
@@ -50,9 +54,23 @@ class Curve:
     backend: str
     points: list[Point]
 
+    @property
+    def combination(self) -> Combination:
+        """Method, form and backend."""
+        return self.method, self.form, self.backend
+
+    def costs(self, work: str) -> tuple[list[float], list[float]]:
+        """Work and global errors of the runs whose work is known."""
+        known = [p for p in self.points if getattr(p, work) is not None]
+        return [getattr(p, work) for p in known], [p.global_error for p in known]
+
     def at(self, error: float, work: str = "work_seconds") -> float:
         """Work for this global error; NaN beyond the curve."""
-        points = [p for p in self.points if getattr(p, work) is not None]
-        return work_at(
-            error, [p.global_error for p in points], [getattr(p, work) for p in points]
-        )  # fmt: skip
+        works, errors = self.costs(work)
+        return work_at(error, errors, works)
+
+
+def select(curves: Iterable[Curve], *combinations: Combination) -> Iterator[Curve]:
+    """The curves of these combinations, in the order of the combinations."""
+    by_combination = {curve.combination: curve for curve in curves}
+    return (by_combination[one] for one in combinations if one in by_combination)

@@ -1,4 +1,4 @@
-"""The cheapest way to each accuracy, and what each choice is worth."""
+"""The cheapest combination for each accuracy, and the cost of the alternatives."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from math import inf, isfinite
 
 from solvers.studies.work_precision.curve import Curve
 
-#: Global errors that are asked for.
+#: Requested global errors.
 ERRORS = tuple(10.0**-k for k in range(1, 14))
 
 
 @dataclass(frozen=True)
-class Best:
+class FrontierPoint:
     """The cheapest combination for an error.
 
     Attributes
     ----------
     scene : str
-        Where.
+        Name of the scene.
     global_error : float
-        What was asked for.
+        The requested error.
     work : {"work_seconds", "work_rhs"}
-        What is cheap.
+        The cost that is minimised.
     method, form, backend : str
         The combination.
     work_seconds, work_rhs : float
-        What it costs, between measured runs.
-    worth : dict of dict
-        For each choice (method, form, backend) and each other value of it: how many times
-        as much the best combination with that value costs.
+        Its costs, interpolated between runs.
+    cost_ratios : dict of dict
+        For ``"method"``, ``"form"`` and ``"backend"``, and each other value of it: the cost of the
+        best combination with that value relative to this one.
     """
 
     scene: str
@@ -41,43 +41,42 @@ class Best:
     backend: str
     work_seconds: float
     work_rhs: float
-    worth: dict[str, dict[str, float]]
+    cost_ratios: dict[str, dict[str, float]]
 
 
-def frontier(curves: Sequence[Curve], work: str = "work_seconds") -> list[Best]:
+def frontier(curves: Sequence[Curve], work: str = "work_seconds") -> list[FrontierPoint]:
     """The cheapest combination for each error that some combination reaches.
 
     Parameters
     ----------
     curves : sequence of Curve
-        Of one scene.
+        Curves of one scene.
     work : {"work_seconds", "work_rhs"}
-        What is to be cheap: time in s, or calls of the right-hand side.
+        The cost to minimise: time in s, or evaluations of the right-hand side.
 
     Returns
     -------
-    list of Best
+    list of FrontierPoint
         One for each of `ERRORS` that is reached, the largest first.
     """
-    found = []
+    results = []
     for error in ERRORS:
         costs = [(cost, curve) for curve in curves if isfinite(cost := curve.at(error, work))]
         if not costs:
             continue
-        least, best = min(costs, key=lambda pair: pair[0])
-        worth = {}
-        for choice in ("method", "form", "backend"):
-            cheapest: dict[str, float] = {}
-            for cost, curve in costs:
-                value = getattr(curve, choice)
-                cheapest[value] = min(cheapest.get(value, inf), cost)
-            worth[choice] = {
-                value: cost / least
-                for value, cost in sorted(cheapest.items(), key=lambda pair: pair[1])
-                if value != getattr(best, choice)
-            }
-        found.append(Best(
-            best.scene, error, work, best.method, best.form, best.backend,
-            best.at(error, "work_seconds"), best.at(error, "work_rhs"), worth,
-        ))  # fmt: skip
-    return found
+        _, best = min(costs, key=lambda pair: pair[0])
+        ratios = {name: _ratios(costs, name, best) for name in ("method", "form", "backend")}
+        works = best.at(error, "work_seconds"), best.at(error, "work_rhs")
+        results.append(FrontierPoint(best.scene, error, work, *best.combination, *works, ratios))
+    return results
+
+
+def _ratios(costs: Sequence[tuple[float, Curve]], name: str, best: Curve) -> dict[str, float]:
+    """Cost of the best combination with each other value of an attribute, over the least cost."""
+    cheapest: dict[str, float] = {}
+    for cost, curve in costs:
+        value = getattr(curve, name)
+        cheapest[value] = min(cheapest.get(value, inf), cost)
+    least = min(cheapest.values())
+    ordered = sorted(cheapest.items(), key=lambda pair: pair[1])
+    return {value: cost / least for value, cost in ordered if value != getattr(best, name)}

@@ -1,8 +1,9 @@
-"""Curves of every combination of method, form and backend on a scene."""
+"""Curves of combinations of method, form and backend on a scene."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,35 +15,30 @@ from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.timing import timed_run
 from solvers.runge_kutta.catalogue import SCIPY, load, names
 from solvers.scenes.scene import Scene
-from solvers.studies.work_precision.curve import Curve, Point
+from solvers.studies.work_precision.curve import Combination, Curve, Point
 from solvers.studies.work_precision.reference import Reference
 
 Array = NDArray[np.float64]
 
-#: The rules that the report calls RK1 to RK4.
-REPORT = {"RK1": "rk1", "RK2": "midpoint", "RK3": "rk3", "RK4": "rk4"}
+#: The methods that the report calls RK1 to RK4.
+REPORT_METHODS = {"RK1": "rk1", "RK2": "midpoint", "RK3": "rk3", "RK4": "rk4"}
 FORMS = ("lagrangian", "hamiltonian", "rational")
-#: The longest run of each backend, in s; and of the report's rules, to where rounding turns them.
-LONGEST, LONGEST_RULE = {"compiled": 0.02, "python": 0.1, "scipy": 0.1}, 0.5
-#: Tolerances, and numbers of fixed steps, from cheap to dear.
+#: The longest run of each backend in s; and of the report's methods, which reach rounding.
+LONGEST, LONGEST_REPORT = {"compiled": 0.02, "python": 0.1, "scipy": 0.1}, 0.5
+#: Tolerances, and numbers of fixed steps, by rising cost.
 TOLERANCES, STEPS = 10.0 ** -np.arange(1, 15), 10 * 2 ** np.arange(24)
-#: Errors above this are no result.
-MEANINGLESS = 10.0
-
-#: The least relative tolerance that SciPy accepts, 100 roundings.
+#: Runs with a larger error are left out.
+LARGEST_ERROR = 10.0
+#: The least relative tolerance that SciPy accepts.
 FINEST_OF_SCIPY = 3e-14
-
-Combination = tuple[str, str, str]  # method, form, backend
-#: Takes setting, seconds, calls if they are known, and the state at the end.
-Judge = Callable[[dict[str, float], float, int | None, Array], Point | None]
 
 
 def combinations(module: GeneratedModule) -> Iterator[Combination]:
-    """All that a module's forms allow."""
+    """All combinations that a module's forms allow."""
     forms = [form for form in FORMS if form in module.FORMS]
-    solvable = [f for f in forms if Form(module, f, module.DEFAULTS).has_jacobian]
+    with_jacobian = [f for f in forms if Form(module, f, module.DEFAULTS).has_jacobian]
     for method in names():
-        for form in forms if load(method).is_explicit else solvable:
+        for form in forms if load(method).is_explicit else with_jacobian:
             yield method, form, "compiled"
             yield method, form, "python"
     for method in SCIPY:
@@ -50,59 +46,57 @@ def combinations(module: GeneratedModule) -> Iterator[Combination]:
             yield method, form, "scipy"
 
 
-def curves(scene: Scene, truth: Reference, wanted: Iterable[Combination]) -> list[Curve]:
-    """A curve for each combination; those that no compiler builds are left out.
+def curves(scene: Scene, reference: Reference, combinations: Iterable[Combination]) -> list[Curve]:
+    """A curve for each combination; those that no compiler can build are left out.
 
     Parameters
     ----------
     scene : Scene
-        What is run.
-    truth : Reference
-        Its end, beside which errors are found.
-    wanted : iterable of tuple
-        Method, form and backend of each, as `combinations` gives them.
+        The motion.
+    reference : Reference
+        Its final state.
+    combinations : iterable of tuple
+        Method, form and backend of each curve.
 
     Returns
     -------
     list of Curve
-        In the order of `wanted`, without those of which no run means anything.
+        In the order of `combinations`, without those that have no valid run.
 
     Raises
     ------
     ValueError
-        When the module has no such form, or the method cannot be run in it.
+        When the module does not have the form, or the method cannot be used with it.
     solvers.runge_kutta.catalogue.UnknownMethodError
-        When no method has this name.
+        When there is no method of this name.
     """
-    found = []
-    for combination in wanted:
+    results = []
+    for combination in combinations:
         try:
-            points = list(_points(scene, truth, combination))
+            points = list(_points(scene, reference, combination))
         except NoCompilerError:
             continue
         if points:
-            found.append(Curve(scene.name, *combination, points))
-    return found
+            results.append(Curve(scene.name, *combination, points))
+    return results
 
 
-def _points(
-    scene: Scene, truth: Reference, combination: Combination
-) -> Iterator[Point]:  # fmt: skip
+def _points(scene: Scene, reference: Reference, combination: Combination) -> Iterator[Point]:
     method, form, backend = combination
-    judge = judged(scene, truth)
+    solve = partial(timed_run, scene.module, scene.params, scene.y0, scene.duration)
     for setting in _settings(method, backend, scene.duration):
-        run = timed_run(
-            scene.module, scene.params, scene.y0, scene.duration,
-            method=method, form=form, backend=backend, **setting,
-        )  # fmt: skip
-        if run and (point := judge(setting, run.work_seconds, run.work_rhs, run.end)):
-            yield point
-        if run and run.work_seconds > _longest(combination) / 2:
+        run = solve(method=method, form=form, backend=backend, **setting)
+        if run is None:
+            continue
+        costs = run.work_seconds, run.work_rhs
+        if found := point(scene, reference, setting, *costs, run.end):
+            yield found
+        if run.work_seconds > _longest(combination) / 2:
             return
 
 
 def _settings(method: str, backend: str, duration: float) -> list[dict[str, float]]:
-    """From cheap to dear: tolerances for methods that control their steps, else steps in s."""
+    """Tolerances for methods with step control, else steps in s, by rising cost."""
     if method in SCIPY or load(method).b_hat:
         finest = FINEST_OF_SCIPY if backend == "scipy" else 0.0
         return [{"rtol": float(tol)} for tol in TOLERANCES if tol >= finest]
@@ -111,23 +105,24 @@ def _settings(method: str, backend: str, duration: float) -> list[dict[str, floa
 
 def _longest(combination: Combination) -> float:
     method, form, backend = combination
-    is_rule = method in REPORT.values() and (form, backend) == ("lagrangian", "compiled")
-    return LONGEST_RULE if is_rule else LONGEST[backend]
+    is_report = method in REPORT_METHODS.values() and (form, backend) == ("lagrangian", "compiled")
+    return LONGEST_REPORT if is_report else LONGEST[backend]
 
 
-def judged(scene: Scene, truth: Reference) -> Judge:
-    """A function that makes a point of a run; None if its result means nothing."""
+def point(
+    scene: Scene,
+    reference: Reference,
+    setting: dict[str, float],
+    seconds: float,
+    calls: int | None,
+    end: Array,
+) -> Point | None:
+    """The point of a run with this final state; None if its error exceeds `LARGEST_ERROR`."""
     module, params = scene.module, scene.params
-    start = module.energy(0.0, scene.y0, params)
-
-    def point(
-        setting: dict[str, float], seconds: float, calls: int | None, end: Array
-    ) -> Point | None:
-        error = float(np.abs(end - truth.end).max())
-        if not error < MEANINGLESS:
-            return None
-        _, energy = energy_error(module, params, [start, module.energy(0.0, end.tolist(), params)])
-        # what no run can resolve is no error of its method
-        return Point(setting, seconds, calls, max(error, truth.global_error), float(abs(energy)))
-
-    return point
+    error = float(np.abs(end - reference.end).max())
+    if not error < LARGEST_ERROR:
+        return None
+    energies = [module.energy(0.0, y, params) for y in (scene.y0, end.tolist())]
+    energy = float(abs(energy_error(module, params, energies)[1]))
+    # an error below that of the reference is not known
+    return Point(setting, seconds, calls, max(error, reference.global_error), energy)

@@ -1,8 +1,8 @@
-"""Other programs on the same scenes, with the equations that holonomic generates for them.
+"""Curves of other programs on the same scenes, with the equations that holonomic generates.
 
-All get the fastest form, and are compiled before they are timed. heyoka's Taylor series and
-diffrax's methods take the right-hand side called with their own numbers; numba compiles it, as
-Python, into a loop of RK4 steps; numbalsoda's LSODA and DOP853 take its machine code.
+All programs get the fastest form and are compiled before they are timed. heyoka's Taylor series
+and diffrax's methods take the right-hand side, called with their own numbers; numba compiles the
+Python function into a loop of RK4 steps; numbalsoda's LSODA and DOP853 take its machine code.
 """
 
 from __future__ import annotations
@@ -16,86 +16,84 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.forms import Form, fastest_form
-from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.native import native_rhs
 from solvers.integration.timing import median_seconds
 from solvers.scenes.scene import Scene
-from solvers.studies.benchmarks.peers import generated, single
+from solvers.studies.heyoka import generated, single
 from solvers.studies.work_precision.curve import Curve, Point
-from solvers.studies.work_precision.measurement import LONGEST, STEPS, TOLERANCES, judged
+from solvers.studies.work_precision.measurement import LONGEST, STEPS, TOLERANCES, point
 from solvers.studies.work_precision.reference import Reference
 
 Array = NDArray[np.float64]
-#: A run with a tolerance or step: a function that returns the state, and right-hand sides if known.
+#: Returns the final state, and the number of right-hand sides if it is known.
 Run = Callable[[], tuple[Array, int | None]]
-Peer = Callable[[Any, Scene], Iterator[tuple[str, str, Callable[[float], Run]]]]
+#: A method of a program, and its run with a tolerance or a step.
+Method = tuple[str, Callable[[float], Run]]
+#: The methods of a program; it takes the package, the scene, the form and the initial state.
+Peer = Callable[[Any, Scene, Form, Array], Iterator[Method]]
 
-#: Most steps that diffrax may take.
-MOST_STEPS = 2**16
-#: Below this tolerance LSODA complains on the terminal.
-FINEST = 5e-13
+#: Most steps of diffrax.
+MAX_STEPS = 2**16
+#: Below this tolerance LSODA prints warnings.
+FINEST_OF_LSODA = 5e-13
 
 
 def curves(
-    scene: Scene, truth: Reference, package: Callable[[str], ModuleType | None]
-) -> list[Curve]:  # fmt: skip
+    scene: Scene, reference: Reference, package: Callable[[str], ModuleType | None]
+) -> list[Curve]:
     """A curve for each method of the packages that are installed."""
-    found = []
+    form = Form(scene.module, fastest_form(scene.module), scene.params)
+    start = form.from_ordinary(0.0, np.array(scene.y0))
+    results = []
     for name, peer in PEERS.items():
         installed = package(name)
         if installed is None:
             continue
         try:
-            for method, form, run in peer(installed, scene):
-                points = list(_points(scene, truth, form, method, run))
-                found.append(Curve(scene.name, method, form, name, points))
+            for method, run in peer(installed, scene, form, start):
+                points = list(_points(scene, reference, form, method, run))
+                results.append(Curve(scene.name, method, form.name, name, points))
         except NoCompilerError:
             continue
-    return found
+    return results
 
 
 def _points(
-    scene: Scene, truth: Reference, form: str, method: str,
-    run: Callable[[float], Run],
-) -> Iterator[Point]:  # fmt: skip
-    judge = judged(scene, truth)
-    fixed = method == "rk4"
-    tolerances = TOLERANCES[TOLERANCES > FINEST] if method == "lsoda" else TOLERANCES
-    for setting in scene.duration / STEPS if fixed else tolerances:
-        ready = run(float(setting))
-        state, work = ready()
+    scene: Scene, reference: Reference, form: Form, method: str, run: Callable[[float], Run]
+) -> Iterator[Point]:
+    key, settings = "rtol", TOLERANCES
+    if method == "rk4":
+        key, settings = "h", scene.duration / STEPS
+    elif method == "lsoda":
+        settings = TOLERANCES[TOLERANCES > FINEST_OF_LSODA]
+    for setting in map(float, settings):
+        ready = run(setting)
+        state, calls = ready()
         if not np.isfinite(state).all():
             continue
         seconds = median_seconds(ready)
-        end = _ordinary(scene.module, form, state, truth)
-        point = judge({"h" if fixed else "rtol": float(setting)}, seconds, work, end)
-        if point:
-            yield point
+        # angles are known up to whole turns: those next to the reference are taken
+        end = form.to_ordinary(0.0, state, reference.end, 0.0)
+        if found := point(scene, reference, {key: setting}, seconds, calls, end):
+            yield found
         if seconds > LONGEST["compiled"] / 2:
             return
 
 
-def _ordinary(module: GeneratedModule, form: str, state: Array, truth: Reference) -> Array:
-    """Coordinates and velocities; angles that are known up to whole turns are next to the truth."""
-    return Form(module, form, module.DEFAULTS).to_ordinary(0.0, state, truth.end, 0.0)
-
-
-def _heyoka(hy: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
-    form, start = _fastest(scene)
+def _heyoka(hy: Any, scene: Scene, form: Form, start: Array) -> Iterator[Method]:
     equations = generated(hy, scene.module)
 
     def run(tolerance: float) -> Run:
         motion = single(hy, equations, start.tolist(), scene.params, scene.duration, tolerance)
         return lambda: (np.array(motion()), None)
 
-    yield "taylor", form.name, run
+    yield "taylor", run
 
 
-def _diffrax(diffrax: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+def _diffrax(diffrax: Any, scene: Scene, form: Form, start: Array) -> Iterator[Method]:
     jax: Any = import_module("jax")
     jax.config.update("jax_enable_x64", True)
-    form, start = _fastest(scene)
 
     def field(t: Any, y: Any, args: Any) -> Any:
         rates = form.function(t, tuple(y), form.params)
@@ -106,31 +104,30 @@ def _diffrax(diffrax: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
 
         @jax.jit  # type: ignore[untyped-decorator]
         def solve(y0: Any, tolerance: Any, solver: Any = solver) -> Any:
-            return diffrax.diffeqsolve(
-                diffrax.ODETerm(field), solver, 0.0, scene.duration, None, y0,
-                stepsize_controller=diffrax.PIDController(rtol=tolerance, atol=tolerance),
-                max_steps=MOST_STEPS, throw=False,
-            ).ys[-1]  # fmt: skip
+            term = diffrax.ODETerm(field)
+            controller = diffrax.PIDController(rtol=tolerance, atol=tolerance)
+            options = {"stepsize_controller": controller, "max_steps": MAX_STEPS, "throw": False}
+            span = 0.0, scene.duration
+            return diffrax.diffeqsolve(term, solver, *span, None, y0, **options).ys[-1]
 
         def run(tolerance: float, solve: Any = solve) -> Run:
             return lambda: (np.asarray(solve(start, tolerance).block_until_ready()), None)
 
-        yield method, form.name, run
+        yield method, run
 
 
-def _numba(numba: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
+def _numba(numba: Any, scene: Scene, form: Form, start: Array) -> Iterator[Method]:
     to_fixed_tuple: Any = import_module("numba.np.unsafe.ndarray").to_fixed_tuple
-    form, start = _fastest(scene)
     rhs, size, params = numba.njit(form.function), len(start), form.params
 
     @numba.njit  # type: ignore[untyped-decorator]
     def steps(y0: Any, h: float, count: int) -> Any:
-        y, place, k = y0.copy(), np.empty(size), np.empty((4, size))
+        y, stage, k = y0.copy(), np.empty(size), np.empty((4, size))
         for _ in range(count):
             for i, part in enumerate((0.0, 0.5, 0.5, 1.0)):
                 for n in range(size):
-                    place[n] = y[n] + part * h * k[i - 1, n] if i else y[n]
-                rates = rhs(0.0, to_fixed_tuple(place, size), params)
+                    stage[n] = y[n] + part * h * k[i - 1, n] if i else y[n]
+                rates = rhs(0.0, to_fixed_tuple(stage, size), params)
                 for n in range(size):
                     k[i, n] = rates[n]
             for n in range(size):
@@ -141,34 +138,28 @@ def _numba(numba: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
         count = round(scene.duration / h)
         return lambda: (steps(start, h, count), 4 * count)
 
-    yield "rk4", form.name, run
+    yield "rk4", run
 
 
-def _numbalsoda(package: Any, scene: Scene) -> Iterator[tuple[str, str, Any]]:
-    form, start = _fastest(scene)
+def _numbalsoda(package: Any, scene: Scene, form: Form, start: Array) -> Iterator[Method]:
     rhs, params = native_rhs(scene.module, form.name), np.array(form.params)
     times = np.array([0.0, scene.duration])
     for method in ("lsoda", "dop853"):
         solver = getattr(package, method)
 
         def run(tolerance: float, solver: Any = solver) -> Run:
+            tolerances = {"rtol": tolerance, "atol": tolerance}
+
             def state() -> tuple[Array, None]:
-                found, succeeded = solver(
-                    rhs.address, start, times, params, rtol=tolerance, atol=tolerance
-                )
-                return (found[-1] if succeeded else np.full(len(start), np.nan)), None
+                rows, succeeded = solver(rhs.address, start, times, params, **tolerances)
+                return (rows[-1] if succeeded else np.full(len(start), np.nan)), None
 
             return state
 
-        yield method, form.name, run
+        yield method, run
 
 
-def _fastest(scene: Scene) -> tuple[Form, Array]:
-    form = Form(scene.module, fastest_form(scene.module), scene.params)
-    return form, form.from_ordinary(0.0, np.array(scene.y0))
-
-
-#: Packages by name, and what of theirs is run.
+#: The methods of each package.
 PEERS: dict[str, Peer] = {
     "heyoka": _heyoka,
     "diffrax": _diffrax,

@@ -1,0 +1,123 @@
+"""The work-precision study of a scene: curves, frontiers and findings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from solvers.equations.normal_modes import mode_spread
+from solvers.io.json_values import jsonable
+from solvers.io.text_table import text_table
+from solvers.scenes.scene import Scene
+from solvers.studies.work_precision import plots
+from solvers.studies.work_precision.curve import Curve
+from solvers.studies.work_precision.frontier import FrontierPoint, frontier
+from solvers.studies.work_precision.misleading_energy import (
+    MisleadingEnergy,
+    misleading_energy,
+    wrong_above,
+)
+from solvers.studies.work_precision.reference import Reference
+from solvers.studies.work_precision.rounding_limit import RoundingLimit, rounding_limits
+
+#: Choices with which the frontier is compared.
+COMPARED = {
+    "method": ("rk4",),
+    "form": ("lagrangian", "hamiltonian"),
+    "backend": ("compiled", "python", "scipy", "heyoka", "numbalsoda", "numba", "diffrax"),
+}
+
+
+@dataclass(frozen=True)
+class SceneCurves:
+    """Curves of a scene, and the findings that follow from them.
+
+    Attributes
+    ----------
+    scene : Scene
+        The motion.
+    reference : Reference
+        Its final state.
+    curves : list of Curve
+        The measurements.
+    frontier, frontier_rhs : list of FrontierPoint
+        The cheapest combinations in seconds and in evaluations of the right-hand side.
+    rounding_limits : list of RoundingLimit
+        Steps below which rounding dominates.
+    misleading_energy : MisleadingEnergy or None
+        The run with the least energy error and a wrong trajectory.
+    """
+
+    scene: Scene
+    reference: Reference
+    curves: list[Curve]
+    frontier: list[FrontierPoint]
+    frontier_rhs: list[FrontierPoint]
+    rounding_limits: list[RoundingLimit]
+    misleading_energy: MisleadingEnergy | None
+
+    @classmethod
+    def of(cls, scene: Scene, reference: Reference, curves: list[Curve]) -> SceneCurves:
+        """Findings that follow from curves."""
+        frontiers = frontier(curves), frontier(curves, "work_rhs")
+        misleading = misleading_energy(curves, scene, reference)
+        return cls(scene, reference, curves, *frontiers, rounding_limits(curves), misleading)
+
+    def summary(self) -> Iterator[str]:
+        """Reference, frontier and findings as text."""
+        reference = self.reference
+        yield f"{self.scene.title}, {self.scene.duration:g} s"
+        others = "; ".join(f"{name} {error:.1e}" for name, error in reference.differences.items())
+        error = f"own error {reference.global_error:.1e}"
+        yield f"reference: {reference.METHOD}, {error}; differences: {others}"
+        yield "the cheapest combination for each error, and the relative time of the best with ...:"
+        shown = [
+            (choice, value)
+            for choice, values in COMPARED.items()
+            for value in values
+            if any(value in row.cost_ratios[choice] for row in self.frontier)
+        ]
+        columns = {"error": ".0e", "time/us": ".1f", "calls": ".0f", "cheapest": ""}
+        columns |= {value: ".3g" for _, value in shown}
+        yield from text_table(columns, (_row(row, shown) for row in self.frontier))
+        calls = [row for row in self.frontier_rhs if row.backend != "numba"]
+        yield "in calls of the right-hand side: " + ", ".join(
+            f"{row.global_error:.0e}: {row.work_rhs:.0f} ({row.method})" for row in calls[::3]
+        )
+        yield from map(str, self.rounding_limits)
+        if self.misleading_energy:
+            yield str(self.misleading_energy)
+
+    def plots(self) -> dict[str, Figure]:
+        """Figures by the names of their files."""
+        title, name, curves = self.scene.title, self.scene.name, self.curves
+        wrong = wrong_above(self.scene, self.reference)
+        return {
+            f"work_precision_{name}": plots.work_precision(f"Cost of accuracy: {title}", curves),
+            f"steps_{name}": plots.steps(f"Shorter steps: {title}", curves),
+            f"energy_{name}": plots.energy(f"Energy and trajectory: {title}", curves, wrong),
+        }
+
+
+def _row(row: FrontierPoint, shown: Sequence[tuple[str, str]]) -> list[object]:
+    name = f"{row.method}, {row.form if row.backend == 'compiled' else row.backend}"
+    ratios = (row.cost_ratios[choice].get(value) for choice, value in shown)
+    return [row.global_error, row.work_seconds * 1e6, row.work_rhs, name, *ratios]
+
+
+def record(studies: Sequence[SceneCurves]) -> str:
+    """The cheapest compiled combination of each scene for each error, as JSON."""
+    rows = [
+        {
+            "scene": study.scene.name,
+            "system": study.scene.module.SYSTEM,
+            "duration": study.scene.duration,
+            "spread": mode_spread(study.scene.module, study.scene.params),
+            "frontier": frontier([c for c in study.curves if c.backend == "compiled"]),
+        }
+        for study in studies
+    ]
+    return json.dumps(jsonable(rows), indent=1) + "\n"
