@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from itertools import groupby
 from textwrap import indent, wrap
 
-from derive.system.catalogue import drawing, load
+from derive.system.catalogue import LARGEST, drawing, load, published
+from derive.system.shipped import USUAL, names
 
 WIDTH = 96
 
 
 def description(name: str) -> str:
-    """A system's drawing, and what its state and parameters are called."""
+    """Drawing of a system, and names and units of its coordinates, state and parameters."""
     system = load(name)
-    # of the file's docstring the first line says what the title says
-    _, *picture = drawing(name).splitlines()
+    _, *picture = drawing(name).splitlines()  # the title replaces the first line
     coordinates = [
         f"{', '.join(str(c.symbol) for c in group)} [{unit}], {meaning}"
         for (unit, meaning), group in groupby(system.coordinates, lambda c: (c.unit, c.meaning))
@@ -31,3 +33,18 @@ def description(name: str) -> str:
         for line in wrap(f"{title}: {text}", WIDTH, subsequent_indent="    ")
     ]
     return "\n".join([f"{name}: {system.title}", *picture, "", indent("\n".join(lines), "  ")])
+
+
+def markdown_table() -> str:
+    """The systems that ship, as a table in Markdown; each row comes from the system's file."""
+    head = "| system | coordinates | description | source of the published equations |"
+    return "\n".join([head, "|---|---|---|---|", *map(_row, names()), ""])
+
+
+def _row(name: str) -> str:
+    coordinates = ", ".join(f"`{q.name}`" for q in load(name).q)
+    summary = drawing(name).partition("\n")[0].rstrip(".")
+    source = tomllib.loads(published(name)).get("source", "")
+    stem = re.sub(rf"{USUAL}\Z", "", name)
+    family = f"; `{stem}1` to `{stem}{LARGEST}`" if stem != name else ""
+    return f"| `{name}`{family} | {coordinates} | {summary} | {source} |"
