@@ -165,7 +165,7 @@ def test_verify_fails_if_an_equation_is_wrong_without_a_proved_correction(
 
     wrong = Equation("eq47", "x1 = l1*cos(theta1)", corrected="x1 = l2*sin(theta1)")
     assert judgement.verdict(wrong, order).verdict == "wrong"
-    monkeypatch.setattr(judgement, "EQUATIONS", (wrong,))
+    monkeypatch.setattr(judgement, "EQUATIONS", {"eq47": wrong})
     assert main(["verify"]) == 1
     assert "wrong" in capsys.readouterr().out
 

@@ -1,8 +1,10 @@
-"""Hand derivations: published equations hold, every slip in them is found, and told where it is."""
+"""Hand derivations: published equations hold, and errors are located."""
 
 import ast
 import json
 from collections.abc import Iterator
+from dataclasses import fields
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -10,58 +12,52 @@ from mutation import Mutation
 
 from derive import Derivation, load, names
 from derive.system.catalogue import published
-from derive.verification.hand.equations import judge
-from derive.verification.hand.judgement import judged
-from derive.verification.hand.meaning import Meaning
+from derive.verification.hand.reading import judge
+from derive.verification.model import Model
+from derive.verification.quantities import judge_formula
+from derive.verification.verdict import Verdict
 from solvers.app.cli import main
 from solvers.io.toml_input import InputError
 
 
 @pytest.mark.parametrize("name", names())
 def test_published_equations_hold(name: str) -> None:
-    found = judge(name)
-    assert found.source
-    for one in found.judgements:
-        assert one.verdict in ("equal", "equivalent"), one
+    derivation = judge(name)
+    assert derivation.source
+    for one in derivation.equations:
+        assert one.verdict in ("verified", "equivalent"), one
 
 
-def slips(text: str) -> Iterator[str]:
-    place = 0
-    while True:
-        mutation = Mutation(place)
+def mutants(text: str) -> Iterator[str]:
+    for index in count():
+        mutation = Mutation(index)
         changed = mutation.visit(ast.parse(text, mode="eval"))
-        if mutation.count <= place:
+        if mutation.count <= index:
             return
         yield ast.unparse(changed)
-        place += 1
 
 
 QUICK = [name for name in names() if name not in ("chain_3", "foucault_pendulum")]
 
 
 @pytest.mark.parametrize("name", QUICK)
-def test_every_slip_in_them_is_found(name: str, tmp_path: Path) -> None:
-    original = published(name)
-    found, tried = 0, 0
-    for one in judge(name).judgements:
+def test_mutations_of_published_equations_are_wrong(name: str, tmp_path: Path) -> None:
+    original, path, verdicts = published(name), tmp_path / "mutant.toml", []
+    for one in judge(name).equations:
         sides = one.printed.split("=")
-        for text in slips(sides[0]):
+        for text in mutants(sides[0]):
             changed = "=".join([text, *sides[1:]])
-            (tmp_path / "slip.toml").write_text(_replaced(original, one.printed, changed))
-            (verdict,) = {
-                j.verdict for j in judge(tmp_path / "slip.toml").judgements
-                if j.place == one.place
-            }  # fmt: skip
-            tried += 1
-            # a constant in a Lagrangian, or the sign of what is squared, changes nothing
-            assert verdict != "unreadable"
-            found += verdict == "wrong"
-    assert found >= 0.9 * tried
-    assert tried > 3
+            path.write_text(_replaced(original, one.printed, changed))
+            (mutant,) = (other for other in judge(path).equations if other.id == one.id)
+            verdicts.append(mutant.verdict)
+    assert "unreadable" not in verdicts
+    # the rest is correct: a constant in a Lagrangian, or the sign of a square
+    assert verdicts.count("wrong") >= 0.9 * len(verdicts)
+    assert len(verdicts) > 3
 
 
 def _replaced(original: str, printed: str, changed: str) -> str:
-    """The file with one formula changed, however it was broken into lines."""
+    """The text with one formula changed, whatever its line breaks."""
     lines = original.replace("\\\n", "").split('"')
     for k, part in enumerate(lines):
         if " ".join(part.split()) == printed:
@@ -70,12 +66,14 @@ def _replaced(original: str, printed: str, changed: str) -> str:
     raise AssertionError(printed)
 
 
-DOUBLE = "m1*l1**2*theta1_dot**2/2 + m2*(l1**2*theta1_dot**2 + l2**2*theta2_dot**2 " \
-    "+ 2*l1*l2*cos(theta2 - theta1)*theta1_dot*theta2_dot)/2"  # fmt: skip
+DOUBLE = (
+    "m1*l1**2*theta1_dot**2/2 + m2*(l1**2*theta1_dot**2 + l2**2*theta2_dot**2 "
+    "+ 2*l1*l2*cos(theta2 - theta1)*theta1_dot*theta2_dot)/2"
+)
 
 
-@pytest.mark.parametrize(("kind", "key", "text", "term", "should_be"), [
-    # a web page forgot g in the last term: arsnumerandi.com/post/11
+@pytest.mark.parametrize(("kind", "key", "text", "wrong_term", "correct_term"), [
+    # g is missing in the last term of a web page: arsnumerandi.com/post/11
     ("lagrangian", "", f"{DOUBLE} + (m1 + m2)*g*l1*cos(theta1) + m2*l2*cos(theta2)",
      "m2 * l2 * cos(theta2)", "g*l2*m2*cos(theta2)"),
     ("lagrangian", "", f"{DOUBLE} - (m1 + m2)*g*l1*cos(theta1) + m2*g*l2*cos(theta2)",
@@ -107,22 +105,22 @@ DOUBLE = "m1*l1**2*theta1_dot**2/2 + m2*(l1**2*theta1_dot**2 + l2**2*theta2_dot*
      "/(l1*(2*m1 + m2 + m2*cos(2*theta1 - 2*theta2)))",
      "l1*(2*m1 + m2*cos(2*theta1 - 2*theta2) + m2)", None),
 ])  # fmt: skip
-def test_the_first_wrong_term_is_named_with_what_should_stand_there(
-    kind: str, key: str, text: str, term: str, should_be: str | None
+def test_the_first_wrong_term_is_reported_with_its_correction(
+    kind: str, key: str, text: str, wrong_term: str, correct_term: str | None
 ) -> None:
-    meaning = Meaning(Derivation(load("double_pendulum")), {})
-    found = judged("here", text, meaning, kind, key)
-    assert (found.verdict, found.term) == ("wrong", term)
-    assert should_be is None or found.should_be == should_be
-    printed, right = (float(part) for part in found.witness.split(", but it should be "))
-    assert abs(printed - right) > 1e-3
-    # the correction is right
-    kind = "euler_lagrange" if "= 0" in found.correction else kind
-    assert judged("there", found.correction, meaning, kind, key).verdict == "equal"
+    model = Model(Derivation(load("double_pendulum")), {})
+    result = judge_formula("printed", text, model, kind, key)
+    assert (result.verdict, result.wrong_term) == ("wrong", wrong_term)
+    assert correct_term is None or result.correct_term == correct_term
+    printed, derived = (float(part) for part in result.witness.split(" instead of "))
+    assert abs(printed - derived) > 1e-3
+    kind = "euler_lagrange" if "= 0" in result.correction else kind
+    assert judge_formula("corrected", result.correction, model, kind, key).verdict == "verified"
 
 
-def test_accelerations_that_are_right_are_equal_in_whatever_form() -> None:
-    meaning = Meaning(Derivation(load("double_pendulum")), {"D": "theta1 - theta2"})
+def test_correct_accelerations_are_verified_in_any_form() -> None:
+    system = load("double_pendulum")
+    model = Model(Derivation(system), {"D": system.q[0] - system.q[1]})
     for text in (
         "(-g*(2*m1 + m2)*sin(theta1) - m2*g*sin(theta1 - 2*theta2) - 2*sin(D)*m2"
         "*(theta2_dot**2*l2 + theta1_dot**2*l1*cos(D)))/(l1*(2*m1 + m2 - m2*cos(2*D)))",
@@ -130,10 +128,10 @@ def test_accelerations_that_are_right_are_equal_in_whatever_form() -> None:
         " + m2*l2*theta2_dot**2*sin(-D) - (m1 + m2)*g*sin(theta1))"
         "/((m1 + m2)*l1 - m2*l1*cos(-D)**2)",
     ):
-        assert judged("", text, meaning, "accelerations", "theta1").verdict == "equal"
+        assert judge_formula("", text, model, "accelerations", "theta1").verdict == "verified"
 
 
-def test_the_command_tells_what_is_wrong_and_exits_so(
+def test_the_command_reports_errors_and_exits_with_a_code(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "page.toml"
@@ -143,22 +141,24 @@ def test_the_command_tells_what_is_wrong_and_exits_so(
         ' - m*g*l*cos(theta)"\n'
     )
     assert main(["verify", str(path)]) == 1
-    told = capsys.readouterr().out
-    assert "single_pendulum: a page" in told
-    assert "wrong       euler_lagrange 1" in told
-    assert "wrong: g / l * sin(theta), which should be -g*sin(theta)/l" in told
-    assert "equal       hamiltonian" in told
+    output = capsys.readouterr().out
+    assert "single_pendulum: a page" in output
+    assert "\neuler_lagrange 1  wrong        theta_ddot = g/l*sin(theta)\n" in output
+    assert " wrong term: g / l * sin(theta)\n" in output
+    assert " correct term: -g*sin(theta)/l\n" in output
+    assert "\nhamiltonian       verified     " in output
     assert main(["verify", "--json", str(path)]) == 1
-    (found,) = json.loads(capsys.readouterr().out)
-    assert [one["verdict"] for one in found["judgements"]] == ["wrong", "equal"]
+    (derivation,) = json.loads(capsys.readouterr().out)
+    assert [one["verdict"] for one in derivation["equations"]] == ["wrong", "verified"]
+    assert {*derivation["equations"][0]} == {field.name for field in fields(Verdict)}
     assert main(["verify", "double_pendulum"]) == 0
     path.write_text('system = "single_pendulum"\nhamiltonian = "__import__(\'os\')"\n')
     assert main(["verify", str(path)]) == 2
-    assert "unreadable  hamiltonian" in capsys.readouterr().out
+    assert "\nhamiltonian  unreadable   __import__('os')\n" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("text", "words"), [
-    ('system = "single_pendulum"\n', "has no equations: give some of"),
+    ('system = "single_pendulum"\n', "has no equations: give at least one of"),
     ('system = "single_pendulum"\nlagranian = "1"\n', "did you mean 'lagrangian'"),
     ('system = "single_pendulum"\nmomenta = { phi = "1" }\n', "unknown key 'phi' in momenta"),
     ('system = "single_pendulum"\nlagrangian = 3\n[names]\nx = "y"\n', "names.x: unknown name 'y'"),
@@ -166,7 +166,7 @@ def test_the_command_tells_what_is_wrong_and_exits_so(
     ('lagrangian = "1"\n', "'system' is missing"),
     (f'system = {"1" * 5000}\n', "is no TOML file"),
 ])  # fmt: skip
-def test_files_that_make_no_sense_are_refused(text: str, words: str, tmp_path: Path) -> None:
+def test_invalid_files_are_rejected(text: str, words: str, tmp_path: Path) -> None:
     path = tmp_path / "hand.toml"
     path.write_text(text)
     with pytest.raises(InputError, match=words):
@@ -179,8 +179,8 @@ def test_files_that_make_no_sense_are_refused(text: str, words: str, tmp_path: P
     ("euler_lagrange", "1e-31*theta_ddot = 1e-31*theta", "wrong"),
     ("euler_lagrange", "l*theta_ddot + g*sin(theta) + 1e-25*theta_dot = 0", "wrong"),
     ("euler_lagrange", "theta_ddot**2 = (g/l*sin(theta))**2", "wrong"),
-    ("euler_lagrange", "1e12*(l*theta_ddot + g*sin(theta)) = 0", "equal"),
-    ("euler_lagrange", "theta_dot*(l*theta_ddot + g*sin(theta)) = 0", "equal"),
+    ("euler_lagrange", "1e12*(l*theta_ddot + g*sin(theta)) = 0", "verified"),
+    ("euler_lagrange", "theta_dot*(l*theta_ddot + g*sin(theta)) = 0", "verified"),
     ("euler_lagrange", "theta_ddot = 1 = 2", "unreadable"),
     ("lagrangian", "m*l**2*theta_dot**2/2 + m*g*l*cos(theta) + theta_ddot**2", "unreadable"),
     ("lagrangian", "m*l**2*theta_dot**2/2 + m*g*l*cos(theta) + theta*theta_dot", "equivalent"),
@@ -191,26 +191,25 @@ def test_files_that_make_no_sense_are_refused(text: str, words: str, tmp_path: P
     ("hamiltonian", "p_theta**2/(2*m*l**2) + m*g*l*(1 - cos(theta))", "equivalent"),
     ("hamiltonian", "m*l**2*theta_dot**2/2 - m*g*l*cos(theta)", "unreadable"),
 ])  # fmt: skip
-def test_what_only_seems_right_or_wrong_is_judged_as_it_is(
-    kind: str, text: str, verdict: str
-) -> None:
-    meaning = Meaning(Derivation(load("single_pendulum")), {})
-    assert judged("", text, meaning, kind, "theta").verdict == verdict
+def test_misleading_equations_are_judged_correctly(kind: str, text: str, verdict: str) -> None:
+    model = Model(Derivation(load("single_pendulum")), {})
+    assert judge_formula("", text, model, kind, "theta").verdict == verdict
 
 
-def test_their_letters_may_stand_for_coordinates_in_keys(tmp_path: Path) -> None:
+def test_keys_can_use_the_names_of_the_source(tmp_path: Path) -> None:
     path = tmp_path / "hand.toml"
-    path.write_text('system = "single_pendulum"\nmomenta = { phi = "m*l**2*phi_dot" }\n'
-                    'hamilton = { phi = "p_phi/(m*l**2)", p_phi = "-m*g*l*sin(phi)" }\n'
-                    'euler_lagrange = ["phi_ddot = -g/l*sin(phi)", "phi_ddot = g/l*sin(phi)"]\n'
-                    '[names]\nphi = "theta"\n')  # fmt: skip
-    found = judge(path).judgements
-    assert [one.verdict for one in found] == ["equal"] * 4 + ["wrong"]
+    path.write_text(
+        'system = "single_pendulum"\nmomenta = { phi = "m*l**2*phi_dot" }\n'
+        'hamilton = { phi = "p_phi/(m*l**2)", p_phi = "-m*g*l*sin(phi)" }\n'
+        'euler_lagrange = ["phi_ddot = -g/l*sin(phi)", "phi_ddot = g/l*sin(phi)"]\n'
+        '[names]\nphi = "theta"\n'
+    )
+    assert [one.verdict for one in judge(path).equations] == ["verified"] * 4 + ["wrong"]
 
 
-def test_the_sum_of_energies_is_an_energy_though_it_is_not_kept() -> None:
-    meaning = Meaning(Derivation(load("rotating_hoop")), {})
+def test_the_sum_of_energies_is_accepted_as_energy_although_it_is_not_conserved() -> None:
+    model = Model(Derivation(load("rotating_hoop")), {})
     total = "m*R**2/2*(theta_dot**2 + Omega**2*sin(theta)**2) - m*g*R*cos(theta)"
-    found = judged("", total, meaning, "energy", "")
-    assert found.verdict == "equal"
-    assert "Jacobi" in found.note
+    result = judge_formula("", total, model, "energy")
+    assert result.verdict == "verified"
+    assert "Jacobi" in result.note

@@ -185,9 +185,10 @@ def test_the_system_that_is_shown_is_derived_and_runs(tmp_path: Path) -> None:
     assert hasattr(found.scene.module, "power")
 
 
-def test_the_equations_that_are_shown_are_judged_as_is_said(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_the_hand_derivation_in_the_readme_has_the_verdicts_that_it_shows(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
     (tmp_path / "page.toml").write_text(table("page.toml"))
     assert main(["verify", str(tmp_path / "page.toml")]) == 1
     printed = capsys.readouterr().out.splitlines()

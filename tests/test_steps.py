@@ -6,9 +6,9 @@ import sympy as sp
 from derive import Derivation, load, names
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.mechanics.steps import steps
-from derive.verification.report.beside import PLACES, beside
-from derive.verification.report.equation import Verdict
-from derive.verification.report.judgement import EQUATIONS, named
+from derive.verification.report.comparison import EQUATIONS_OF_STEP, compare_steps
+from derive.verification.report.judgement import EQUATIONS
+from derive.verification.verdict import Verdict
 
 
 def meant(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
@@ -51,11 +51,14 @@ def test_every_formula_says_what_is_derived(name: str) -> None:
 
 
 def test_every_step_stands_beside_lines_of_its_own(double: Derivation) -> None:
-    every = list(beside(double, lambda name: Verdict(name, "verified", named(name).printed)))
-    assert [one.step.title for one in every] == [*PLACES]
+    def verified(name: str) -> Verdict:
+        return Verdict(name, "verified", EQUATIONS[name].printed)
+
+    every = list(compare_steps(double, verified))
+    assert [one.step.title for one in every] == [*EQUATIONS_OF_STEP]
     shown = [verdict.id for one in every for verdict in one.verdicts]
     assert len({*shown}) == len(shown)
-    assert {*shown} <= {equation.id for equation in EQUATIONS}
+    assert {*shown} <= {*EQUATIONS}
     for one in every:
         assert one.html.count('class="line verified"') == len(one.verdicts)
         assert one.section.startswith(f"<h3>{one.step.title}</h3>")

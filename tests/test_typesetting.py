@@ -80,8 +80,8 @@ def sides(html: str) -> list[str]:
 
 ARITHMETIC = [
     part
-    for equation in EQUATIONS
-    for text in (equation.printed, getattr(equation, "corrected", ""))
+    for equation in EQUATIONS.values()
+    for text in (equation.printed, equation.corrected)
     for part in filter(None, text.split(";"))
     if {*re.findall(r"[A-Za-z]\w*", part)} <= {*LETTERS, "sin", "cos"} and "=" in part
     and not re.search(r"[<>\[]|\([^()]*,", part)

@@ -1,4 +1,4 @@
-"""``holonomic verify EQUATIONS``: what was found about each equation, in words or as JSON."""
+"""``holonomic verify EQUATIONS``: verdicts on the equations of files and systems."""
 
 from __future__ import annotations
 
@@ -6,56 +6,47 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
-from derive.verification.hand.equations import HandDerivation, judge
+from derive.verification.hand.reading import HandDerivation, judge
+from derive.verification.table import table_width, verdict_rows, wrapped
 
 
 def verify(names: Sequence[str], *, as_json: bool) -> int:
-    """Judge files, or the published equations of systems; print; return the exit code.
+    """Judge files, or the published equations of systems, and print the verdicts.
 
     Parameters
     ----------
     names : sequence of str
         Paths that end in ``.toml``, and names of systems.
     as_json : bool
-        Whether to print JSON instead of words.
+        Whether to print JSON instead of a table.
 
     Returns
     -------
     int
-        0 if all equations are right, 1 if one is wrong, 2 if one cannot be read.
+        Exit code: 0 if all equations are correct, 1 if one is wrong, 2 if one is unreadable.
 
     Raises
     ------
     InputError
-        When a file is no hand derivation, or a system has no published equations.
+        When a file is invalid, or a system has no published equations.
     ExpressionError
-        When a parameter is set to what is no formula.
+        When the value of a parameter is not a formula.
     UnknownSystemError
-        When a name, or the system that a file names, is not that of a system.
+        When no system has one of the names.
     SystemDefinitionError
-        When a file is about a system whose own file is wrong.
+        When the file of a system is invalid.
     """
-    found = [judge(name) for name in names]
+    derivations = [judge(name) for name in names]
     if as_json:
-        print(json.dumps([asdict(one) for one in found], indent=2, ensure_ascii=False))
+        print(json.dumps(list(map(asdict, derivations)), indent=2, ensure_ascii=False))
     else:
-        print("\n\n".join("\n".join(told(one)) for one in found))
-    verdicts = {judgement.verdict for one in found for judgement in one.judgements}
+        print("\n\n".join("\n".join(_lines(one, table_width())) for one in derivations))
+    verdicts = {equation.verdict for one in derivations for equation in one.equations}
     return 2 if "unreadable" in verdicts else int("wrong" in verdicts)
 
 
-def told(hand: HandDerivation) -> Iterator[str]:
-    """The verdicts, and of what is wrong the reason and the correction."""
-    yield ": ".join(filter(None, (hand.system, hand.source)))
-    if hand.note:
-        yield f"  {hand.note}"
-    for one in hand.judgements:
-        yield f"  {one.verdict:<11} {one.place}{': ' if one.note else ''}{one.note}"
-        rows = {"written": one.printed}
-        if one.should_be:
-            rows["wrong"] = f"{one.term}, which should be {one.should_be}"
-            if not one.term:
-                rows["wrong"] = f"a term is missing: {one.should_be}"
-        rows |= {"in numbers": one.witness, "right": one.correction}
-        if one.verdict in ("wrong", "unreadable"):
-            yield from (f"      {title}: {text}" for title, text in rows.items() if text)
+def _lines(derivation: HandDerivation, width: int) -> Iterator[str]:
+    yield wrapped(": ".join(filter(None, (derivation.system, derivation.source))), width, 0)
+    if derivation.note:
+        yield wrapped(derivation.note, width, 0)
+    yield from verdict_rows(derivation.equations, width)

@@ -1,1 +1,1 @@
-"""Anybody's hand derivation, judged equation by equation."""
+"""Hand derivations in TOML files, judged equation by equation."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from derive.verification.report.chapters import LAGRANGIAN, MOMENTUM_1, MOMENTUM_2
-from derive.verification.report.equation import Equation, Stated
+from derive.verification.report.equation import Equation
 
-LAGRANGE: tuple[Equation | Stated, ...] = (
+LAGRANGE: tuple[Equation, ...] = (
     Equation("A1", "x1 = l1*sin(theta1)"),
     Equation("A2", "y1 = -l1*cos(theta1)"),
     Equation("A3", "x2 = l1*sin(theta1) + l2*sin(theta2)"),
@@ -28,7 +28,7 @@ LAGRANGE: tuple[Equation | Stated, ...] = (
     Equation("eq95", MOMENTUM_2),
 )  # fmt: skip
 
-EULER_LAGRANGE: tuple[Equation | Stated, ...] = (
+EULER_LAGRANGE: tuple[Equation, ...] = (
     Equation("eq96",
              "ddt(d(L, phidot_i)) - d(L, phi_i) = 0; ddt(p_phi_i) - d(L, phi_i) = 0",
              measure="E_i"),
@@ -118,7 +118,7 @@ EULER_LAGRANGE: tuple[Equation | Stated, ...] = (
              using=("eq103", "eq104"), note="the left index should be i"),
 )  # fmt: skip
 
-HAMILTON: tuple[Equation | Stated, ...] = (
+HAMILTON: tuple[Equation, ...] = (
     Equation("eq110", LAGRANGIAN),
     Equation("eq111", MOMENTUM_1),
     Equation("eq112", MOMENTUM_2),
@@ -180,7 +180,7 @@ HAMILTON: tuple[Equation | Stated, ...] = (
              "/(2*l1**2*l2**2*(m1 + m2*sin(theta1 - theta2)**2)**2)",
              check="Pdot_theta2 = -m2*g*l2*sin(theta2) + h1 - h2*sin(2*(theta1 - theta2))",
              using=("eq121",)),
-    Stated("eq123", "w_0 = alpha", "definition", "the initial value"),
+    Equation("eq123", "w_0 = alpha", exempt="definition", note="the initial value"),
     Equation("eq124", "m_1 = h*f(t_i, w_i)", system="method"),
     Equation("eq125", "m_2 = h*f(t_i + h/2, w_i + m_1/2)", system="method"),
     Equation("eq126", "m_3 = h*f(t_i + h/2, w_i + m_2/2)", system="method"),

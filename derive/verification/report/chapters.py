@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from derive.verification.report.equation import Equation, Stated
+from derive.verification.report.equation import Equation
 
 HAMILTON = "pdot_i = -d(H, q_i); qdot_i = d(H, p_i); -d(L, t) = d(H, t)"
 LAGRANGIAN = (
@@ -18,9 +18,9 @@ MOMENTUM_2 = (
     "p_theta2 = d(L, theta2_dot) = m2*l2**2*theta2_dot + m2*l1*l2*theta1_dot*cos(theta1 - theta2)"
 )
 
-INTRODUCTION: tuple[Equation | Stated, ...] = (
+INTRODUCTION: tuple[Equation, ...] = (
     Equation("eq1", "ddt(d(L, qdot_i)) - d(L, q_i) = 0", measure="E_i"),
-    Stated("eq2", "w_0 = alpha", "definition", "the initial value"),
+    Equation("eq2", "w_0 = alpha", exempt="definition", note="the initial value"),
     Equation("eq3", "w_next = w_i + 1/6*(m_1 + 2*m_2 + 2*m_3 + m_4)", system="method",
              using=("eq21", "eq22", "eq23", "eq24"),
              note="judged with the stages (21) to (24), which stand later in the text"),
@@ -54,8 +54,9 @@ INTRODUCTION: tuple[Equation | Stated, ...] = (
              " = -T2/l2*(r2 - r1) + m2*g_vector"),
     Equation("eq17", "L = K - P"),
     Equation("eq18", "ddt(d(L, qdot_i)) - d(L, q_i) = 0", measure="E_i"),
-    Stated("eq19", "y' = f(t, y), y(t_0) = alpha", "definition", "the initial value problem"),
-    Stated("eq20", "w_0 = alpha", "definition", "the initial value"),
+    Equation("eq19", "y' = f(t, y), y(t_0) = alpha", exempt="definition",
+             note="the initial value problem"),
+    Equation("eq20", "w_0 = alpha", exempt="definition", note="the initial value"),
     Equation("eq21", "m_1 = h*f(t_i, w_i)", system="method"),
     Equation("eq22", "m_2 = h*f(t_i + h/2, w_i + m_1/2)", system="method"),
     Equation("eq23", "m_3 = h*f(t_i + h/2, w_i + m_2/2)", system="method"),
@@ -68,10 +69,10 @@ INTRODUCTION: tuple[Equation | Stated, ...] = (
              corrected="Iyy*omega_y_dot + (Ixx - Izz)*omega_z*omega_x = tau_y"),
     Equation("eq29", "Izz*omega_z_dot + (Iyy - Ixx)*omega_x*omega_z = tau_z", system="rigid",
              corrected="Izz*omega_z_dot + (Iyy - Ixx)*omega_x*omega_y = tau_z"),
-    Stated("eq30", "u_t + u.grad(u) + grad(p) = 0", "context",
-           "a field equation of an inviscid fluid: no positions of masses lead to it"),
-    Stated("eq31", "div(u) = 0", "context",
-           "incompressibility of a fluid: no positions of masses lead to it"),
+    Equation("eq30", "u_t + u.grad(u) + grad(p) = 0", exempt="context",
+           note="a field equation of an inviscid fluid: no positions of masses lead to it"),
+    Equation("eq31", "div(u) = 0", exempt="context",
+           note="incompressibility of a fluid: no positions of masses lead to it"),
     Equation("eq32", "ddt(d(L, theta1)) = d(L, theta1)",
              corrected="ddt(d(L, theta1_dot)) = d(L, theta1)",
              note="the dot over the left angle is missing"),
@@ -84,9 +85,9 @@ INTRODUCTION: tuple[Equation | Stated, ...] = (
              " - l1*sin(theta1 - theta2)*theta1_dot**2 + g*sin(theta2)) = 0", measure="E2"),
 )  # fmt: skip
 
-METHODOLOGY: tuple[Equation | Stated, ...] = (
+METHODOLOGY: tuple[Equation, ...] = (
     Equation("eq35", "L = K - P"),
-    Stated("eq36", "w_0 = alpha", "definition", "the initial value"),
+    Equation("eq36", "w_0 = alpha", exempt="definition", note="the initial value"),
     Equation("eq37", "m_1 = h*f(t_i, w_i)", system="method"),
     Equation("eq38", "m_2 = h*f(t_i + h/2, w_i + m_1/2)", system="method"),
     Equation("eq39", "m_3 = h*f(t_i + h/2, w_i + m_2/2)", system="method"),
@@ -99,7 +100,7 @@ METHODOLOGY: tuple[Equation | Stated, ...] = (
     Equation("eq46", "ddt(d(L, theta1_dot)) = d(L, theta1)", measure="E1"),
 )  # fmt: skip
 
-IMPLEMENTATION: tuple[Equation | Stated, ...] = (
+IMPLEMENTATION: tuple[Equation, ...] = (
     Equation("eq47", "x1 = l1*sin(theta1)"),
     Equation("eq48", "y1 = -l1*cos(theta1)"),
     Equation("eq49", "x2 = l1*sin(theta1) + l2*sin(theta2)"),
@@ -191,7 +192,7 @@ IMPLEMENTATION: tuple[Equation | Stated, ...] = (
              "/(2*l1**2*l2**2*(m1 + m2*sin(theta1 - theta2)**2)**2)",
              check="Pdot_theta2 = -m2*g*l2*sin(theta2) + h1 - h2*sin(2*(theta1 - theta2))",
              using=("eq83",)),
-    Stated("eq85", "w_0 = alpha", "definition", "the initial value"),
+    Equation("eq85", "w_0 = alpha", exempt="definition", note="the initial value"),
     Equation("eq86", "m_1 = h*f(t_i, w_i)", system="method"),
     Equation("eq87", "m_2 = h*f(t_i + h/2, w_i + m_1/2)", system="method"),
     Equation("eq88", "m_3 = h*f(t_i + h/2, w_i + m_2/2)", system="method"),

@@ -1,36 +1,39 @@
-"""One equation of the report, and the verdict on it."""
+"""One equation of the report, and how it is judged."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation as it is printed, and what it is judged by.
+    """An equation as printed, and how it is judged.
 
     Attributes
     ----------
     id : str
-        ``eq33`` for equation (33), ``A9`` for the ninth display without a number.
+        ``eq33`` for equation (33), ``A9`` for the ninth unnumbered display.
     printed : str
         The equation as printed, in the language of `derive.formulas.expression`.
     corrected : str
-        What it should say, where the printed form does not hold.
+        The correct equation, where the printed one does not hold.
     measure : str
-        What left minus right side must be equal to, identically: for equations
-        of motion, a multiple of the Euler–Lagrange residual. Without one,
-        the sides must be equal along every motion.
+        The value of left minus right side, as an identity: for equations of motion
+        a multiple of the Euler–Lagrange residual. Without it, the sides must be
+        equal along every motion.
     check : str
-        For an equation that defines quantities: the statement that these must fulfil.
+        For an equation that defines quantities: the statement that they must fulfil.
     using : tuple of str
         Other equations that define quantities used here.
     stray : str
-        A letter of the printed form that has no meaning there, if one has.
+        A printed letter without a meaning.
     system : {"double", "single", "rigid", "method"}
-        What it is about.
+        The system to which it belongs, or the Runge–Kutta method.
+    exempt : {"", "definition", "context"}
+        The verdict on an equation that cannot be judged by computation.
     note : str
-        What a reader should know.
+        Remarks for the reader.
     """
 
     id: str
@@ -40,28 +43,6 @@ class Equation:
     check: str = ""
     using: tuple[str, ...] = ()
     stray: str = ""
-    system: str = "double"
+    system: Literal["double", "single", "rigid", "method"] = "double"
+    exempt: Literal["", "definition", "context"] = ""
     note: str = ""
-
-
-@dataclass(frozen=True)
-class Stated:
-    """An equation that nothing here can decide: a definition, or a matter of its own."""
-
-    id: str
-    printed: str
-    verdict: str
-    reason: str
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """The judgement of one equation, as ``holonomic verify`` prints it."""
-
-    id: str
-    verdict: str
-    printed: str
-    correction: str = ""
-    residual: str = ""
-    witness: str = ""
-    note: str = field(default="")

@@ -1,4 +1,4 @@
-"""The verdict on every equation of the report, computed."""
+"""Computed verdicts on the equations of the report."""
 
 from __future__ import annotations
 
@@ -10,28 +10,34 @@ from functools import cache
 import sympy as sp
 
 from derive.formulas.expression import ExpressionError, Value, parse
+from derive.verification.engine import Check, Context
 from derive.verification.report import appendix, chapters, contexts
 from derive.verification.report.contexts import STRAY
-from derive.verification.report.equation import Equation, Stated, Verdict
-from derive.verification.report.method import NotRungeKuttaError, coefficients
-from derive.verification.statement import Context, Finding
+from derive.verification.report.equation import Equation
+from derive.verification.report.method import STAGES, NotRungeKuttaError, coefficients
+from derive.verification.verdict import Verdict
 from solvers.io.suggestion import did_you_mean
 
-#: Tells the order of the Runge–Kutta method with stage matrix A and weights b.
+#: Returns the order of the Runge–Kutta method with stage matrix A and weights b.
 OrderOf = Callable[[list[list[Fraction]], list[Fraction]], int]
 
-EQUATIONS: tuple[Equation | Stated, ...] = (
-    *chapters.INTRODUCTION,
-    *chapters.METHODOLOGY,
-    *chapters.IMPLEMENTATION,
-    *appendix.LAGRANGE,
-    *appendix.EULER_LAGRANGE,
-    *appendix.HAMILTON,
-)
+#: The equations of the report by id, in printed order.
+EQUATIONS: dict[str, Equation] = {
+    equation.id: equation
+    for part in (
+        chapters.INTRODUCTION,
+        chapters.METHODOLOGY,
+        chapters.IMPLEMENTATION,
+        appendix.LAGRANGE,
+        appendix.EULER_LAGRANGE,
+        appendix.HAMILTON,
+    )
+    for equation in part
+}
 
 
 def verdicts(order_of: OrderOf) -> list[Verdict]:
-    """The verdict on each equation, in the order of the report.
+    """Judge all equations of the report.
 
     Parameters
     ----------
@@ -43,146 +49,130 @@ def verdicts(order_of: OrderOf) -> list[Verdict]:
     list of Verdict
         One for each of `EQUATIONS`.
     """
-    return [verdict(equation, order_of) for equation in EQUATIONS]
+    return [verdict(equation, order_of) for equation in EQUATIONS.values()]
 
 
-def named(name: str) -> Equation | Stated:
-    """The equation of the report whose id this is.
+def equation_by_id(name: str) -> Equation:
+    """Return an equation of the report.
 
     Parameters
     ----------
     name : str
-        Such as ``eq33`` for equation (33), or ``A9`` for the ninth display without a number.
+        Its id: ``eq33`` for equation (33), ``A9`` for the ninth unnumbered display.
 
     Returns
     -------
-    Equation or Stated
-        Stated where nothing here can decide it.
+    Equation
 
     Raises
     ------
     LookupError
         When no equation has this id.
     """
-    for equation in EQUATIONS:
-        if equation.id == name:
-            return equation
-    known = [equation.id for equation in EQUATIONS]
-    raise LookupError(f"the report has no equation {name[:50]!r}{did_you_mean(name, known)}")
+    if name in EQUATIONS:
+        return EQUATIONS[name]
+    suggestion = did_you_mean(name, EQUATIONS)
+    raise LookupError(f"the report has no equation {name[:50]!r}{suggestion}")
 
 
-@cache  # what stands beside a derivation is asked for again in the whole verdict
-def verdict(equation: Equation | Stated, order_of: OrderOf) -> Verdict:
-    """The verdict on one equation.
+@cache
+def verdict(equation: Equation, order_of: OrderOf) -> Verdict:
+    """Judge one equation.
 
-    ``verified``: it holds as printed. ``misprint``: it does not, and its correction
-    does. ``wrong``: neither does, which would be a fault of this project's.
+    ``verified``: it holds as printed. ``misprint``: it does not, but its correction
+    does. ``wrong``: neither does, which would be an error of this project.
 
     Parameters
     ----------
-    equation : Equation or Stated
-        As `named` gives it; one that is stated has its verdict with it.
+    equation : Equation
+        As `equation_by_id` returns it.
     order_of : callable
         ``order_of(A, b)``, the order of a Runge–Kutta method by its order conditions.
 
     Returns
     -------
     Verdict
-        Of a misprint with its correction, how far it is from that, and a number that shows it.
+        For a misprint with the correction, the residual and its value.
 
     Raises
     ------
     ExpressionError
-        When the equation is no formula, or has a name without a meaning.
+        When the equation is not a formula, or contains an undefined name.
     NotImplementedError
-        When it is not rational in symbols, sines and cosines, so that nothing decides it.
+        When it is not rational in symbols, sines and cosines, and thus undecidable here.
     """
-    if isinstance(equation, Stated):
-        return Verdict(equation.id, equation.verdict, equation.printed, note=equation.reason)
-    finding = judged(equation, equation.printed, order_of)
-    if finding.holds:
-        return Verdict(equation.id, "verified", equation.printed, note=equation.note)
-    mended = bool(equation.corrected) and judged(equation, equation.corrected, order_of).holds
-    return Verdict(
-        equation.id,
-        "misprint" if mended else "wrong",
-        equation.printed,
-        correction=equation.corrected if mended else "",
-        residual=_residual(equation, finding) if mended else "",
-        witness=finding.witness,
-        note=equation.note,
-    )
+    label, printed, note = equation.id, equation.printed, equation.note
+    if equation.exempt:
+        return Verdict(label, equation.exempt, printed, note=note)
+    result = check(equation, printed, order_of)
+    if result.holds:
+        return Verdict(label, "verified", printed, note=note)
+    witness, corrected = result.witness, equation.corrected
+    if not corrected or not check(equation, corrected, order_of).holds:
+        return Verdict(label, "wrong", printed, witness=witness, note=note)
+    residual = _residual(equation, result.comparison)
+    return Verdict(label, "misprint", printed, corrected, residual, witness=witness, note=note)
 
 
-def judged(equation: Equation, text: str, order_of: OrderOf) -> Finding:
-    """Whether `equation` holds with `text` in place of what is printed."""
+def check(equation: Equation, text: str, order_of: OrderOf) -> Check:
+    """Check `equation` with `text` in place of the printed form."""
     if equation.system == "method":
         try:
-            order = order_of(*coefficients(_steps(equation, text)))
+            order = order_of(*coefficients(_method_lines(equation, text)))
         except NotRungeKuttaError as error:
-            return Finding(False, witness=str(error))
-        return Finding(order == 4, witness=f"order {order}")
-    context = _context(equation)
-    known = _known(equation)
+            return Check(holds=False, witness=str(error))
+        return Check(order == 4, witness=f"order {order}")
+    context, known = _context(equation), _definitions_used(equation)
     if not equation.check:
-        return context.judged(_measured(equation, text), known)
-    defined = _defined(text, context, known)
-    if set(defined) != set(_defined(equation.printed, context, known)):
-        return Finding(False, witness="it defines something else")
-    finding = context.judged(equation.check, known | defined)
-    # an inequality defines nothing: it must hold by itself, too
-    return context.judged(text, known | defined) if finding.holds and "<" in text else finding
+        return context.check(_with_measure(equation, text), known)
+    defined = _definitions(text, context, known)
+    if set(defined) != set(_definitions(equation.printed, context, known)):
+        return Check(holds=False, witness="it defines another quantity")
+    result = context.check(equation.check, known | defined)
+    # an inequality defines nothing and must hold by itself, too
+    return context.check(text, known | defined) if result.holds and "<" in text else result
 
 
-def _residual(equation: Equation, finding: Finding) -> str:
-    """How far the printed form is from the corrected one, where it first differs."""
-    context, known = _context(equation), _known(equation)
+def _residual(equation: Equation, comparison: int) -> str:
+    """Printed minus corrected form, in the comparison where they first differ."""
+    context, known = _context(equation), _definitions_used(equation)
     printed, corrected = (
-        context.comparisons(_measured(equation, text), known)[finding.place].residual
+        context.comparisons(_with_measure(equation, text), known)[comparison].residual
         for text in (equation.printed, equation.corrected)
     )
     return sp.sstr(sp.factor_terms(sp.together(sp.expand(printed - corrected))))
 
 
 def _context(equation: Equation) -> Context:
-    # with a measure, accelerations are free: the equation is compared, not fulfilled
-    moving = not equation.measure
-    match equation.system:
-        case "single":
-            return contexts.single_pendulum(moving=moving)
-        case "rigid":
-            return contexts.rigid_body()
-        case _:
-            return contexts.double_pendulum(moving=moving)
+    if equation.system == "rigid":
+        return contexts.rigid_body()
+    pendulum = contexts.single_pendulum if equation.system == "single" else contexts.double_pendulum
+    # with a measure, the equation is an identity in free accelerations
+    return pendulum(moving=not equation.measure)
 
 
-def _measured(equation: Equation, text: str) -> str:
+def _with_measure(equation: Equation, text: str) -> str:
     if not equation.measure:
         return text
     if re.search(r"\bE(_?[12i])?\b", text):
-        raise ExpressionError(f"{text!r} names what it is measured by")
+        raise ExpressionError(f"{text!r} contains the Euler–Lagrange residual")
     sides = [part.split("=") for part in text.split(";")]
     if any(len(pair) != 2 for pair in sides):
-        raise ExpressionError(f"{text!r} should have two sides")
+        raise ExpressionError(f"{text!r} must have two sides")
     return "; ".join(f"({left}) - ({right}) = {equation.measure}" for left, right in sides)
 
 
-@cache
-def _by_id() -> dict[str, Equation]:
-    return {e.id: e for e in EQUATIONS if isinstance(e, Equation)}
-
-
-def _known(equation: Equation) -> dict[str, Value]:
-    """What the equations that it uses define, as printed; and a letter without a meaning."""
+def _definitions_used(equation: Equation) -> dict[str, Value]:
+    """Quantities that the used equations define, as printed, and a letter without a meaning."""
     known: dict[str, Value] = {equation.stray: STRAY} if equation.stray else {}
     for key in equation.using:
-        used = _by_id()[key]
-        known |= _defined(used.printed, _context(used), known)
+        used = EQUATIONS[key]
+        known |= _definitions(used.printed, _context(used), known)
     return known
 
 
-def _defined(text: str, context: Context, known: dict[str, Value]) -> dict[str, Value]:
-    """What ``name = formula; ...`` defines; of ``a < b; ...``, its left sides as ``left_1`` etc."""
+def _definitions(text: str, context: Context, known: dict[str, Value]) -> dict[str, Value]:
+    """Quantities that ``name = formula`` defines; of an inequality, its left side ``left_1``."""
     scope = {**context.scope, **known}
     values: dict[str, Value] = {}
     for number, part in enumerate(text.split(";"), start=1):
@@ -190,22 +180,17 @@ def _defined(text: str, context: Context, known: dict[str, Value]) -> dict[str, 
             values[f"left_{number}"] = parse(part.partition("<")[0], scope)
             continue
         name, _, formula = (side.strip() for side in part.partition("="))
-        value = parse(formula, scope)
         # alpha1 is also alpha_1, for statements about every index
-        values |= {name: value, f"{name[:-1]}_{name[-1]}": value}
+        values[name] = values[f"{name[:-1]}_{name[-1]}"] = parse(formula, scope)
     return values
 
 
-def _steps(equation: Equation, text: str) -> list[str]:
-    """The four stages and the step that belong together, `equation` reading `text`."""
+def _method_lines(equation: Equation, text: str) -> list[str]:
+    """The four stages and the step of one method, with `text` for `equation`."""
     if equation.using:
         keys = [*equation.using, equation.id]
     else:
-        keys = [e.id for e in EQUATIONS if e.id in _by_id() and _is_plain_method(_by_id()[e.id])]
-        first = keys.index(equation.id) // 5 * 5
-        keys = keys[first : first + 5]
-    return [text if key == equation.id else _by_id()[key].printed for key in keys]
-
-
-def _is_plain_method(equation: Equation) -> bool:
-    return equation.system == "method" and not equation.using
+        keys = [e.id for e in EQUATIONS.values() if e.system == "method" and not e.using]
+        first = keys.index(equation.id) // (STAGES + 1) * (STAGES + 1)
+        keys = keys[first : first + STAGES + 1]
+    return [text if key == equation.id else EQUATIONS[key].printed for key in keys]

@@ -118,7 +118,7 @@ def _second() -> Program:
         f"m1/2*(ddt({x1})**2 + ddt({y1})**2) + m2/2*(ddt({x2})**2 + ddt({y2})**2)"
         f" - g*(m1*{y1} + m2*{y2})"
     )
-    right = double_pendulum(moving=False).judged(f"L = {lagrangian}").holds
+    right = double_pendulum(moving=False).check(f"L = {lagrangian}").holds
     text = "sol = First[NDSolve[...]]; x1[t] := Sin[phi1[t]] /. sol2; ... Plot[... /. sol, ...]"
     scene = replace(PROSE, velocities=(sp.pi, 2 * sp.pi))
     return Program(
@@ -200,7 +200,7 @@ def _length_solved(equations: tuple[str, ...]) -> sp.Expr:
 def _agreement(name: str, formula: str) -> str:
     """How the accelerations of the derivation and a program's formula agree."""
     context = double_pendulum(moving=True)
-    if context.judged(f"{name} = {formula}").holds:
+    if context.check(f"{name} = {formula}").holds:
         return "is right"
     derived = context.substitutions[-1][context.scope[name]]
     difference = parse(formula, context.scope) - derived

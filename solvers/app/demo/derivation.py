@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from derive import Derivation, load
 from derive.codegen.summary import broken_sum
-from derive.verification.report.beside import beside
-from derive.verification.report.judgement import named, verdict
+from derive.verification.report.comparison import compare_steps
+from derive.verification.report.judgement import equation_by_id, verdict
 from solvers.app.demo.stage import Stage
 from solvers.runge_kutta.order_conditions import order
 
@@ -18,7 +18,7 @@ def derivation() -> Stage:
     double = Derivation(load("double_pendulum"))
     rows = double.mass_matrix.tolist()
     first, second = double.forcing
-    steps = beside(double, lambda name: verdict(named(name), order))
+    steps = compare_steps(double, lambda name: verdict(equation_by_id(name), order))
     lines = (
         *broken_sum(f"L = {double.lagrangian}", WIDTH).splitlines(),
         f"M = {rows[0]}",

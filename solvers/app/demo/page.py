@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from html import escape
 from pathlib import Path
 
-from derive.verification.report.beside import STYLE as DERIVATION_STYLE
+from derive.verification.report.comparison import STYLE as DERIVATION_STYLE
 from solvers.app.demo.html import table
 from solvers.app.demo.stage import Stage
 from solvers.io.atomic_write import write_text

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from derive.verification.report.beside import line
-from derive.verification.report.equation import Verdict
+from derive.verification.report.comparison import verdict_html
+from derive.verification.verdict import Verdict
 from solvers.app.demo.html import details, table
 from solvers.app.demo.stage import Number, Stage
 from solvers.app.verdict.report import report_verdicts
@@ -50,7 +50,7 @@ def verification() -> Stage:
 def section(verdicts: Mapping[str, Any]) -> str:
     """Counts, and collapsed lists of all misprints, claims and programs, as HTML."""
     equations = verdicts["equations"]
-    misprints = [line(Verdict(**row)) for row in equations if row["verdict"] == "misprint"]
+    misprints = [verdict_html(Verdict(**row)) for row in equations if row["verdict"] == "misprint"]
     claims = [
         (row["id"], row["claim"], row["verdict"], row["number"]) for row in verdicts["claims"]
     ]

@@ -35,7 +35,7 @@ def report_verdicts() -> dict[str, Any]:
     settings = [_setting(PROSE), *(_setting(program.scene) for program in printed)]
     evidence = Evidence(double_pendulum, *settings)
     equations = verdicts(order)
-    counts = Counter(verdict.verdict for verdict in equations)
+    counts = Counter(str(verdict.verdict) for verdict in equations)
     tested = [*objectives(evidence, counts), *claims(evidence), *recommendations(evidence)]
     return {
         "state": NUMBERS,

@@ -1,4 +1,4 @@
-"""The derivation beside the report: each step, the report's own lines, and what they are worth."""
+"""The derivation beside the report: each step with the report's equations and their verdicts."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from html import escape
 from derive.formulas.typesetting import Formula
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.steps import Step, steps
-from derive.verification.report.equation import Verdict
+from derive.verification.verdict import Verdict
 
-#: Where the report takes each step.
-PLACES = {
+#: The report's equations for each step.
+EQUATIONS_OF_STEP = {
     "Positions": "eq47 eq48 eq49 eq50",
     "Velocities": "eq51 eq52 eq53 eq54",
     "Energies": "eq55 eq56",
@@ -24,7 +24,7 @@ PLACES = {
     "Hamilton's equations": "eq80 eq81 A21 A22 eq83 eq84",
 }
 
-#: How steps and verdicts look; colours are the page's own, if it has any.
+#: Style of steps and verdicts; a page can override the colours.
 STYLE = """\
 .step { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 30rem), 1fr));
   gap: 0.25rem 2.5rem; }
@@ -42,15 +42,15 @@ STYLE = """\
 
 
 @dataclass(frozen=True)
-class Beside:
-    """A step, and the report's lines beside it; notebooks show both.
+class StepComparison:
+    """A step of the derivation and the report's equations; notebooks display both.
 
     Attributes
     ----------
     step : Step
-        Ours.
+        The derived step.
     verdicts : tuple of Verdict
-        On the report's lines.
+        On the report's equations.
     """
 
     step: Step
@@ -58,48 +58,47 @@ class Beside:
 
     @property
     def html(self) -> str:
-        """Two columns, which stand below each other where there is little room."""
-        ours = "".join(formula.html for formula in self.step.formulas)
-        theirs = "".join(map(line, self.verdicts))
-        return f'<div class="step"><div>{ours}</div><div>{theirs}</div></div>'
+        """Two columns, or one column on narrow screens."""
+        derived = "".join(formula.html for formula in self.step.formulas)
+        printed = "".join(map(verdict_html, self.verdicts))
+        return f'<div class="step"><div>{derived}</div><div>{printed}</div></div>'
 
     @property
     def section(self) -> str:
-        """The same with its title and words."""
+        """The same with title and description."""
         return f"<h3>{self.step.title}</h3><p>{self.step.words}</p>{self.html}"
 
     def _repr_html_(self) -> str:
         return f"<style>{STYLE}</style>{self.section}"
 
 
-def beside(
+def compare_steps(
     derivation: Derivation, verdict: Callable[[str], Verdict]
-) -> Iterator[Beside]:  # fmt: skip
-    """Every step of the double pendulum's derivation, with the report's lines.
+) -> Iterator[StepComparison]:
+    """Yield every step of the double pendulum's derivation with the report's equations.
 
     Parameters
     ----------
     derivation : Derivation
         Of the double pendulum.
     verdict : callable
-        Gives the verdict on an equation of the report by its id.
+        Returns the verdict on an equation of the report by its id.
 
     Yields
     ------
-    Beside
+    StepComparison
         From the positions to Hamilton's equations.
     """
     for step in steps(derivation):
-        yield Beside(step, tuple(map(verdict, PLACES[step.title].split())))
+        yield StepComparison(step, tuple(map(verdict, EQUATIONS_OF_STEP[step.title].split())))
 
 
-def line(verdict: Verdict) -> str:
-    """A line of the report as HTML: what is printed, and what should be there."""
+def verdict_html(verdict: Verdict) -> str:
+    """Format an equation of the report with its verdict and correction as HTML."""
     number = f"({verdict.id.removeprefix('eq')})"
     note = f" – {escape(verdict.note)}" if verdict.note else ""
-    return (
-        f'<div class="line {verdict.verdict}"><p>{number} <span class="word">{verdict.verdict}'
-        f'</span>{note}</p><div class="printed">{Formula(verdict.printed).html}</div>'
-        + (f"<p>should be</p>{Formula(verdict.correction).html}" if verdict.correction else "")
-        + "</div>"
-    )
+    head = f'<p>{number} <span class="word">{verdict.verdict}</span>{note}</p>'
+    printed = f'<div class="printed">{Formula(verdict.printed).html}</div>'
+    if verdict.correction:
+        printed += f"<p>should be</p>{Formula(verdict.correction).html}"
+    return f'<div class="line {verdict.verdict}">{head}{printed}</div>'

@@ -1,0 +1,164 @@
+"""The judging engine: statements compared with derived values, in numbers and by proof.
+
+``"x1 = l1*sin(theta1)"`` is a statement with two sides, ``"a = b = c"`` has
+three, ``"a >= b"`` is an inequality, and ``"a = b; c = d"`` is two statements.
+A name that ends in ``_i`` stands for every index.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.formulas.expression import RELATION, ExpressionError, Scope, Value, parse
+from derive.formulas.zero import is_positive, vanishes
+
+State = Mapping[sp.Symbol, sp.Expr]
+
+INDEXED = re.compile(r"\b(\w+_)i\b")
+
+#: Digits of numeric values, and the largest value that counts as zero; both allow for cancellation.
+DIGITS, TINY = 40, sp.Float("1e-30")
+
+#: The number of states at which agreement is sufficient for what no proof decides.
+SUFFICIENT_STATES = 5
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two neighbouring sides of a statement, or one entry of each if they are matrices.
+
+    Attributes
+    ----------
+    relation : {"=", "<", "<=", ">", ">="}
+        Their relation.
+    residual : sympy.Expr
+        Left minus right; for an inequality the larger minus the smaller side.
+    comparable : bool
+        Whether both are numbers or both are matrices.
+    """
+
+    relation: str
+    residual: sp.Expr
+    comparable: bool = True
+
+
+@dataclass(frozen=True)
+class Check:
+    """The result of checking a statement.
+
+    Attributes
+    ----------
+    holds : bool
+        Whether it holds.
+    comparison : int
+        Index of the first comparison that does not hold.
+    witness : str
+        The residual of that comparison as a number, at the first state of the context.
+    """
+
+    holds: bool
+    comparison: int = 0
+    witness: str = ""
+
+
+@dataclass(frozen=True)
+class Context:
+    """The meaning of names, and generic states.
+
+    Attributes
+    ----------
+    scope : mapping of str to SymPy values and functions
+        Every name that a statement can use.
+    states : tuple of mappings of symbols to numbers
+        Generic states that agree with the substitutions.
+    substitutions : tuple of mappings
+        Applied in order, they leave independent symbols only: they replace momenta by
+        velocities and, where the equations of motion are assumed, accelerations by
+        coordinates and velocities.
+    index_count : int
+        The number of values of an index, which starts at 1.
+    """
+
+    scope: Scope
+    states: tuple[State, ...]
+    substitutions: tuple[State, ...] = ()
+    index_count: int = 0
+
+    def check(self, text: str, definitions: Mapping[str, Value] | None = None) -> Check:
+        """Check every part of `text`, with additional names from `definitions`."""
+        for index, comparison in enumerate(self.comparisons(text, definitions)):
+            residual = comparison.residual
+            if comparison.relation != "=":
+                if not is_positive(residual, strictly="=" not in comparison.relation):
+                    return Check(False, index, "not proved positive")
+            elif not comparison.comparable or not self.is_zero(residual):
+                return Check(False, index, sp.sstr(_value(residual, self.states[0]).n(6)))
+        return Check(holds=True)
+
+    def comparisons(
+        self, text: str, definitions: Mapping[str, Value] | None = None
+    ) -> list[Comparison]:
+        """Split `text` into comparisons of two numbers each."""
+        scope = {**self.scope, **(definitions or {})}
+        return [
+            comparison
+            for part in text.split(";")
+            for index in (range(1, self.index_count + 1) if INDEXED.search(part) else (0,))
+            for comparison in _compared(INDEXED.sub(rf"\g<1>{index}", part), scope)
+        ]
+
+    def is_zero(self, expression: sp.Expr) -> bool:
+        """Whether `expression` is zero: by proof, or where none is possible, at many states."""
+        if not all(is_small(expression, state) for state in self.states):
+            return False
+        for substitution in self.substitutions:
+            expression = expression.xreplace(dict(substitution))
+        try:
+            return vanishes(expression)
+        except NotImplementedError:
+            if len(self.states) < SUFFICIENT_STATES:
+                raise
+            return True
+
+
+def is_small(expression: sp.Expr, state: State) -> bool:
+    """Whether `expression` is zero at `state`, relative to its largest term."""
+    terms = sp.Add.make_args(sp.expand_mul(expression))
+    values = [_value(term, state) for term in terms]
+    return bool(abs(sum(values)) <= TINY * max(map(abs, values)))
+
+
+def _value(expression: sp.Expr, state: State) -> sp.Expr:
+    # numbers first: `evalf` with symbols adds digits without end where the value is 0
+    numbers = {symbol: sp.Float(value, DIGITS) for symbol, value in state.items()}
+    return sp.sympify(expression.xreplace(numbers)).evalf(DIGITS)
+
+
+def _compared(text: str, scope: Scope) -> Iterator[Comparison]:
+    pieces = RELATION.split(text)
+    if len(pieces) == 1:
+        raise ExpressionError(f"{text.strip()[:80]!r} is not a statement: it has no =, < or >")
+    sides = [parse(piece, scope) for piece in pieces[::2]]
+    for left, relation, right in zip(sides, pieces[1::2], sides[1:], strict=False):
+        larger, smaller = (right, left) if "<" in relation else (left, right)
+        for residual in _differences(larger, smaller):
+            yield Comparison(relation, residual, _is_matrix(left) == _is_matrix(right))
+
+
+def _is_matrix(side: Value) -> bool:
+    return isinstance(side, sp.MatrixBase)
+
+
+def _differences(left: Value, right: Value) -> list[sp.Expr]:
+    """Left minus right, entry by entry; a number beside a matrix stands for each entry."""
+    if not _is_matrix(left) and not _is_matrix(right):
+        return [left - right]
+    ones = sp.ones(*(left if _is_matrix(left) else right).shape)
+    left, right = (side if _is_matrix(side) else side * ones for side in (left, right))
+    if left.shape != right.shape:
+        raise ExpressionError(f"cannot compare matrices of shapes {left.shape} and {right.shape}")
+    return list(left - right)

@@ -1,0 +1,144 @@
+"""Hand derivations in TOML: the equations of a source, its system and its notation."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from derive.formulas.expression import FUNCTIONS, ExpressionError, parse
+from derive.mechanics.derivation import Derivation
+from derive.mechanics.specialisation import substituted
+from derive.system.catalogue import load, published
+from derive.system.system import System
+from derive.system.tables import Table, read
+from derive.verification.model import Model, depends_on, own_names, time_derivative
+from derive.verification.quantities import QUANTITIES, judge_formula
+from derive.verification.verdict import Verdict
+from solvers.io.toml_input import InputError
+
+#: Quantities with one formula for each coordinate.
+BY_COORDINATE = ("momenta", "accelerations", "hamilton")
+#: Keys of a file that describe the equations, and keys of equations.
+HEADER, EQUATIONS = (
+    ("system", "source", "note", "equal", "names"),
+    (*QUANTITIES, "euler_lagrange"),
+)
+
+
+@dataclass(frozen=True)
+class HandDerivation:
+    """The equations of a source, with their verdicts.
+
+    Attributes
+    ----------
+    system : str
+        The system that they describe.
+    source, note : str
+        Where they are published, and remarks.
+    equations : tuple of Verdict
+        In the order of the file.
+    """
+
+    system: str
+    source: str
+    note: str
+    equations: tuple[Verdict, ...]
+
+
+def judge(source: str | Path) -> HandDerivation:
+    """Judge every equation in a file, or every published equation of a system.
+
+    Parameters
+    ----------
+    source : str or path
+        The path of a TOML file, which ends in ``.toml``, or the name of a system that ships.
+
+    Returns
+    -------
+    HandDerivation
+        With a verdict on each equation, unreadable equations included.
+
+    Raises
+    ------
+    InputError
+        When the file is invalid, or the system has no published equations.
+    ExpressionError
+        When the value of a parameter is not a formula.
+    UnknownSystemError
+        When no system has this name.
+    SystemDefinitionError
+        When the file of the system is invalid.
+    """
+    path = Path(source)
+    if path.suffix == ".toml":
+        return judge_tables(read(path), str(path), path.parent)
+    text = published(str(source))
+    if not text:
+        raise InputError(f"the file of system {str(source)!r} has no published equations")
+    return judge_tables(tomllib.loads(text), str(source))
+
+
+def judge_tables(values: Mapping[str, Any], label: str, folder: Path = Path()) -> HandDerivation:
+    """Judge the equations in parsed TOML; errors refer to it as `label`."""
+    table = Table(label, values, (*HEADER, *EQUATIONS))
+    name = table.text("system")
+    system = load(folder / name if name.endswith(".toml") else name)
+    names = table.entries("names")
+    model = Model(Derivation(_with_equal_parameters(table, system)), _meanings(names, system))
+    verdicts = [judge_formula(*row) for row in _formulas(table, system, names, model)]
+    if not verdicts:
+        raise InputError(f"{label} has no equations: give at least one of {', '.join(EQUATIONS)}")
+    return HandDerivation(name, table.text("source", ""), table.text("note", ""), tuple(verdicts))
+
+
+def _with_equal_parameters(table: Table, system: System) -> System:
+    """Substitute the parameters that the source sets equal to others, or to numbers."""
+    symbols = {s.name: s for s in system.params}
+    values = {}
+    for name, text in table.entries("equal").items():
+        if name not in symbols:
+            raise InputError(f"equal.{name[:50]}: parameters are {', '.join(symbols)}")
+        values[symbols[name]] = parse(text, symbols | FUNCTIONS)
+    return substituted(system, values)
+
+
+def _meanings(names: Mapping[str, str], system: System) -> dict[str, Any]:
+    """Parse the source's names; functions of coordinates have derivatives, coordinates momenta."""
+    own = own_names(system)
+    momenta = dict(zip(system.q, system.p, strict=True))
+    meanings: dict[str, Any] = {}
+    for name, text in names.items():
+        try:
+            value = parse(text, own)
+        except ExpressionError as error:
+            raise InputError(f"names.{name}: {error}") from error
+        meanings[name] = value
+        if value in momenta:
+            meanings[f"p_{name}"] = momenta[value]
+        if depends_on(value, system.q):
+            meanings[f"{name}_dot"] = velocity = time_derivative(system, value)
+            meanings[f"{name}_ddot"] = time_derivative(system, velocity)
+    return meanings
+
+
+def _formulas(
+    table: Table, system: System, names: Mapping[str, str], model: Model
+) -> Iterator[tuple[str, str, Model, str, str]]:
+    """Arguments of `judge_formula` for each equation."""
+    coordinates = {q.name: q.name for q in system.q}
+    coordinates |= {name: text for name, text in names.items() if text in coordinates}
+    momenta = {f"p_{name}": f"p_{q}" for name, q in coordinates.items()}
+    for kind in table.values:
+        if kind in BY_COORDINATE:
+            keys = coordinates | momenta if kind == "hamilton" else coordinates
+            row = Table(kind, table.values[kind], [*keys])
+            for key in row.values:
+                yield f"{kind}.{key}", row.formula(key), model, kind, keys[key]
+        elif kind == "euler_lagrange":
+            for number, text in enumerate(table.formulas(kind), 1):
+                yield f"{kind} {number}", text, model, kind, ""
+        elif kind in QUANTITIES:
+            yield kind, table.formula(kind), model, kind, ""

@@ -1,0 +1,183 @@
+"""Verdicts on formulas for quantities of a derivation, and on equations of motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+
+import sympy as sp
+
+from derive.formulas.expression import ExpressionError, parse
+from derive.mechanics.derivation import Derivation
+from derive.verification.model import Model, depends_on, time_derivative
+from derive.verification.terms import (
+    Term,
+    WrongTerm,
+    common_factor,
+    differing_functions,
+    first_wrong_term,
+    split_terms,
+)
+from derive.verification.verdict import Verdict
+
+
+def _hamilton(derivation: Derivation, name: str) -> sp.Expr:
+    velocities, momentum_rates = derivation.hamilton_equations
+    names = [q.name for q in derivation.system.q]
+    if name in names:
+        return velocities[names.index(name)]
+    return momentum_rates[names.index(name.removeprefix("p_"))]
+
+
+def _entry(derivation: Derivation, column: sp.Matrix, name: str) -> sp.Expr:
+    return column[[q.name for q in derivation.system.q].index(name)]
+
+
+#: The derived formula of each quantity; the last three have one for each coordinate.
+QUANTITIES: dict[str, Callable[[Derivation, str], sp.Expr]] = {
+    "kinetic_energy": lambda d, _: d.kinetic_energy,
+    "potential_energy": lambda d, _: d.potential_energy,
+    "lagrangian": lambda d, _: d.lagrangian,
+    "energy": lambda d, _: d.energy,
+    "hamiltonian": lambda d, _: d.hamiltonian,
+    "momenta": lambda d, name: _entry(d, d.momenta, name),
+    "accelerations": lambda d, name: _entry(d, d.accelerations, name),
+    "hamilton": _hamilton,
+}
+#: Functions of momenta instead of velocities, and quantities with an arbitrary constant.
+CANONICAL = ("hamiltonian", "hamilton")
+UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")
+
+
+def judge_formula(label: str, text: str, model: Model, kind: str, coordinate: str = "") -> Verdict:
+    """Judge a formula for a quantity, or an equation of motion.
+
+    Parameters
+    ----------
+    label : str
+        Identifier of the equation.
+    text : str
+        The formula, or the equation.
+    model : Model
+        The derivation.
+    kind : str
+        A key of `QUANTITIES`, or ``euler_lagrange``.
+    coordinate : str
+        The name of the coordinate or momentum, for quantities that have one formula for each.
+
+    Returns
+    -------
+    Verdict
+    """
+    try:
+        if kind == "euler_lagrange":
+            return _judge_equation_of_motion(label, text, model)
+        return _judge_quantity(
+            label, text, model, kind, QUANTITIES[kind](model.derivation, coordinate)
+        )
+    except ExpressionError as error:
+        return Verdict(label, "unreadable", text, note=str(error))
+
+
+def _judge_quantity(label: str, text: str, model: Model, kind: str, derived: sp.Expr) -> Verdict:
+    value = parse(text, model.context.scope)
+    if not isinstance(value, sp.Expr):
+        raise ExpressionError(f"{text[:50]!r} is a column or matrix, not a number")
+    derivation, is_zero = model.derivation, model.context.is_zero
+    system, verdict = derivation.system, partial(Verdict, label, printed=text)
+    foreign = {*system.qddot, *(system.qdot if kind in CANONICAL else system.p)}
+    if invalid := sorted(symbol.name for symbol in value.free_symbols & foreign):
+        raise ExpressionError(f"{', '.join(invalid)} cannot occur in a formula of this kind")
+    difference = value - derived
+    if is_zero(difference):
+        return verdict(verdict="verified")
+    if kind == "lagrangian" and _is_gauge_term(difference, model):
+        return verdict(verdict="equivalent", note="it has the same equations of motion")
+    if kind == "energy" and is_zero(
+        value - derivation.kinetic_energy - derivation.potential_energy
+    ):
+        note = "it is T + V; Jacobi's integral, the value of H, is another quantity"
+        return verdict(verdict="verified", note=note)
+    if kind in UP_TO_A_CONSTANT and all(is_zero(difference.diff(s)) for s in model.variables):
+        return verdict(verdict="equivalent", note="it differs by a constant")
+    return _wrong(label, text, model, value, derived, _wrong_term_of_quotient(text, model, derived))
+
+
+def _is_gauge_term(difference: sp.Expr, model: Model) -> bool:
+    """Whether a part of a Lagrangian cancels in the equations of motion."""
+    system = model.derivation.system
+    return all(
+        model.context.is_zero(time_derivative(system, difference.diff(qdot)) - difference.diff(q))
+        for q, qdot in zip(system.q, system.qdot, strict=True)
+    )
+
+
+def _wrong_term_of_quotient(text: str, model: Model, derived: sp.Expr) -> WrongTerm | None:
+    """Return the first wrong term of a sum, or of a quotient: its denominator comes first."""
+    scope, variables = model.context.scope, model.variables
+    terms = split_terms(text, scope)
+    if len(terms) == 1:
+        numerator, denominator = sp.fraction(sp.together(terms[0].value))
+        derived_numerator, derived_denominator = sp.fraction(sp.together(derived))
+        if depends_on(denominator, variables):
+            ratio = common_factor([Term("", denominator)], derived_denominator, variables)
+            if not model.context.is_zero(denominator - ratio * derived_denominator):
+                return WrongTerm(str(denominator), sp.expand(ratio * derived_denominator))
+            terms, derived = [Term(text, numerator)], derived_numerator * ratio
+            printed = text.rpartition("/")[0].strip()
+            if printed[:1] == "(" and printed[-1:] == ")":
+                with suppress(ExpressionError):  # the brackets can belong to two factors
+                    terms = split_terms(printed[1:-1], scope)
+    return first_wrong_term(terms, derived, variables)
+
+
+def _judge_equation_of_motion(label: str, text: str, model: Model) -> Verdict:
+    """Judge an equation that must hold along every motion, and depend on accelerations."""
+    if text.count("=") > 1:
+        raise ExpressionError(f"an equation has one equals sign, not {text.count('=')}")
+    terms = [
+        term
+        for side, formula in zip((1, -1), text.split("="), strict=False)
+        for term in split_terms(formula, model.context.scope, side)
+    ]
+    value, accelerations = sp.Add(*(term.value for term in terms)), model.derivation.system.qddot
+    verdict = partial(Verdict, label, printed=text)
+    if not depends_on(value, accelerations):
+        return verdict(verdict="wrong", note="it contains no acceleration")
+    candidates = [
+        equation * common_factor(terms, equation, model.variables, accelerations)
+        for equation in model.derivation.euler_lagrange
+    ]
+    derived = min(candidates, key=lambda e: len(differing_functions(terms, e, model.variables)))
+    if model.context.is_zero(value - derived):
+        return verdict(verdict="verified")
+    if not all(value.diff(a, b).equals(0) for a in accelerations for b in accelerations):
+        return verdict(verdict="wrong", note="it is not linear in the accelerations")
+    if model.holds_along_motions(value):
+        return verdict(verdict="verified", note="it is a combination of the equations of motion")
+    wrong_term = first_wrong_term(terms, derived, model.variables)
+    return _wrong(label, text, model, value, derived, wrong_term, " = 0")
+
+
+def _wrong(
+    label: str,
+    text: str,
+    model: Model,
+    value: sp.Expr,
+    derived: sp.Expr,
+    wrong_term: WrongTerm | None,
+    right_side: str = "",
+) -> Verdict:
+    """Build the verdict on a wrong formula; in unusual quotients no single term is identified."""
+    state = model.context.states[0]
+    numbers = [sp.sstr(expression.evalf(8, subs=state)) for expression in (value, derived)]
+    return Verdict(
+        label,
+        "wrong",
+        text,
+        correction=f"{derived}{right_side}",
+        wrong_term=wrong_term.text if wrong_term else "",
+        correct_term=str(wrong_term.correct) if wrong_term else "",
+        witness=" instead of ".join(numbers),
+    )

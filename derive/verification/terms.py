@@ -1,0 +1,125 @@
+"""Term-by-term comparison of sums, to locate the first wrong term of a printed formula."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.formulas.expression import Scope, evaluate, syntax_tree
+from derive.mechanics.reduction import collected, harmonics
+
+#: Coefficients, which depend on parameters only, by the function of the state that they multiply.
+Coefficients = dict[sp.Expr, sp.Expr]
+Symbols = Collection[sp.Symbol]
+
+
+@dataclass(frozen=True)
+class Term:
+    """A term of a printed sum.
+
+    Attributes
+    ----------
+    text : str
+        As printed, with its sign.
+    value : sympy.Expr
+        Its contribution to the sum.
+    side : {1, -1}
+        -1 for a term on the right of an equation, which is subtracted from its left side.
+    """
+
+    text: str
+    value: sp.Expr
+    side: int = 1
+
+
+@dataclass(frozen=True)
+class WrongTerm:
+    """The first wrong term of a formula as printed, empty if one is missing, and its correction."""
+
+    text: str
+    correct: sp.Expr
+
+
+def split_terms(text: str, scope: Scope, side: int = 1) -> list[Term]:
+    """Split a formula into its terms, in printed order."""
+    text = text.strip()
+    return [
+        Term(
+            f"{'' if sign > 0 else '-'}{ast.unparse(node)}",
+            side * sign * evaluate(node, text, scope),
+            side,
+        )
+        for sign, node in _summands(syntax_tree(text), 1)
+    ]
+
+
+def _summands(node: ast.expr, sign: int) -> Iterator[tuple[int, ast.expr]]:
+    match node:
+        case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as operator, right=right):
+            yield from _summands(left, sign)
+            yield from _summands(right, sign if isinstance(operator, ast.Add) else -sign)
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            yield from _summands(operand, -sign)
+        case _:
+            yield sign, node
+
+
+def coefficients(expression: sp.Expr, state: Symbols) -> Coefficients:
+    """Expand `expression` over functions of the state, with products of waves as sums."""
+    totals: Coefficients = {}
+    for term in sp.Add.make_args(sp.expand(harmonics(expression))):
+        coefficient, function = term.as_independent(*state, as_Add=False)
+        totals[function] = totals.get(function, sp.S.Zero) + coefficient
+    reduced = {function: sp.cancel(coefficient) for function, coefficient in totals.items()}
+    return {function: coefficient for function, coefficient in reduced.items() if coefficient}
+
+
+def _pair(
+    terms: Collection[Term], derived: sp.Expr, state: Symbols
+) -> tuple[Coefficients, Coefficients]:
+    total = sp.Add(*(term.value for term in terms))
+    return coefficients(total, state), coefficients(derived, state)
+
+
+def differing_functions(terms: Collection[Term], derived: sp.Expr, state: Symbols) -> list[sp.Expr]:
+    """Functions of the state whose coefficients differ between the sum and `derived`."""
+    a, b = _pair(terms, derived, state)
+    return [f for f in {**a, **b} if sp.cancel(a.get(f, 0) - b.get(f, 0))]
+
+
+def first_wrong_term(terms: Collection[Term], derived: sp.Expr, state: Symbols) -> WrongTerm | None:
+    """Return the first term that differs from `derived`; None if no term differs."""
+    differing = differing_functions(terms, derived, state)
+    if not differing:
+        return None
+    printed, correct = _pair(terms, derived, state)
+    by_term = [(term, coefficients(term.value, state)) for term in terms]
+    occurring = {function for _, own in by_term for function in own}
+    missing = [function for function in differing if function not in occurring]
+    for term, own in by_term:
+        if wrong := [function for function in differing if function in own]:
+            others = {f: sp.cancel(printed.get(f, 0) - own[f]) for f in wrong}
+            replacement = sp.Add(
+                *((correct.get(f, 0) - others.get(f, 0)) * f for f in [*wrong, *missing])
+            )
+            return WrongTerm(term.text, _collected(term.side * replacement, state))
+    return WrongTerm("", _collected(sp.Add(*(correct[f] * f for f in missing)), state))
+
+
+def common_factor(
+    terms: Collection[Term], derived: sp.Expr, state: Symbols, decisive: Symbols = ()
+) -> sp.Expr:
+    """Return the factor, made of parameters, by which most terms differ from those of `derived`."""
+    printed, correct = _pair(terms, derived, state)
+    shared = [function for function in printed if function in correct]
+    # in a tie, terms with decisive symbols such as accelerations decide
+    shared.sort(key=lambda function: not function.free_symbols & {*decisive})
+    ratios = [sp.cancel(printed[function] / correct[function]) for function in shared]
+    return max(ratios, key=ratios.count, default=sp.S.One)
+
+
+def _collected(expression: sp.Expr, state: Symbols) -> sp.Expr:
+    return collected(expression, *state) if expression else sp.S.Zero
