@@ -5,12 +5,13 @@ from solvers.app.scenes import load_sweep as load_sweep
 from solvers.app.scenes import run_scene as run_scene
 from solvers.app.scenes import sweep as sweep
 from solvers.integration.ensemble import ensemble as ensemble
+from solvers.integration.ensemble_run import StopFlag as StopFlag
+from solvers.integration.ensemble_solution import Ensemble as Ensemble
 from solvers.integration.events import Event as Event
 from solvers.integration.events import Extremum as Extremum
 from solvers.integration.integrate import integrate as integrate
 from solvers.integration.ode_solver import ode_solver as ode_solver
 from solvers.integration.prepare import prepare as prepare
-from solvers.integration.solution import Ensemble as Ensemble
 from solvers.integration.solution import Solution as Solution
 from solvers.integration.solution import Status as Status
 from solvers.io.figures import panels as panels

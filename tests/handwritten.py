@@ -11,7 +11,7 @@ def handwritten(name: str, state: tuple[str, ...], parameters: tuple[str, ...] =
         "__file__": None, "SYSTEM": name, "COORDINATES": (), "STATE": state,
         "FORMS": ("lagrangian",), "STATES": {"lagrangian": state}, "PARAMETERS": parameters,
         "DEFAULTS": (1.0,) * len(parameters), "POSITIVE": (), "TIMED": (), "CALLS_FUNCTIONS": (),
-        "OPERATIONS": {"rhs": (0, 0)}, "UNITS": {}, "rhs": None,
+        "OPERATIONS": {"rhs": (0, 0)}, "UNITS": dict.fromkeys(state, "1"), "rhs": None,
     }  # fmt: skip
     vars(module).update(contract | attributes)
     return module

@@ -59,7 +59,7 @@ def test_coefficients_are_read_back_from_the_running_loop(
     ctypes.c_int.in_dll(library, "probe_calls").value = 0 if method.is_fsal else -1
     options = {"method": name, "h": 1.0, "backend": "compiled"}
     if lanes:
-        end = ensemble(module, (0, 1), [rest], (1.0,), workers=1, **options).y[0]
+        end = ensemble(module, (0, 1), np.transpose([rest]), (1.0,), workers=1, **options).y[:, 0]
     else:
         end = integrate(module, (0, 1), rest, (1.0,), **options).y[:, -1]
     places = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_places"))

@@ -24,6 +24,7 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import NotFinishedError, prepare
+from solvers.integration.problem import Options
 from solvers.integration.solution import Status
 from solvers.runge_kutta.catalogue import load, names
 
@@ -45,8 +46,8 @@ def test_loops_agree_to_rounding_times_the_condition_of_the_run(method: str, for
     # the condition is observed: what becomes of a change of 1e-10 in the start
     starts, params, span, h = scatter(40), dp.DEFAULTS, (0.0, 2.0), 0.02
     options = {"method": method, "h": h, "form": form}
-    lanes = ensemble(dp, span, starts, params, **options).y
-    moved = ensemble(dp, span, starts * (1 + 1e-10), params, **options).y
+    lanes = ensemble(dp, span, starts.T, params, **options).y.T
+    moved = ensemble(dp, span, (starts * (1 + 1e-10)).T, params, **options).y.T
     condition = 1 + np.abs(moved - lanes).max(axis=1) / 1e-10
     for backend in ("python", "compiled"):
         one_by_one = np.array([
@@ -78,9 +79,9 @@ def test_compiled_implicit_steps_solve_what_iteration_alone_could_not() -> None:
 
 
 def test_what_a_motion_is_depends_on_no_other_motion_and_no_thread() -> None:
-    starts, n = scatter(101), 101
+    starts, n = scatter(101).T, 101
     rng = np.random.default_rng(2)
-    params = dp.DEFAULTS * rng.uniform(0.5, 1.5, (n, 5))
+    params = (dp.DEFAULTS * rng.uniform(0.5, 1.5, (n, 5))).T
     options = {
         "events": [Event(dp, "theta1", pi), Event(dp, "theta2", -pi, terminal=True)],
         "t_eval": np.linspace(0, 3, 7), "occurrences": 2,
@@ -90,14 +91,16 @@ def test_what_a_motion_is_depends_on_no_other_motion_and_no_thread() -> None:
         for workers in (2, 5):
             order = rng.permutation(n)
             again = ensemble(
-                dp, (0, 3), starts[order], params[order], method=method, workers=workers, **options
-            )
-            for name, values in vars(first).items():
-                if name == "status":
-                    assert (values[order] == again.status).all()
-                elif name != "run":
-                    found = getattr(again, name)
-                    assert np.array_equal(values[order], found, equal_nan=True), name
+                dp, (0, 3), starts[:, order], params[:, order], method=method, workers=workers,
+                **options,
+            )  # fmt: skip
+            assert (first.status[order] == again.status).all()
+            for name in ("t", "growth", "t_events", "occurred", "steps", "rejected", "nfev"):
+                ordered, result = getattr(first, name)[order], getattr(again, name)
+                assert np.array_equal(ordered, result, equal_nan=True), name
+            for name in ("y", "samples", "y_events"):
+                ordered, result = getattr(first, name)[:, order], getattr(again, name)
+                assert np.array_equal(ordered, result, equal_nan=True), name
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -107,8 +110,9 @@ def test_lanes_find_the_events_and_samples_of_the_reference(form: str) -> None:
     if form != "hamiltonian":
         events.append(Event(dp, "theta1_dot", 1.0))
     options = {"form": form, "events": events, "t_eval": times, "rtol": 1e-11, "atol": 1e-13}
-    found = ensemble(dp, (0, 3), starts, dp.DEFAULTS, occurrences=9, **options)
-    expected = ensemble(dp, (0, 3), starts, dp.DEFAULTS, occurrences=9, backend="python", **options)
+    found = ensemble(dp, (0, 3), starts.T, dp.DEFAULTS, occurrences=9, **options)
+    options = {**options, "backend": "python"}
+    expected = ensemble(dp, (0, 3), starts.T, dp.DEFAULTS, occurrences=9, **options)
     assert "python" in expected.run
     assert "compiled" in found.run
     assert (found.status == expected.status).all()
@@ -119,14 +123,14 @@ def test_lanes_find_the_events_and_samples_of_the_reference(form: str) -> None:
         assert np.array_equal(np.isnan(ours), np.isnan(theirs)), name
         assert np.nanmax(np.abs(ours - theirs)) < 1e-6, name
     # an event is where its value is, and on its far side
-    flips = found.y_events[:, 1, 0, 1]
+    flips = found.y_events[1, :, 1, 0]
     assert np.nanmax(np.abs(flips - pi)) < 1e-13
 
 
 def test_a_motion_and_the_same_motion_in_lanes_have_the_same_history() -> None:
     events = [Event(sp, "theta", 0.0)]
     alone = integrate(sp, (0, 30), (2.0, 0.0), sp.DEFAULTS, events=events, rtol=1e-10)
-    many = ensemble(sp, (0, 30), [(2.0, 0.0)] * 3, sp.DEFAULTS, events=events, rtol=1e-10,
+    many = ensemble(sp, (0, 30), [[2.0] * 3, [0.0] * 3], sp.DEFAULTS, events=events, rtol=1e-10,
                     occurrences=50)  # fmt: skip
     assert alone.backend == "compiled"
     assert many.occurred.tolist() == [[len(alone.t_events[0])]] * 3
@@ -195,9 +199,8 @@ def test_sine_and_cosine_stay_on_the_circle_over_long_runs(
 ) -> None:
     # steps leave it by 1e-10, 1e-5 and 1e-3
     built = kernel(sp, "rational", method, lanes=False, compensated=compensated, reproducible=False)
-    problem = validation.problem(
-        sp, (0.0, 1000.0), (2.0, 0.0), sp.DEFAULTS, method, "rational", 0, 0, h, None, (), 10**6
-    )
+    options = Options(method, "rational", h=h)
+    problem = validation.problem(sp, (0.0, 1000.0), (2.0, 0.0), sp.DEFAULTS, options)
     batch = Batch(
         built, problem, problem.form, problem.start[np.newaxis],
         capacity=200_000, occurrences=0, pauses=False,
@@ -262,7 +265,7 @@ def test_time_does_not_drift_over_a_million_steps() -> None:
     assert found.nfev == 10**6 + 1  # one to begin with; the samples are ends of steps
     assert run((0.0, 1e5), (0.0, 0.0)) == (0.0, 0.0)
     # ten times 0.1 is a little more than 1: no step is left for the difference
-    tenths = ensemble(sp, (0, 1), [(1.0, 0.0)] * 3, sp.DEFAULTS, method="rk4", h=0.1)
+    tenths = ensemble(sp, (0, 1), [[1.0] * 3, [0.0] * 3], sp.DEFAULTS, method="rk4", h=0.1)
     assert tenths.steps.tolist() == [10, 10, 10]
 
 
@@ -270,9 +273,8 @@ def bits(form: str, method: str, *, lanes: bool) -> bytes:
     """What a reproducible loop, built now, makes of some motions with events and samples."""
     built = Kernel(dp, form, method, lanes=lanes, compensated=True, reproducible=True)
     events, times = [Event(dp, "theta1", 0.3)], np.linspace(0, 3, 7)
-    problem = validation.problem(
-        dp, (0.0, 3.0), REPORT, dp.DEFAULTS, method, form, 1e-9, 1e-9, None, times, events, 10**6
-    )
+    options = Options(method, form, 1e-9, 1e-9, t_eval=times, events=events)
+    problem = validation.problem(dp, (0.0, 3.0), REPORT, dp.DEFAULTS, options)
     batch = Batch(
         built, problem, problem.form, scatter(40), capacity=7, occurrences=3, pauses=False
     )

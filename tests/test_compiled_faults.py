@@ -13,10 +13,11 @@ import generated.single_pendulum as sp
 from solvers.integration.compiled import compiler
 from solvers.integration.compiled.kernel import kernel
 from solvers.integration.ensemble import ensemble
+from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare
-from solvers.integration.solution import Ensemble, Interrupted, Solution, Status
+from solvers.integration.solution import Interrupted, Solution, Status
 
 FORMS = ("lagrangian", "hamiltonian", "rational")
 
@@ -52,7 +53,7 @@ def test_an_interrupted_integration_keeps_what_it_has(backend: str) -> None:
 
 
 def test_an_interrupted_ensemble_keeps_what_it_has() -> None:
-    starts = [(1.0, 0.0)] * 40
+    starts = [[1.0] * 40, [0.0] * 40]
     kept = interrupted_after(
         0.3, lambda: ensemble(sp, (0, 1e12), starts, sp.DEFAULTS, max_steps=10**12)
     ).solution
@@ -72,13 +73,13 @@ def test_without_a_compiler_it_runs_in_python_and_says_so(monkeypatch: pytest.Mo
     assert (found.backend, found.success) == ("python", True)
     assert "lagrangian" in found.run
     with pytest.warns(UserWarning, match="no C compiler"):
-        many = ensemble(sp, span, [start] * 2, params, **options)
+        many = ensemble(sp, span, np.transpose([start] * 2), params, **options)
     assert many.success.all()
-    assert np.array_equal(many.y[1], found.y[:, -1])
+    assert np.array_equal(many.y[:, 1], found.y[:, -1])
     for forced in (
         lambda: integrate(sp, span, start, params, backend="compiled", **options),
         lambda: integrate(sp, span, start, params, compensated=True, **options),
-        lambda: ensemble(sp, span, [start], params, backend="compiled", **options),
+        lambda: ensemble(sp, span, [[1.0], [0.0]], params, backend="compiled", **options),
         lambda: prepare(sp, params, **options),
     ):
         with pytest.raises(compiler.NoCompilerError, match="install one as `cc`"):
@@ -110,9 +111,15 @@ def test_what_c_does_not_know_runs_in_python() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"Y0": [1.0, 0.0]}, "Y0 has shape .* theta, theta_dot"),
-        ({"Y0": [(1.0, float("inf"))]}, "finite"),
-        ({"params": [(1.0, 2.0, 9.81)] * 3}, "params has 3 rows"),
+        ({"y0": [1.0, 0.0]}, "y0 has shape .* theta, theta_dot"),
+        ({"y0": [(1.0, 0.0)] * 3}, r"y0 has shape \(3, 2\): .*transpose it: y0.T"),
+        ({"y0": [[1.0], [float("inf")]]}, "finite"),
+        ({"y0": {"theta": [1.0, 2.0], "omega": 0.0}}, "y0 has no 'omega'.*theta, theta_dot"),
+        ({"y0": {"theta_dot": [1.0, 2.0]}}, "y0 lacks theta: only velocities"),
+        ({"y0": {"theta": [1.0, 2.0], "theta_dot": [0.0] * 3}}, "differ in shape: theta: "),
+        ({"params": np.ones((3, 3))}, "params has 3 columns"),
+        ({"params": np.ones((2, 3))}, "transpose it: params.T"),
+        ({"params": {"mass": 1.0}}, "params has no 'mass'"),
         ({"params": (1.0, 2.0)}, "m, l, g"),
         ({"workers": 0}, "workers = 0"),
         ({"occurrences": True}, "occurrences = True"),
@@ -124,7 +131,7 @@ def test_what_c_does_not_know_runs_in_python() -> None:
 def test_an_ensemble_that_makes_no_sense_is_refused(
     arguments: dict[str, object], message: str
 ) -> None:
-    usual = {"t_span": (0, 1), "Y0": [(1.0, 0.0)] * 2, "params": sp.DEFAULTS}
+    usual = {"t_span": (0, 1), "y0": [[1.0] * 2, [0.0] * 2], "params": sp.DEFAULTS}
     with pytest.raises(ValueError, match=message):
         ensemble(sp, **{**usual, **arguments})
 
@@ -135,7 +142,8 @@ def test_a_motion_that_leaves_the_numbers_ends_with_a_status(
     backend: str, lanes: int, form: str
 ) -> None:
     # Euler with steps far too long, from a huge velocity; its neighbours are left alone
-    starts = [(1.0, 1.0, 1e200, -1e200)] + [(0.0, 0.0, 0.0, 0.0)] * (lanes - 1)
+    starts = np.zeros((4, lanes))
+    starts[:, 0] = 1.0, 1.0, 1e200, -1e200
     options = {"form": form, "backend": backend}
     fixed = ensemble(dp, (0, 9), starts, dp.DEFAULTS, method="rk1", h=0.5, **options)
     assert fixed.status[0] is Status.NOT_FINITE

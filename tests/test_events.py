@@ -92,7 +92,7 @@ def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
     starts = np.array([[0.1, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0], [1.5, 1.0, 0.0, 0.0]])
     params = np.array([[1.0, m, 1.0, 1.0, 9.81] for m in (0.3, 1.0, 3.0)])
     found = [
-        ensemble(dp, (0, 2), starts, params, form=form, rtol=1e-11,
+        ensemble(dp, (0, 2), starts.T, params.T, form=form, rtol=1e-11,
                  events=Event(dp, "theta1", -0.5), t_eval=[1.0])
         for form in ("hamiltonian", "lagrangian")
     ]  # fmt: skip
@@ -105,7 +105,7 @@ def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
 def test_extremes_have_two_rows_however_many_other_events_have() -> None:
     events = [Extremum(dp, "theta1_dot"), Event(dp, "theta1", 0.0)]
     found = [
-        ensemble(dp, (0, 12), [[1.0, 0.5, 0.0, 0.0]], dp.DEFAULTS, events=events, occurrences=5,
+        ensemble(dp, (0, 12), {"theta1": [1.0], "theta2": 0.5}, {}, events=events, occurrences=5,
                  rtol=1e-11, backend=backend)
         for backend in ("compiled", "python")
     ]  # fmt: skip
@@ -114,5 +114,5 @@ def test_extremes_have_two_rows_however_many_other_events_have() -> None:
         assert np.isnan(one.t_events[0, 0]).tolist() == [False, False, True, True, True]
         assert np.isfinite(one.t_events[0, 1]).all()
     assert_allclose(found[0].y_events, found[1].y_events, atol=1e-8)
-    low, high = found[0].y_events[0, 0, :2, 0]
+    low, high = found[0].y_events[0, 0, 0, :2]
     assert low < -0.5 < 0.5 < high

@@ -83,8 +83,8 @@ def test_loops_are_compiled_for_one_motion_and_for_lanes(chain: ModuleType) -> N
         assert_allclose(found.y[:, -1], truth, atol=1e-9)
         loose = integrate(chain, (0, 0.5), y, params, rtol=1e-4, form=form, backend="compiled")
         assert np.abs(loose.y[:, -1] - truth).max() > 1e-9
-    lanes = ensemble(chain, (0, 0.5), [y, y * 0.5] * 8, params, rtol=1e-11)
-    assert_allclose(lanes.y[::2], np.tile(truth, (8, 1)), atol=1e-8)
+    lanes = ensemble(chain, (0, 0.5), np.transpose([y, y * 0.5] * 8), params, rtol=1e-11)
+    assert_allclose(lanes.y.T[::2], np.tile(truth, (8, 1)), atol=1e-8)
 
 
 def test_texts_grow_no_faster_than_the_square() -> None:

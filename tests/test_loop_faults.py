@@ -38,14 +38,14 @@ def written_by_hand(folder: Path, slopes: str) -> ModuleType:
 def test_a_blow_up_in_finite_time_stops_with_what_there_is(lanes: int, tmp_path: Path) -> None:
     # y' = y² ends at t = 1/y0; neighbours that begin lower go on
     module = written_by_hand(tmp_path, "state[0]*state[0]*params[0]")
-    starts = [[1.0 / (k + 1)] for k in range(lanes)]
+    starts = [[1.0 / (k + 1) for k in range(lanes)]]
     found = ensemble(module, (0, 1.5), starts, (1.0,), backend="compiled", rtol=1e-10)
     assert found.status[0] in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
     assert found.t[0] == pytest.approx(1.0, abs=1e-6)
     assert np.isfinite(found.y).all()
     for k in range(1, lanes):
         assert found.status[k] is Status.FINISHED
-        assert found.y[k, 0] == pytest.approx(1 / (k + 1 - 1.5), rel=1e-7)
+        assert found.y[0, k] == pytest.approx(1 / (k + 1 - 1.5), rel=1e-7)
     if lanes == 1:
         alone = integrate(module, (0, 1.5), [1.0], (1.0,), backend="compiled", rtol=1e-10)
         assert not alone.success
@@ -57,7 +57,7 @@ def test_a_blow_up_in_finite_time_stops_with_what_there_is(lanes: int, tmp_path:
 def test_coarse_fixed_steps_never_return_what_is_not_a_number(form: str) -> None:
     rng = np.random.default_rng(4)
     for method in ("rk1", "heun", "midpoint", "rk4", "verner87"):
-        starts = rng.uniform(-3, 3, (60, 4)) * [1, 1, 1, 1e3]
+        starts = (rng.uniform(-3, 3, (60, 4)) * [1, 1, 1, 1e3]).T
         for h in (0.5, 1.0, 2.0):
             found = ensemble(dp, (0, 10), starts, dp.DEFAULTS, method=method, h=h, form=form)
             assert np.isfinite(found.y).all(), (method, h)
@@ -72,7 +72,7 @@ def test_sine_and_cosine_far_from_the_circle_come_back_to_it() -> None:
     found = integrate(sp, (0, 1), (0.5, 1e160), sp.DEFAULTS, method="rk1", h=0.5, form="rational")
     assert np.isfinite(found.y).all()
     # Euler's step from the bottom goes along the tangent: sin = 1000, cos = 1
-    one = ensemble(sp, (0, 0.5), [(0.0, 2e3)], sp.DEFAULTS, method="rk1", h=0.5, form="rational")
+    one = ensemble(sp, (0, 0.5), [[0.0], [2e3]], sp.DEFAULTS, method="rk1", h=0.5, form="rational")
     assert np.tan(one.y[0, 0]) == pytest.approx(1e3, rel=1e-6)
 
 
@@ -193,7 +193,7 @@ def test_a_step_limit_of_none_takes_none(backend: str) -> None:
     found = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, max_steps=0, backend=backend)
     assert (found.steps, found.status) == (0, Status.STEP_LIMIT)
     assert found.t.tolist() == [0.0]
-    many = ensemble(sp, (0, 1), [(1.0, 0.0)] * 99, sp.DEFAULTS, max_steps=0, backend=backend)
+    many = ensemble(sp, (0, 1), [[1.0] * 99, [0.0] * 99], sp.DEFAULTS, max_steps=0, backend=backend)
     assert many.steps.tolist() == [0] * 99
     assert set(many.status) == {Status.STEP_LIMIT}
     for senseless in (2**63, 10**20, 2.0):
@@ -250,11 +250,11 @@ def test_samples_have_the_times_that_were_asked_for(backend: str) -> None:
 
 
 def test_an_ensemble_of_nothing_or_over_no_time_is_what_it_should_be() -> None:
-    assert ensemble(sp, (0, 1), np.zeros((0, 2)), sp.DEFAULTS).y.shape == (0, 2)
-    still = ensemble(sp, (2, 2), [(1.0, 0.5)], sp.DEFAULTS, t_eval=[2.0])
+    assert ensemble(sp, (0, 1), np.zeros((2, 0)), sp.DEFAULTS).y.shape == (2, 0)
+    still = ensemble(sp, (2, 2), [[1.0], [0.5]], sp.DEFAULTS, t_eval=[2.0])
     assert (still.steps[0], still.nfev[0], still.status[0]) == (0, 0, Status.FINISHED)
-    assert still.samples[0, :, 0].tolist() == still.y[0].tolist() == [1.0, 0.5]
-    starts = np.random.default_rng(5).uniform(-9, 9, (50, 2))
+    assert still.samples[:, 0, 0].tolist() == still.y[:, 0].tolist() == [1.0, 0.5]
+    starts = np.random.default_rng(5).uniform(-9, 9, (2, 50))
     assert np.array_equal(ensemble(sp, (2, 2), starts, sp.DEFAULTS).y, starts)
     for arguments, message in (
         ({"workers": 1.5}, "workers = 1.5"), ({"workers": "2"}, "workers = '2'"),
@@ -263,7 +263,7 @@ def test_an_ensemble_of_nothing_or_over_no_time_is_what_it_should_be() -> None:
         ({"method": None}, "no method is called 'None'"),
     ):  # fmt: skip
         with pytest.raises(ValueError, match=message):
-            ensemble(sp, (0, 1), [(1.0, 0.0)], sp.DEFAULTS, **arguments)
+            ensemble(sp, (0, 1), [[1.0], [0.0]], sp.DEFAULTS, **arguments)
     with pytest.raises(ValueError, match="must be a finite number"):
         Event(sp, "theta", "a")
 
@@ -290,7 +290,7 @@ def test_a_prepared_run_names_what_it_refuses() -> None:
 
 def test_angles_of_pi_are_events_on_either_side() -> None:
     spinning = ensemble(
-        sp, (0, 3), [(0.0, 9.0), (0.0, -9.0)], sp.DEFAULTS, occurrences=9,
+        sp, (0, 3), [[0.0, 0.0], [9.0, -9.0]], sp.DEFAULTS, occurrences=9,
         events=[Event(sp, "theta", turn * pi) for turn in (-3, -1, 1, 3)],
     )  # fmt: skip
     assert spinning.occurred.tolist() == [[0, 0, 1, 1], [1, 1, 0, 0]]

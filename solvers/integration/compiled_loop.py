@@ -1,31 +1,29 @@
-"""Whether a loop can be compiled, and one motion in it."""
+"""One motion in a compiled loop."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from warnings import warn
 
 import numpy as np
 
-from solvers.equations.forms import fastest_form
 from solvers.equations.module import header
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
-from solvers.integration.events import Event, Extremum
+from solvers.integration.events import Event
 from solvers.integration.problem import Outcome, Problem
 from solvers.runge_kutta.tableau import Tableau
 
-#: Steps, and occurrences of an event, that are written before Python collects them.
+#: Steps, and occurrences of an event, that C stores before Python collects them.
 ROOM, ROOM_FOR_EVENTS = 4096, 64
-#: Unknowns of an implicit step that C solves for; more would not fit on a thread's stack.
+#: Most unknowns of an implicit step in C; more would not fit on a thread's stack.
 MOST_UNKNOWNS = 100
-#: Seconds between looks whether the user has interrupted.
+#: Seconds of C between checks for an interruption by the user.
 PATIENCE = 0.05
 
 
 def obstacle(problem: Problem) -> str:
-    """Why the problem cannot be run in a compiled loop; empty if it can."""
+    """The reason why no compiled loop can solve the problem; empty if one can."""
     if not isinstance(problem.method, Tableau):
         return "the method is SciPy's"
     unknowns = problem.method.stages * len(problem.form.state)
@@ -39,38 +37,23 @@ def obstacle(problem: Problem) -> str:
         return "there is no C header beside the module"
     for event in problem.events:
         if not isinstance(event, Event):
-            return "an event is a Python function; solvers.integration.events.Event is known in C"
-        kept = [event.coordinate] if isinstance(event, Extremum) else []
-        for name in (event.name, *kept):
+            return "an event is a Python function; use solvers.integration.events.Event"
+        for name in event.components:
             if problem.form.locate(name) is None:
                 return f"the {problem.form.name} form does not hold {name}"
     return ""
 
 
-def choice(
-    asked: Callable[[str], Problem], form: str | None, where: str | None, method: str,
-    *, lanes: bool, compensated: bool,
-) -> tuple[Problem, Kernel | None]:  # fmt: skip
-    """The problem in the form that will run, and the loop for it; None if it runs in Python.
-
-    Parameters
-    ----------
-    asked : callable
-        Gives the problem in a form.
-    form : str or None
-        The form that is wanted, if any.
-    where : {"compiled", "python"} or None
-        Where it must run, if that is not free.
-    method, lanes, compensated
-        As in `solvers.integration.compiled.kernel.Kernel`.
+def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
+    """The problem in the form to integrate, and its compiled loop; None if it runs in Python.
 
     Returns
     -------
     problem : Problem
-        In the form that is wanted; or else in the fastest one where a loop of an explicit method is
-        compiled, and in Lagrange's elsewhere.
+        In the given form; by default in the fastest one in a compiled loop of an explicit method,
+        and in Lagrange's form elsewhere.
     program : Kernel or None
-        The compiled loop.
+        The loop.
 
     Raises
     ------
@@ -84,72 +67,72 @@ def choice(
     UserWarning
         When no compiler could, and it runs in Python.
     """
-    plain = asked(form or "lagrangian")
-    reason = "" if where == "python" else obstacle(plain)
-    if reason and where == "compiled":
-        raise ValueError(f"no compiled loop can do this: {reason}")
-    if reason or where == "python":
-        return plain, None
-    module = plain.form.module
-    assert isinstance(plain.method, Tableau)
-    quick = asked(form or (fastest_form(module) if plain.method.is_explicit else "lagrangian"))
+    must_compile = problem.backend == "compiled"
+    reason = "" if problem.backend == "python" else obstacle(problem)
+    if reason and must_compile:
+        raise ValueError(f"no compiled loop can solve this problem: {reason}")
+    if reason or problem.backend == "python":
+        return problem, None
+    compilable = problem.in_fastest_form()
     try:
-        return quick, kernel(
-            module, quick.form.name, method,
-            lanes=lanes, compensated=compensated, reproducible=False,
-        )  # fmt: skip
+        return compilable, loop(compilable, lanes=lanes)
     except NoCompilerError as error:
-        if where == "compiled":
+        if must_compile:
             raise
         warn(f"integrating in Python: {error}", stacklevel=3)
-        return plain, None
+        return problem, None
+
+
+def loop(problem: Problem, *, lanes: bool = False) -> Kernel:
+    """The compiled loop for the problem."""
+    form, options = problem.form, problem.options
+    return kernel(
+        form.module, form.name, options.method, lanes=lanes,
+        compensated=options.compensated, reproducible=False,
+    )  # fmt: skip
 
 
 def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
-    """Integrate `problem`, keeping in `outcome` what is found as it is found."""
+    """Integrate `problem`; `outcome` holds the results so far at any time."""
     samples = problem.samples
     outcome.backend = f"compiled by {program.library.compiler}"
+    capacity = ROOM if samples is None else len(samples)
     batch = Batch(
         program, problem, problem.form, problem.start[np.newaxis],
-        capacity=ROOM if samples is None else len(samples), occurrences=ROOM_FOR_EVENTS,
-        pauses=True,
+        capacity=capacity, occurrences=ROOM_FOR_EVENTS, pauses=True,
     )  # fmt: skip
     status = None
     while status is None:
         batch.restart(PATIENCE)
         try:
             batch.run()
-        finally:  # an interruption is heard when C returns: keep what C has done
+        finally:  # an interruption arrives when C returns: collect its results first
             status = STATUSES[batch.motions["status"][0]]
             _collect(batch, problem, outcome)
     outcome.status = status
 
 
 def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
-    """Move what the motion has written into `outcome`, and make room for more."""
+    """Move the results of the motion into `outcome`, and make room for more."""
     motion, events = batch.motions[0], range(len(problem.events))
-    taken = 0 if problem.samples is None else sum(map(len, outcome.t))
-    rows = batch.rows[0, taken : motion["rows"]]
-    times = rows["t"] if problem.samples is None else problem.samples[taken : motion["rows"]]
-    states = batch.form.to_ordinary_many(rows["t"], rows["z"], rows["turns"])
+    collected = 0 if problem.samples is None else sum(map(len, outcome.t))
+    rows = batch.rows[0, collected : motion["rows"]]
+    times = rows["t"] if problem.samples is None else problem.samples[collected : motion["rows"]]
+    states = batch.ordinary(rows)
     if len(states) and not outcome.t and times[0] == problem.span[0]:
-        states[0] = problem.start  # as it was given, not as sine and cosine give it back
+        states[0] = problem.start  # as given, not as sine and cosine return it
     occurred = [batch.event_rows[0, k, : motion["occurred"][k]] for k in events]
-    places = [
-        list(batch.form.to_ordinary_many(rows["t"], rows["z"], rows["turns"])) for rows in occurred
-    ]
-    place = batch.form.to_ordinary_many(
-        motion["t"], motion["z"][np.newaxis], motion["turns"][np.newaxis]
-    )[0]
+    event_states = [list(batch.ordinary(rows)) for rows in occurred]
+    end = batch.ordinary(batch.motions)[0]
     outcome.t.append(times.copy())
     outcome.y.append(states)
     for k in events:
         outcome.t_events[k] += occurred[k]["t"].tolist()
-        outcome.y_events[k] += places[k]
+        outcome.y_events[k] += event_states[k]
     if motion["steps"]:
-        outcome.end = float(motion["t"]), place
+        outcome.end = float(motion["t"]), end
     outcome.nfev, outcome.njev = int(batch.nfev[0]), int(batch.njev[0])
     outcome.steps, outcome.rejected = int(motion["steps"]), int(motion["rejected"])
     motion["occurred"] = 0
-    if problem.samples is None:  # else the number of rows says which sample is next
+    if problem.samples is None:  # else the number of rows tells the next sample
         motion["rows"] = 0

@@ -1,4 +1,4 @@
-"""An event that compiled loops understand, too: a component of the state crosses a value."""
+"""Events of compiled loops: a component of the state crosses a value."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from solvers.io.suggestion import did_you_mean
 
 @dataclass(frozen=True)
 class Event:
-    """A coordinate or velocity crosses a value; angles are unwrapped, so that π is not -π.
+    """A coordinate or velocity crosses a value; angles count whole turns, so that π is not -π.
 
     Parameters
     ----------
@@ -26,14 +26,14 @@ class Event:
     value : float
         In the unit of that component, ``module.UNITS[name]``.
     direction : {0, 1, -1}, optional
-        Both ways, only upwards, only downwards.
+        Crossings in both directions, upwards, or downwards.
     terminal : bool, optional
-        Whether the motion ends there.
+        Whether the integration ends there.
 
     Raises
     ------
     ValueError
-        When there is no such component, or a value or direction makes no sense.
+        When there is no such component, or the value or direction is invalid.
 
     Examples
     --------
@@ -55,23 +55,28 @@ class Event:
                 did_you_mean(str(self.name), self.module.STATE),
                 ", ".join(self.module.STATE),
             )
-            raise ValueError(f"no component is called {self.name!r}{hint}; known are: {known}")
+            raise ValueError(f"no component is called {self.name!r}{hint}; known names: {known}")
         if isinstance(self.value, bool) or not _is_finite(self.value):
             raise ValueError(f"value = {self.value!r} of {self.name} must be a finite number")
         if self.direction not in (0, 1, -1):
             raise ValueError(f"direction = {self.direction!r} must be 0, 1 or -1")
 
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Components of the state that it needs."""
+        return (self.name,)
+
     def __call__(self, t: float, y: Sequence[float] | NDArray[np.float64]) -> float:
-        """By how much the component exceeds the value."""
+        """The component minus the value."""
         return float(y[self.module.STATE.index(self.name)]) - self.value
 
 
 @dataclass(frozen=True)
 class Extremum(Event):
-    """A velocity vanishes; of all these places those are kept where its coordinate is extreme.
+    """A velocity vanishes; the occurrences where its coordinate is extreme are stored.
 
-    Ensembles keep two occurrences, with the smallest and the largest value; an integration of
-    one motion keeps all.
+    An ensemble stores two occurrences, with the smallest and the largest value; an integration of
+    one motion stores all.
 
     Parameters
     ----------
@@ -85,15 +90,16 @@ class Extremum(Event):
     Raises
     ------
     ValueError
-        When it is no velocity.
+        When it is not a velocity.
 
     Examples
     --------
     >>> import generated.single_pendulum as sp
-    >>> from solvers import Extremum, integrate
-    >>> motion = integrate(sp, (0, 5), (0.5, 0), sp.DEFAULTS, events=Extremum(sp, "theta_dot"))
-    >>> round(float(motion.y_events[0][0][0]), 6)
-    -0.5
+    >>> from solvers import integrate
+    >>> event = Extremum(sp, "theta_dot", direction=-1)
+    >>> solution = integrate(sp, (0, 5), (0.5, 0.0), sp.DEFAULTS, events=event)
+    >>> solution.y_events[0].shape
+    (1, 2)
     """
 
     value: float = 0.0
@@ -101,18 +107,23 @@ class Extremum(Event):
     def __post_init__(self) -> None:
         if self.name.endswith("_dot_dot"):
             raise ValueError(
-                f"the extremes of {self.name.removesuffix('_dot')} are not known: extremes are "
-                f"those of coordinates, {', '.join(self.module.COORDINATES)}"
+                f"{self.name.removesuffix('_dot')} is not a coordinate: extremes are those of "
+                + ", ".join(self.module.COORDINATES)
             )
         super().__post_init__()
         if self.coordinate not in self.module.COORDINATES or self.coordinate == self.name:
             rates = ", ".join(self.module.STATE[len(self.module.COORDINATES) :])
-            raise ValueError(f"{self.name} has no extremes that are known: name one of {rates}")
+            raise ValueError(f"{self.name} is not a velocity: extremes need one of {rates}")
 
     @property
     def coordinate(self) -> str:
-        """What has the extremes."""
+        """The coordinate with the extremes."""
         return self.name.removesuffix("_dot")
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Components of the state that it needs."""
+        return (self.name, self.coordinate)
 
 
 def _is_finite(value: object) -> bool:

@@ -1,8 +1,4 @@
-"""Integrate a generated module's equations of motion: the front door.
-
-Three rungs do the work, and the solution says which one did: a compiled loop, the
-same method in Python, or a solver of SciPy's.
-"""
+"""Integration of a generated module's equations of motion."""
 
 from __future__ import annotations
 
@@ -15,12 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
-from solvers.integration import compiled_loop, python_loop, scipy_loop, validation
+from solvers.integration import compiled_loop, loops, validation
 from solvers.integration.predictability import PredictabilityWarning, predictable_until
-from solvers.integration.problem import EventFunction, Outcome, Problem
+from solvers.integration.problem import EventFunction, Options, Outcome, Problem
 from solvers.integration.solution import Interrupted, Solution, Status
 from solvers.integration.step_stability import step_instability
-from solvers.runge_kutta.tableau import Tableau
+from solvers.integration.validation import Values
 
 Array = NDArray[np.float64]
 
@@ -28,8 +24,8 @@ Array = NDArray[np.float64]
 def integrate(
     module: GeneratedModule,
     t_span: ArrayLike,
-    y0: ArrayLike,
-    params: ArrayLike,
+    y0: Values,
+    params: Values,
     *,
     method: str = "verner87",
     form: str | None = None,
@@ -43,69 +39,71 @@ def integrate(
     backend: str | None = None,
     compensated: bool = False,
 ) -> Solution:
-    """Integrate from `y0` over `t_span`.
+    """Integrate the motion that starts with `y0` over `t_span`.
 
     Parameters
     ----------
     module : module
         A generated module, such as ``generated.double_pendulum``.
     t_span : pair of float
-        Beginning and end in s; the end may come first.
-    y0 : array_like of shape (state,)
-        Coordinates and velocities in the order of ``module.STATE``, whatever the form.
-    params : array_like of shape (parameters,)
-        In the order of ``module.PARAMETERS``.
+        Start and end in s; the end may be the earlier one.
+    y0 : array_like of shape (state,), or mapping of str to float
+        Coordinates and velocities in the order of ``module.STATE``, whatever the form. Or numbers
+        by name, as ``{"theta1": 0.1, "theta2": 0.2}``: velocities that are left out are 0.
+    params : array_like of shape (parameters,), or mapping of str to float
+        In the order of ``module.PARAMETERS``. Or numbers by name: parameters that are left out
+        have their default values.
     method : str, optional
         One of ``solvers.runge_kutta.catalogue.names()``, or a method of SciPy's ``solve_ivp``.
     form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
-        The equations that are integrated; by default rational ones, where they exist, in a
-        compiled loop of an explicit method, and Lagrange's otherwise. The variational form
-        carries a small change along: `y0` is then the state, followed by its change.
+        The form of the equations; by default the rational form, where it exists, in a compiled
+        loop of an explicit method, and Lagrange's form otherwise. The variational form
+        integrates a small change, too: `y0` is then the state, followed by its change.
     rtol, atol : float, optional
-        A step's error in a component may be atol + rtol |y|; of Lagrange's form `atol` may be
-        an array of shape (state,). They have no effect on fixed steps.
+        The error of a step in a component may be atol + rtol |y|; in Lagrange's form `atol` may
+        be an array of shape (state,). They are unused with fixed steps.
     h : float, optional
-        A fixed step in s; methods without error estimate need one. The last step is
-        shortened to end at the end.
+        A fixed step size in s; methods without error estimate need one. The last step is
+        shortened to end at the end of `t_span`.
     t_eval : array_like of shape (n,), optional
-        Times in s of the states that are returned; the beginning and every step's end by
-        default. States between steps are as accurate as the method.
+        Times in s of the states to return; by default the start and every step's end.
+        States between steps are as accurate as the method.
     events : callable or sequence of callables, optional
-        ``event(t, y)`` changes its sign where the event occurs; of several changes
-        within one step one is found. It may have the attributes ``terminal`` (true: the
-        integration ends there) and ``direction`` (1: only upwards, -1: only downwards).
-        ``solvers.integration.events.Event`` makes events that compiled loops know.
+        ``event(t, y)`` changes its sign where the event occurs; one change of sign is located
+        in a step. Optional attributes are ``terminal`` (true: the integration ends there) and
+        ``direction`` (1: upwards only, -1: downwards only). An
+        `solvers.integration.events.Event` runs in compiled loops, too.
     energy : bool, optional
         Whether to return the energy at these times.
     max_steps : int, optional
-        After so many steps the integration stops with what it has.
+        Largest number of steps; the integration stops there.
     backend : {"compiled", "python"}, optional
-        Where the loop runs; by default compiled if that is possible.
+        The backend; by default compiled if that is possible.
     compensated : bool, optional
-        Whether a compiled loop carries the state's rounding errors along, which pays
-        over very many steps.
+        Whether a compiled loop compensates the rounding errors of the state, which reduces
+        the error over very many steps.
 
     Returns
     -------
     Solution
         Coordinates and velocities, whatever the form. A motion that does not reach its end
-        raises nothing: its ``status`` says why, and what there is of it is returned.
+        raises nothing: its ``status`` gives the reason, and its results up to there are returned.
 
     Raises
     ------
     ValueError
-        When an argument makes no sense, before anything is computed.
+        When an argument is invalid, before anything is computed.
     solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
         When ``backend="compiled"`` or ``compensated=True``, and no compiler could build the loop.
     solvers.integration.solution.Interrupted
-        When the user interrupts; it holds the solution up to there.
+        When the user interrupts; it holds the solution up to then.
 
     Warns
     -----
     solvers.integration.predictability.PredictabilityWarning
-        When errors of the size of the tolerances outgrow the motion before its end.
+        When errors of the size of the tolerances grow to that of the motion before its end.
     UserWarning
         When no compiler could build the loop, and it runs in Python.
 
@@ -117,73 +115,63 @@ def integrate(
     (4, 3)
     >>> motion.status.name
     'FINISHED'
+
+    Numbers by name:
+
+    >>> y0 = {"theta1": 0.1, "theta2": 0.0}
+    >>> again = integrate(dp, (0, 1), y0, {"g": 9.81}, t_eval=[0, 0.5, 1])
     """
-    where = validation.rung(backend, compensated)
-
-    def asked(form: str) -> Problem:
-        return validation.problem(
-            module, t_span, y0, params, method, form, rtol, atol, h, t_eval, events, max_steps
-        )
-
-    problem, program = compiled_loop.choice(
-        asked, form, where, method, lanes=False, compensated=compensated
-    )
+    options = Options(method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated)
+    problem = validation.problem(module, t_span, y0, params, options)
+    problem, program = compiled_loop.select(problem, lanes=False)
     outcome = Outcome.at_start(problem)
     try:
-        if program:
-            compiled_loop.run(problem, outcome, program)
-        elif isinstance(problem.method, Tableau):
-            python_loop.run(problem, outcome)
-        else:
-            scipy_loop.run(problem, outcome)
+        loops.run(problem, outcome, program)
     except KeyboardInterrupt as interruption:
         raise Interrupted(_solution(problem, outcome, energy)) from interruption
-    return _judged(problem, outcome, energy)
+    return _checked(problem, outcome, energy)
 
 
-def _judged(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
-    """The solution, with what its trajectory is worth."""
-    complaint = step_instability(problem, failed=outcome.status is Status.NOT_FINITE)
-    if complaint:
+def _checked(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
+    """The solution, with checks of its stability and its predictability."""
+    instability = step_instability(problem, failed=outcome.status is Status.NOT_FINITE)
+    if instability:
         outcome.status = Status.UNSTABLE
-    until = (
-        predictable_until(problem, outcome.end[0])
-        if outcome.status in (Status.FINISHED, Status.EVENT)
-        else inf
-    )
-    if abs(until - problem.span[0]) < abs(outcome.end[0] - problem.span[0]):
+    start, end = problem.span[0], outcome.end[0]
+    has_ended = outcome.status in (Status.FINISHED, Status.EVENT)
+    until = predictable_until(problem, end) if has_ended else inf
+    if abs(until - start) < abs(end - start):
         warn(
-            f"beyond t = {until:.4g} this trajectory means nothing: there errors of "
-            f"{problem.tolerance:.1g} have grown as large as it; "
-            "tighten rtol and atol, or ask for energies and statistics only",
+            f"this trajectory is not predictable beyond t = {until:.4g}: errors of "
+            f"{problem.tolerance:.1g} have grown to its size there; reduce rtol and atol, or use "
+            "its energies and statistics only",
             PredictabilityWarning,
             stacklevel=3,
         )
-    return _solution(problem, outcome, energy, complaint)
+    return _solution(problem, outcome, energy, instability)
 
 
-def _solution(problem: Problem, outcome: Outcome, energy: bool, complaint: str = "") -> Solution:
-    form, width = problem.form, len(problem.start)
+def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = "") -> Solution:
     times, rows = outcome.rows()
-    y = rows.T
-    t, place = outcome.end
-    where = complaint or f"t = {t}, y = {place}"
-    where = "" if outcome.status is Status.FINISHED else f" ({where})"
+    t, y = outcome.end
+    is_finished = outcome.status is Status.FINISHED
+    detail = "" if is_finished else f" ({detail or f't = {t}, y = {y}'})"
     return Solution(
         t=times,
-        y=y,
-        t_events=[np.array(found) for found in outcome.t_events],
-        y_events=[np.array(found).reshape(-1, width) for found in outcome.y_events],
+        y=rows.T,
+        t_events=[np.array(times) for times in outcome.t_events],
+        y_events=[np.array(states).reshape(-1, len(y)) for states in outcome.y_events],
         nfev=outcome.nfev,
         njev=outcome.njev,
         status=outcome.status,
-        message=outcome.status.value + where,
+        message=outcome.status.value + detail,
         steps=outcome.steps,
         rejected=outcome.rejected,
         run=f"{problem.description}, {outcome.backend}",
         backend=outcome.backend.partition(" ")[0],
-        energy=_energy(form, times, y) if energy else None,
+        energy=_energy(problem.form, times, rows.T) if energy else None,
         end=outcome.end,
+        units=problem.units,
     )
 
 

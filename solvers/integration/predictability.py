@@ -1,4 +1,4 @@
-"""How long a trajectory means anything: in chaos, errors grow until they are as large as it."""
+"""How long a trajectory is predictable: in chaos, errors grow to the size of the motion."""
 
 from __future__ import annotations
 
@@ -10,23 +10,22 @@ from math import inf
 
 import numpy as np
 
-from solvers.equations.forms import Form
 from solvers.integration.compiled.compiler import NoCompilerError
-from solvers.integration.compiled.kernel import Batch, kernel
+from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
-from solvers.integration.compiled_loop import obstacle
-from solvers.integration.problem import Problem
+from solvers.integration.compiled_loop import loop, obstacle
+from solvers.integration.problem import Options, Problem
 from solvers.runge_kutta.catalogue import load
 
-#: What a small change of the start is integrated with, and for how many steps, so many at a time.
+#: Method and tolerance for small changes, most steps, and steps per call.
 METHOD, TOLERANCE, MOST_STEPS, CHUNK = "verner87", 1e-9, 20_000, 500
-#: In so many steps every change grows somehow, at once where a mode is fast.
-BEGINNING = 10
-#: Errors are this many times the tolerance, usually.
+#: In the first steps every change grows, at once where a mode is fast.
+FIRST_STEPS = 10
+#: The usual ratio of an error to the tolerance.
 USUAL = 10.0
-#: Even for large tolerances a change must grow from this to 1 before growth means anything.
+#: The largest initial error, whatever the tolerance, whose growth to 1 counts.
 LARGE = 0.05
-#: In regular motion changes grow in proportion to time; chaos is what outgrows this power of it.
+#: In regular motion changes grow in proportion to time; chaos outgrows this power of time.
 POWER = 1.5
 
 
@@ -36,17 +35,16 @@ class PredictabilityWarning(UserWarning):
 
 @contextmanager
 def ignore_predictability() -> Iterator[None]:
-    """Where runs are meant to be longer than their errors allow: no warning.
+    """Suppress `PredictabilityWarning` in a ``with`` block.
 
     Yields
     ------
     None
-        In a ``with`` block, within which `PredictabilityWarning` is not shown.
 
     Notes
     -----
-    Python keeps one list of warnings to be shown for all threads: others, too, do not warn
-    meanwhile.
+    Python has one list of warning filters for all threads: the warning is suppressed in other
+    threads, too.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PredictabilityWarning)
@@ -54,25 +52,17 @@ def ignore_predictability() -> Iterator[None]:
 
 
 def predictable_until(problem: Problem, end: float) -> float:
-    """The time before `end` from which on usual errors have grown as large as the motion.
+    """The time in s from which on usual errors are as large as the motion.
 
-    That is when a small change of the start, by the variational equations, has grown by
-    1/(10 tolerances) since the first few steps, and by more than regular motion lets it.
-    A change that is not followed to the end of the run goes on as before. Infinity if
-    there is no such time, or it is not known: for fixed steps, and without a compiled
-    loop.
-
-    Parameters
-    ----------
-    problem : Problem
-        What was integrated.
-    end : float
-        When its integration ended, in s.
+    There a small change of the initial state, by the variational equations, has grown by
+    1/(10 tolerances) since the first few steps, and faster than in regular motion. A change that
+    is not integrated to the end is extrapolated.
 
     Returns
     -------
     float
-        In s, as times of the problem are counted.
+        Infinity if there is no such time before `end`, or if it is unknown: for fixed steps, and
+        without a compiled loop.
     """
     begin = problem.span[0]
     module = problem.form.module
@@ -80,8 +70,7 @@ def predictable_until(problem: Problem, end: float) -> float:
         return inf
     start = problem.start[: len(module.STATE)]
     variational = replace(
-        problem,
-        form=Form(module, "variational", problem.form.params),
+        problem.with_form("variational"),
         method=load(METHOD),
         span=(begin, end),
         rtol=TOLERANCE,
@@ -89,13 +78,12 @@ def predictable_until(problem: Problem, end: float) -> float:
         samples=None,
         events=[],
         max_steps=MOST_STEPS,
+        options=Options(METHOD),
     )
     if obstacle(variational):
         return inf
     try:
-        program = kernel(
-            module, "variational", METHOD, lanes=False, compensated=False, reproducible=False
-        )
+        program = loop(variational)
     except NoCompilerError:
         return inf
     batch = Batch(
@@ -113,10 +101,10 @@ def predictable_until(problem: Problem, end: float) -> float:
         batch.motions["rows"] = 0
         size = np.log(np.abs(rows["z"][:, -len(start) :]).max(axis=1))
         if not elapsed.size:
-            if len(rows) <= BEGINNING:
+            if len(rows) <= FIRST_STEPS:
                 return inf
-            base, first = size[: BEGINNING + 1].max(), abs(rows["t"][BEGINNING] - begin)
-            rows, size = rows[BEGINNING + 1 :], size[BEGINNING + 1 :]
+            base, first = size[: FIRST_STEPS + 1].max(), abs(rows["t"][FIRST_STEPS] - begin)
+            rows, size = rows[FIRST_STEPS + 1 :], size[FIRST_STEPS + 1 :]
         if len(rows):
             elapsed, growth = np.abs(rows["t"] - begin), size - base
         lost = np.flatnonzero((growth >= allowed) & (growth > POWER * np.log(elapsed / first)))

@@ -1,24 +1,24 @@
-"""One motion after another, with as little as possible around the compiled loop."""
+"""Compiled functions for one motion after another, with little overhead per call."""
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import ulp
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from solvers.equations.module import GeneratedModule, state_names
+from solvers.equations.module import GeneratedModule
 from solvers.integration import compiled_loop, validation
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
-from solvers.integration.problem import SHORTEST, Problem
+from solvers.integration.problem import SHORTEST, Options, Problem
 from solvers.integration.solution import Status
+from solvers.integration.validation import Values
 
-#: What C answers to a span or state that is not finite.
+#: The result of the C function for a span or state that is not finite.
 NOT_NUMBERS = -1
 
 
@@ -28,11 +28,11 @@ class NotFinishedError(ArithmeticError):
     Attributes
     ----------
     status : Status
-        Why.
+        The reason.
     t : float
-        Where it got to.
+        The time in s that it reached.
     y : tuple of float
-        Its state there.
+        The state there.
     """
 
     def __init__(self, status: Status, t: float, y: tuple[float, ...]) -> None:
@@ -42,7 +42,7 @@ class NotFinishedError(ArithmeticError):
 
 def prepare(
     module: GeneratedModule,
-    params: ArrayLike,
+    params: Values,
     *,
     method: str = "verner87",
     form: str | None = None,
@@ -52,36 +52,37 @@ def prepare(
     max_steps: int = 1_000_000,
     compensated: bool = False,
 ) -> Prepared:
-    """A function ``run((t0, t1), y0)`` that returns the state at t1, compiled now.
+    """Compile a function ``run((t0, t1), y0)`` that returns the state at t1.
 
     Parameters
     ----------
     module : module
         A generated module.
-    params : array_like of shape (parameters,)
-        In the order of ``module.PARAMETERS``.
+    params : array_like of shape (parameters,), or mapping of str to float
+        In the order of ``module.PARAMETERS``, or by name; ``run((t0, t1), y0, params)`` takes
+        others.
     method : str, optional
         One of ``solvers.runge_kutta.catalogue.names()``.
     form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
-        The equations that are integrated, as in `solvers.integration.integrate.integrate`.
+        The form of the equations, as in `solvers.integration.integrate.integrate`.
     rtol, atol : float, optional
-        A step's error in a component may be atol + rtol |y|.
+        The error of a step in a component may be atol + rtol |y|.
     h : float, optional
-        A fixed step in s.
+        A fixed step size in s.
     max_steps : int, optional
-        No motion takes more steps.
+        Largest number of steps of a motion.
     compensated : bool, optional
-        Whether the state's rounding errors are carried along.
+        Whether the rounding errors of the state are compensated.
 
     Returns
     -------
     Prepared
-        Each thread needs one of its own.
+        The function; each thread needs its own.
 
     Raises
     ------
     ValueError
-        When an argument makes no sense, or no compiled loop can do what is asked.
+        When an argument is invalid, or no compiled loop can solve the problem.
     solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
@@ -94,17 +95,16 @@ def prepare(
     >>> end = run((0, 5), (0.1, 0.0, 0.0, 0.0))
     >>> [round(x, 6) for x in end]
     [-0.026553, -0.044719, -0.27311, 0.19133]
+
+    With other parameters:
+
+    >>> on_the_moon = run((0, 5), (0.1, 0.0, 0.0, 0.0), {"g": 1.62})
     """
-
-    def asked(form: str) -> Problem:
-        rest = (0.0,) * len(state_names(module, form))
-        return validation.problem(
-            module, (0.0, 1.0), rest, params, method, form, rtol, atol, h, [], (), max_steps
-        )
-
-    problem, program = compiled_loop.choice(
-        asked, form, "compiled", method, lanes=False, compensated=compensated
+    options = Options(
+        method, form, rtol, atol, h, (), (), max_steps, backend="compiled", compensated=compensated
     )
+    problem = validation.problem_at_rest(module, (0.0, 1.0), options, params)
+    problem, program = compiled_loop.select(problem, lanes=False)
     assert program
     batch = Batch(
         program, problem, problem.form, problem.start[np.newaxis],
@@ -114,78 +114,106 @@ def prepare(
 
 
 class Prepared:
-    """A function that integrates one motion after another: ``run((t0, t1), y0)``.
+    """A function that integrates one motion after another: ``run((t0, t1), y0, params=None)``.
 
-    It takes a time span in s and an ordinary state, and returns the state at the span's end
-    as a tuple. It raises `ValueError` for a span or state that makes no sense and
-    `NotFinishedError` where the motion does not reach its end.
-
-    Parameters
-    ----------
-    once : ctypes function
-        As in `solvers.integration.compiled.kernel.Kernel`.
-    batch : Batch
-        One motion, of which `once` uses the room.
-    problem : Problem
-        What is asked.
+    It takes a time span in s, an ordinary state, and optionally parameters, in order or by name.
+    It returns the state at the end of the time span as a tuple.
     """
 
-    def __init__(self, once: Any, batch: Batch, problem: Problem) -> None:
+    def __init__(self, single: Any, batch: Batch, problem: Problem) -> None:
         self._batch, self._problem = batch, problem
         room = ctypes.c_double * len(problem.start)
         self._start, self._end = room(), room()
-        once.argtypes = [ctypes.c_void_p, *[ctypes.c_double] * 2, *[ctypes.c_void_p] * 2]
-        once.restype = ctypes.c_int64
+        self._defaults, self._has_defaults = problem.form.params, True
+        address = batch.motions["params"].ctypes.data
+        self._params = (ctypes.c_double * len(self._defaults)).from_address(address)
+        single.argtypes = [ctypes.c_void_p, *[ctypes.c_double] * 2, *[ctypes.c_void_p] * 2]
+        single.restype = ctypes.c_int64
         batch.task.time_limit = compiled_loop.PATIENCE
-        self._once, self._task = once, ctypes.addressof(batch.task)
+        self._single, self._task = single, ctypes.addressof(batch.task)
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
 
-    def __call__(self, t_span: tuple[float, float], y0: Sequence[float]) -> tuple[float, ...]:
-        """The state at the end of `t_span` of the motion that begins with `y0`."""
+    def __call__(
+        self,
+        t_span: tuple[float, float],
+        y0: Sequence[float] | Mapping[str, float],
+        params: Sequence[float] | Mapping[str, float] | None = None,
+    ) -> tuple[float, ...]:
+        """The state at the end of `t_span` of the motion that starts with `y0`.
+
+        Parameters
+        ----------
+        t_span : pair of float
+            Start and end in s.
+        y0 : sequence of float, or mapping of str to float
+            The initial state.
+        params : sequence of float, or mapping of str to float, optional
+            Parameters of this motion; by default those given to `prepare`.
+
+        Returns
+        -------
+        tuple of float
+            The state.
+
+        Raises
+        ------
+        ValueError
+            When an argument is invalid.
+        NotFinishedError
+            When the motion does not reach the end of `t_span`.
+        """
+        if params is not None or not self._has_defaults:
+            self._set_params(params)
         try:
             begin, end = t_span
-            self._start[:] = list(y0)
+            self._start[:] = list(y0)  # type: ignore[arg-type]
         except (TypeError, ValueError):
-            self._refuse(t_span, y0)
-            raise
+            begin, end = validation.time_span(t_span)
+            self._start[:] = self._checked(y0)
         if begin == end:
-            self._refuse(t_span, y0)
-            return tuple(self._start)
+            validation.time_span(t_span)
+            return tuple(self._checked(self._start))
         h = self._problem.h
         try:
             if h is not None and h < SHORTEST * ulp(max(abs(begin), abs(end))):
-                validation.step(h, t_span)
-            code = self._once(self._task, begin, end, self._from, self._to)
+                validation.step_size(h, t_span)
+            code = self._single(self._task, begin, end, self._from, self._to)
         except (ctypes.ArgumentError, TypeError):
             code = NOT_NUMBERS
         if code == NOT_NUMBERS:
-            self._refuse(t_span, y0)
+            validation.time_span(t_span)
+            self._checked(self._start)
         while STATUSES[code] is None:
-            code = self._once(self._task, begin, end, None, self._to)
+            code = self._single(self._task, begin, end, None, self._to)
         y, status = tuple(self._end), STATUSES[code]
         if status is not Status.FINISHED:
             assert status is not None
             raise NotFinishedError(status, float(self._batch.motions["t"][0]), y)
         return y
 
+    def _set_params(self, params: Sequence[float] | Mapping[str, float] | None) -> None:
+        module, values = self._problem.form.module, self._defaults if params is None else params
+        self._params[:] = validation.parameters(module, values).tolist()
+        self._has_defaults = params is None
+
+    def _checked(self, y0: Any) -> list[Any]:
+        """An initial state, checked."""
+        form = self._problem.form
+        return validation.initial_state(form.module, y0, form.name).tolist()
+
     @property
     def steps(self) -> int:
-        """Steps of the last motion."""
+        """Accepted steps of the last motion."""
         return int(self._batch.motions["steps"][0])
 
     @property
     def nfev(self) -> int:
-        """Right-hand sides that the last motion evaluated."""
+        """Evaluations of the right-hand side by the last motion."""
         return int(self._batch.nfev[0])
-
-    def _refuse(self, t_span: tuple[float, float], y0: Sequence[float]) -> None:
-        """Raise for what makes no sense in a span or a state."""
-        validation.time_span(t_span)
-        validation.numbers("y0", y0, self._problem.form.ordinary)
 
 
 def no_compiler(module: GeneratedModule) -> str:
-    """Why what takes very many steps cannot be compiled; empty if it can."""
+    """The compiler's message if no loop can be compiled for `module`; empty if one can."""
     try:
         prepare(module, module.DEFAULTS)
     except NoCompilerError as error:

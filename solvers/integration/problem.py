@@ -1,48 +1,66 @@
-"""An integration that makes sense, ready to be run."""
+"""Options of an integration, the problem built from them, and its outcome."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from solvers.equations.forms import Form
+from solvers.equations.forms import Form, fastest_form
 from solvers.integration.solution import Status
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
-#: The shortest step, in parts of the time's last digit: below it a shorter step rounds to itself.
+#: The shortest step, in units of the spacing of floating-point times.
 SHORTEST = 10
 EventFunction = Callable[[float, Array], float]
 
 
 @dataclass(frozen=True)
+class Options:
+    """Options of `integrate`, `ensemble` and `prepare`, before any check; documented there."""
+
+    method: str = "verner87"
+    form: str | None = None
+    rtol: float = 1e-9
+    atol: ArrayLike = 1e-12
+    h: float | None = None
+    t_eval: ArrayLike | None = None
+    events: EventFunction | Sequence[EventFunction] = ()
+    max_steps: int = 1_000_000
+    backend: str | None = None
+    compensated: bool = False
+
+
+@dataclass(frozen=True)
 class Problem:
-    """What is integrated, how, and what is wanted of it.
+    """A valid integration problem; `solvers.integration.validation.problem` builds it.
 
     Attributes
     ----------
     form : Form
         The equations, with parameters.
     method : Tableau or str
-        One of ours, or the name of one of SciPy's.
+        A tableau, or the name of a method of SciPy.
     span : pair of float
-        Beginning and end.
+        Start and end in s.
     start : ndarray of shape (state,)
-        Coordinates and velocities at the beginning.
+        Coordinates and velocities at the start.
     h : float or None
-        Length of fixed steps.
+        The fixed step size in s; None where steps are controlled.
     rtol, atol : float and ndarray
-        Tolerances of steps that are controlled.
+        Tolerances of controlled steps; 0 for fixed steps.
     samples : ndarray or None
-        Times that are wanted; the end of every step if None.
+        Times of the states to record; None for the end of every step.
     events : list of callable
-        What to watch.
+        Functions whose zeros are located.
     max_steps : int
-        How many steps may be taken.
+        Largest number of steps.
+    options : Options
+        The options as given.
     """
 
     form: Form
@@ -55,18 +73,43 @@ class Problem:
     samples: Array | None
     events: list[EventFunction]
     max_steps: int
+    options: Options
+
+    def with_form(self, name: str) -> Problem:
+        """The same problem in another form with the same ordinary state."""
+        return replace(self, form=Form(self.form.module, name, self.form.params))
+
+    def in_fastest_form(self) -> Problem:
+        """The problem in the form that a compiled loop runs fastest, unless a form is given."""
+        is_free = self.options.form is None and self.tableau.is_explicit
+        return self.with_form(fastest_form(self.form.module)) if is_free else self
+
+    @property
+    def tableau(self) -> Tableau:
+        """The method, which is not one of SciPy."""
+        assert isinstance(self.method, Tableau)
+        return self.method
+
+    @property
+    def backend(self) -> str | None:
+        """The required backend, ``compiled`` or ``python``; None for any."""
+        return "compiled" if self.options.compensated else self.options.backend
 
     @property
     def controller(self) -> Controller | None:
-        """What controls the steps, with nothing behind it yet."""
-        assert isinstance(self.method, Tableau)
+        """A new step size controller; None for fixed steps."""
         if self.h is not None:
             return None
-        return Controller(self.method.error_order, self.rtol, self.atol)
+        return Controller(self.tableau.error_order, self.rtol, self.atol)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the components of an ordinary state, in their order."""
+        return {name: self.form.module.UNITS[name] for name in self.form.ordinary}
 
     @property
     def tolerance(self) -> float:
-        """The largest error, absolute or relative, that a step may have."""
+        """The larger of the relative and absolute tolerances."""
         return max(self.rtol, float(self.atol.max()))
 
     @property
@@ -79,15 +122,15 @@ class Problem:
 
 @dataclass
 class Outcome:
-    """What a run has found so far.
+    """The results of a run so far.
 
-    Its fields are those of `Solution`; times and states are kept in blocks, of shape
+    Its fields are those of `Solution`; times and states are stored in blocks, of shape
     (rows,) and (rows, state), events as lists.
 
     Attributes
     ----------
     end : pair of float and ndarray
-        Time in s and ordinary state up to which it has come.
+        Time in s and ordinary state reached.
     t_events, y_events : list of list
         Times in s and ordinary states, a list for each event.
     t, y : list of ndarray
@@ -95,7 +138,7 @@ class Outcome:
     status, nfev, njev, steps, rejected
         As in `Solution`.
     backend : str
-        What runs it, and by which compiler.
+        The backend, and its compiler.
     """
 
     end: tuple[float, Array]
@@ -112,15 +155,12 @@ class Outcome:
 
     @classmethod
     def at_start(cls, problem: Problem) -> Outcome:
-        """Nothing but the beginning."""
-        nothing: tuple[list[list[float]], list[list[Array]]] = (
-            [[] for _ in problem.events],
-            [[] for _ in problem.events],
-        )
-        return cls((problem.span[0], problem.start), *nothing)
+        """The outcome before the first step."""
+        events = problem.events
+        return cls((problem.span[0], problem.start), [[] for _ in events], [[] for _ in events])
 
     def rows(self) -> tuple[Array, Array]:
         """All times, and all states in rows."""
         y = np.concatenate([np.empty((0, len(self.end[1]))), *self.y])
-        # an interruption may come when times are kept and their states are not yet
+        # an interruption may come after times are stored and before their states are
         return np.concatenate([np.empty(0), *self.t])[: len(y)], y

@@ -1,27 +1,22 @@
-"""Any of our methods, step by step in Python. Compiled loops agree with it."""
+"""Integration in Python by the methods of `solvers.runge_kutta`; compiled loops agree with it."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solvers.integration.attempt import FAILURES, Accepted, Attempts, Point, Rejected
 from solvers.integration.problem import SHORTEST, Outcome, Problem
-from solvers.integration.recorder import Record
+from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Status
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
-from solvers.runge_kutta.tableau import Tableau
 
-Array = NDArray[np.float64]
-
-#: How often a step is cut to a quarter because a stage fails, before the run stops.
-MOST_CUTS = 25
+#: Most successive failures of a step, each of which divides its size by four.
+MOST_FAILURES = 25
 
 
 def run(problem: Problem, outcome: Outcome) -> None:
-    """Integrate `problem`, keeping in `outcome` what is found as it is found."""
-    assert isinstance(problem.method, Tableau)
-    form = problem.form
-    stepper = Stepper(problem.method, form.rhs, form.jacobian)
+    """Integrate `problem`; `outcome` holds the results so far at any time."""
+    stepper = Stepper(problem.tableau, problem.form.rhs, problem.form.jacobian)
     try:
         outcome.status = _run(problem, outcome, stepper)
     finally:
@@ -29,71 +24,65 @@ def run(problem: Problem, outcome: Outcome) -> None:
 
 
 def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
-    form, controller = problem.form, problem.controller
-    record = Record(problem, outcome)
-    begin, end = problem.span
-    direction = np.sign(end - begin)
-    t, z = begin, form.from_ordinary(begin, record.place)
-    if t == end:
+    recorder, (begin, end) = Recorder(problem, outcome), problem.span
+    if begin == end:
         return Status.FINISHED
+    attempts = Attempts(stepper, problem.controller, problem.form.normalised)
+    y = problem.form.from_ordinary(begin, recorder.y)
     try:
-        first = stepper.derivative(t, z)
+        point = Point(begin, y, stepper.derivative(begin, y))
     except NotFiniteError:
         return Status.NOT_FINITE
-    shortest = SHORTEST * float(np.spacing(max(abs(t), abs(end))))
-    cuts = 0
-    if controller is None:
-        assert problem.h is not None
-        size = problem.h
-    else:
-        guess = controller.first_step(stepper.derivative, t, z, first, end - t)
-        size = max(guess, 2 * shortest)
-    while t != end:
+    shortest = SHORTEST * float(np.spacing(max(abs(begin), abs(end))))
+    h, failures = _first_step_size(problem, attempts, point, shortest), 0
+    while point.t != end:
         if outcome.steps == problem.max_steps:
             return Status.STEP_LIMIT
-        aim = t + size * direction
-        if controller is None:  # fixed steps are counted, so that their ends do not drift
-            aim = begin + (outcome.steps + 1) * size * direction
-        if (end - aim) * direction < 1e-9 * size:
-            aim = end
-        if abs(aim - t) < shortest and aim != end:
+        t = _step_end(problem, point.t, h, outcome.steps)
+        if abs(t - point.t) < shortest and t != end:
             return Status.STEP_TOO_SMALL
-        try:
-            z_end, error, last = stepper.step(t, z, aim - t, first)
-            norm = 0.0 if controller is None else controller.norm(error, z, z_end)
-            z_end = form.normalised(z_end)
-            if not np.isfinite(z_end).all() or not np.isfinite(norm):
-                raise NotFiniteError("the state is not finite")
-            stop = False
-            if norm <= 1:
-                following = first if last is None else last
-                if last is None and aim != end:  # the end of the run needs no slope
-                    following = stepper.derivative(aim, z_end)
-
-                def inside(
-                    time: float, t: float = t, z: Array = z, first: Array = first,
-                    aim: float = aim, z_end: Array = z_end,
-                ) -> Array:  # fmt: skip
-                    if time == aim:
-                        return z_end
-                    return form.normalised(stepper.step(t, z, time - t, first)[0])
-
-                stop = record.advance(aim, inside)
-        except (NotFiniteError, NoConvergenceError) as failure:
-            outcome.rejected, cuts = outcome.rejected + 1, cuts + 1
-            if controller is None or cuts > MOST_CUTS:
-                lost = isinstance(failure, NoConvergenceError)
-                return Status.NO_CONVERGENCE if lost else Status.NOT_FINITE
-            size = abs(aim - t) / 4
+        trial, stops = _step(attempts, recorder, point, t, is_last=t == end)
+        if isinstance(trial, Rejected):
+            outcome.rejected, h = outcome.rejected + 1, trial.h
+            failures += trial.failure is not None
+            if trial.failure and (attempts.controller is None or failures > MOST_FAILURES):
+                unsolved = isinstance(trial.failure, NoConvergenceError)
+                return Status.NO_CONVERGENCE if unsolved else Status.NOT_FINITE
             continue
-        if norm > 1 and controller is not None:
-            outcome.rejected += 1
-            size = abs(aim - t) * controller.factor(norm)
-            continue
-        outcome.steps, cuts = outcome.steps + 1, 0
-        if stop:
+        outcome.steps, failures = outcome.steps + 1, 0
+        if stops:
             return Status.EVENT
-        t, z, first = aim, z_end, following
-        if controller is not None:
-            size *= controller.factor(norm)
+        point = trial.end
+        if attempts.controller:
+            h *= attempts.controller.factor(trial.norm)
     return Status.FINISHED
+
+
+def _step(
+    attempts: Attempts, recorder: Recorder, start: Point, t: float, *, is_last: bool
+) -> tuple[Accepted | Rejected, bool]:
+    """An attempt at a step to `t`, recorded if accepted, and whether an event ends the run."""
+    h = abs(t - start.t)
+    trial = attempts.attempt(start, t, h, is_last=is_last)
+    try:
+        return trial, isinstance(trial, Accepted) and recorder.advance(t, trial.state)
+    except FAILURES as failure:
+        return Rejected.failed(h, failure), False
+
+
+def _first_step_size(problem: Problem, attempts: Attempts, point: Point, shortest: float) -> float:
+    if attempts.controller is None:
+        assert problem.h is not None
+        return problem.h
+    slope, duration = attempts.stepper.derivative, problem.span[1] - point.t
+    guess = attempts.controller.first_step(slope, point.t, point.y, point.derivative, duration)
+    return max(guess, 2 * shortest)
+
+
+def _step_end(problem: Problem, t: float, h: float, steps: int) -> float:
+    """The end of a step of size `h` from `t`: the end of the time span where that is near."""
+    begin, end = problem.span
+    direction = np.sign(end - begin)
+    # fixed steps are counted, so that their ends do not drift
+    aim = t + h * direction if problem.h is None else begin + (steps + 1) * h * direction
+    return end if (end - aim) * direction < 1e-9 * h else aim

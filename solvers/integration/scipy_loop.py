@@ -1,15 +1,16 @@
-"""SciPy's own methods, on our forms and with our samples, events and statuses."""
+"""Integration by SciPy's methods, with the samples, events and statuses of this package."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import integrate
 
 from solvers.integration.problem import Outcome, Problem
-from solvers.integration.recorder import Record
+from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Status
 from solvers.runge_kutta.stepper import NotFiniteError
 
@@ -17,63 +18,61 @@ Array = NDArray[np.float64]
 
 
 def run(problem: Problem, outcome: Outcome) -> None:
-    """Integrate `problem` by a solver of SciPy's, keeping in `outcome` what is found."""
-    form, (begin, end) = problem.form, problem.span
-    record = Record(problem, outcome)
+    """Integrate `problem`; `outcome` holds the results so far at any time."""
     outcome.backend = "scipy"
-    if begin == end:
-        outcome.status = Status.FINISHED
-        return
+    try:
+        outcome.status = _run(problem, outcome, Recorder(problem, outcome))
+    except NotFiniteError:
+        outcome.status = Status.NOT_FINITE
+
+
+def _run(problem: Problem, outcome: Outcome, recorder: Recorder) -> Status:
+    if problem.span[0] == problem.span[1]:
+        return Status.FINISHED
+    solver = _solver(problem, outcome, recorder.y)
+    while solver.status == "running":
+        if outcome.steps == problem.max_steps:
+            return Status.STEP_LIMIT
+        solver.step()
+        if solver.status == "failed":
+            return Status.STEP_TOO_SMALL
+        outcome.steps += 1
+        if recorder.advance(solver.t, _state_within(problem, solver)):
+            return Status.EVENT
+    return Status.FINISHED
+
+
+def _solver(problem: Problem, outcome: Outcome, y0: Array) -> integrate.OdeSolver:
+    form, method, (begin, end) = problem.form, problem.method, problem.span
 
     def rhs(t: float, z: Array) -> Array:
         outcome.nfev += 1
-        # SciPy's solvers would go on for ever, or succeed, with what is not a number
         return _finite(form.rhs, t, z)
 
     def jacobian(t: float, z: Array) -> Array:
         outcome.njev += 1
         return _finite(form.jacobian, t, z)
 
-    method = problem.method
-    takes_jacobian = form.has_jacobian and method in ("Radau", "BDF", "LSODA")
-    implicit = {"jac": jacobian} if takes_jacobian else {}
-    try:
-        solver = getattr(integrate, str(method))(
-            rhs, begin, form.from_ordinary(begin, record.place), end,
-            rtol=problem.rtol, atol=problem.atol, **implicit,
-        )  # fmt: skip
-        while solver.status == "running":
-            if outcome.steps == problem.max_steps:
-                outcome.status = Status.STEP_LIMIT
-                return
-            solver.step()
-            if solver.status == "failed":
-                outcome.status = Status.STEP_TOO_SMALL
-                return
-            outcome.steps += 1
-            if record.advance(solver.t, _within(problem, solver)):
-                outcome.status = Status.EVENT
-                return
-    except NotFiniteError:
-        outcome.status = Status.NOT_FINITE
-        return
-    outcome.status = Status.FINISHED
+    options = {"rtol": problem.rtol, "atol": problem.atol}
+    if form.has_jacobian and method in ("Radau", "BDF", "LSODA"):
+        options["jac"] = jacobian
+    return getattr(integrate, str(method))(
+        rhs, begin, form.from_ordinary(begin, y0), end, **options
+    )
 
 
-def _within(problem: Problem, solver: integrate.OdeSolver) -> Callable[[float], Array]:
-    dense: list[Callable[[float], Array]] = []
+def _state_within(problem: Problem, solver: integrate.OdeSolver) -> Callable[[float], Array]:
+    dense_output = cache(solver.dense_output)  # it may cost evaluations
 
-    def inside(time: float) -> Array:
-        if time == solver.t:
-            return problem.form.normalised(solver.y)
-        if not dense:  # it may cost evaluations
-            dense.append(solver.dense_output())
-        return problem.form.normalised(dense[0](time))
+    def state(time: float) -> Array:
+        z = solver.y if time == solver.t else dense_output()(time)
+        return problem.form.normalised(z)
 
-    return inside
+    return state
 
 
 def _finite(function: Callable[[float, Array], Array], t: float, z: Array) -> Array:
+    """The value of `function`; SciPy would not end, or report success, with NaN or infinity."""
     try:
         value = function(t, z)
     except ArithmeticError as error:

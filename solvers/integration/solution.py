@@ -1,47 +1,43 @@
-"""What an integration returns."""
+"""The result of an integration."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from solvers.io.xarray_dataset import dataset
 
 Array = NDArray[np.float64]
 
 
 class Status(Enum):
-    """How an integration ended.
+    """How an integration ended; the value is a sentence."""
 
-    Examples
-    --------
-    >>> import generated.single_pendulum as sp
-    >>> from solvers import Status, integrate
-    >>> integrate(sp, (0, 5), (0.5, 0), sp.DEFAULTS).status is Status.FINISHED
-    True
-    """
-
-    FINISHED = "the end of the time span was reached"
-    EVENT = "an event that ends the integration occurred"
-    STEP_LIMIT = "the number of steps was used up; go on from the last state"
+    FINISHED = "the integration reached the end of the time span"
+    EVENT = "a terminal event occurred"
+    STEP_LIMIT = "the maximum number of steps was reached; resume from the last state"
     NOT_FINITE = "the right-hand side or the state was not finite in the next step"
-    STEP_TOO_SMALL = "the step fell below the resolution of the time: a singularity, most likely"
-    INTERRUPTED = "it was interrupted; go on from the last state"
-    UNSTABLE = "the fixed step is too long: small deviations explode"
+    STEP_TOO_SMALL = "the step size fell below the resolution of time, probably at a singularity"
+    INTERRUPTED = "the integration was interrupted; resume from the last state"
+    UNSTABLE = "the fixed step size is too large: small deviations grow exponentially"
     NO_CONVERGENCE = "the stage equations of the next step could not be solved"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solution:
     """An integrated motion, with the field names of SciPy's ``solve_ivp``.
 
     Attributes
     ----------
     t : ndarray of shape (n,)
-        Times in s: those asked for, or the beginning and every step's end.
+        Times in s: those requested, or the start and every step's end.
     y : ndarray of shape (state, n)
-        Coordinates and velocities at these times, whatever form was integrated; of the
+        Coordinates and velocities at these times, whatever form was integrated; in the
         variational form with their small changes below.
     t_events, y_events : list of ndarray
         Times in s and states, the latter of shape (occurrences, state), of each event.
@@ -52,23 +48,27 @@ class Solution:
     message : str
         The same in words, with time and state where it ended early.
     steps, rejected : int
-        Steps taken, and steps tried in vain.
+        Accepted and rejected steps.
     energy : ndarray of shape (n,) or None
-        Energy in J at these times, where asked for.
+        Energy in J at these times, if requested.
     run : str
-        Method, form, step control, and what ran it.
+        Method, form, step control, and backend.
     backend : str
         ``compiled``, ``python`` or ``scipy``.
     end : pair of float and ndarray
-        Time in s and state where it ended, from which another integration can go on.
+        Time in s and state where it ended, from which another integration can resume.
+    units : dict of str to str
+        Units of the components of the state, in their order.
 
     Examples
     --------
     >>> import generated.single_pendulum as sp
     >>> from solvers import integrate
-    >>> motion = integrate(sp, (0, 5), (0.5, 0), sp.DEFAULTS, t_eval=[0, 2.5, 5])
-    >>> motion.y.shape, motion.success
-    ((2, 3), True)
+    >>> integrate(sp, (0, 1), {"theta": 0.1}, sp.DEFAULTS, method="rk4", h=0.01, backend="python")
+    Solution: the integration reached the end of the time span
+      t = 0 to 1 s, 101 times, 100 steps, 0 rejected
+      Classical fourth order, lagrangian form, h = 0.01, python
+      final state: theta = -0.0599313 rad, theta_dot = -0.177191 rad/s
     """
 
     t: Array
@@ -85,87 +85,69 @@ class Solution:
     backend: str
     energy: Array | None
     end: tuple[float, Array]
+    units: Mapping[str, str]
 
     @property
     def success(self) -> bool:
-        """Whether it reached the end, or an event that was to end it."""
+        """Whether it reached the end, or a terminal event."""
         return self.status in (Status.FINISHED, Status.EVENT)
 
-
-@dataclass(frozen=True)
-class Ensemble:
-    """Where many motions ended, and what they passed.
-
-    Attributes
-    ----------
-    t : ndarray of shape (n,)
-        When each motion ended.
-    y : ndarray of shape (n, state)
-        Where: coordinates and velocities.
-    growth : ndarray of shape (n,)
-        Of the variational form, natural logarithms of how many times as long the small change
-        is at the end as it was at the beginning, however large; else NaN.
-    samples : ndarray of shape (n, state, times)
-        States at the times asked for; NaN after a motion's end.
-    t_events : ndarray of shape (n, events, occurrences)
-        Times of the first occurrences of each event; NaN where there were fewer.
-    y_events : ndarray of shape (n, events, occurrences, state)
-        States at these times.
-    occurred : ndarray of shape (n, events)
-        How often each event occurred.
-    status : ndarray of shape (n,)
-        How each ended, a `Status`.
-    steps, rejected, nfev : ndarray of shape (n,)
-        Steps taken, steps tried in vain, evaluations of the right-hand side.
-    run : str
-        Method, form, step control, and what ran it.
-
-    Examples
-    --------
-    >>> import generated.single_pendulum as sp
-    >>> from solvers import ensemble
-    >>> motions = ensemble(sp, (0, 5), [(0.5, 0), (1.0, 0)], sp.DEFAULTS)
-    >>> motions.y.shape, {status.name for status in motions.status}
-    ((2, 2), {'FINISHED'})
-    """
-
-    t: Array
-    y: Array
-    growth: Array
-    samples: Array
-    t_events: Array
-    y_events: Array
-    occurred: NDArray[np.int64]
-    status: NDArray[np.object_]
-    steps: NDArray[np.int64]
-    rejected: NDArray[np.int64]
-    nfev: NDArray[np.int64]
-    run: str
-
-    @classmethod
-    def unknown(
-        cls, n: int, state: int, times: int, events: int, occurrences: int, run: str
-    ) -> Ensemble:
-        """An ensemble of `n` motions of which nothing is known yet."""
-        return cls(
-            np.full(n, np.nan),
-            np.full((n, state), np.nan),
-            np.full(n, np.nan),
-            np.full((n, state, times), np.nan),
-            np.full((n, events, occurrences), np.nan),
-            np.full((n, events, occurrences, state), np.nan),
-            np.zeros((n, events), np.int64),
-            np.full(n, Status.INTERRUPTED, object),
-            np.zeros(n, np.int64),
-            np.zeros(n, np.int64),
-            np.zeros(n, np.int64),
-            run,
+    def __repr__(self) -> str:
+        t_end, y_end = self.end
+        t_start = f"{self.t[0]:.6g} to " if len(self.t) else ""
+        return (
+            f"Solution: {self.status.value}\n"
+            f"  t = {t_start}{t_end:.6g} s, {len(self.t)} times, {self.steps} steps, "
+            f"{self.rejected} rejected\n"
+            f"  {self.run}\n"
+            f"  final state: {_named(self.units, y_end)}"
         )
 
-    @property
-    def success(self) -> NDArray[np.bool_]:
-        """Which motions reached the end, or an event that was to end them."""
-        return np.asarray((self.status == Status.FINISHED) | (self.status == Status.EVENT))
+    def to_table(self) -> dict[str, Array]:
+        """Time, components and energy as columns, as ``pandas.DataFrame`` takes them.
+
+        Returns
+        -------
+        dict of str to ndarray of shape (n,)
+            ``t``, each component of the state, and ``energy`` if requested.
+
+        Examples
+        --------
+        >>> import generated.single_pendulum as sp
+        >>> from solvers import integrate
+        >>> solution = integrate(sp, (0, 1), {"theta": 0.1}, sp.DEFAULTS, energy=True)
+        >>> list(solution.to_table())
+        ['t', 'theta', 'theta_dot', 'energy']
+        """
+        table = {"t": self.t, **dict(zip(self.units, self.y, strict=True))}
+        return table if self.energy is None else {**table, "energy": self.energy}
+
+    def to_xarray(self) -> Any:
+        """The motion as a dataset with named variables and units.
+
+        Returns
+        -------
+        xarray.Dataset
+            A variable for each component of the state, and ``energy`` if requested, along the
+            dimension ``t``.
+
+        Raises
+        ------
+        ImportError
+            When xarray is not installed: it comes with the extra ``xarray``.
+        """
+        units = {**self.units, "energy": "J"}
+        columns = self.to_table()
+        t = columns.pop("t")
+        variables = {name: ("t", y, {"units": units[name]}) for name, y in columns.items()}
+        about = {"run": self.run, "status": self.status.name, "message": self.message}
+        return dataset(variables, {"t": ("t", t, {"units": "s"})}, about)
+
+
+def _named(units: Mapping[str, str], values: Iterable[float]) -> str:
+    """Components with their names and units."""
+    parts = (f"{n} = {y:.6g} {u}" for (n, u), y in zip(units.items(), values, strict=True))
+    return ", ".join(map(str.rstrip, parts))
 
 
 class Interrupted(KeyboardInterrupt):
@@ -174,9 +156,9 @@ class Interrupted(KeyboardInterrupt):
     Attributes
     ----------
     solution
-        What was computed before.
+        The results up to then.
     """
 
     def __init__(self, solution: object) -> None:
-        super().__init__("interrupted; its attribute `solution` holds what was computed")
+        super().__init__("interrupted; its attribute `solution` holds the results so far")
         self.solution = solution

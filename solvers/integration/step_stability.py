@@ -1,4 +1,4 @@
-"""Whether fixed steps are short enough: growth of small deviations by the stability function."""
+"""The stability of fixed steps: growth of small deviations by the stability function."""
 
 from __future__ import annotations
 
@@ -10,30 +10,23 @@ from solvers.integration.problem import Problem
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.tableau import Tableau
 
-Array = NDArray[np.float64]
+Rates = NDArray[np.complex128]
 
-#: Deviations may be multiplied by so much over a run, and a run is called unstable from here on.
+#: Growth of deviations over a run that is tolerable, and from which on a run is unstable.
 TOLERABLE, UNSTABLE = 10.0, 1e3
 
 
 def step_instability(problem: Problem, failed: bool) -> str:
-    """What is wrong with the step of a run, with the last good time and the longest good step.
+    """A description of the instability of a run with fixed steps; empty if there is none.
 
-    Empty if nothing is, if steps are controlled, or if the module has no Jacobian. The
-    modes are those of the equations linearised where the run begins; modes that grow by
-    themselves are left out. A run that failed is blamed on less growth than another.
-
-    Parameters
-    ----------
-    problem : Problem
-        What was run.
-    failed : bool
-        Whether it came upon numbers that are not finite.
+    The modes are those of the equations linearised at the start; modes that grow by themselves
+    are left out. For a run that `failed`, with numbers that are not finite, less growth suffices.
 
     Returns
     -------
     str
-        A sentence without a full stop, with times and steps in s.
+        The time until which the run is good, and the largest stable step size. Empty if steps are
+        controlled, or if the module has no Jacobian.
     """
     method, h, module = problem.method, problem.h, problem.form.module
     if h is None or not isinstance(method, Tableau) or not has_function(module, "jacobian"):
@@ -55,25 +48,23 @@ def step_instability(problem: Problem, failed: bool) -> str:
     if growth <= np.log(TOLERABLE if failed else UNSTABLE):
         return ""
     until = begin + (end - begin) * np.log(TOLERABLE) / growth
-    longest = _longest(function, rates, h, duration)
+    largest = _largest(function, rates, h, duration)
     return (
         f"h = {h} multiplies small deviations by ten in {np.log(10) * duration / growth:.3g} s: "
-        f"good up to t = {until:.6g}; over this time span h may be at most {longest:.3g}"
+        f"good up to t = {until:.6g}; over this time span h may be at most {largest:.3g}"
     )
 
 
-def _growth(function: StabilityFunction, rates: NDArray[np.complex128], h: float) -> float:
-    """The largest exponent, a second, with which a step of h lets a mode grow."""
+def _growth(function: StabilityFunction, rates: Rates, h: float) -> float:
+    """The largest growth rate of a mode, in 1/s, with steps of size h."""
     return float(np.log(np.max(np.abs(function(h * rates)), initial=1.0)) / h)
 
 
-def _longest(
-    function: StabilityFunction, rates: NDArray[np.complex128], h: float, duration: float
-) -> float:  # fmt: skip
-    """The longest step below h that keeps deviations tolerable."""
-    short, long = 0.0, h
+def _largest(function: StabilityFunction, rates: Rates, h: float, duration: float) -> float:
+    """The largest step size below h with tolerable growth of deviations."""
+    small, large = 0.0, h
     for _ in range(60):
-        middle = (short + long) / 2
+        middle = (small + large) / 2
         tolerable = _growth(function, rates, middle) * duration <= np.log(TOLERABLE)
-        short, long = (middle, long) if tolerable else (short, middle)
-    return short
+        small, large = (middle, large) if tolerable else (small, middle)
+    return small

@@ -1,4 +1,4 @@
-"""One run, measured: where it ends, and what it costs; and costs between runs."""
+"""Timed runs: the end and the cost of an integration, and costs between runs."""
 
 from __future__ import annotations
 
@@ -11,30 +11,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration import python_loop, scipy_loop, validation
+from solvers.integration import loops, validation
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.problem import Outcome, Problem
+from solvers.integration.problem import Options, Outcome, Problem
 from solvers.integration.solution import Status
-from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
 
-#: No run takes more steps than this.
+#: Largest number of steps of a timed run.
 MOST_STEPS = 10**8
-#: A run is timed until so many seconds have passed.
+#: Seconds for which a short run is repeated.
 SECONDS = 0.01
 
 
 @dataclass(frozen=True)
 class TimedRun:
-    """What a run costs.
+    """The end and the cost of a run.
 
     Attributes
     ----------
     work_seconds : float
-        Its time, with preparation left out: the median of several runs if it is short.
+        Its time without preparation: the median of several runs if it is short.
     work_rhs, steps : int
-        Right-hand sides evaluated, and steps taken.
+        Evaluations of the right-hand side, and accepted steps.
     end : ndarray of shape (state,)
         The ordinary state at its end.
     """
@@ -46,10 +45,18 @@ class TimedRun:
 
 
 def timed_run(
-    module: GeneratedModule, params: Sequence[float], y0: Sequence[float], duration: float,
-    *, method: str, form: str, backend: str, rtol: float = 0.0, h: float | None = None,
-) -> TimedRun | None:  # fmt: skip
-    """Run and time a motion from time 0; None if it does not reach its end.
+    module: GeneratedModule,
+    params: Sequence[float],
+    y0: Sequence[float],
+    duration: float,
+    *,
+    method: str,
+    form: str,
+    backend: str,
+    rtol: float = 0.0,
+    h: float | None = None,
+) -> TimedRun | None:
+    """Integrate and time a motion from time 0; None if it does not reach its end.
 
     Parameters
     ----------
@@ -58,11 +65,11 @@ def timed_run(
     duration : float
         In s.
     backend : {"compiled", "python", "scipy"}
-        Where it runs. Of the last two the method decides: ours run in Python.
+        The backend; the method decides between the last two.
     rtol : float
         Relative and absolute tolerance.
     h : float, optional
-        A fixed step in s instead.
+        A fixed step size in s instead.
 
     Returns
     -------
@@ -71,7 +78,7 @@ def timed_run(
     Raises
     ------
     ValueError
-        When an argument makes no sense.
+        When an argument is invalid.
     solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
@@ -88,12 +95,11 @@ def timed_run(
         except NotFinishedError:
             return None
         return TimedRun(median_seconds(lambda: run(span, y0)), run.nfev, run.steps, np.array(end))
-    problem = validation.problem(
-        module, span, y0, params, method, form, rtol, rtol, h, span[1:], (), MOST_STEPS
-    )
-    before = time.perf_counter()
+    options = Options(method, form, rtol, rtol, h, t_eval=span[1:], max_steps=MOST_STEPS)
+    problem = validation.problem(module, span, y0, params, options)
+    start = time.perf_counter()
     outcome = _outcome(problem)
-    first = time.perf_counter() - before
+    first = time.perf_counter() - start
     if outcome.status is not Status.FINISHED:
         return None
     _, rows = outcome.rows()
@@ -103,8 +109,7 @@ def timed_run(
 
 def _outcome(problem: Problem) -> Outcome:
     outcome = Outcome.at_start(problem)
-    rung = python_loop if isinstance(problem.method, Tableau) else scipy_loop
-    rung.run(problem, outcome)
+    loops.run(problem, outcome)
     return outcome
 
 
@@ -120,18 +125,18 @@ def median_seconds(run: Callable[[], object]) -> float:
 
 
 def work_at(error: float, errors: Sequence[float], works: Sequence[float]) -> float:
-    """Work for an error, between runs from cheap to dear, on logarithmic scales; NaN beyond them.
+    """The work for an error, interpolated on logarithmic scales; NaN outside of the runs.
 
-    An error that a dearer run exceeds again was luck: each run counts with the largest
-    error from there on. Where rounding makes errors grow again, the curve ends: with the
-    two neighbours of which the worse is best.
+    Each run counts with the largest error of it and of all runs with more work: a smaller error
+    at less work is a coincidence. Where rounding makes errors grow again, the curve ends: with
+    the pair of neighbours whose larger error is least.
 
     Parameters
     ----------
     error : float
-        For which work is wanted.
+        The error.
     errors, works : sequence of float
-        What each run misses, and what it costs, from cheap to dear; all positive.
+        Error and work of each run, in the order of increasing work; all positive.
 
     Returns
     -------
@@ -141,14 +146,14 @@ def work_at(error: float, errors: Sequence[float], works: Sequence[float]) -> fl
     if not errors:
         return float("nan")
     last = least_pair(errors) + 1
-    honest = np.maximum.accumulate(list(errors[:last])[::-1])
-    if not honest[0] <= error <= honest[-1]:
+    monotonic = np.maximum.accumulate(list(errors[:last])[::-1])
+    if not monotonic[0] <= error <= monotonic[-1]:
         return float("nan")
-    found = np.interp(np.log(error), np.log(honest), np.log(list(works[:last])[::-1]))
-    return float(np.exp(found))
+    logarithm = np.interp(np.log(error), np.log(monotonic), np.log(list(works[:last])[::-1]))
+    return float(np.exp(logarithm))
 
 
 def least_pair(errors: Sequence[float]) -> int:
-    """The last run of the two neighbours of which the worse is best."""
-    worse = [max(pair) for pair in pairwise(errors)]
-    return len(worse) - int(np.argmin(worse[::-1])) if worse else 0
+    """The later run of the pair of neighbours whose larger error is least."""
+    larger = [max(pair) for pair in pairwise(errors)]
+    return len(larger) - int(np.argmin(larger[::-1])) if larger else 0

@@ -1,68 +1,118 @@
-"""What is asked of an integration, refused before anything runs if it makes no sense."""
+"""Checks of the arguments of an integration, before anything runs."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule
-from solvers.integration.problem import SHORTEST, Problem
+from solvers.equations.module import GeneratedModule, state_names
+from solvers.integration.problem import SHORTEST, Options, Problem
+from solvers.io.suggestion import did_you_mean
 from solvers.runge_kutta.catalogue import SCIPY, load
+from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
+#: Numbers in the order of their names, or by name.
+Values: TypeAlias = ArrayLike | Mapping[str, Any]
 
-#: The largest number that loops count to.
+#: The largest count that loops can reach exactly.
 MOST = 2**53
 
 
 def problem(
-    module: GeneratedModule, t_span: ArrayLike, y0: ArrayLike, params: ArrayLike, method: str,
-    form: str, rtol: float, atol: ArrayLike, h: float | None, t_eval: ArrayLike | None,
-    events: object, max_steps: int,
-) -> Problem:  # fmt: skip
-    """The problem that `solvers.integration.integrate.integrate` is asked to solve.
-
-    Parameters
-    ----------
-    module, t_span, y0, params, method, form, rtol, atol, h, t_eval, events, max_steps
-        As there; the form is named.
-
-    Returns
-    -------
-    Problem
-        With arrays of its own; tolerances are 0 where steps are fixed.
-
-    Raises
-    ------
-    ValueError
-        When an argument makes no sense.
-    solvers.runge_kutta.catalogue.UnknownMethodError
-        When no method has this name.
-    """
-    span = time_span(t_span)
-    equations = Form(module, form, numbers("params", params, module.PARAMETERS).tolist())
-    start = numbers("y0", y0, equations.ordinary)
+    module: GeneratedModule, t_span: ArrayLike, y0: Values, params: Values, options: Options
+) -> Problem:
+    """The problem that `integrate` solves, from its arguments, all of which are checked."""
+    check_backend(options)
+    span, method, name = time_span(t_span), options.method, options.form or "lagrangian"
+    form = Form(module, name, parameters(module, params).tolist())
+    start = initial_state(module, y0, name)
     tableau = None if method in SCIPY else load(str(method))
-    relative, absolute = tolerances(rtol, atol, len(start)) if h is None else (0.0, np.array(0.0))
-    if h is not None:
-        if tableau is None:
-            raise ValueError(f"method {method!r} is SciPy's and controls its steps: leave out h")
-        h = step(h, span)
-    elif tableau is not None and not tableau.b_hat:
-        raise ValueError(f"method {method!r} does not estimate its error: give a fixed step h")
-    elif absolute.ndim and form != "lagrangian":
-        raise ValueError("atol for each component has a meaning in form 'lagrangian' only")
-    if tableau is not None and not tableau.is_explicit and not equations.has_jacobian:
-        raise ValueError(f"method {method!r} needs a Jacobian, which form {form!r} does not have")
+    rtol, atol, h = step_control(options, tableau, span, len(start))
+    if atol.ndim and name != "lagrangian":
+        raise ValueError("atol can be an array in form 'lagrangian' only")
+    if tableau is not None and not tableau.is_explicit and not form.has_jacobian:
+        raise ValueError(f"method {method!r} needs a Jacobian, which form {name!r} does not have")
+    samples = None if options.t_eval is None else times(options.t_eval, span)
+    events = event_functions(options.events, module)
+    max_steps = count("max_steps", options.max_steps, 0)
     return Problem(
-        equations, tableau or method, span, start, h, relative, absolute,
-        None if t_eval is None else times(t_eval, span), callables(events, module),
-        count("max_steps", max_steps, 0),
-    )  # fmt: skip
+        form, tableau or method, span, start, h, rtol, atol, samples, events, max_steps, options
+    )
+
+
+def problem_at_rest(
+    module: GeneratedModule, t_span: ArrayLike, options: Options, params: Values | None = None
+) -> Problem:
+    """The problem of motions whose initial states are given later; default parameters if None."""
+    rest = np.zeros(len(state_names(module, options.form or "lagrangian")))
+    return problem(module, t_span, rest, module.DEFAULTS if params is None else params, options)
+
+
+def parameters(module: GeneratedModule, values: Values) -> Array:
+    """Parameters in the order of the module; a mapping is completed by default values."""
+    return numbers("params", _parameters(module, values), module.PARAMETERS)
+
+
+def initial_state(module: GeneratedModule, values: Values, form: str = "lagrangian") -> Array:
+    """A state in the order of the module; a mapping may leave out velocities, which are 0."""
+    return numbers("y0", _states(module, values, form), state_names(module, form))
+
+
+def parameter_rows(module: GeneratedModule, values: Values, motions: int) -> Array:
+    """Parameters, component first, as rows: one for all motions or one for each."""
+    array = np.asarray(_parameters(module, values))
+    columns = array[:, np.newaxis] if array.ndim == 1 else array
+    rows = _rows("params", columns, module.PARAMETERS)
+    if len(rows) not in (1, motions):
+        raise ValueError(
+            f"params has {len(rows)} columns: give one, or one for each of {motions} motions"
+        )
+    return rows
+
+
+def state_rows(module: GeneratedModule, values: Values, form: str) -> Array:
+    """Initial states, component first, as rows."""
+    return _rows("y0", _states(module, values, form), state_names(module, form))
+
+
+def _parameters(module: GeneratedModule, values: Values) -> ArrayLike:
+    if not isinstance(values, Mapping):
+        return values
+    defaults = zip(module.PARAMETERS, module.DEFAULTS, strict=True)
+    return _in_order("params", values, module.PARAMETERS, dict(defaults))
+
+
+def _states(module: GeneratedModule, values: Values, form: str) -> ArrayLike:
+    if not isinstance(values, Mapping):
+        return values
+    half, names = len(module.COORDINATES), state_names(module, form)
+    velocities = module.STATE[half:]
+    defaults = dict.fromkeys([*velocities, *(f"delta_{name}" for name in velocities)], 0.0)
+    return _in_order("y0", values, names, defaults)
+
+
+def _in_order(
+    what: str, values: Mapping[str, Any], names: Sequence[str], defaults: Mapping[str, float]
+) -> ArrayLike:
+    """The values of a mapping in the order of `names`, completed by `defaults`."""
+    for name in values:
+        if name not in names:
+            hint, known = did_you_mean(str(name), names), ", ".join(names) or "none"
+            raise ValueError(f"{what} has no {name!r}{hint}; known names: {known}")
+    missing = [name for name in names if name not in values and name not in defaults]
+    if missing:
+        raise ValueError(f"{what} lacks {', '.join(missing)}: only velocities may be left out")
+    columns = [_floats(f"{what}[{name!r}]", values.get(name, defaults.get(name))) for name in names]
+    try:
+        return np.array(np.broadcast_arrays(*columns))
+    except ValueError as error:
+        shapes = ", ".join(f"{n}: {c.shape}" for n, c in zip(names, columns, strict=True))
+        raise ValueError(f"the values of {what} differ in shape: {shapes}") from error
 
 
 def numbers(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
@@ -72,50 +122,56 @@ def numbers(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
         raise ValueError(
             f"{name} has shape {array.shape}: give {len(expected)} numbers, {', '.join(expected)}"
         )
-    _finite(name, array)
+    _check_finite(name, array)
     return array
 
 
-def rung(backend: str | None, compensated: bool) -> str | None:
-    """Where a loop must run, ``compiled`` or ``python``; None if it may be either."""
-    if backend not in (None, "compiled", "python"):
-        raise ValueError(f"backend {backend!r} must be 'compiled' or 'python'")
-    if compensated and backend == "python":
-        raise ValueError("compensated = True needs a compiled loop, not backend 'python'")
-    return "compiled" if compensated else backend
-
-
-def table(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
-    """`values` as a new array of rows of finite floats, one column for each name in `expected`."""
-    array = _floats(name, values)
-    if array.ndim != 2 or array.shape[1] != len(expected):
-        raise ValueError(
-            f"{name} has shape {array.shape}: give rows of {len(expected)} numbers, "
-            + ", ".join(expected)
-        )
-    _finite(name, array)
-    return array
+def _rows(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
+    """Finite floats of shape (components, n) as an array of n rows."""
+    array, size = _floats(name, values), len(expected)
+    if array.ndim != 2 or len(array) != size:
+        hint = f"the first axis must hold the {size} components, {', '.join(expected)}"
+        if array.ndim == 2 and array.shape[1] == size:
+            hint += f"; transpose it: {name}.T"
+        raise ValueError(f"{name} has shape {array.shape}: {hint}")
+    _check_finite(name, array)
+    return np.ascontiguousarray(array.T)
 
 
 def time_span(values: ArrayLike) -> tuple[float, float]:
-    """Beginning and end."""
+    """Start and end."""
     array = numbers("t_span", values, ("t_start", "t_end"))
     return float(array[0]), float(array[1])
 
 
 def times(values: ArrayLike, span: tuple[float, float]) -> Array:
-    """Times within `span`, each further from its beginning than the one before."""
+    """Times within `span`, in the order of the integration."""
     array = _floats("t_eval", values)
     if array.ndim != 1:
         raise ValueError(f"t_eval has shape {array.shape}: give a list of times")
-    _finite("t_eval", array)
+    _check_finite("t_eval", array)
     low, high = sorted(span)
     outside = array[(array < low) | (array > high)]
     if outside.size:
         raise ValueError(f"t_eval has {outside[0]}, outside of t_span = {span}")
     if np.any(np.diff(array) * np.sign(span[1] - span[0]) <= 0):
-        raise ValueError("t_eval must go from t_span's beginning to its end, no time twice")
+        raise ValueError("t_eval must be ordered from the start of t_span to its end")
     return array
+
+
+def step_control(
+    options: Options, tableau: Tableau | None, span: tuple[float, float], size: int
+) -> tuple[float, Array, float | None]:
+    """Relative and absolute tolerance, 0 for fixed steps, and the fixed step size if any."""
+    method = options.method
+    if options.h is None:
+        rtol, atol = tolerances(options.rtol, options.atol, size)
+        if tableau is not None and not tableau.b_hat:
+            raise ValueError(f"method {method!r} does not estimate its error: give a fixed step h")
+        return rtol, atol, None
+    if tableau is None:
+        raise ValueError(f"method {method!r} is SciPy's and controls its steps: leave out h")
+    return 0.0, np.array(0.0), step_size(options.h, span)
 
 
 def tolerances(rtol: float, atol: ArrayLike, size: int) -> tuple[float, Array]:
@@ -123,7 +179,7 @@ def tolerances(rtol: float, atol: ArrayLike, size: int) -> tuple[float, Array]:
     array = _floats("atol", atol)
     relative = _floats("rtol", rtol)
     for name, value in (("rtol", relative), ("atol", array)):
-        _finite(name, value)
+        _check_finite(name, value)
         if np.any(value < 0):
             raise ValueError(f"{name} = {value} must not be negative")
     if relative.ndim or array.shape not in ((), (size,)):
@@ -135,8 +191,8 @@ def tolerances(rtol: float, atol: ArrayLike, size: int) -> tuple[float, Array]:
     return float(relative), array
 
 
-def step(h: float, span: tuple[float, float]) -> float:
-    """A fixed step: positive, and large enough to change the time."""
+def step_size(h: float, span: tuple[float, float]) -> float:
+    """A fixed step size: positive, and large enough to change the time."""
     array = _floats("h", h)
     if array.ndim or not np.isfinite(array) or array <= 0:
         raise ValueError(f"h = {h} must be a positive number (the direction follows from t_span)")
@@ -155,42 +211,39 @@ def count(name: str, value: object, least: int) -> int:
     return int(value)
 
 
+def check_backend(options: Options) -> None:
+    """Raise `ValueError` for an unknown backend, or one that cannot compensate rounding errors."""
+    if options.backend not in (None, "compiled", "python"):
+        raise ValueError(f"backend {options.backend!r} must be 'compiled' or 'python'")
+    if options.compensated and options.backend == "python":
+        raise ValueError("compensated = True needs a compiled loop, not backend 'python'")
+
+
 def check_positive(**numbers: float | None) -> None:
-    """Refuse numbers that are not positive, or not finite.
-
-    Parameters
-    ----------
-    **numbers : float or None
-        By name; None is left out.
-
-    Raises
-    ------
-    ValueError
-        With the name of the first.
-    """
+    """Raise `ValueError` for the first number that is not positive and finite; None passes."""
     for name, number in numbers.items():
         if number is not None and not (np.isfinite(number) and number > 0):
             raise ValueError(f"{name} = {number} must be positive")
 
 
-def callables(events: object, module: GeneratedModule) -> list[Callable[..., float]]:
-    """Events as a list."""
-    found: list[Any] = list(events) if isinstance(events, Sequence) else [events]
-    if not all(map(callable, found)):
+def event_functions(events: object, module: GeneratedModule) -> list[Callable[..., float]]:
+    """Events as a list of functions; events of another module are refused."""
+    functions: list[Any] = list(events) if isinstance(events, Sequence) else [events]
+    if not all(map(callable, functions)):
         raise ValueError(f"events = {events!r} must be functions event(t, y), one or a list")
-    for event in found:
+    for event in functions:
         if getattr(event, "name", None) and getattr(event, "module", module) is not module:
             raise ValueError(f"{event.name} of {event.module.__name__} is not of {module.__name__}")
-    return found
+    return functions
 
 
-def _floats(name: str, values: ArrayLike) -> Array:
+def _floats(name: str, values: Any) -> Array:
     array = np.asarray(values)
     if array.dtype.kind not in "iuf":
         raise ValueError(f"{name} = {str(values)[:60]} must be real numbers")
     return np.array(array, dtype=float)
 
 
-def _finite(name: str, array: Array) -> None:
+def _check_finite(name: str, array: Array) -> None:
     if not np.isfinite(array).all():
         raise ValueError(f"{name} = {array} must be finite")

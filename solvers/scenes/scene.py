@@ -106,9 +106,10 @@ class Scene:
 
     def __post_init__(self) -> None:
         known = self.module.STATE
-        for field, names in (("params", self.module.PARAMETERS), ("y0", known)):
-            numbers = validation.numbers(field, getattr(self, field), names).tolist()
-            object.__setattr__(self, field, tuple(numbers))
+        params = validation.parameters(self.module, self.params)
+        object.__setattr__(self, "params", tuple(params.tolist()))
+        y0 = validation.initial_state(self.module, self.y0)
+        object.__setattr__(self, "y0", tuple(y0.tolist()))
         object.__setattr__(self, "outputs", tuple(self.outputs) or known)
         object.__setattr__(self, "label", self.label or self.title)
         validation.check_positive(duration=self.duration, accuracy=self.accuracy, step=self.step)

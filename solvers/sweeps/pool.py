@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.integration import validation
-from solvers.integration.ensemble import stop
+from solvers.integration.ensemble_run import StopFlag
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.job import Job
 from solvers.sweeps.worker import run_chunk
@@ -64,14 +64,15 @@ class Pool:
         self, job: Job, axes: Axes, spans: Sequence[Span]
     ) -> Generator[tuple[Span, NDArray[np.void]]]:
         """Spans and their chunks in the order of completion; each worker gets two at a time."""
-        waiting = iter(spans)
+        waiting, stop = iter(spans), StopFlag()
         submitted: dict[Future[NDArray[np.void]], Span] = {}
         own = self.executor or ThreadPoolExecutor(self.size)
         with nullcontext(own) if self.executor else own as executor:
             try:
                 while True:
                     for span in waiting:
-                        submitted[executor.submit(run_chunk, job, axes.columns(*span))] = span
+                        columns = axes.columns(*span)
+                        submitted[executor.submit(run_chunk, job, columns, stop)] = span
                         if len(submitted) == 2 * self.size:
                             break
                     if not submitted:
@@ -83,4 +84,4 @@ class Pool:
                 for future in submitted:
                     future.cancel()
                 if submitted:
-                    stop()
+                    stop.set()  # for threads of this process

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.io.xarray_dataset import dataset
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.job import STATUSES
@@ -84,7 +84,6 @@ class Results:
         ImportError
             When xarray is not installed: it comes with the extra ``xarray``.
         """
-        xarray = import_module("xarray")  # an optional dependency
         is_grid = isinstance(self.definition.axes, Grid)
         names = tuple(self.axes) if is_grid else ("motion",)
         coordinates: dict[str, Any] = {
@@ -100,4 +99,4 @@ class Results:
             variables[name] = ((*names, *dimensions), self.maps[name], units)
         definition = json.dumps(self.definition.as_json)
         attributes = {"title": self.definition.title, "definition": definition}
-        return xarray.Dataset(variables, coordinates, attributes)
+        return dataset(variables, coordinates, attributes)

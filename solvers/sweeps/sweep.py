@@ -12,6 +12,7 @@ from typing import Any
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, header, state_names
 from solvers.integration import validation
+from solvers.integration.problem import Options
 from solvers.runge_kutta.catalogue import load, names
 from solvers.sweeps import checks
 from solvers.sweeps.axes import Axes
@@ -83,10 +84,9 @@ class Sweep:
         checks.check_names(self.module, self.axes, self.values)
         checks.check_energy(self.module, (*self.axes.smallest, *self.values), self.values)
         checks.check_maps(self.module, self.axes, self.maps, self.values)
-        validation.problem(
-            self.module, (0.0, self.duration), (0.0,) * len(self.state), self.module.DEFAULTS,
-            self.method, self.form, self.rtol, self.atol, None, None, (), self.max_steps,
-        )  # fmt: skip
+        limit, (rtol, atol) = self.max_steps, (self.rtol, self.atol)
+        options = Options(self.method, self.form, rtol, atol, max_steps=limit)
+        validation.problem_at_rest(self.module, (0.0, self.duration), options)
 
     @property
     def form(self) -> str:

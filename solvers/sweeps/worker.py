@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
+from solvers.integration.ensemble_run import StopFlag
+from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Ensemble, Status
+from solvers.integration.solution import Status
 from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.job import CODES, Job, loaded
 from solvers.sweeps.maps import Motions
@@ -21,7 +23,9 @@ from solvers.sweeps.maps import Motions
 Array: TypeAlias = NDArray[np.float64]
 
 
-def run_chunk(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
+def run_chunk(
+    job: Job, columns: Mapping[str, Array], stop: StopFlag | None = None
+) -> NDArray[np.void]:
     """Integrate motions and compute their maps."""
     module = loaded(job.source)
     starts, params, status = initial_states(job, module, columns)
@@ -34,7 +38,7 @@ def run_chunk(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
     runs = np.flatnonzero(status == 0)
     if len(runs):
         starts, params = starts[runs], [column[runs] for column in params]
-        motions = integrated(job, module, starts, params)
+        motions = integrated(job, module, starts, params, stop)
         first = 0
         for name, one in job.maps.items():
             events = slice(first, first + len(one.events(module)))
@@ -48,17 +52,23 @@ def run_chunk(job: Job, columns: Mapping[str, Array]) -> NDArray[np.void]:
     return chunk
 
 
-def integrated(job: Job, module: GeneratedModule, starts: Array, params: list[Array]) -> Ensemble:
+def integrated(
+    job: Job,
+    module: GeneratedModule,
+    starts: Array,
+    params: list[Array],
+    stop: StopFlag | None = None,
+) -> Ensemble:
     """The motions, in one thread."""
     maps = job.maps.values()
     events = [event for one in maps for event in one.events(module)]
     events = [replace(event, terminal=job.ends_at_event) for event in events]
     times = np.linspace(0, job.duration, job.samples) if job.samples else None
-    constants = np.stack(params, axis=1) if params else np.empty((1, 0))
+    constants = np.stack(params) if params else ()
     occurrences = max(one.occurrences for one in maps)
-    run = partial(ensemble, module, (0.0, job.duration), starts, constants, **job.options)
+    run = partial(ensemble, module, (0.0, job.duration), starts.T, constants, **job.options)
     with ignore_predictability():
-        motions = run(t_eval=times, events=events, occurrences=occurrences, workers=1)
+        motions = run(workers=1, stop=stop, t_eval=times, events=events, occurrences=occurrences)
     if (motions.status == Status.INTERRUPTED).any():
         raise InterruptedError("the sweep was stopped")
     return motions

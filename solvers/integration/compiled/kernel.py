@@ -176,6 +176,19 @@ class Batch:
         """Continue unfinished motions; several threads may do so at once."""
         self._kernel.run(self.task)
 
+    def ordinary(self, rows: NDArray[np.void], motions: NDArray[np.intp] | None = None) -> Array:
+        """Ordinary states, in rows, of `rows` of some motions, by default of all."""
+        form = self.form
+        if motions is not None and any(np.size(parameter) > 1 for parameter in form.params):
+            own = [np.broadcast_to(p, len(self.motions))[motions] for p in form.params]
+            form = Form(form.module, form.name, own)
+        states = form.to_ordinary_many(rows["t"], rows["z"], rows["turns"])
+        if rows["scale"].size:
+            n = states.shape[1] // 2
+            with np.errstate(over="ignore"):
+                states[:, n:] = np.ldexp(states[:, n:], rows["scale"].astype(int))
+        return states
+
     @property
     def extremes_only(self) -> NDArray[np.bool_]:
         """Which events keep two rows only, of the smallest and the largest value."""

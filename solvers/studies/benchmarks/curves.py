@@ -132,8 +132,8 @@ def many_motions(module: GeneratedModule, hy: Any) -> dict[str, Curve]:
     def ours(method: str, tol: float) -> Callable[[], Array]:
         return lambda: (
             ensemble(
-                module, (0.0, END), starts, params, method=method, rtol=tol, atol=tol, workers=1
-            ).y
+                module, (0.0, END), starts.T, params, method=method, rtol=tol, atol=tol, workers=1
+            ).y.T
         )
 
     curves: dict[str, Curve] = {}

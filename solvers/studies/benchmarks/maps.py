@@ -24,7 +24,9 @@ from solvers.integration import validation
 from solvers.integration.compiled.kernel import Batch, kernel
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
+from solvers.integration.problem import Options
 from solvers.studies import heyoka as peers
+from solvers.studies.benchmarks import peers
 from solvers.sweeps.axes import Random
 from solvers.sweeps.barrier import is_below
 from solvers.sweeps.maps.first import First
@@ -65,7 +67,7 @@ def ours(
 ) -> Array:
     """By our ensemble."""
     events = [Event(module, e.name, e.value, terminal=True) for e in FLIP.events(module)]
-    found = ensemble(module, (0, END), state, module.DEFAULTS, method=method, rtol=tolerance,
+    found = ensemble(module, (0, END), state.T, module.DEFAULTS, method=method, rtol=tolerance,
                      atol=tolerance, events=events, workers=workers)  # fmt: skip
     return _first(found.t_events[:, :, 0])
 
@@ -75,10 +77,8 @@ def scalar(module: GeneratedModule, method: str, tolerance: float, state: Array)
     events = [Event(module, e.name, e.value, terminal=True) for e in FLIP.events(module)]
     program = kernel(module, "rational", method, lanes=False, compensated=False,
                      reproducible=False)  # fmt: skip
-    problem = validation.problem(
-        module, (0, END), state[0], module.DEFAULTS, method, "rational", tolerance, tolerance,
-        None, (), events, 10**6,
-    )  # fmt: skip
+    options = Options(method, "rational", tolerance, tolerance, t_eval=(), events=events)
+    problem = validation.problem(module, (0, END), state[0], module.DEFAULTS, options)
     batch = Batch(program, problem, Form(module, "rational", module.DEFAULTS), state,
                   capacity=0, occurrences=1, pauses=False)  # fmt: skip
     batch.restart()

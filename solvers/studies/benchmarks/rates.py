@@ -85,7 +85,7 @@ def peak_share(module: GeneratedModule) -> dict[str, float]:
         + module.OPERATIONS["rhs_rational"][0] * tableau.stages
     )
     controlled = step + 2 * state * sum(w != 0 for row in tableau.error_weights for w in row)
-    run = partial(ensemble, module, (0, END), starts, module.DEFAULTS, method=method, workers=1)
+    run = partial(ensemble, module, (0, END), starts.T, module.DEFAULTS, method=method, workers=1)
     free, held = run(rtol=1e-11, atol=1e-11), run(h=0.01)
     times = timed(
         {

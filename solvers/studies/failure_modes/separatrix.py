@@ -100,12 +100,12 @@ def departures(module: GeneratedModule) -> list[Departure]:
     omega = sqrt(gravity / length)
     ends = (("theta", pi), ("theta_dot", 0.0))
     events = [Event(module, name, value, terminal=True) for name, value in ends]
-    solve = partial(ensemble, module, (0, 100), [(0.0, 2 * omega)], module.DEFAULTS)
+    solve = partial(ensemble, module, (0, 100), [[0.0], [2 * omega]], module.DEFAULTS)
     results = []
     for method in METHODS:
         for tol in TOLERANCES:
             run = solve(method=method, rtol=tol, atol=tol, form="lagrangian", events=events)
-            t, (theta, rate) = run.t[0], run.y[0]
+            t, (theta, rate) = run.t[0], run.y[:, 0]
             defect = float((rate / (2 * omega)) ** 2 - np.cos(theta / 2) ** 2)
             predicted = log(4 / sqrt(abs(defect))) / omega
             results.append(Departure(method, tol, defect, predicted, float(t)))
@@ -151,7 +151,7 @@ def upright(module: GeneratedModule) -> Upright:
     offset = 1.2246467991473532e-16  # sine of that number, which is π minus it
     solve = partial(ensemble, method="verner98", rtol=1e-13, atol=1e-30)
     events = [Event(module, "theta", angle, terminal=True) for angle in (pi / 2, 3 * pi / 2)]
-    run = solve(module, (0, 100), [(pi, 0.0)], params, events=events)
+    run = solve(module, (0, 100), [[pi], [0.0]], params, events=events)
     predicted = log(8 * np.tan(pi / 8) / offset) / omega
     return Upright(offset, float(predicted), float(run.t[0]))
 

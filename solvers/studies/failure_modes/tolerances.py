@@ -71,7 +71,7 @@ class Tolerances(Study[list[ToleranceAccuracy]]):
         offsets = (np.tile(unit, (count, 1)) for unit in np.eye(n))
         solve = partial(ensemble, pendulum, span)
         carried = [
-            solve(np.hstack([starts, offset]), params, form="variational").y[:, n:]
+            solve(np.hstack([starts, offset]).T, params.T, form="variational").y[n:].T
             for offset in offsets
         ]
         growth = np.max([np.linalg.norm(change, axis=1) for change in carried], axis=0)

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, has_function
+from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event
-from solvers.integration.solution import Ensemble
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.map_table import MapTable

@@ -33,4 +33,4 @@ class EnergyError(Map):
         """Differences of the energy."""
         n, ensemble = len(motions.module.STATE), motions.ensemble
         before = motions.energies(0.0, motions.starts[:, :n])
-        return motions.energies(ensemble.t, ensemble.y[:, :n]) - before
+        return motions.energies(ensemble.t, ensemble.y.T[:, :n]) - before

@@ -42,8 +42,8 @@ class Extremes(ComponentMap):
     def values(self, motions: Motions) -> Array:
         """The extremes, among turning points, start and end."""
         indices, ensemble = motions.indices(self.of), motions.ensemble
-        inner = ensemble.y_events[:, motions.events, :2]
-        between = np.stack([inner[:, k, :, index] for k, index in enumerate(indices)], axis=1)
-        ends = np.stack([motions.starts[:, indices], ensemble.y[:, indices]], axis=2)
+        inner = ensemble.y_events[:, :, motions.events, :2]
+        between = np.stack([inner[index, :, k] for k, index in enumerate(indices)], axis=1)
+        ends = np.stack([motions.starts[:, indices], ensemble.y[indices].T], axis=2)
         candidates = np.concatenate([between, ends], axis=2)
         return np.stack([np.fmin.reduce(candidates, 2), np.fmax.reduce(candidates, 2)], axis=2)

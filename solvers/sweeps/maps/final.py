@@ -27,4 +27,4 @@ class Final(ComponentMap):
 
     def values(self, motions: Motions) -> Array:
         """Components of the final states."""
-        return motions.ensemble.y[:, motions.indices(self.of)]
+        return motions.ensemble.y[motions.indices(self.of)].T

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from solvers.sweeps.map_table import MapTable
 from solvers.sweeps.maps import Array, CountedMap, Motions, Panels
 
@@ -43,7 +45,7 @@ class Samples(CountedMap):
 
     def values(self, motions: Motions) -> Array:
         """The samples."""
-        return motions.ensemble.samples[:, motions.indices(self.of)]
+        return np.swapaxes(motions.ensemble.samples[motions.indices(self.of)], 0, 1)
 
     def panels(self, name: str, results: Results) -> Panels:
         """A panel of curves over time for each component."""

@@ -70,8 +70,8 @@ class Section(CountedMap):
 
     def values(self, motions: Motions) -> Array:
         """The states at the crossings."""
-        states = motions.ensemble.y_events[:, motions.events.start, : self.count]
-        return np.swapaxes(states[..., motions.indices(self.of)], 1, 2)
+        states = motions.ensemble.y_events[:, :, motions.events.start, : self.count]
+        return np.swapaxes(states[motions.indices(self.of)], 0, 1)
 
     def panels(self, name: str, results: Results) -> Panels:
         """A panel for each energy and set of parameters."""

@@ -1,0 +1,95 @@
+"""One attempt at a step: accepted, or rejected with a smaller step size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.runge_kutta.step_control import Controller
+from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
+
+Array = NDArray[np.float64]
+#: Failures of a step that a smaller step may avoid.
+FAILURES = (NotFiniteError, NoConvergenceError)
+
+
+@dataclass(frozen=True)
+class Point:
+    """A time in s, with the state and its derivative."""
+
+    t: float
+    y: Array
+    derivative: Array
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A step with a sufficiently small error; `norm` is that of its error."""
+
+    stepper: Stepper
+    start: Point
+    end: Point
+    norm: float
+    normalise: Callable[[Array], Array] | None = None
+
+    def state(self, t: float) -> Array:
+        """The state at a time within the step, by a shorter step from its start."""
+        if t == self.end.t:
+            return self.end.y
+        start = self.start
+        y = self.stepper.step(start.t, start.y, t - start.t, start.derivative)[0]
+        return self.normalise(y) if self.normalise else y
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A step that failed, or whose error is too large; `h` is the next step size to try."""
+
+    h: float
+    failure: ArithmeticError | None = None
+
+    @classmethod
+    def failed(cls, h: float, failure: ArithmeticError) -> Rejected:
+        """A step of size `h` that failed."""
+        return cls(h / 4, failure)
+
+
+@dataclass(frozen=True)
+class Attempts:
+    """Attempts at steps of one method.
+
+    Parameters
+    ----------
+    stepper : Stepper
+        Computes the steps.
+    controller : Controller or None
+        Controls their size; None for fixed steps.
+    normalise : callable, optional
+        Applied to every new state.
+    """
+
+    stepper: Stepper
+    controller: Controller | None
+    normalise: Callable[[Array], Array] | None = None
+
+    def attempt(self, start: Point, t: float, h: float, *, is_last: bool) -> Accepted | Rejected:
+        """Try the step from `start` to `t`, of size `h`; the last step needs no derivative."""
+        controller = self.controller
+        try:
+            step = self.stepper.step(start.t, start.y, t - start.t, start.derivative)
+            y, error, derivative = step
+            norm = controller.norm(error, start.y, y) if controller else 0.0
+            if self.normalise:
+                y = self.normalise(y)
+            if not np.isfinite(y).all() or not np.isfinite(norm):
+                raise NotFiniteError(f"the state at t = {t} or its error is not finite")
+            if controller and norm > 1:
+                return Rejected(h * controller.factor(norm))
+            if derivative is None:
+                derivative = start.derivative if is_last else self.stepper.derivative(t, y)
+        except FAILURES as failure:
+            return Rejected.failed(h, failure)
+        return Accepted(self.stepper, start, Point(t, y, derivative), norm, self.normalise)

@@ -1,0 +1,169 @@
+"""The integration of many motions: in vector lanes over all cores, or one by one in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from solvers.equations.forms import Form
+from solvers.integration import loops
+from solvers.integration.compiled.kernel import Batch, Kernel
+from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.ensemble_solution import Ensemble
+from solvers.integration.events import Extremum
+from solvers.integration.problem import EventFunction, Outcome, Problem
+from solvers.integration.solution import Status
+
+Array = NDArray[np.float64]
+
+
+class StopFlag:
+    """Stops ensembles from another thread; once set, it stays set."""
+
+    def __init__(self) -> None:
+        self.array = np.zeros(1, np.int64)
+
+    def set(self) -> None:
+        """Stop the motions where they are, with the status ``INTERRUPTED``."""
+        self.array[0] = 1
+
+    @property
+    def is_set(self) -> bool:
+        """Whether the motions are to stop."""
+        return bool(self.array[0])
+
+
+@dataclass(frozen=True)
+class EnsembleRun:
+    """A run of many motions.
+
+    Attributes
+    ----------
+    problem : Problem
+        The problem of all motions; its initial state and parameters are replaced by theirs.
+    states, params : ndarray of shape (n, state), (n or 1, parameters)
+        Initial states and parameters.
+    result : Ensemble
+        The results so far.
+    stop : StopFlag
+        Stops the run.
+    """
+
+    problem: Problem
+    states: Array
+    params: Array
+    result: Ensemble
+    stop: StopFlag = field(default_factory=StopFlag)
+
+    def run_compiled(self, program: Kernel, workers: int) -> None:
+        """Integrate all motions by a compiled loop in threads."""
+        problem, result, states = self.problem, self.result, self.states
+        form = Form(problem.form.module, problem.form.name, list(self.params.T))
+        capacity, occurrences = len(result.t_eval), result.t_events.shape[-1]
+        batch = Batch(
+            program, problem, form, states,
+            capacity=capacity, occurrences=occurrences, pauses=False,
+        )  # fmt: skip
+        batch.task.stop = self.stop.array.ctypes.data
+        try:
+            self._run_threads(batch, workers)
+        finally:
+            self._collect(batch)
+            # as given, not as sine and cosine return them
+            result.y[:, result.steps == 0] = states[result.steps == 0].T
+            if capacity and result.t_eval[0] == problem.span[0]:
+                result.samples[:, :, 0] = states.T
+
+    def _run_threads(self, batch: Batch, workers: int) -> None:
+        """Run the batch; C releases Python's lock, this thread receives interruptions."""
+        batch.restart()
+        with ThreadPoolExecutor(workers) as pool:
+            threads = [pool.submit(batch.run) for _ in range(workers)]
+            try:
+                wait(threads)
+            except KeyboardInterrupt:
+                self.stop.set()
+                raise
+        for thread in threads:
+            thread.result()
+
+    def _collect(self, batch: Batch) -> None:
+        """Copy the results of the batch."""
+        result, motions = self.result, batch.motions
+        result.t[:], result.y.T[:] = motions["t"], batch.ordinary(motions)
+        if motions["scale"].size:
+            size = len(result.units) // 2
+            self._set_growth(motions["z"][:, -size:], motions["scale"][:, 0])
+        result.status[:] = np.array(STATUSES, object)[motions["status"]]
+        result.status[motions["status"] < STATUSES.index(Status.FINISHED)] = Status.INTERRUPTED
+        result.steps[:], result.rejected[:] = motions["steps"], motions["rejected"]
+        result.nfev[:] = batch.nfev
+        for k in range(len(result.t_eval)):
+            reached = np.flatnonzero(motions["rows"] > k)
+            result.samples[:, reached, k] = batch.ordinary(batch.rows[reached, k], reached).T
+        result.occurred[:] = motions["occurred"][:, : result.occurred.shape[1]]
+        stored = np.where(batch.extremes_only, np.minimum(result.occurred, 2), result.occurred)
+        for event, k in np.ndindex(result.t_events.shape[1:]):
+            with_event = np.flatnonzero(stored[:, event] > k)
+            rows = batch.event_rows[with_event, event, k]
+            result.t_events[with_event, event, k] = rows["t"]
+            result.y_events[:, with_event, event, k] = batch.ordinary(rows, with_event).T
+
+    def run_one_by_one(self) -> None:
+        """Integrate the motions in Python."""
+        form = self.problem.form
+        try:
+            for k, start in enumerate(self.states):
+                if self.stop.is_set:
+                    return
+                params = self.params[k % len(self.params)].tolist()
+                own_form = Form(form.module, form.name, params)
+                problem = replace(self.problem, start=start, form=own_form)
+                outcome = Outcome.at_start(problem)
+                try:
+                    loops.run(problem, outcome)
+                finally:
+                    self._store(outcome, k)
+        finally:
+            if form.name == "variational":
+                self._set_growth(self.result.y.T[:, len(form.module.STATE) :])
+
+    def _store(self, outcome: Outcome, k: int) -> None:
+        """Copy the results of motion `k`."""
+        result = self.result
+        result.t[k], result.y[:, k] = outcome.end
+        result.status[k], result.nfev[k] = outcome.status, outcome.nfev
+        result.steps[k], result.rejected[k] = outcome.steps, outcome.rejected
+        _, rows = outcome.rows()
+        result.samples[:, k, : len(rows)] = rows.T
+        for i, event in enumerate(self.problem.events):
+            times, states = outcome.t_events[i], outcome.y_events[i]
+            result.occurred[k, i] = len(times)
+            stored = _stored(event, states)[: result.t_events.shape[-1]]
+            for column, occurrence in enumerate(stored):
+                result.t_events[k, i, column] = times[occurrence]
+                result.y_events[:, k, i, column] = states[occurrence]
+
+    def _set_growth(self, changes: Array, scale: ArrayLike = 0.0) -> None:
+        before = self.states[:, len(self.problem.form.module.STATE) :]
+        self.result.growth[:] = _log_length(changes, scale) - _log_length(before)
+
+
+def _stored(event: EventFunction, states: Sequence[Array]) -> list[int]:
+    """The occurrences of an event to store: those of the extremes, or all."""
+    if not states or not isinstance(event, Extremum):
+        return list(range(len(states)))
+    values = [y[event.module.STATE.index(event.coordinate)] for y in states]
+    return [int(np.argmin(values)), int(np.argmax(values))]
+
+
+def _log_length(changes: Array, scale: ArrayLike = 0.0) -> Array:
+    """Natural logarithms of the lengths of small changes in rows, times powers of two."""
+    largest = np.abs(changes).max(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        length = np.log(largest) + np.log(np.linalg.norm(changes.T / largest, axis=0))
+    return np.asarray(length + np.log(2) * np.asarray(scale))

@@ -1,0 +1,174 @@
+"""The result of an integration of many motions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.integration.solution import Status
+from solvers.io.xarray_dataset import dataset
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, repr=False)
+class Ensemble:
+    """The final states of many motions, their samples and events.
+
+    Arrays of states have the component as their first axis, as those that generated functions
+    take: ``module.energy_many(0.0, motions.y, params)``.
+
+    Attributes
+    ----------
+    t : ndarray of shape (n,)
+        Time in s at which each motion ended.
+    y : ndarray of shape (state, n)
+        Coordinates and velocities there.
+    growth : ndarray of shape (n,)
+        In the variational form, natural logarithms of the ratio of the length of the small change
+        at the end to that at the start, of any size; else NaN.
+    samples : ndarray of shape (state, n, times)
+        States at the requested times; NaN after a motion's end.
+    t_events : ndarray of shape (n, events, occurrences)
+        Times in s of the first occurrences of each event; NaN where there were fewer.
+    y_events : ndarray of shape (state, n, events, occurrences)
+        States at these times.
+    occurred : ndarray of shape (n, events)
+        How often each event occurred.
+    status : ndarray of shape (n,)
+        How each ended, a `Status`.
+    steps, rejected, nfev : ndarray of shape (n,)
+        Accepted steps, rejected steps, evaluations of the right-hand side.
+    run : str
+        Method, form, step control, and backend.
+    units : dict of str to str
+        Units of the components of the state, in their order.
+    t_eval : ndarray of shape (times,)
+        The requested times in s.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import ensemble
+    >>> motions = ensemble(sp, (0, 5), {"theta": [0.5, 1.0]}, {}, method="rk4", h=0.01)
+    >>> motions.y.shape, bool(motions.success.all())
+    ((2, 2), True)
+    """
+
+    t: Array
+    y: Array
+    growth: Array
+    samples: Array
+    t_events: Array
+    y_events: Array
+    occurred: NDArray[np.int64]
+    status: NDArray[np.object_]
+    steps: NDArray[np.int64]
+    rejected: NDArray[np.int64]
+    nfev: NDArray[np.int64]
+    run: str
+    units: Mapping[str, str]
+    t_eval: Array
+
+    @classmethod
+    def empty(
+        cls, n: int, units: Mapping[str, str], t_eval: Array, events: tuple[int, int], run: str
+    ) -> Ensemble:
+        """An ensemble of `n` motions without results; `events` is (events, occurrences)."""
+        state = len(units)
+
+        def unknown(*shape: int) -> Array:
+            return np.full(shape, np.nan)
+
+        def counts(*shape: int) -> NDArray[np.int64]:
+            return np.zeros(shape, np.int64)
+
+        return cls(
+            t=unknown(n),
+            y=unknown(n, state).T,  # in memory the states of a motion are adjacent
+            growth=unknown(n),
+            samples=np.moveaxis(unknown(n, state, len(t_eval)), 1, 0),
+            t_events=unknown(n, *events),
+            y_events=np.moveaxis(unknown(n, *events, state), -1, 0),
+            occurred=counts(n, events[0]),
+            status=np.full(n, Status.INTERRUPTED, object),
+            steps=counts(n),
+            rejected=counts(n),
+            nfev=counts(n),
+            run=run,
+            units=units,
+            t_eval=t_eval,
+        )
+
+    @property
+    def success(self) -> NDArray[np.bool_]:
+        """Whether each motion reached the end, or a terminal event."""
+        return np.asarray((self.status == Status.FINISHED) | (self.status == Status.EVENT))
+
+    def __repr__(self) -> str:
+        numbers = {status: int((self.status == status).sum()) for status in Status}
+        ends = ", ".join(f"{number} {status.name}" for status, number in numbers.items() if number)
+        n, events, occurrences = self.t_events.shape
+        return (
+            f"Ensemble: {n} motions{ends and ': '}{ends}\n"
+            f"  state: {', '.join(self.units)}\n"
+            f"  {len(self.t_eval)} samples, {events} events with {occurrences} occurrences, "
+            f"{self.steps.sum()} steps, {self.rejected.sum()} rejected\n"
+            f"  {self.run}"
+        )
+
+    def to_table(self) -> dict[str, NDArray[Any]]:
+        """The end of each motion in a row, as ``pandas.DataFrame`` takes it.
+
+        Returns
+        -------
+        dict of str to ndarray of shape (n,)
+            ``t``, each component of the state, ``status`` as a name, ``steps``, ``rejected``,
+            ``nfev``, and of the variational form ``growth``.
+        """
+        growth = {} if np.isnan(self.growth).all() else {"growth": self.growth}
+        return {
+            "t": self.t,
+            **dict(zip(self.units, self.y, strict=True)),
+            **growth,
+            "status": np.array([status.name for status in self.status], dtype=str),
+            "steps": self.steps,
+            "rejected": self.rejected,
+            "nfev": self.nfev,
+        }
+
+    def to_xarray(self) -> Any:
+        """The motions as a dataset with named dimensions.
+
+        Returns
+        -------
+        xarray.Dataset
+            With the dimensions ``component``, ``motion``, ``time``, ``event`` and ``occurrence``.
+
+        Raises
+        ------
+        ImportError
+            When xarray is not installed: it comes with the extra ``xarray``.
+        """
+        events = ("motion", "event", "occurrence")
+        table = self.to_table()
+        variables: dict[str, Any] = {
+            name: ("motion", table[name]) for name in table if name not in self.units
+        }
+        variables |= {
+            "y": (("component", "motion"), self.y),
+            "samples": (("component", "motion", "time"), self.samples),
+            "t_events": (events, self.t_events, {"units": "s"}),
+            "y_events": (("component", *events), self.y_events),
+            "occurred": (events[:2], self.occurred),
+        }
+        coordinates = {
+            "component": list(self.units),
+            "unit": ("component", list(self.units.values())),
+            "time": ("time", self.t_eval, {"units": "s"}),
+        }
+        return dataset(variables, coordinates, {"run": self.run})
