@@ -22,7 +22,18 @@ Array = NDArray[np.float64]
 
 
 class StopFlag:
-    """Stops ensembles from another thread; once set, it stays set."""
+    """Stops ensembles from another thread; once set, it stays set.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import StopFlag, ensemble
+    >>> flag = StopFlag()
+    >>> flag.set()
+    >>> motions = ensemble(sp, (0, 5), {"theta": [0.5, 1.0]}, {}, stop=flag)
+    >>> [status.name for status in motions.status]
+    ['INTERRUPTED', 'INTERRUPTED']
+    """
 
     def __init__(self) -> None:
         self.array = np.zeros(1, np.int64)

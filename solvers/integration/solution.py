@@ -16,7 +16,15 @@ Array = NDArray[np.float64]
 
 
 class Status(Enum):
-    """How an integration ended; the value is a sentence."""
+    """How an integration ended; the value is a sentence.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import Status, integrate
+    >>> integrate(sp, (0, 5), (0.5, 0), sp.DEFAULTS).status is Status.FINISHED
+    True
+    """
 
     FINISHED = "the integration reached the end of the time span"
     EVENT = "a terminal event occurred"
