@@ -26,7 +26,6 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.problem import Options
 from solvers.studies import heyoka as peers
-from solvers.studies.benchmarks import peers
 from solvers.sweeps.axes import Random
 from solvers.sweeps.barrier import is_below
 from solvers.sweeps.maps.first import First
