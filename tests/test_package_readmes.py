@@ -2,11 +2,13 @@
 
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+import generated.double_pendulum as dp
+from derive.commands import systems
 from solvers.app.modules import load as load_module
 from solvers.sweeps import map_kinds, reading
 from solvers.sweeps.job import status_table
@@ -36,6 +38,9 @@ def test_a_snippet_runs(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
+    for file in blocks(path, "toml"):
+        if name := re.match(r"# (\w+\.toml)\n", file):
+            (tmp_path / name[1]).write_text(file)
     exec(compile(snippet, str(path), "exec"), {"__name__": "__main__"})
 
 
@@ -46,18 +51,39 @@ def test_every_link_exists(path: Path) -> None:
         assert (path.parent / link).exists(), link
 
 
+DERIVE = ROOT / "derive" / "README.md"
 SWEEPS = ROOT / "solvers" / "sweeps" / "README.md"
 
 
 @pytest.mark.parametrize(
-    ("marker", "table"),
-    [("map kinds", map_kinds.markdown_table), ("statuses of motions", status_table)],
+    ("path", "marker", "table"),
+    [
+        (DERIVE, "systems", systems.markdown_table),
+        (SWEEPS, "map kinds", map_kinds.markdown_table),
+        (SWEEPS, "statuses of motions", status_table),
+    ],
 )
-def test_a_generated_table_is_current(marker: str, table: object) -> None:
+def test_a_generated_table_is_current(path: Path, marker: str, table: Callable[[], str]) -> None:
     between = rf"<!-- {marker} -->\n(.*)<!-- end of {marker} -->"
-    (written,) = re.findall(between, SWEEPS.read_text(encoding="utf-8"), re.DOTALL)
-    assert callable(table)
+    (written,) = re.findall(between, path.read_text(encoding="utf-8"), re.DOTALL)
     assert written == table()
+
+
+def test_the_operations_of_the_readme_are_those_of_the_module() -> None:
+    table = DERIVE.read_text(encoding="utf-8").partition("| operations |\n|---|---|---|\n")[2]
+    rows = re.findall(r"^\| `(\w+)` \|.*\| (\d+) \|$", table.partition("\n\n")[0], re.MULTILINE)
+    assert len(rows) == 8
+    assert {name: int(count) for name, count in rows}.items() <= {
+        name: operations for name, (operations, _) in dp.OPERATIONS.items()
+    }.items()
+
+
+def test_the_system_file_of_the_readme_runs(tmp_path: Path) -> None:
+    (file,) = blocks(DERIVE, "toml")
+    (tmp_path / "bead.toml").write_text(file)
+    module = load_module(str(tmp_path / "bead.toml"))
+    assert module.TIMED
+    assert "power" in module.OPERATIONS
 
 
 def test_the_keys_and_sweeps_of_the_readme_are_those_of_the_code() -> None:

@@ -27,7 +27,7 @@ def system(n: int) -> System:
 PUBLISHED = r'''
 system = "chain_3"
 source = "textbooks, for n links"
-note = "Σ μ l_j (cos(θi - θj) θj'' + sin(θi - θj) θj'²) + μ g sin θi = 0, μ: mass below both joints."
+note = "Σ μ l_j (cos(θi - θj) θj'' + sin(θi - θj) θj'²) + μ g sin θi = 0, μ: mass below both joints"
 euler_lagrange = [
 """M1*l1*theta1_ddot + M2*l2*(cos(theta1 - theta2)*theta2_ddot + sin(theta1 - theta2)*theta2_dot**2)
  + m3*l3*(cos(theta1 - theta3)*theta3_ddot + sin(theta1 - theta3)*theta3_dot**2)
