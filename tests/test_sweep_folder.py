@@ -1,4 +1,4 @@
-"""Sweeps that are killed, damaged, shared out or refused end in the same bytes, or say why not."""
+"""A sweep that is killed, damaged or distributed has the same results; others are refused."""
 
 import json
 import os
@@ -10,10 +10,11 @@ import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from shutil import disk_usage
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
@@ -22,27 +23,30 @@ from sweep_file import FILE, write_sweep
 import generated.double_pendulum as dp
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
+from solvers.integration.ensemble_run import StopFlag
 from solvers.sweeps import chunk_length, pool
 from solvers.sweeps.axes import Grid, Random
-from solvers.sweeps.folder import Contents, Folder, FolderError
+from solvers.sweeps.folder import Folder, FolderError
+from solvers.sweeps.job import Job
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find
 from solvers.sweeps.run import partial_results, sweep
 from solvers.sweeps.sweep import Sweep
+from solvers.sweeps.worker import run_chunk
 
 HOLONOMIC = str(Path(sys.executable).parent / "holonomic")
 ANGLES = np.linspace(-3, 3, 40)
-DEFINITION = Sweep(
-    dp, Grid({"theta1": ANGLES, "theta2": ANGLES}),
-    {"flip": First({"theta1": (-np.pi, np.pi)}), "end": Final(("theta1",))}, 3.0,
-)  # fmt: skip
+MAPS = {"flip": First({"theta1": (-np.pi, np.pi)}), "end": Final(("theta1",))}
+DEFINITION = Sweep(dp, Grid({"theta1": ANGLES, "theta2": ANGLES}), MAPS, 3.0)
+#: The address of a scheduler, and the processes of its workers.
+Cluster: TypeAlias = tuple[str, list["subprocess.Popen[bytes]"]]
 
 
 @pytest.fixture(autouse=True, scope="module")
 def many_chunks() -> Iterator[None]:
-    """So small a sweep is cut into very few chunks, if they are held to be dear."""
+    """A small sweep has many chunks only if their overhead is small."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(chunk_length, "COST", 1e-5)
         yield
@@ -75,7 +79,7 @@ def test_the_number_of_threads_changes_nothing(
     assert files(tmp_path) == expected
 
 
-#: What a worker has loaded; it does not know this file.
+#: Modules that a worker has loaded; it does not have this file.
 modules: Any = eval("lambda: list(__import__('sys').modules)")
 
 
@@ -83,7 +87,7 @@ def loaded() -> list[str]:
     return [name for name in ("sympy", "derive", "matplotlib") if name in sys.modules]
 
 
-def test_processes_do_the_same_and_never_load_sympy(
+def test_processes_have_the_same_results_and_never_load_sympy(
     tmp_path: Path, expected: dict[str, bytes]
 ) -> None:
     with ProcessPoolExecutor(2, get_context("spawn")) as executor:
@@ -93,22 +97,17 @@ def test_processes_do_the_same_and_never_load_sympy(
 
 
 @pytest.fixture
-def cluster() -> Iterator[tuple[str, list["subprocess.Popen[bytes]"]]]:
+def cluster() -> Iterator[Cluster]:
     """A Dask scheduler and two workers, each a process of its own, on the loopback."""
     distributed = pytest.importorskip("distributed")
-    options = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    run = partial(subprocess.Popen, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with distributed.LocalCluster(
         n_workers=0, host="127.0.0.1", dashboard_address=None, protocol="tcp://"
     ) as scheduler:
         address = scheduler.scheduler_address
-        workers = [
-            subprocess.Popen(
-                [sys.executable, "-m", "distributed.cli.dask_worker", address, "--nthreads", "1",
-                 "--no-nanny", "--no-dashboard", "--host", "127.0.0.1", "--death-timeout", "60"],
-                **options,
-            )
-            for _ in range(2)
-        ]  # fmt: skip
+        command = [sys.executable, "-m", "distributed.cli.dask_worker", address]
+        arguments = "--nthreads 1 --no-nanny --no-dashboard --host 127.0.0.1 --death-timeout 60"
+        workers = [run([*command, *arguments.split()]) for _ in range(2)]
         try:
             scheduler.wait_for_workers(2, timeout=60)
             yield address, workers
@@ -119,10 +118,9 @@ def cluster() -> Iterator[tuple[str, list["subprocess.Popen[bytes]"]]]:
 
 
 @pytest.mark.filterwarnings("default")  # of Dask's own
-def test_a_cluster_that_loses_a_worker_does_the_same(
-    cluster: tuple[str, list["subprocess.Popen[bytes]"]], tmp_path: Path,
-    expected: dict[str, bytes],
-) -> None:  # fmt: skip
+def test_a_cluster_that_loses_a_worker_has_the_same_results(
+    cluster: Cluster, tmp_path: Path, expected: dict[str, bytes]
+) -> None:
     address, workers = cluster
     from distributed import Client
 
@@ -144,9 +142,8 @@ def test_a_cluster_that_loses_a_worker_does_the_same(
 
 @pytest.mark.filterwarnings("default")
 def test_the_command_finds_a_cluster_by_its_address(
-    cluster: tuple[str, list["subprocess.Popen[bytes]"]], tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+    cluster: Cluster, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = write_sweep(tmp_path)
     argv = ["sweep", str(path), "--json", "--output"]
     assert main([*argv, str(tmp_path / "here")]) == 0
@@ -157,7 +154,7 @@ def test_the_command_finds_a_cluster_by_its_address(
     assert here["status"] == there["status"] == {"finished": 14400}
 
 
-def test_a_scheduler_that_is_not_there_is_named(
+def test_a_missing_scheduler_is_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("solvers.app.commands.sweep.PATIENCE", 0.5)
@@ -170,41 +167,40 @@ def test_a_scheduler_that_is_not_there_is_named(
     assert not (tmp_path / "out").exists()
 
 
-def test_killed_at_any_moment_it_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+def test_a_killed_sweep_resumes_to_the_same_bytes(tmp_path: Path) -> None:
     # some seconds of work for one thread
     path = write_sweep(tmp_path, FILE.replace("duration = 30", "duration = 120"))
     command = [HOLONOMIC, "sweep", str(path), "--output"]
     subprocess.run([*command, str(tmp_path / "whole")], check=True, stdout=subprocess.DEVNULL)
-    expected, torn = files(tmp_path / "whole"), tmp_path / "torn"
+    expected, interrupted = files(tmp_path / "whole"), tmp_path / "interrupted"
     random, unfinished = np.random.default_rng(1), 0
     for _ in range(6):
-        run = subprocess.Popen(
-            [*command, str(torn), "--workers", "1"], stdout=subprocess.DEVNULL
-        )  # fmt: skip
+        argv = [*command, str(interrupted), "--workers", "1"]
+        run = subprocess.Popen(argv, stdout=subprocess.DEVNULL)
         # at a random moment from the first file on
-        while run.poll() is None and not (torn / "sweep.json").exists():
+        while run.poll() is None and not (interrupted / "sweep.json").exists():
             time.sleep(0.001)
         time.sleep(random.uniform(0, 0.3))
         run.kill()
         run.wait()
-        unfinished += not (torn / "end.npy").exists()
-    subprocess.run([*command, str(torn)], check=True, stdout=subprocess.DEVNULL)
-    assert files(torn) == expected
+        unfinished += not (interrupted / "end.npy").exists()
+    subprocess.run([*command, str(interrupted)], check=True, stdout=subprocess.DEVNULL)
+    assert files(interrupted) == expected
     assert len(expected) > 10
     assert unfinished > 1
 
 
-@pytest.mark.parametrize("harm", ["truncated", "flipped", "empty", "missing"])
-def test_a_damaged_chunk_is_done_again(
-    harm: str, tmp_path: Path, expected: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("damage", ["truncated", "flipped", "empty", "missing"])
+def test_a_damaged_chunk_is_repeated(
+    damage: str, tmp_path: Path, expected: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sweep(DEFINITION, tmp_path)
     chunk = sorted((tmp_path / "chunks").glob("*.npy"))[5]
     whole = chunk.read_bytes()
     chunk.unlink()
-    if harm != "missing":
+    if damage != "missing":
         flipped = whole[:200] + bytes([whole[200] ^ 1]) + whole[201:]
-        chunk.write_bytes({"truncated": whole[:-9], "flipped": flipped, "empty": b""}[harm])
+        chunk.write_bytes({"truncated": whole[:-9], "flipped": flipped, "empty": b""}[damage])
     done = []
     real = pool.run_chunk
     monkeypatch.setattr(pool, "run_chunk", lambda *given: done.append(1) or real(*given))
@@ -243,7 +239,7 @@ def test_a_folder_of_another_sweep_is_refused(
     "{}", "[]", "\0", '"chunk": 7.5', '"chunk": true', '"chunk": 0', '"chunk": 1e400',
     '"format": 1', '"motions": 5',
 ])  # fmt: skip
-def test_a_manifest_that_was_changed_is_noticed(
+def test_a_changed_manifest_is_refused(
     change: str, tmp_path: Path, expected: dict[str, bytes]
 ) -> None:
     sweep(DEFINITION, tmp_path)
@@ -257,13 +253,13 @@ def test_a_manifest_that_was_changed_is_noticed(
     ):
         sweep(DEFINITION, tmp_path)
     assert files(tmp_path) == expected | {"sweep.json": changed.encode()}
-    # chunks of another length are not mistaken for ours
+    # chunks of another length are not confused with these
     (tmp_path / "sweep.json").write_text(re.sub(r'"chunk": \d+', '"chunk": 90', manifest))
     sweep(DEFINITION, tmp_path)
     assert files(tmp_path)["flip.npy"] == expected["flip.npy"]
 
 
-def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
+def test_a_folder_with_other_files_is_refused_and_they_are_kept(tmp_path: Path) -> None:
     (tmp_path / ".profile").write_text("mine")
     with pytest.raises(FolderError, match=r"holds .profile and no sweep"):
         sweep(DEFINITION, tmp_path)
@@ -275,30 +271,30 @@ def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
         path.write_text("mine")
     left = [out / ".flip.npy.12", out / "chunks" / ".07-0123456789abcdef.npy.12"]
     for path in left:
-        path.write_text("left by a process that was killed")
+        path.write_text("left by a killed process")
     sweep(DEFINITION, out)
     assert all(path.read_text() == "mine" for path in mine)
     assert not any(path.exists() for path in left)
 
 
-def test_maps_that_do_not_fit_are_refused_before_the_work(
+def test_maps_that_do_not_fit_the_disk_are_refused_at_the_start(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("solvers.sweeps.folder.disk_usage", lambda _: disk_usage(tmp_path)._replace(
-        free=1000))  # fmt: skip
+    small = disk_usage(tmp_path)._replace(free=1000)
+    monkeypatch.setattr("solvers.sweeps.folder.disk_usage", lambda _: small)
     with pytest.raises(OSError, match=r"the maps need .* GB, and 1e-06 GB are free"):
         sweep(DEFINITION, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
-def test_two_at_once_in_one_folder_are_refused(tmp_path: Path) -> None:
-    contents = Contents({}, 10, np.dtype([("status", "i1")]))
-    with Folder(tmp_path, contents, lambda: 5):
+def test_two_processes_in_one_folder_are_refused(tmp_path: Path) -> None:
+    job = Job.of(DEFINITION)
+    with Folder(tmp_path, DEFINITION, job):
         with pytest.raises(FolderError, match="another process works in"):
             sweep(DEFINITION, tmp_path)
         with (
             pytest.raises(FolderError, match="another process works in"),
-            Folder(tmp_path, contents, lambda: 5),
+            Folder(tmp_path, DEFINITION, job),
         ):
             pass
 
@@ -321,7 +317,7 @@ class Failing(Executor):
         return future
 
 
-def test_what_was_done_before_a_failure_is_kept(
+def test_chunks_completed_before_a_failure_are_kept(
     tmp_path: Path, expected: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for after, error in ((5, RuntimeError("lost")), (4, KeyboardInterrupt())):
@@ -329,15 +325,15 @@ def test_what_was_done_before_a_failure_is_kept(
             sweep(DEFINITION, tmp_path, pool=Pool(Failing(after, error), 1))
     chunks = [name for name in files(tmp_path) if name.startswith("chunks")]
     assert 6 <= len(chunks) <= 9
-    partial = partial_results(DEFINITION, tmp_path)
-    assert 0 < partial.count["not done yet"] < DEFINITION.motions
-    assert np.isnan(partial.maps["end"][partial.status == 0]).all()
-    assert np.isfinite(partial.maps["end"][partial.status != 0]).all()
+    so_far = partial_results(DEFINITION, tmp_path)
+    assert 0 < so_far.count["not done yet"] < DEFINITION.motions
+    assert np.isnan(so_far.maps["end"][so_far.status == 0]).all()
+    assert np.isfinite(so_far.maps["end"][so_far.status != 0]).all()
     sweep(DEFINITION, tmp_path)
     assert files(tmp_path) == expected
 
 
-def test_a_full_disk_leaves_nothing_half_write_sweep(tmp_path: Path) -> None:
+def test_a_full_disk_leaves_no_incomplete_file(tmp_path: Path) -> None:
     path = write_sweep(tmp_path)
     command = [HOLONOMIC, "sweep", str(path), "--output"]
     subprocess.run([*command, str(tmp_path / "whole")], check=True, stdout=subprocess.DEVNULL)
@@ -359,7 +355,7 @@ import sys; from solvers.app.cli import main; sys.exit(main(['sweep', {str(path)
 LONG = FILE.replace("duration = 30", "duration = 3000")
 
 
-def test_interrupted_it_ends_at_once_and_goes_on_later(tmp_path: Path) -> None:
+def test_an_interrupted_sweep_stops_at_once_and_resumes(tmp_path: Path) -> None:
     path = write_sweep(tmp_path, LONG)
     command = [
         sys.executable,
@@ -368,7 +364,7 @@ def test_interrupted_it_ends_at_once_and_goes_on_later(tmp_path: Path) -> None:
         "signal.signal(signal.SIGINT, signal.default_int_handler); "
         f"sys.exit(main(['sweep', {str(path)!r}, '--output', {str(tmp_path / 'out')!r}]))",
     ]
-    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     while not list((tmp_path / "out" / "chunks").glob("*.npy")):
         time.sleep(0.02)
     run.send_signal(signal.SIGINT)
@@ -382,7 +378,15 @@ def test_interrupted_it_ends_at_once_and_goes_on_later(tmp_path: Path) -> None:
     assert list((tmp_path / "out" / "chunks").glob("*.npy"))
 
 
-def test_a_half_done_sweep_can_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_stop_flag_stops_only_its_own_motions() -> None:
+    job, columns, flag = Job.of(DEFINITION), DEFINITION.axes.columns(0, 50), StopFlag()
+    flag.set()
+    with pytest.raises(InterruptedError, match="the sweep was stopped"):
+        run_chunk(job, columns, flag)
+    assert (run_chunk(job, columns, StopFlag()) == run_chunk(job, columns)).all()
+
+
+def test_partial_results_can_be_plotted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, out = write_sweep(tmp_path), tmp_path / "out"
     definition = find(str(path), load_module)
     with pytest.raises(RuntimeError):
@@ -397,13 +401,11 @@ def test_a_half_done_sweep_can_be_drawn(tmp_path: Path, capsys: pytest.CaptureFi
     assert "sweep.json does not exist" in capsys.readouterr().err
 
 
-def test_a_terminal_is_told_how_far_it_is_and_how_long_it_takes(tmp_path: Path) -> None:
+def test_a_terminal_shows_progress_and_the_time_left(tmp_path: Path) -> None:
     path = write_sweep(tmp_path, LONG)
     master, slave = pty.openpty()
-    run = subprocess.Popen(
-        [HOLONOMIC, "sweep", str(path), "--output", str(tmp_path / "o")],
-        stdout=subprocess.PIPE, stderr=slave,
-    )  # fmt: skip
+    argv = [HOLONOMIC, "sweep", str(path), "--output", str(tmp_path / "o")]
+    run = subprocess.Popen(argv, stdout=subprocess.PIPE, stderr=slave)
     os.close(slave)
     shown = b""
     while b"s left" not in shown and run.poll() is None:

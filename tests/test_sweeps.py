@@ -2,6 +2,7 @@
 
 import csv
 import json
+from functools import partial
 from itertools import product
 from pathlib import Path
 from types import ModuleType
@@ -41,13 +42,18 @@ TOPS = ({"theta1": PI}, {"theta2": PI})
 STARTS = Random({"theta1": (-PI, PI), "theta2": (-PI, PI)}, 400, seed=3)
 
 
-def run(folder: Path, module: ModuleType, axes: Any, duration: float, maps: Any,
-          **options: Any) -> Results:  # fmt: skip
+#: Reference solutions by another program and family of methods, converged.
+reference = partial(solve_ivp, method="DOP853", rtol=1e-13, atol=1e-13)
+
+
+def run(
+    folder: Path, module: ModuleType, axes: Any, duration: float, maps: Any, **options: Any
+) -> Results:
     return sweep(Sweep(module, axes, maps, duration, **options), folder)
 
 
 def flip_time(start: np.ndarray, duration: float) -> float:
-    """Reference by another program and family of methods, converged."""
+    """Time of the first flip of one motion, by the reference."""
     events = []
     for k, value in product((0, 1), (-PI, PI)):
 
@@ -58,13 +64,12 @@ def flip_time(start: np.ndarray, duration: float) -> float:
 
         event.terminal = True  # type: ignore[attr-defined]
         events.append(event)
-    solution = solve_ivp(dp.rhs, (0, duration), start, "DOP853", rtol=1e-13, atol=1e-13,
-                      args=(dp.DEFAULTS,), events=events)  # fmt: skip
+    solution = reference(dp.rhs, (0, duration), start, args=(dp.DEFAULTS,), events=events)
     return min([t for times in solution.t_events for t in times], default=np.nan)
 
 
 def test_flip_times_equal_those_of_single_motions(tmp_path: Path) -> None:
-    # over 4 s errors of 1e-9 grow to some 1e-6 at most, far less than flips are apart
+    # over 4 s errors of 1e-9 grow to 1e-6 at most, much less than the time between flips
     results = run(tmp_path, dp, STARTS, 4.0, {"flip": First(FLIP, TOPS)}, rtol=1e-11)
     flips, starts = results.maps["flip"], STARTS.columns(0, 400)
     some = [*np.flatnonzero(np.isfinite(flips))[:40], *np.flatnonzero(np.isnan(flips))[:20]]
@@ -128,25 +133,23 @@ def test_a_system_cannot_use_reserved_words(name: str, tmp_path: Path) -> None:
 def test_finals_samples_and_extremes_equal_those_of_single_motions(tmp_path: Path) -> None:
     n, of = 12, ("theta1", "theta2_dot")
     axes = Random({"theta1": (-1, 1), "theta2": (-1, 1), "m2": (0.5, 2)}, n, seed=1)
-    results = run(tmp_path, dp, axes, 3.0, {
-        "end": Final(of), "way": Samples(of, 7), "reach": Extremes(("theta1", "theta2")),
-        "drift": EnergyError(), "pass": First({"theta1": (0.0,)}),
-    }, rtol=1e-11)  # fmt: skip
+    maps = {"end": Final(of), "path": Samples(of, 7), "reach": Extremes(("theta1", "theta2"))}
+    maps |= {"drift": EnergyError(), "crossing": First({"theta1": (0.0,)})}
+    results = run(tmp_path, dp, axes, 3.0, maps, rtol=1e-11)
     times = np.linspace(0, 3, 3001)
     for k in range(n):
         params = [*dp.DEFAULTS]
         params[dp.PARAMETERS.index("m2")] = results.axes["m2"][k]
         start = (results.axes["theta1"][k], results.axes["theta2"][k], 0, 0)
-        y = solve_ivp(dp.rhs, (0, 3), start, "DOP853", times, rtol=1e-13, atol=1e-13,
-                      args=(params,)).y  # fmt: skip
+        y = reference(dp.rhs, (0, 3), start, t_eval=times, args=(params,)).y
         assert_allclose(results.maps["end"][k], y[[0, 3], -1], atol=1e-8)
-        assert_allclose(results.maps["way"][k], y[[0, 3]][:, ::500], atol=1e-8)
+        assert_allclose(results.maps["path"][k], y[[0, 3]][:, ::500], atol=1e-8)
         # sampled every ms, a parabola's top is missed by (0.5 ms)² times some 10 rad/s²
         assert_allclose(results.maps["reach"][k], np.c_[y[:2].min(1), y[:2].max(1)], atol=5e-6)
         assert (results.maps["reach"][k, :, 0] <= y[:2].min(1) + 1e-9).all()
         assert (results.maps["reach"][k, :, 1] >= y[:2].max(1) - 1e-9).all()
         crossing = np.flatnonzero(np.diff(np.sign(y[0])))[0]
-        assert times[crossing] <= results.maps["pass"][k] <= times[crossing + 1]
+        assert times[crossing] <= results.maps["crossing"][k] <= times[crossing + 1]
     assert 0 < np.abs(results.maps["drift"]).max() < 1e-9
 
 
@@ -160,7 +163,7 @@ def test_the_extremes_of_a_swing_are_its_initial_angle(tmp_path: Path) -> None:
 def test_the_lyapunov_exponent_of_an_upright_rod_follows_the_linear_solution(
     tmp_path: Path,
 ) -> None:
-    # δ(t) = δ₀ cosh ωt + δ̇₀ sinh ωt / ω about a rod that stands on its head, ω² = g/l
+    # δ(t) = δ₀ cosh ωt + δ̇₀ sinh ωt / ω about an upright rod, ω² = g/l
     t, axes = 5.0, Table({"theta": [PI], "l": [0.7]})
     results = run(tmp_path, single, axes, t, {"exponent": Lyapunov()}).maps["exponent"]
     omega = np.sqrt(single.DEFAULTS[single.PARAMETERS.index("g")] / 0.7)
@@ -177,21 +180,20 @@ def test_the_lyapunov_exponent_equals_the_divergence_of_neighbours(tmp_path: Pat
     for k, exponent in enumerate(results.maps["exponent"]):
         start = np.array([results.axes["theta1"][k], results.axes["theta2"][k], 0, 0])
         ends = [
-            solve_ivp(dp.rhs, (0, t), start + step, "DOP853", rtol=1e-13, atol=1e-13,
-                      args=(dp.DEFAULTS,)).y[:, -1]
-            for step in (-0.5e-6, 0.5e-6)
-        ]  # fmt: skip
+            reference(dp.rhs, (0, t), start + change, args=(dp.DEFAULTS,)).y[:, -1]
+            for change in (-0.5e-6, 0.5e-6)
+        ]
         apart = np.linalg.norm(ends[1] - ends[0]) / 2e-6
         assert exponent == pytest.approx(np.log(apart) / t, abs=1e-4)
 
 
 def test_small_changes_grow_beyond_the_range_of_floats(tmp_path: Path) -> None:
-    # at rest on a pass, x = 0, y = 1, where V'' is -1 along y and 3 along x: of δ₀ = (½, ½, ½, ½)
-    # the part along y becomes ½ (1, 1) e^t, the other one turns
+    # at rest on a saddle, x = 0, y = 1, where V'' is -1 along y and 3 along x: of δ₀ = (½, ½, ½, ½)
+    # the part along y becomes ½ (1, 1) e^t, the other part oscillates
     start = [[x] for x in (0, 1, 0, 0, *[0.5] * 4)]
     for backend, t in (("python", 100.0), ("compiled", 100.0), ("compiled", 2000.0)):
-        one = ensemble(hh, (0, t), start, (), form="variational", backend=backend,
-                       t_eval=[50.0], events=Event(hh, "y", 2.0))  # fmt: skip
+        options = {"form": "variational", "backend": backend, "t_eval": [50.0]}
+        one = ensemble(hh, (0, t), start, (), events=Event(hh, "y", 2.0), **options)
         assert one.growth[0] == pytest.approx(t - np.log(2) / 2, abs=1e-6)
         assert np.log(one.samples[5, 0, 0] * 2) == pytest.approx(50, abs=1e-6)
     results = run(tmp_path, hh, Grid({"y": [1.0]}), t, {"exponent": Lyapunov()}, values={"x": 0.0})
@@ -200,12 +202,12 @@ def test_small_changes_grow_beyond_the_range_of_floats(tmp_path: Path) -> None:
 
 
 def test_henon_heiles_motions_are_regular_at_low_and_chaotic_at_high_energy(tmp_path: Path) -> None:
-    # M. Hénon, C. Heiles (1964), figure 7: curves fill the section at 1/12, next to nothing of
-    # it at 1/6. In regular motion changes grow in proportion to time, at a rate of ln t/t.
-    axes = Grid({"energy": [1 / 12, 1 / 6], "y": np.linspace(-0.3, 0.45, 30),
-                 "y_dot": np.linspace(-0.3, 0.3, 9)})  # fmt: skip
-    results = run(tmp_path, hh, axes, 600.0, {"exponent": Lyapunov()},
-                  values={"x": 0.0, "x_dot": "energy"})  # fmt: skip
+    # M. Hénon, C. Heiles (1964), figure 7: curves fill the section at 1/12, and almost
+    # none of it at 1/6. In regular motion changes grow in proportion to time: exponent ln t/t.
+    y, y_dot = np.linspace(-0.3, 0.45, 30), np.linspace(-0.3, 0.3, 9)
+    axes = Grid({"energy": [1 / 12, 1 / 6], "y": y, "y_dot": y_dot})
+    values = {"x": 0.0, "x_dot": "energy"}
+    results = run(tmp_path, hh, axes, 600.0, {"exponent": Lyapunov()}, values=values)
     chaotic = [
         np.mean(e[np.isfinite(e)] > 2.5 * np.log(600) / 600) for e in results.maps["exponent"]
     ]
@@ -215,17 +217,15 @@ def test_henon_heiles_motions_are_regular_at_low_and_chaotic_at_high_energy(tmp_
 
 def test_a_velocity_follows_from_the_energy_or_has_no_solution(tmp_path: Path) -> None:
     axes = Random({"energy": (-30.0, 10.0), "theta2": (-3, 3), "theta2_dot": (-3, 3)}, 50, seed=2)
-    results = run(
-        tmp_path, dp, axes, 1e-9, {"start": Final(dp.STATE)},
-        values={"theta1": 0.3, "theta1_dot": "energy"},
-    )  # fmt: skip
+    values = {"theta1": 0.3, "theta1_dot": "energy"}
+    results = run(tmp_path, dp, axes, 1e-9, {"start": Final(dp.STATE)}, values=values)
     can = np.isfinite(results.maps["start"]).all(axis=1)
     assert 10 < can.sum() < 50
     assert (results.status[~can] == STATUSES.index("no such energy")).all()
     energy = dp.energy_many(0.0, results.maps["start"][can].T, dp.DEFAULTS)
     assert_allclose(energy, results.axes["energy"][can], atol=1e-6)
     assert (results.maps["start"][can, 2] >= 0).all()
-    # where none was results, even the velocity that costs least is too dear
+    # without a solution, every velocity has a larger energy
     for k in np.flatnonzero(~can):
         start = np.array([0.3, results.axes["theta2"][k], 0, results.axes["theta2_dot"][k]])
         rates = np.linspace(0, 20, 2001)
@@ -246,8 +246,8 @@ def test_a_section_equals_the_crossings_of_single_motions(tmp_path: Path) -> Non
             return float(state[0])
 
         event.direction = 1  # type: ignore[attr-defined]
-        one = solve_ivp(hh.rhs, (0, 60), start, "DOP853", rtol=1e-12, atol=1e-12, args=((),),
-                        events=event).y_events[0]  # fmt: skip
+        options = {"rtol": 1e-12, "atol": 1e-12, "args": ((),), "events": event}
+        one = reference(hh.rhs, (0, 60), start, **options).y_events[0]
         passes = one[np.abs(one[:, 1] - y) + np.abs(one[:, 3] - rate) > 1e-9]  # not the start
         n = min(len(passes), 15)
         assert n > 5
@@ -307,11 +307,9 @@ def test_a_module_that_does_not_ship_travels_as_text(tmp_path: Path) -> None:
     ({"rtol": 0.0, "atol": 0.0}, "no step is short enough"),
 ])  # fmt: skip
 def test_an_invalid_sweep_is_refused(changes: dict[str, Any], words: str) -> None:
-    definition: dict[str, Any] = {
-        "axes": STARTS, "maps": {"exponent": Lyapunov()}, "duration": 1.0,
-    } | changes  # fmt: skip
+    valid = {"axes": STARTS, "maps": {"exponent": Lyapunov()}, "duration": 1.0}
     with pytest.raises(ValueError, match=words):
-        Sweep(dp, **definition)
+        Sweep(dp, **(valid | changes))
 
 
 def test_energy_errors_need_a_conserved_energy() -> None:
@@ -338,15 +336,13 @@ def test_axes_without_values_are_refused(axes: Any, words: str) -> None:
 def test_all_maps_form_one_dataset_with_names_and_units(tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     axes = Grid({"theta1": [0.1, 0.2, 0.3], "l1": [1.0, 2.0]})
-    results = run(tmp_path / "a", dp, axes, 1.0, {
-        "end": Final(("theta1", "theta2_dot")), "reach": Extremes(("theta1",)),
-        "flip": First(FLIP),
-    }, values={"theta2": 0.0})  # fmt: skip
+    maps = {"end": Final(("theta1", "theta2_dot")), "reach": Extremes(("theta1",))}
+    maps["flip"] = First(FLIP)
+    results = run(tmp_path / "a", dp, axes, 1.0, maps, values={"theta2": 0.0})
     results.dataset().to_zarr(tmp_path / "maps.zarr", consolidated=False)
     whole = xarray.open_zarr(tmp_path / "maps.zarr", consolidated=False)
-    assert dict(whole.sizes) == {
-        "theta1": 3, "l1": 2, "end_component": 2, "reach_component": 1, "reach_extreme": 2,
-    }  # fmt: skip
+    inner = {"end_component": 2, "reach_component": 1, "reach_extreme": 2}
+    assert dict(whole.sizes) == {"theta1": 3, "l1": 2, **inner}
     assert json.loads(whole.definition)["duration"] == 1.0
     assert (whole.theta1.units, whole.l1.units, whole.flip.units) == ("rad", "m", "s")
     assert whole.end_component.values.tolist() == ["theta1", "theta2_dot"]
@@ -363,8 +359,8 @@ def test_shipped_sweeps_run_and_their_files_are_plain_numpy(name: str, tmp_path:
     few = Grid(
         {key: values[:: max(1, len(values) // 4)] for key, values in definition.axes.values.items()}
     )
-    results = run(tmp_path, definition.module, few, min(definition.duration, 20), definition.maps,
-                  values=definition.values)  # fmt: skip
+    duration, values = min(definition.duration, 20), definition.values
+    results = run(tmp_path, definition.module, few, duration, definition.maps, values=values)
     for path in tmp_path.glob("*.npy"):
         np.load(path, allow_pickle=False)
     assert set(results.count) <= {"finished", "event", "proved", "no such energy"}

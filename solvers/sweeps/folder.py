@@ -12,9 +12,8 @@ import fcntl
 import hashlib
 import json
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from errno import ENOSPC
 from functools import cached_property
 from io import BytesIO
@@ -27,6 +26,10 @@ from numpy.lib.format import dtype_to_descr, write_array_header_1_0
 from numpy.typing import NDArray
 
 from solvers.io.atomic_write import replacing, write_text
+from solvers.sweeps.axes import Grid
+from solvers.sweeps.chunk_length import chunk_length
+from solvers.sweeps.job import Job
+from solvers.sweeps.sweep import Sweep
 
 MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 2
 #: Hexadecimal digits of a digest in a file's name.
@@ -40,23 +43,13 @@ class FolderError(ValueError):
     """The folder holds another sweep, or another process works in it."""
 
 
-@dataclass(frozen=True)
-class Contents:
-    """The data that a folder is for."""
-
-    definition: Mapping[str, Any]
-    motions: int
-    dtype: np.dtype[np.void]
-
-
 class Folder:
     """The folder of a sweep; as a context it locks the folder for one process."""
 
-    def __init__(self, path: Path, contents: Contents, chunk_length: Callable[[], int]) -> None:
-        self.path, self._motions, self._dtype = path, contents.motions, contents.dtype
-        self._definition = json.loads(json.dumps(contents.definition))
-        self._chunk_length = chunk_length
-        self._length = 0
+    def __init__(self, path: Path, sweep: Sweep, job: Job) -> None:
+        self.path, self._sweep, self._job = path, sweep, job
+        self._motions, self._dtype, self._length = sweep.motions, job.dtype, 0
+        self._definition = json.loads(json.dumps(sweep.as_json))
         self._lock: IO[bytes] | None = None
 
     def __enter__(self) -> Folder:
@@ -86,7 +79,7 @@ class Folder:
         if manifest.exists():
             self.check()
         else:
-            self._length = self._chunk_length()
+            self._length = chunk_length(self._sweep, self._job)
             counts = {"format": FORMAT, "chunk": self._length, "motions": self._motions}
             record = {**counts, "definition": self._definition}
             write_text(manifest, json.dumps(record, indent=2, ensure_ascii=False) + "\n")
@@ -147,21 +140,29 @@ class Folder:
         start, stop = self.span(chunk)
         if motions.shape != (stop - start,) or motions.dtype != self._dtype:
             raise AssertionError(f"chunk {chunk} has shape {motions.shape}, {motions.dtype}")
-        file = BytesIO()
-        np.save(file, motions, allow_pickle=False)
-        digest = hashlib.sha256(file.getbuffer()).hexdigest()[:DIGITS]
+        content = _npy(motions)
+        digest = hashlib.sha256(content).hexdigest()[:DIGITS]
         name = f"{chunk:0{len(str(self.chunks))}}-{digest}.npy"
-        self.completed[chunk] = write_text(self.path / CHUNKS / name, file.getvalue())
+        self.completed[chunk] = write_text(self.path / CHUNKS / name, content)
 
-    def gather(self, shape: tuple[int, ...]) -> None:
-        """Write a file for each map, whose first axes have this shape."""
+    def gather(self) -> None:
+        """Write a file for each field of the records, and for each axis of a grid."""
         for name in self._dtype.names or ():
             field = self._dtype[name]
-            header = {"descr": dtype_to_descr(field.base), "fortran_order": False}
+            shape = (*self._sweep.axes.shape, *field.shape)
+            header = {"descr": dtype_to_descr(field.base), "fortran_order": False, "shape": shape}
             with replacing(self.path / f"{name}.npy") as file:
-                write_array_header_1_0(file, {**header, "shape": (*shape, *field.shape)})
+                write_array_header_1_0(file, header)
                 for rows in self.rows(name):
                     file.write(np.ascontiguousarray(rows).tobytes())
+        if isinstance(self._sweep.axes, Grid):
+            for name, values in self._sweep.axes.values.items():
+                write_text(self.path / f"{name}.npy", _npy(values))
+
+    def array(self, name: str) -> NDArray[Any]:
+        """One field of all motions, with the shape of the axes first."""
+        rows = np.concatenate([*self.rows(name)])
+        return rows.reshape(*self._sweep.axes.shape, *rows.shape[1:])
 
     def rows(self, name: str) -> Iterator[NDArray[Any]]:
         """One field of all motions by chunks; NaN, or 0 for integers, where it is not done yet."""
@@ -173,6 +174,13 @@ class Folder:
             else:
                 unknown = np.nan if field.base.kind == "f" else 0
                 yield np.full((stop - start, *field.shape), unknown, field.base)
+
+
+def _npy(array: NDArray[Any]) -> bytes:
+    """The content of a NumPy file."""
+    file = BytesIO()
+    np.save(file, array, allow_pickle=False)
+    return file.getvalue()
 
 
 def _manifest(path: Path) -> dict[str, Any]:

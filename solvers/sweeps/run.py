@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import closing
-from io import BytesIO
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from solvers.io.atomic_write import write_text
 from solvers.io.progress import Rate
 from solvers.sweeps.axes import Grid
-from solvers.sweeps.chunk_length import chunk_length
-from solvers.sweeps.folder import Contents, Folder
+from solvers.sweeps.folder import Folder
 from solvers.sweeps.job import Job
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.results import Results
@@ -70,7 +63,7 @@ def sweep(
     {'finished': 6}
     """
     job = Job.of(definition)
-    with _folder(definition, job, folder) as stored:
+    with Folder(Path(folder), definition, job) as stored:
         chunks = {*range(stored.chunks)} - {*stored.completed}
         missing = {stored.span(chunk): chunk for chunk in sorted(chunks)}
         rate = Rate(definition.motions, sum(stop - start for start, stop in missing))
@@ -78,7 +71,7 @@ def sweep(
             for span, chunk in completed:
                 stored.store(missing[span], chunk)
                 report(rate(len(chunk)))
-        gather(definition, stored)
+        stored.gather()
     return Results.of(definition, Path(folder))
 
 
@@ -112,29 +105,9 @@ def partial_results(definition: Sweep, folder: str | Path) -> Results:
     >>> partial_results(definition, "end").count
     {'finished': 1}
     """
-    stored = _folder(definition, Job.of(definition), folder)
+    stored = Folder(Path(folder), definition, Job.of(definition))
     stored.check()
-
-    def gathered(name: str) -> NDArray[Any]:
-        rows = np.concatenate([*stored.rows(name)])
-        return rows.reshape(*definition.axes.shape, *rows.shape[1:])
-
     axes = definition.axes
     varied = axes.values if isinstance(axes, Grid) else axes.columns(0, definition.motions)
-    maps = {name: gathered(name) for name in definition.maps}
-    return Results(definition, Path(folder), maps, dict(varied), gathered("status"))
-
-
-def _folder(definition: Sweep, job: Job, folder: str | Path) -> Folder:
-    contents = Contents(definition.as_json, definition.motions, job.dtype)
-    return Folder(Path(folder), contents, lambda: chunk_length(definition, job))
-
-
-def gather(definition: Sweep, stored: Folder) -> None:
-    """Write a file for each map, and for each axis of a grid."""
-    stored.gather(definition.axes.shape)
-    if isinstance(definition.axes, Grid):
-        for name, values in definition.axes.values.items():
-            file = BytesIO()
-            np.save(file, values, allow_pickle=False)
-            write_text(stored.path / f"{name}.npy", file.getvalue())
+    maps = {name: stored.array(name) for name in definition.maps}
+    return Results(definition, Path(folder), maps, dict(varied), stored.array("status"))
