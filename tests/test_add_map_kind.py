@@ -55,7 +55,7 @@ class MeanSpeed(CountedMap):
         return 2
 
     def values(self, motions):
-        samples = motions.ensemble.samples[..., motions.indices(self.of), :]
+        samples = np.swapaxes(motions.ensemble.samples[motions.indices(self.of)], 0, 1)
         speed = (samples[..., -1] - samples[..., 0]) / motions.ensemble.t[:, None]
         return np.repeat(self.factor * speed[..., None], self.count, axis=-1)
 '''

@@ -40,7 +40,7 @@ from solvers.sweeps.reading import find
     (('kind = "final"\nof = ["theta1", "theta2"]', 'kind = "first"\nof = {}'), "`of` is empty"),
     (('of = ["theta1", "theta2"]', 'of = ["theta1", "theta1"]'), "must list different components"),
     (('"final"\nof = ["theta1", "theta2"]', '"extremes"\nof = ["theta1_dot"]'),
-     "extremes of theta1_dot are not known"),
+     "theta1_dot is not a coordinate: extremes are those of theta1, theta2"),
     (("[maps.end]", '[maps.x]\nkind = "section"\ncount = 1\nwhere = "theta1"\n'
       'direction = ["up"]\n[maps.end]'), "direction = .'up'. must be one of both"),
     (("[maps.end]", f'[maps.{"x" * 60}]\nkind = "lyapunov"\n[maps.end]'), "up to 50 letters"),
