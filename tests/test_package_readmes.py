@@ -15,9 +15,7 @@ from solvers.sweeps.job import status_table
 from solvers.sweeps.run import sweep
 
 ROOT = Path(__file__).parent.parent
-ALL = [p for package in ("derive", "solvers") for p in sorted((ROOT / package).rglob("*.md"))]
-#: The README of solvers describes arguments that do not exist yet.
-READMES = [path for path in ALL if path != ROOT / "solvers" / "README.md"]
+READMES = [p for package in ("derive", "solvers") for p in sorted((ROOT / package).rglob("*.md"))]
 
 
 def blocks(path: Path, language: str) -> list[str]:

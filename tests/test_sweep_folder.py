@@ -65,10 +65,10 @@ def files(folder: Path) -> dict[str, bytes]:
 def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     folder = tmp_path_factory.mktemp("undisturbed")
     sweep(DEFINITION, folder)
-    found = files(folder)
-    assert {"sweep.json", "flip.npy", "end.npy", "status.npy", "theta1.npy"} <= {*found}
-    assert sum(name.startswith("chunks") for name in found) >= 16
-    return found
+    results = files(folder)
+    assert {"sweep.json", "flip.npy", "end.npy", "status.npy", "theta1.npy"} <= {*results}
+    assert sum(name.startswith("chunks") for name in results) >= 16
+    return results
 
 
 @pytest.mark.parametrize("workers", [1, 3])
@@ -368,12 +368,12 @@ def test_an_interrupted_sweep_stops_at_once_and_resumes(tmp_path: Path) -> None:
     while not list((tmp_path / "out" / "chunks").glob("*.npy")):
         time.sleep(0.02)
     run.send_signal(signal.SIGINT)
-    began = time.monotonic()
+    start = time.monotonic()
     _, errors = run.communicate(timeout=60)
     assert run.returncode == 130
     assert b"Traceback" not in errors
     assert b"the same command resumes" in errors
-    assert time.monotonic() - began < 5
+    assert time.monotonic() - start < 5
     assert not [*(tmp_path / "out").rglob(".*")]
     assert list((tmp_path / "out" / "chunks").glob("*.npy"))
 
@@ -393,8 +393,8 @@ def test_partial_results_can_be_plotted(tmp_path: Path, capsys: pytest.CaptureFi
         sweep(definition, out, pool=Pool(Failing(5, RuntimeError()), 1))
     before = files(out)
     assert main(["sweep", str(path), "--output", str(out), "--draw"]) == 0
-    shown = capsys.readouterr().out
-    assert "not done yet" in shown
+    printed = capsys.readouterr().out
+    assert "not done yet" in printed
     assert (out / "mine.png").read_bytes().startswith(b"\x89PNG")
     assert files(out) == before
     assert main(["sweep", str(path), "--output", str(tmp_path / "none"), "--draw"]) == 2
@@ -407,11 +407,11 @@ def test_a_terminal_shows_progress_and_the_time_left(tmp_path: Path) -> None:
     argv = [HOLONOMIC, "sweep", str(path), "--output", str(tmp_path / "o")]
     run = subprocess.Popen(argv, stdout=subprocess.PIPE, stderr=slave)
     os.close(slave)
-    shown = b""
-    while b"s left" not in shown and run.poll() is None:
-        shown += os.read(master, 1000)
+    printed = b""
+    while b"s left" not in printed and run.poll() is None:
+        printed += os.read(master, 1000)
     run.kill()
     run.communicate()
     os.close(master)
-    assert b"of 14,400, " in shown
-    assert b" a second, " in shown
+    assert b"of 14,400, " in printed
+    assert b" a second, " in printed

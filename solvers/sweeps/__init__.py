@@ -1,1 +1,1 @@
-"""Maps of very many motions: what varies, what is kept of each, and how they are shared out."""
+"""Maps of many motions: axes, map kinds, folders, workers and plots."""

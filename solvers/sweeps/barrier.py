@@ -42,7 +42,7 @@ def barrier(
 def is_below(
     module: GeneratedModule, positions: Positions, state: Array, params: Sequence[Array]
 ) -> NDArray[np.bool_]:
-    """Which states have less energy than the lowest of the positions, by more than rounding."""
+    """Whether states have less energy than the lowest of the positions, by more than rounding."""
     top, own = barrier(module, positions, params, len(state)), energies(module, state, params)
     return np.asarray(own < top - ROUNDING * (np.abs(top) + np.abs(own)))
 

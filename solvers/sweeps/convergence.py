@@ -19,21 +19,14 @@ MIN_RTOL = 1e-14
 
 @dataclass(frozen=True)
 class Convergence:
-    """Changes of a map's numbers with tighter tolerances.
+    """Changes of a map's numbers with tighter tolerances."""
 
-    Attributes
-    ----------
-    motions : int
-        Number of motions that were compared.
-    median, most : float
-        Changes that half of the numbers, and nine tenths of them, do not exceed.
-    lost : float
-        Share of the numbers that exist with one tolerance only.
-    """
-
+    #: Number of motions that were compared.
     motions: int
+    #: Changes that half of the numbers, and nine tenths of them, do not exceed.
     median: float
     most: float
+    #: Share of the numbers that exist with one tolerance only.
     lost: float
 
 

@@ -48,7 +48,7 @@ def initial_states(
 def velocity(
     module: GeneratedModule, state: Array, params: list[Array], index: int, energy: Array
 ) -> Array:
-    """The velocity of 0 or more with which states have an energy; NaN where there is none."""
+    """The velocity of 0 or more that gives states an energy; NaN where there is none."""
     at = {}
     for value in (-1.0, 0.0, 1.0):
         trial = state.copy()

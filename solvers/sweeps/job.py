@@ -79,7 +79,7 @@ class Job:
 
     @property
     def barrier(self) -> tuple[Mapping[str, float], ...]:
-        """Positions of which a motion must have the energy of the lowest to be integrated."""
+        """Positions at rest; motions with less energy than the lowest are not integrated."""
         (one, *_) = self.maps.values()
         return one.barrier if self.ends_at_event else ()
 

@@ -1,4 +1,4 @@
-"""The map kinds that exist, found by the names of their files."""
+"""The map kinds that exist; each is a file in the package `maps`."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ class MapTable:
     Parameters
     ----------
     path : str
-        The table's place in the file, such as ``maps.flip``.
+        The table's name in the file, such as ``maps.flip``.
     module : module
         A generated module.
     table : mapping

@@ -45,7 +45,7 @@ class Pool:
     >>> from concurrent.futures import ProcessPoolExecutor
     >>> Pool(workers=2).workers
     2
-    >>> pool = Pool(ProcessPoolExecutor, workers=4)
+    >>> pool = Pool(ProcessPoolExecutor(4), workers=4)
     """
 
     executor: Executor | None = None

@@ -49,7 +49,7 @@ class Sweep:
     Raises
     ------
     ValueError
-        When an argument is not possible; the message says what is allowed.
+        When an argument is invalid; the message states the allowed values.
     solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
 

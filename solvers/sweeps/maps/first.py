@@ -27,7 +27,7 @@ class First(Map):
     of : mapping of str to tuple of float
         Values by component.
     barrier : tuple of mapping of str to float
-        Positions that include the lowest on every way to a crossing; coordinates that are not
+        Positions at rest that include the lowest with a crossing; coordinates that are not
         named are 0. It excludes motions only if the sweep has no other map.
 
     Examples
