@@ -63,7 +63,7 @@ def _remarks(results: Results) -> Iterator[str]:
     if "proved" in count:
         yield "white, inside the line: not enough energy"
     if "finished" in count and any(one.ends_motion for one in kinds):
-        yield f"grey or empty: not within {definition.duration:g} s"
+        yield f"grey or empty: no event within {definition.duration:g} s"
     if definition.samples and definition.motions > CURVES:
         yield f"about {CURVES} of {definition.motions:,} motions over time"
     usual = ("finished", "event", "proved")
