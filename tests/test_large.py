@@ -101,13 +101,13 @@ def test_a_textbook_s_chain_in_c_is_ours() -> None:
         ours, theirs = calls.single(chain_in_c(n)[-1], n), calls.textbook(n)
         lanes = calls.lanes(chain_in_c(n, "_rational")[-1], n)
         for run in (ours, theirs, lanes):
-            run.turns = 1
+            run.repetitions = 1
             run()
         assert_allclose(ours.rates, theirs.rates, rtol=1e-11)
         assert np.abs(lanes.rates).max() > 0.1
 
 
-def test_what_sympys_mechanics_derives_is_what_is_generated() -> None:
+def test_sympys_mechanics_derives_the_generated_equations() -> None:
     # the benchmark's rivals get the right equations
     found = mechanics(2)
     y, params = (0.3, -1.2, 0.7, 2.1), (1.3, 0.4, 1.1, 0.6, 9.81)
@@ -117,20 +117,20 @@ def test_what_sympys_mechanics_derives_is_what_is_generated() -> None:
     assert rates == pytest.approx(dp.rhs(0.0, y, params), rel=1e-12)
 
 
-def test_the_way_is_timed_with_the_loosest_tolerance_that_is_good_enough() -> None:
-    found = pipeline._way(
+def test_the_pipeline_is_timed_with_the_loosest_sufficient_tolerance() -> None:
+    found = pipeline._measured(
         "a program", 0.1, 0.2, lambda tol: lambda: np.add(pipeline.FINAL, 20 * tol)
     )
     assert found.global_error == pytest.approx(2e-10, rel=1e-3)
     assert (found.derivation, found.preparation) == (0.1, 0.2)
-    with pytest.raises(ArithmeticError, match="a program does not come within 1e-09"):
-        pipeline._way("a program", 0.1, 0.2, lambda _: lambda: np.add(pipeline.FINAL, 1e-8))
+    with pytest.raises(ArithmeticError, match="a program does not reach an error of 1e-09"):
+        pipeline._measured("a program", 0.1, 0.2, lambda _: lambda: np.add(pipeline.FINAL, 1e-8))
 
 
-def test_the_way_here_and_with_scipy_ends_where_it_should() -> None:
-    ours = pipeline._way("holonomic", *pipeline._ours(dp, chain_in_c))
-    scipy = pipeline._way("SciPy", *pipeline._scipy(dp, chain_in_c))
+def test_the_pipelines_here_and_with_scipy_reach_the_final_state() -> None:
+    ours = pipeline._measured("holonomic", *pipeline._ours(dp, chain_in_c))
+    scipy = pipeline._measured("SciPy", *pipeline._scipy(dp, chain_in_c))
     assert 0 < max(ours.global_error, scipy.global_error) < pipeline.ERROR
-    lines = list(pipeline.told([ours, scipy]))
-    assert lines[2].endswith(" 1.0 x")
-    assert len({len(line) for line in lines[2:]}) == 1
+    lines = list(pipeline.summary([ours, scipy]))
+    assert lines[2].endswith("  1.0")
+    assert len({len(line) for line in lines[1:]}) == 1

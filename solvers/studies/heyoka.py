@@ -1,11 +1,12 @@
-"""Other programs on the same work, for the benchmark: heyoka's Taylor integrator and its equations.
+"""heyoka's Taylor integrator and its equations of pendulums; needs the extra ``bench``.
 
-Needs the extra ``bench``.
+A system is a list of pairs: a variable of heyoka and its time derivative.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -14,14 +15,15 @@ from numpy.typing import NDArray
 from solvers.equations.module import GeneratedModule, function
 
 Array = NDArray[np.float64]
+System = list[tuple[Any, Any]]
 
 
-def double_pendulum(hy: Any) -> dict[str, list[tuple[Any, Any]]]:
-    """The double pendulum's equations for heyoka, parameters m1, m2, l1, l2, g left open.
+def double_pendulum(hy: Any) -> dict[str, System]:
+    """The double pendulum's equations with free parameters m1, m2, l1, l2, g.
 
-    ``positions`` derives them by heyoka's own Lagrangian from the positions of the
-    masses, as holonomic does; ``textbook`` from the kinetic energy that a textbook
-    prints. Those that holonomic generates come from `generated`.
+    ``positions`` derives them with heyoka's Lagrangian from the positions of the masses, as
+    holonomic does; ``textbook`` from the kinetic energy that textbooks print. `generated`
+    returns those that holonomic generates.
 
     Parameters
     ----------
@@ -31,7 +33,7 @@ def double_pendulum(hy: Any) -> dict[str, list[tuple[Any, Any]]]:
     Returns
     -------
     dict of str to list of pair
-        For each of the two, variables and their rates, angles before velocities.
+        The two systems, angles before velocities.
     """
     theta, omega = hy.make_vars("theta1", "theta2"), hy.make_vars("omega1", "omega2")
     m1, m2, l1, l2, g = (hy.par[k] for k in range(5))
@@ -51,72 +53,53 @@ def double_pendulum(hy: Any) -> dict[str, list[tuple[Any, Any]]]:
     }
 
 
-def chain(hy: Any, n: int) -> tuple[list[Any], list[Any], list[tuple[Any, Any]]]:
-    """Angles, velocities and equations of n pendulums, from heyoka's own Lagrangian.
-
-    Left open are masses, lengths and g, as in the generated chain.
-
-    Parameters
-    ----------
-    hy : module
-        heyoka.
-    n : int
-        How many pendulums.
-
-    Returns
-    -------
-    angles, velocities : list
-        heyoka's variables, n of each.
-    equations : list of pair
-        All 2n variables and their rates.
-    """
+def chain(hy: Any, n: int) -> tuple[list[Any], list[Any], System]:
+    """Angles, velocities and the system of n pendulums, from heyoka's Lagrangian."""
     q = hy.make_vars(*(f"theta{k}" for k in range(n)))
     rates = hy.make_vars(*(f"omega{k}" for k in range(n)))
     m, lengths, g = [hy.par[k] for k in range(n)], [hy.par[n + k] for k in range(n)], hy.par[2 * n]
     vx = [length * hy.cos(a) * v for length, a, v in zip(lengths, q, rates, strict=True)]
     vy = [length * hy.sin(a) * v for length, a, v in zip(lengths, q, rates, strict=True)]
     down = [length * hy.cos(a) for length, a in zip(lengths, q, strict=True)]
-    kinetic = hy.sum([
-        0.5 * m[k] * (hy.sum(vx[: k + 1]) ** 2 + hy.sum(vy[: k + 1]) ** 2) for k in range(n)
-    ])  # fmt: skip
+    squares = (hy.sum(vx[: k + 1]) ** 2 + hy.sum(vy[: k + 1]) ** 2 for k in range(n))
+    kinetic = hy.sum([0.5 * m[k] * square for k, square in enumerate(squares)])
     depth = hy.sum([m[k] * g * hy.sum(down[: k + 1]) for k in range(n)])
     return list(q), list(rates), hy.lagrangian(kinetic + depth, list(q), list(rates))
 
 
-def generated(hy: Any, module: GeneratedModule) -> list[tuple[Any, Any]]:
-    """A module's rational equations for heyoka: the generated function, called with symbols."""
+def generated(hy: Any, module: GeneratedModule) -> System:
+    """A module's rational equations: the generated function, called with heyoka's variables."""
     state = hy.make_vars(*module.STATES["rational"])
     params = [hy.par[k] for k in range(len(module.PARAMETERS))]
     return list(zip(state, function(module, "rhs_rational")(0.0, state, params), strict=True))
 
 
-def single(hy: Any, equations: Any, start: Sequence[float], params: Sequence[float], end: float,
-           tol: float, *, compact: bool = False) -> Callable[[], Array]:  # fmt: skip
-    """A function that integrates one motion from `start` and returns its state at `end`.
+@contextmanager
+def no_disk_cache(hy: Any) -> Iterator[None]:
+    """A context in which heyoka compiles anew."""
+    hy.llvm_state.set_diskcache_enabled(False)
+    try:
+        yield
+    finally:
+        hy.llvm_state.set_diskcache_enabled(True)
 
-    Parameters
-    ----------
-    hy : module
-        heyoka.
-    equations : list of pair
-        Variables and their rates.
-    start, params : sequence of float
-        State at time 0, and parameters, in the order of the equations.
-    end : float
-        In s.
-    tol : float
-        Tolerance of a step.
-    compact : bool
-        Large systems need it, since else they compile for minutes.
 
-    Returns
-    -------
-    callable
-        Takes nothing. The state is heyoka's own array, which the next call overwrites.
+def single(
+    hy: Any,
+    system: System,
+    start: Sequence[float],
+    params: Sequence[float],
+    end: float,
+    tol: float,
+    *,
+    compact: bool = False,
+) -> Callable[[], Array]:
+    """A function that integrates one motion and returns heyoka's own array of the final state.
+
+    The next call overwrites the array. Large systems need `compact`, or they compile for minutes.
     """
-    integrator = hy.taylor_adaptive(
-        equations, list(start), tol=tol, pars=list(params), compact_mode=compact
-    )
+    options = {"tol": tol, "pars": list(params), "compact_mode": compact}
+    integrator = hy.taylor_adaptive(system, list(start), **options)
 
     def run() -> Array:
         integrator.time = 0.0
@@ -127,39 +110,39 @@ def single(hy: Any, equations: Any, start: Sequence[float], params: Sequence[flo
     return run
 
 
-def batches(hy: Any, equations: Any, starts: Array, params: Sequence[float], end: float,
-            tol: float) -> Callable[[], Array]:  # fmt: skip
-    """A function that integrates motions, shape (n, state), as many at once as heyoka advises."""
+def batches(
+    hy: Any, system: System, starts: Array, params: Sequence[float], end: float, tol: float
+) -> Callable[[], Array]:
+    """A function that integrates motions, shape (n, state), in batches of the recommended size."""
     width = hy.recommended_simd_size()
     state = np.ascontiguousarray(starts[:width].T)
-    integrator = hy.taylor_adaptive_batch(
-        equations, state.copy(), tol=tol, pars=np.repeat(np.array(params)[:, None], width, axis=1)
-    )
+    pars = np.repeat(np.array(params)[:, None], width, axis=1)
+    integrator = hy.taylor_adaptive_batch(system, state.copy(), tol=tol, pars=pars)
     ends = [end] * width
 
     def run() -> Array:
-        found = np.empty_like(starts)
+        states = np.empty_like(starts)
         for first in range(0, len(starts), width):
             integrator.set_time(0.0)
             integrator.state[:] = starts[first : first + width].T
             integrator.propagate_until(ends)
-            found[first : first + width] = integrator.state.T
-        return found
+            states[first : first + width] = integrator.state.T
+        return states
 
     return run
 
 
-def reference(hy: Any, equations: Any, starts: Array, params: Sequence[float], end: float) -> Array:
-    """States at `end` by Taylor series in 80-bit numbers, to about 1e-17 a step."""
+def reference(
+    hy: Any, system: System, starts: Array, params: Sequence[float], end: float
+) -> Array:
+    """Final states by Taylor series in 80-bit numbers, with an error of about 1e-17 per step."""
     long = np.longdouble
-    integrator = hy.taylor_adaptive(
-        equations, [long(x) for x in starts[0]], tol=long(1e-18),
-        pars=[long(p) for p in params], fp_type=long,
-    )  # fmt: skip
-    found = np.empty_like(starts)
+    first, pars = [long(x) for x in starts[0]], [long(p) for p in params]
+    integrator = hy.taylor_adaptive(system, first, tol=long(1e-18), pars=pars, fp_type=long)
+    states = np.empty_like(starts)
     for k, start in enumerate(starts):
         integrator.time = long(0)
         integrator.state[:] = start
         integrator.propagate_until(long(end))
-        found[k] = integrator.state
-    return found
+        states[k] = integrator.state
+    return states

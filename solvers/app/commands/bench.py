@@ -50,10 +50,11 @@ def _peer(name: str) -> ModuleType:
 def _pendulum(_: Path) -> tuple[Any, Iterable[str]]:
     from solvers.app.derivation_timing import lambdified_rhs
     from solvers.app.modules import load
-    from solvers.studies.benchmarks.table import figures, text
+    from solvers.studies.benchmarks import double_pendulum
 
-    found = figures(load("double_pendulum"), lambdified_rhs(), _peer("heyoka"))
-    return found, [text(found).removesuffix("\n")]
+    module = load("double_pendulum")
+    found = double_pendulum.figures(module, lambdified_rhs(), _peer("heyoka"))
+    return found, double_pendulum.summary(found)
 
 
 def _pipelines(_: Path) -> tuple[Any, Iterable[str]]:
@@ -61,28 +62,28 @@ def _pipelines(_: Path) -> tuple[Any, Iterable[str]]:
     from solvers.app.modules import load
     from solvers.studies.benchmarks import pipeline
 
-    found = pipeline.ways(load("double_pendulum"), _peer, chain, mechanics)
-    return found, [*pipeline.told(found), ""]
+    found = pipeline.pipelines(load("double_pendulum"), _peer, chain, mechanics)
+    return found, [*pipeline.summary(found), ""]
 
 
 def _chains(folder: Path) -> tuple[Any, Iterable[str]]:
     from solvers.app.derivation_timing import chain, lagranges_method
     from solvers.app.modules import load
     from solvers.io.figures import save
-    from solvers.studies.benchmarks import chains_summary, growth
+    from solvers.studies.benchmarks import chains, growth
 
-    found = chains_summary.figures(chain, lagranges_method, load, _peer("heyoka"))
+    found = chains.figures(chain, lagranges_method, load, _peer("heyoka"))
     plot = folder / "growth.png"
-    save(growth.drawn(found["growth"]), plot)
-    return found, [*chains_summary.told(found), f"plot: {plot}"]
+    save(growth.plot(found["growth"]), plot)
+    return found, [*chains.summary(found), f"plot: {plot}"]
 
 
 def _maps(_: Path) -> tuple[Any, Iterable[str]]:
     from solvers.app.modules import load
-    from solvers.studies.benchmarks import maps
+    from solvers.studies.benchmarks import flip_maps
 
-    found = maps.figures(load("double_pendulum"), _peer("heyoka"), _peer("numba"))
-    return found, maps.told(found)
+    found = flip_maps.figures(load("double_pendulum"), _peer("heyoka"), _peer("numba"))
+    return found, flip_maps.summary(found)
 
 
 PARTS: dict[str, Callable[[Path], tuple[Any, Iterable[str]]]] = {

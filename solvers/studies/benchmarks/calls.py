@@ -1,4 +1,4 @@
-"""Calls of compiled right-hand sides of chains of pendulums, to be timed."""
+"""Calls of compiled right-hand sides of chains of pendulums, for timing."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from solvers.integration.compiled.compiler import build
-from solvers.studies import heyoka as peers
+from solvers.studies import heyoka
 
-#: Motions at once in a vector of doubles.
+#: Number of doubles in a vector.
 LANES = 8
 
 CALLS = """
@@ -58,32 +58,32 @@ void calls(double *y, double *dy, const double *params, long count)
 
 
 class Calls:
-    """So many calls of a compiled right-hand side.
+    """Repeated calls of a compiled right-hand side.
 
     Attributes
     ----------
-    turns : int
-        How often it is called, from where the last call left off.
+    repetitions : int
+        Number of calls.
     rates : ndarray of shape (state,)
-        What the last call gave.
+        Result of the last call.
     """
 
     def __init__(self, text: str, state: int, params: Sequence[float], each: int) -> None:
         self._library = ctypes.CDLL(str(build(text).path))
         self._library.calls.restype = None
         self._y, self.rates = np.linspace(0.3, 0.9, state), np.zeros(state)
-        self._params, self._each, self.turns = np.array(params), each, 2000
+        self._params, self._each, self.repetitions = np.array(params), each, 2000
 
     @property
     def count(self) -> int:
-        """How many states are evaluated."""
-        return self.turns * self._each
+        """Number of evaluated states."""
+        return self.repetitions * self._each
 
     def __call__(self) -> None:
-        """Run them."""
+        """Make the calls."""
         arrays = (self._y, self.rates, self._params)
         self._library.calls(
-            *(ctypes.c_void_p(a.ctypes.data) for a in arrays), ctypes.c_long(self.turns)
+            *(ctypes.c_void_p(a.ctypes.data) for a in arrays), ctypes.c_long(self.repetitions)
         )
 
 
@@ -93,13 +93,13 @@ def parameters(n: int) -> list[float]:
 
 
 def single(header: str, n: int) -> Calls:
-    """Calls of the generated Lagrangian form, one state after the other."""
+    """Calls of the generated Lagrangian form with one state."""
     text = CALLS.format(program=header, call=f"chain_{n}_rhs(0.0, y, params, dy)", state=2 * n)
     return Calls(text, 2 * n, parameters(n), 1)
 
 
 def textbook(n: int) -> Calls:
-    """Calls of the textbook's equations, written by hand."""
+    """Calls of a textbook's equations, written by hand."""
     source = (files("solvers.studies.benchmarks") / "textbook.c").read_text(encoding="utf-8")
     program = f"enum {{ N = {n} }};\n{source}"
     text = CALLS.format(program=program, call="textbook(y, dy, params)", state=2 * n)
@@ -107,23 +107,23 @@ def textbook(n: int) -> Calls:
 
 
 def lanes(header: str, n: int) -> Calls:
-    """Calls of the generated rational form, as many states at once as fill a vector."""
+    """Calls of the generated rational form with `LANES` states at once."""
     text = IN_LANES.format(header=header, name=f"chain_{n}", state=3 * n, parameters=2 * n + 1)
     return Calls(text, 3 * n, parameters(n), LANES)
 
 
 class Evaluations:
-    """heyoka's compiled function over many states, as many at once as it likes."""
+    """heyoka's compiled function of many states."""
 
     count = 4096
 
     def __init__(self, hy: Any, n: int) -> None:
-        q, rates, equations = peers.chain(hy, n)
+        q, rates, equations = heyoka.chain(hy, n)
         self._function = hy.cfunc([e for _, e in equations], [*q, *rates])
         self._inputs = np.tile(np.linspace(0.3, 0.9, 2 * n)[:, None], self.count)
         self._params = np.tile(np.array(parameters(n))[:, None], self.count)
         self._outputs = np.empty_like(self._inputs)
 
     def __call__(self) -> None:
-        """Evaluate all of them."""
+        """Evaluate all states."""
         self._function(self._inputs, pars=self._params, outputs=self._outputs)

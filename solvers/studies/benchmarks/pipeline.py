@@ -1,7 +1,7 @@
-"""The whole way from the positions of two bobs to where they are after 5 s, in several programs.
+"""The pipeline from the positions of two bobs to their state after 5 s, in several programs.
 
-Each takes the equations that it derives itself, or else those of SymPy's mechanics, and is run
-with the loosest tolerance whose measured error is small enough.
+Each program uses the equations that it derives itself, or those of SymPy's mechanics, and runs
+with the loosest tolerance of sufficient accuracy.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import chdir
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from typing import Any
 
@@ -24,30 +25,36 @@ from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.native import equations
 from solvers.integration.prepare import prepare
 from solvers.integration.timing import median_seconds
+from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load
-from solvers.studies import heyoka as peers
-from solvers.studies.benchmarks.curves import END, FINAL, START
+from solvers.studies import heyoka
+from solvers.studies.benchmarks.motions import END, FINAL, START
 
 Array = NDArray[np.float64]
-#: Gives the state at the end, for a tolerance.
+#: Takes a tolerance; returns a function that returns the final state.
 Run = Callable[[float], Callable[[], Any]]
+#: Seconds of derivation and of preparation, and the run.
+Prepared = tuple[float, float, Run]
+#: Derives a chain of pendulums.
+Chain = Callable[[int, str], Any]
+Mechanics = Callable[[int], Any]
 
-#: The error that all are to reach, in rad and rad/s, and the tolerances that are tried for it.
+#: Largest error of the final state in rad and rad/s, and the tolerances.
 ERROR, TOLERANCES = 1e-9, 10.0 ** -np.arange(6, 14)
 
 
 @dataclass(frozen=True)
-class Way:
-    """What the way takes in one program.
+class Pipeline:
+    """Times of one program.
 
     Attributes
     ----------
     name : str
-        Of the program.
+        Name of the program.
     derivation, preparation, run : float
-        Seconds until there are equations, until these can be run, and of one run.
+        Seconds to derive equations, to prepare the first run, and of one run.
     global_error : float
-        At the end of the run.
+        Of the final state.
     """
 
     name: str
@@ -57,70 +64,64 @@ class Way:
     global_error: float
 
 
-def ways(
-    module: GeneratedModule, peer: Callable[[str], Any], chain: Callable[[int, str], Any],
-    mechanics: Callable[[int], Any],
-) -> list[Way]:  # fmt: skip
-    """The way in each program.
+def pipelines(
+    module: GeneratedModule, peer: Callable[[str], Any], chain: Chain, mechanics: Mechanics
+) -> list[Pipeline]:
+    """The pipelines of all programs.
 
     Parameters
     ----------
     module : module
         The generated double pendulum.
     peer : callable
-        Gives another program's package.
+        Returns the package of another program.
     chain, mechanics : callable
         Derive a chain of pendulums, here and with SymPy's mechanics.
 
     Returns
     -------
-    list of Way
+    list of Pipeline
         Ours first.
 
     Raises
     ------
     ArithmeticError
-        When a program does not come within `ERROR` of the end with any tolerance.
+        When a program does not reach an error of `ERROR` with any tolerance.
     """
-    programs: Mapping[str, Callable[[], tuple[float, float, Run]]] = {
+    programs: Mapping[str, Callable[[], Prepared]] = {
         "holonomic": lambda: _ours(module, chain),
         "heyoka.py": lambda: _heyoka(peer("heyoka"), module),
         "JiTCODE, equations by SymPy": lambda: _jitcode(peer("jitcode"), module, mechanics),
         "SciPy's DOP853, equations by holonomic": lambda: _scipy(module, chain),
         "PyDy with Cython, SymPy, SciPy's DOP853": lambda: _pydy(peer("pydy"), module, mechanics),
     }
-    return [_way(name, *prepared()) for name, prepared in programs.items()]
+    return [_measured(name, *prepared()) for name, prepared in programs.items()]
 
 
-def told(found: list[Way]) -> Iterator[str]:
-    """The ways as a table."""
+def summary(found: list[Pipeline]) -> Iterator[str]:
+    """The pipelines as a table."""
     yield f"From positions to 5 s of motion, error below {ERROR:g}; seconds:"
-    yield f"{'':<40}{'derivation':>11}{'preparation':>13}{'run':>11}"
-    for way in found:
-        yield (
-            f"{way.name:<40}{way.derivation:>11.2f}{way.preparation:>13.2f}{way.run:>11.2g}"
-            f"{way.run / found[0].run:>9,.1f} x"
-        )
+    columns = {"": "", "derivation": ".2f", "preparation": ".2f", "run": ".2g", "ratio": ",.1f"}
+    rows = ((p.name, p.derivation, p.preparation, p.run, p.run / found[0].run) for p in found)
+    yield from text_table(columns, rows)
 
 
-def _way(name: str, derivation: float, preparation: float, run: Run) -> Way:
+def _measured(name: str, derivation: float, preparation: float, run: Run) -> Pipeline:
     for tolerance in TOLERANCES:
         ready = run(float(tolerance))
         error = float(np.abs(np.asarray(ready())[: len(FINAL)] - FINAL).max())
         if error < ERROR:
-            return Way(name, derivation, preparation, median_seconds(ready), error)
-    raise ArithmeticError(f"{name} does not come within {ERROR:g} of the end with any tolerance")
+            return Pipeline(name, derivation, preparation, median_seconds(ready), error)
+    raise ArithmeticError(f"{name} does not reach an error of {ERROR:g} with any tolerance")
 
 
-def _ours(
-    module: GeneratedModule, chain: Callable[[int, str], Any]
-) -> tuple[float, float, Run]:  # fmt: skip
+def _ours(module: GeneratedModule, chain: Chain) -> Prepared:
     derived, emitted, *_ = chain(2, "_rational")
-    begin = time.perf_counter()
+    start = time.perf_counter()
     source = equations(module, "rational")
     text = program(source, load("verner98"), lanes=False, compensated=False)
-    build(f"{text}/* {time.perf_counter_ns()} */")  # new to the cache
-    preparation = emitted + time.perf_counter() - begin
+    build(f"{text}/* {time.perf_counter_ns()} */")  # not in the cache
+    preparation = emitted + time.perf_counter() - start
 
     def run(tolerance: float) -> Callable[[], Any]:
         ready = prepare(module, module.DEFAULTS, method="verner98", rtol=tolerance, atol=tolerance)
@@ -129,27 +130,19 @@ def _ours(
     return derived, preparation, run
 
 
-def _heyoka(hy: Any, module: GeneratedModule) -> tuple[float, float, Run]:
-    begin = time.perf_counter()
-    found = peers.double_pendulum(hy)["positions"]
+def _heyoka(hy: Any, module: GeneratedModule) -> Prepared:
+    start = time.perf_counter()
+    system = heyoka.double_pendulum(hy)["positions"]
     derived = time.perf_counter()
     hy.llvm_state.clear_memcache()
-    hy.llvm_state.set_diskcache_enabled(False)
-
-    def run(tolerance: float) -> Callable[[], Any]:
-        return peers.single(hy, found, START, module.DEFAULTS, END, tolerance)
-
-    try:
+    run = partial(heyoka.single, hy, system, START, module.DEFAULTS, END)
+    with heyoka.no_disk_cache(hy):
         run(1e-9)
-    finally:
-        hy.llvm_state.set_diskcache_enabled(True)
-    return derived - begin, time.perf_counter() - derived, run
+    return derived - start, time.perf_counter() - derived, run
 
 
-def _jitcode(
-    package: Any, module: GeneratedModule, mechanics: Callable[[int], Any]
-) -> tuple[float, float, Run]:
-    begin = time.perf_counter()
+def _jitcode(package: Any, module: GeneratedModule, mechanics: Mechanics) -> Prepared:
+    start = time.perf_counter()
     found = mechanics(2)
     derived = time.perf_counter()
     state = {s: package.y(k) for k, s in enumerate((*found.coordinates, *found.speeds))}
@@ -158,7 +151,7 @@ def _jitcode(
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         ode = package.jitcode(field, verbose=False)
         ode.set_integrator("dop853")  # compiles
-        ode.set_initial_value(np.array(START), 0.0)  # must be there before another tolerance
+        ode.set_initial_value(np.array(START), 0.0)  # required before another tolerance
     preparation = time.perf_counter() - derived
 
     def run(tolerance: float) -> Callable[[], Any]:
@@ -170,44 +163,30 @@ def _jitcode(
 
         return ready
 
-    return derived - begin, preparation, run
+    return derived - start, preparation, run
 
 
-def _scipy(
-    module: GeneratedModule, chain: Callable[[int, str], Any]
-) -> tuple[float, float, Run]:  # fmt: skip
+def _scipy(module: GeneratedModule, chain: Chain) -> Prepared:
     derived, emitted, *_ = chain(2, "")
-
-    def run(tolerance: float) -> Callable[[], Any]:
-        return lambda: _dop853(module.rhs, tolerance, module.DEFAULTS)
-
-    return derived, emitted, run
+    return derived, emitted, lambda tol: partial(_dop853, module.rhs, tol, module.DEFAULTS)
 
 
-def _pydy(
-    _: GeneratedModule, module: GeneratedModule, mechanics: Callable[[int], Any]
-) -> tuple[float, float, Run]:
+def _pydy(_: GeneratedModule, module: GeneratedModule, mechanics: Mechanics) -> Prepared:
     generators: Any = import_module("pydy.codegen.ode_function_generators")
-    begin = time.perf_counter()
+    start = time.perf_counter()
     found = mechanics(2)
     derived = time.perf_counter()
-    field = generators.generate_ode_function(
-        found.forcing, list(found.coordinates), list(found.speeds),
-        constants=list(found.constants), mass_matrix=found.mass_matrix, generator="cython",
-    )  # fmt: skip
+    arguments = found.forcing, list(found.coordinates), list(found.speeds)
+    options = {"constants": list(found.constants), "mass_matrix": found.mass_matrix}
+    field = generators.generate_ode_function(*arguments, **options, generator="cython")
     preparation, params = time.perf_counter() - derived, np.array(module.DEFAULTS)
 
     def rhs(t: float, y: Array, params: Array) -> Any:
         return field(y, t, params)
 
-    def run(tolerance: float) -> Callable[[], Any]:
-        return lambda: _dop853(rhs, tolerance, params)
-
-    return derived - begin, preparation, run
+    return derived - start, preparation, lambda tol: partial(_dop853, rhs, tol, params)
 
 
 def _dop853(rhs: Callable[..., Any], tolerance: float, params: Any) -> Any:
-    return solve_ivp(
-        rhs, (0.0, END), START, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=[END],
-        args=(params,),
-    ).y[:, -1]  # fmt: skip
+    solve = partial(solve_ivp, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=[END])
+    return solve(rhs, (0.0, END), START, args=(params,)).y[:, -1]

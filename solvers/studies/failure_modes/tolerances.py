@@ -78,7 +78,7 @@ class Tolerances(Study[list[ToleranceAccuracy]]):
         results = []
         for method in self.methods:
             for tol in TOLERANCES:
-                y = solve(starts, params, method=method, rtol=tol, atol=tol).y
+                y = solve(starts.T, params.T, method=method, rtol=tol, atol=tol).y.T
                 ratio = np.abs(y - exact).max(axis=1) / tol
                 figures = np.median(ratio), ratio.max(), np.median(ratio / growth)
                 results.append(ToleranceAccuracy(method, tol, *map(float, figures)))

@@ -1,0 +1,27 @@
+"""Median times of several programs, called in turn."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+
+def seconds(run: Callable[[], object]) -> float:
+    """Time of one call."""
+    start = time.perf_counter()
+    run()
+    return time.perf_counter() - start
+
+
+def median_times(runs: Mapping[str, Callable[[], object]], duration: float) -> dict[str, float]:
+    """Median time of each, called in turn, five times at least, for `duration` seconds."""
+    times: dict[str, list[float]] = {name: [] for name in runs}
+    for run in runs.values():
+        run()
+    until = time.perf_counter() + duration
+    while time.perf_counter() < until or len(next(iter(times.values()))) < 5:
+        for name, run in runs.items():
+            times[name].append(seconds(run))
+    return {name: float(np.median(values)) for name, values in times.items()}
