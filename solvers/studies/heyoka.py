@@ -94,10 +94,8 @@ def single(
     *,
     compact: bool = False,
 ) -> Callable[[], Array]:
-    """A function that integrates one motion and returns heyoka's own array of the final state.
-
-    The next call overwrites the array. Large systems need `compact`, or they compile for minutes.
-    """
+    """A function that integrates one motion; its next call overwrites the array it returns."""
+    # large systems need the compact mode, or they compile for minutes
     options = {"tol": tol, "pars": list(params), "compact_mode": compact}
     integrator = hy.taylor_adaptive(system, list(start), **options)
 
@@ -132,9 +130,7 @@ def batches(
     return run
 
 
-def reference(
-    hy: Any, system: System, starts: Array, params: Sequence[float], end: float
-) -> Array:
+def reference(hy: Any, system: System, starts: Array, params: Sequence[float], end: float) -> Array:
     """Final states by Taylor series in 80-bit numbers, with an error of about 1e-17 per step."""
     long = np.longdouble
     first, pars = [long(x) for x in starts[0]], [long(p) for p in params]

@@ -56,9 +56,7 @@ def figures(
     }
 
 
-def _derivations(
-    make: Maker, lagranges_method: Callable[[int], float]
-) -> list[dict[str, float]]:
+def _derivations(make: Maker, lagranges_method: Callable[[int], float]) -> list[dict[str, float]]:
     """Seconds to derive and emit, the least of three; and with SymPy's own mechanics."""
     rows = []
     for n in DERIVED:
@@ -90,8 +88,8 @@ def _integration(module: GeneratedModule, hy: Any) -> dict[str, float]:
     runs: dict[str, Callable[[], Any]] = {}
     for tol in (1e-8, 1e-9, 1e-10):
         for method in ("dop853", "verner87"):
-            run = prepare(module, params, method=method, rtol=tol, atol=tol)
-            runs[f"holonomic, {method}, {tol}"] = partial(run, (0.0, END), start)
+            ready = prepare(module, params, method=method, rtol=tol, atol=tol)
+            runs[f"holonomic, {method}, {tol}"] = partial(ready, (0.0, END), start)
     for tol in (1e-6, 1e-7, 1e-8, 1e-9):
         run = heyoka.single(hy, equations, start, params, END, tol, compact=True)
         runs[f"heyoka, {tol}"] = run
@@ -101,6 +99,11 @@ def _integration(module: GeneratedModule, hy: Any) -> dict[str, float]:
         program: min(time for name, time in times.items() if name.startswith(program))
         for program in ("holonomic", "heyoka")
     }
+
+
+def _call(row: Mapping[str, float]) -> tuple[float, ...]:
+    one, many = row["one"], row["lanes"]
+    return row["n"], 1e9 * one, row["textbook"] / one, 1e9 * many, row["heyoka"] / many
 
 
 def summary(found: Mapping[str, Any]) -> Iterator[str]:
@@ -113,13 +116,8 @@ def summary(found: Mapping[str, Any]) -> Iterator[str]:
     columns = {"n": "d", "holonomic/s": ".2f", "SymPy/s": ".1f", "ratio": ".0f"}
     yield from text_table(columns, rows)
     yield "Their right-hand sides in C: one state, relative to a textbook; many, to heyoka:"
-    rows = [
-        (row["n"], 1e9 * row["one"], row["textbook"] / row["one"])
-        + (1e9 * row["lanes"], row["heyoka"] / row["lanes"])
-        for row in found["right-hand sides"]
-    ]
     columns = {"n": "d", "one/ns": ".0f", "textbook": ".2f", "lanes/ns": ".1f", "heyoka": ".1f"}
-    yield from text_table(columns, rows)
+    yield from text_table(columns, map(_call, found["right-hand sides"]))
     times = found["integrated"]
     yield (
         f"A chain of {LENGTH} over {END:g} s, to {ERROR:g}: {times['holonomic'] * 1e3:.2f} ms; "

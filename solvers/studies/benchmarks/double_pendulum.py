@@ -60,8 +60,12 @@ def summary(found: Mapping[str, Any]) -> Iterator[str]:
         names = dict.fromkeys(name for row in rows for name in row["ratios"])
         columns = {"error": ".0e", "time/us": ".1f", "method": ""} | dict.fromkeys(names, ".3g")
         cells = (
-            (row["global_error"], 1e6 * row["seconds"], row["method"])
-            + tuple(map(row["ratios"].get, names))
+            (
+                row["global_error"],
+                1e6 * row["seconds"],
+                row["method"],
+                *map(row["ratios"].get, names),
+            )
             for row in rows
         )
         yield from text_table(columns, cells)

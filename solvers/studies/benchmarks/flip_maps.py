@@ -144,4 +144,5 @@ def summary(found: dict[str, Any]) -> Iterator[str]:
     )
     yield "Sweeps from random starts, on both cores, and their overhead over the ensemble alone:"
     columns = {"motions": ",", "time/s": ".2f", "overhead": "+.1%"}
-    yield from text_table(columns, map(itemgetter("motions", "seconds", "overhead"), found["sweeps"]))
+    shown = itemgetter("motions", "seconds", "overhead")
+    yield from text_table(columns, map(shown, found["sweeps"]))

@@ -80,9 +80,7 @@ def _first(times: Array) -> Array:
     return np.where(np.isinf(first), np.nan, first)
 
 
-def by_heyoka(
-    hy: Any, equations: Any, params: Sequence[float], tol: float, state: Array
-) -> Array:
+def by_heyoka(hy: Any, equations: Any, params: Sequence[float], tol: float, state: Array) -> Array:
     """Flip times by heyoka's batches; a lane whose motion has ended waits for the others."""
     width = hy.recommended_simd_size()
     angles = hy.make_vars("theta1", "theta2")

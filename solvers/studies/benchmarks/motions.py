@@ -96,7 +96,7 @@ def many_motions(module: GeneratedModule, hy: Any) -> Curves:
     systems["rational"] = heyoka.generated(hy, module), np.ascontiguousarray(rational.T)
     curves: Curves = {}
     for tol in map(float, tolerances(-3, -14)):
-        runs = {
+        runs: dict[str, Callable[[], Array]] = {
             method: partial(_by_ensemble, module, starts, method, tol)
             for method, finest in METHODS.items()
             if tol > finest

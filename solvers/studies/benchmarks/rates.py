@@ -11,7 +11,8 @@ from typing import Any
 
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.compiled.compiler import build
-from solvers.integration.compiled.kernel_source import SOURCES, program
+from solvers.integration.compiled.kernel_source import program
+from solvers.integration.compiled.layout import SOURCES
 from solvers.integration.compiled.native import equations
 from solvers.integration.ensemble import ensemble
 from solvers.runge_kutta.catalogue import load
