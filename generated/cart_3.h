@@ -41,7 +41,7 @@
        theta2_dot [rad/s]
        theta3_dot [rad/s]
 
-   State y of `rhs_variational`: where the motion is, and a small change of it:
+   State y of `rhs_variational`: a motion and a small change of it:
        x [m]
        sin_theta1 [1]
        cos_theta1 [1]

@@ -34,7 +34,7 @@ State y in functions of the rational form:
     theta2_dot [rad/s]
     theta3_dot [rad/s]
 
-State y of `rhs_variational`: where the motion is, and a small change of it:
+State y of `rhs_variational`: a motion and a small change of it:
     sin_theta1 [1]
     cos_theta1 [1]
     sin_theta2 [1]

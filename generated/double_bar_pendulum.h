@@ -26,7 +26,7 @@
        theta1_dot [rad/s]
        theta2_dot [rad/s]
 
-   State y of `rhs_variational`: where the motion is, and a small change of it:
+   State y of `rhs_variational`: a motion and a small change of it:
        sin_theta1 [1]
        cos_theta1 [1]
        sin_theta2 [1]
@@ -46,8 +46,8 @@
        g [m/s^2] real, default 9.81: gravitational acceleration
 
    Masses and their positions:
-       m1 at (l1*sin(theta1)/2, -l1*cos(theta1)/2), moment of inertia l1**2*m1/12, turned by theta1
-       m2 at (l1*sin(theta1) + l2*sin(theta2)/2, -l1*cos(theta1) - l2*cos(theta2)/2), moment of inertia l2**2*m2/12, turned by theta2
+       m1 at (l1*sin(theta1)/2, -l1*cos(theta1)/2), moment of inertia l1**2*m1/12, orientation theta1
+       m2 at (l1*sin(theta1) + l2*sin(theta2)/2, -l1*cos(theta1) - l2*cos(theta2)/2), moment of inertia l2**2*m2/12, orientation theta2
 
    Lagrangian:
        L = g*l1*(m1/2 + m2)*cos(theta1) + g*l2*m2*cos(theta2)/2

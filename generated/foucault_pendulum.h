@@ -18,7 +18,7 @@
        p_x [kg m/s]
        p_y [kg m/s]
 
-   State y of `rhs_variational`: where the motion is, and a small change of it:
+   State y of `rhs_variational`: a motion and a small change of it:
        x [m]
        y [m]
        x_dot [m/s]

@@ -18,7 +18,7 @@ State y in functions of the rational form:
     cos_theta [1]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: where the motion is, and a small change of it:
+State y of `rhs_variational`: a motion and a small change of it:
     sin_theta [1]
     cos_theta [1]
     theta_dot [rad/s]

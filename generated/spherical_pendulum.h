@@ -26,7 +26,7 @@
        theta_dot [rad/s]
        phi_dot [rad/s]
 
-   State y of `rhs_variational`: where the motion is, and a small change of it:
+   State y of `rhs_variational`: a motion and a small change of it:
        sin_theta [1]
        cos_theta [1]
        sin_phi [1]

@@ -25,7 +25,7 @@ State y in functions of the rational form:
     r_dot [m/s]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: where the motion is, and a small change of it:
+State y of `rhs_variational`: a motion and a small change of it:
     r [m]
     sin_theta [1]
     cos_theta [1]

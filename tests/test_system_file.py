@@ -154,9 +154,9 @@ def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
     (('"m*g*height"', '"9**9**9"'), "only numbers up to 100"),
     (('"m*g*height"', '"m*g^2"'), r"write powers with \*\*, not \^"),
     (('"m*g*height"', '"m*g*hight"'), "unknown name 'hight' .did you mean 'height'"),
-    (('"m*g*height"', '"m*g*x_dot"'), "the potential names unknown symbols: x_dot"),
+    (('"m*g*height"', '"m*g*x_dot"'), "the potential contains unknown symbols: x_dot"),
     (('"m*g*height"', "true"), "must be a text in quotes"),
-    (('"m*g*height"', '"' + "(" * 9000 + "m" + ")" * 9000 + '"'), "cannot read|nested too deeply"),
+    (('"m*g*height"', '"' + "(" * 9000 + "m" + ")" * 9000 + '"'), "cannot parse|nested too deeply"),
     (("potential", "potentail"), "unknown key 'potentail' in .*did you mean 'potential'"),
     (("Omega = {", '"os;rm" = {'), "'os;rm' cannot be a name"),
     (("Omega = {", "volatile = {"), "'volatile' cannot be a name"),
@@ -245,10 +245,10 @@ def test_forces_drives_and_reactions_are_refused_where_they_make_no_sense() -> N
 
     for changes, words in (
         ({"forces": (F, F)}, "forces of system 'thing' has 2 components: give 1"),
-        ({"forces": (y,)}, "the list of forces names unknown symbols: y"),
+        ({"forces": (y,)}, "the list of forces contains unknown symbols: y"),
         ({"gravity": (0, 0, -1)}, "gravity of system 'thing' has 3 components: give 2"),
         ({"reactions": (F,), "forces": (F,)}, "asks for reactions beside forces"),
-        ({"reactions": (y,)}, "the list of reactions names unknown symbols: y"),
+        ({"reactions": (y,)}, "the list of reactions contains unknown symbols: y"),
     ):
         with pytest.raises(SystemDefinitionError, match=words):
             system(**changes)

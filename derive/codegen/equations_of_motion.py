@@ -1,7 +1,7 @@
-"""What every form of the equations of motion starts from, as nodes of one graph.
+"""Quantities common to all forms of the equations of motion, as nodes of one graph.
 
-Derivatives are taken of nodes, and those of solutions reuse the factorisation of the mass
-matrix, from ∂(M⁻¹ b) = M⁻¹ (∂b - ∂M M⁻¹ b). Nothing is inverted and nothing is simplified.
+Nodes are differentiated. Derivatives of solutions use the factorisation of the mass matrix:
+∂(M⁻¹ b) = M⁻¹ (∂b - ∂M M⁻¹ b). Nothing is inverted or simplified.
 """
 
 from __future__ import annotations
@@ -21,15 +21,10 @@ from derive.mechanics.derivation import Derivation
 
 
 class EquationsOfMotion:
-    """Energies, places and states as outputs of generated functions.
+    """Energies, positions and states as outputs of generated functions.
 
-    Each method returns its outputs flat, in C order of the shape that
-    `derive.codegen.functions` gives them.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        Whose values become nodes.
+    Each property has the name of a generated function in `derive.codegen.functions`, and gives
+    the function's outputs, flat in C order.
     """
 
     def __init__(self, derivation: Derivation) -> None:
@@ -64,7 +59,7 @@ class EquationsOfMotion:
         return factorisation(self._graph, [[self._inertia[i][j] for j in self._n] for i in self._n])
 
     def _rates(self, velocities: Sequence[Node]) -> list[Node]:
-        """Rates of all variables where those of the coordinates are `velocities`."""
+        """Rates of all variables, given those of the coordinates."""
         return [*velocities, *self._nodes(self._derivation.rates[len(velocities) :])]
 
     @property
@@ -74,7 +69,7 @@ class EquationsOfMotion:
 
     @property
     def positions(self) -> list[Node]:
-        """Positions r of all masses, one after the other."""
+        """Positions r of all masses."""
         return self._nodes([r for mass in self._system.masses for r in mass.position])
 
     @property
@@ -93,52 +88,52 @@ class EquationsOfMotion:
         return [*self._q, *self._nodes(self._derivation.momenta)]
 
     @cached_property
-    def _known_by(self) -> dict[Node, list[int]]:
-        """Which variables an entry of M̄ depends on: of a long chain's entries two."""
-        return {
-            entry: [k for k, name in enumerate(self._variables)
-                    if name in self._derivative.leaves(entry)]
-            for row in self._inertia for entry in row
-        }  # fmt: skip
+    def _dependencies(self) -> dict[Node, list[int]]:
+        """The variables that an entry of M̄ depends on; in a long chain two."""
+
+        def dependencies(entry: Node) -> list[int]:
+            leaves = self._derivative.leaves(entry)
+            return [k for k, name in enumerate(self._variables) if name in leaves]
+
+        return {entry: dependencies(entry) for row in self._inertia for entry in row}
 
     @cached_property
     def angles(self) -> tuple[sp.Symbol, ...]:
-        """Coordinates that energies and forces know through sine and cosine only.
+        """Coordinates on which energies and forces depend only by sine and cosine.
 
-        Or the positions, of one that energies and forces do not know.
+        For a coordinate that does not occur in energies and forces, the positions decide.
         """
-        felt = [*self._known_by, self._potential, *self._applied]
-        names = self._only_as_angles(felt) | (
-            self._only_as_angles(self.positions)
-            - frozenset().union(*map(self._derivative.leaves, felt))
-        )
+        dynamics = [*self._dependencies, self._potential, *self._applied]
+        names = self._only_as_angles(dynamics)
+        names |= self._only_as_angles(self.positions) - self._leaves(dynamics)
         return tuple(q for q in self._system.q if q.name in names)
 
     def _only_as_angles(self, nodes: Sequence[Node]) -> frozenset[str]:
-        known = frozenset().union(*map(self._derivative.leaves, nodes))
-        return angles(nodes, known & {q.name for q in self._system.q})
+        return angles(nodes, self._leaves(nodes) & {q.name for q in self._system.q})
+
+    def _leaves(self, nodes: Sequence[Node]) -> frozenset[str]:
+        return frozenset().union(*map(self._derivative.leaves, nodes))
 
     @property
     def rational_state(self) -> list[Node]:
         """(sin q, cos q) for every angle, other coordinates, and q̇."""
-        places: list[sp.Expr] = []
+        positions: list[sp.Expr] = []
         for q in self._system.q:
-            places += [sp.sin(q), sp.cos(q)] if q in self.angles else [q]
-        return [*self._nodes(places), *self._qdot]
+            positions += [sp.sin(q), sp.cos(q)] if q in self.angles else [q]
+        return [*self._nodes(positions), *self._qdot]
 
     def _shifted(self, variable: sp.Symbol, vector: Sequence[Node]) -> list[Node]:
         """(∂M/∂variable) vector."""
+        name, n = variable.name, len(vector)
         return [
-            self._graph.sum(
-                [(self._derivative(row[j], variable.name) * vector[j], 1) for j in self._n]
-            )
-            for row in self._inertia[: len(vector)]
+            self._graph.sum([(self._derivative(row[j], name) * vector[j], 1) for j in range(n)])
+            for row in self._inertia[:n]
         ]
 
     @property
     def equilibrium(self) -> list[Node]:
-        """Coordinates q₀ at rest; none if no rest is known."""
-        return self._nodes(self._derivation.rest or ())
+        """Coordinates q₀ of the equilibrium."""
+        return self._nodes(self._derivation.equilibrium or ())
 
     @property
     def linear(self) -> list[Node]:

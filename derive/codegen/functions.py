@@ -34,7 +34,7 @@ def _energy(derivation: Derivation) -> str:
 
 
 def _equilibrium(derivation: Derivation) -> str:
-    return f"q = ({', '.join(map(str, derivation.rest or ()))})"
+    return f"q = ({', '.join(map(str, derivation.equilibrium or ()))})"
 
 
 def _reactions(derivation: Derivation) -> str:
@@ -121,11 +121,11 @@ SPECS = (
         "Time derivative of y: of the motion, then of the change, to first order."),
     FunctionSpec("equilibrium", "parameters", "q",
         "Coordinates at the equilibrium.",
-        "{}.", _equilibrium, lambda derivation: derivation.rest is not None),
+        "{}.", _equilibrium, lambda derivation: derivation.equilibrium is not None),
     FunctionSpec("linear", "parameters", "2 q q",
         "Matrices of small displacements x from the equilibrium {}.",
         "M0 and K of M0 xddot + K x = 0.", _equilibrium,
-        lambda derivation: derivation.rest is not None and derivation.is_sprung),
+        lambda derivation: derivation.equilibrium is not None and derivation.is_linearisable),
 )  # fmt: skip
 
 

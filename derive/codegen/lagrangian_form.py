@@ -16,45 +16,40 @@ HALF = Fraction(1, 2)
 
 
 class LagrangianForm(EquationsOfMotion):
-    """Rates of (q, q̇), of (sin q, cos q, q̇), and of small changes of these."""
+    """Derivatives of (q, q̇), of (sin q, cos q, q̇), and of small changes of these."""
 
     @cached_property
     def _forcing(self) -> list[Node]:
         v = self._rates(self._qdot)
-        return [
-            self._graph.sum(
-                [
-                    (self._inertial(i, v), -1),
-                    (self._derivative(self._potential, q.name), -1),
-                    (self._applied[i], 1),
-                ]
-            )
-            for i, q in enumerate(self._system.q)
-        ]
+        forces = []
+        for i, q in enumerate(self._system.q):
+            inertial, gradient = self._inertial(i, v), self._derivative(self._potential, q.name)
+            forces.append(self._graph.sum([(inertial, -1), (gradient, -1), (self._applied[i], 1)]))
+        return forces
 
     def _inertial(self, i: int, v: Sequence[Node]) -> Node:
         """Σ (∂M̄_ij/∂q_k - ½ ∂M̄_jk/∂q_i) v_j v_k of the variable i."""
-        names, slope = self._variables, self._derivative
+        names, derivative = self._variables, self._derivative
         terms = [
-            (slope(self._inertia[j][k], names[i]) * v[j] * v[k], -HALF)
+            (derivative(self._inertia[j][k], names[i]) * v[j] * v[k], -HALF)
             for j, k in self._dependent[i]
         ]
         terms += [
-            (slope(entry, names[k]) * v[j] * v[k], Fraction(1))
+            (derivative(entry, names[k]) * v[j] * v[k], Fraction(1))
             for j, entry in enumerate(self._inertia[i])
-            for k in self._known_by[entry]
+            for k in self._dependencies[entry]
         ]
         return self._graph.sum(terms)
 
     @cached_property
     def _dependent(self) -> list[list[tuple[int, int]]]:
-        """Which entries of M̄ depend on each variable."""
-        found: list[list[tuple[int, int]]] = [[] for _ in self._variables]
+        """The entries of M̄ that depend on each variable."""
+        entries: list[list[tuple[int, int]]] = [[] for _ in self._variables]
         for j, row in enumerate(self._inertia):
             for k, entry in enumerate(row):
-                for variable in self._known_by[entry]:
-                    found[variable].append((j, k))
-        return found
+                for variable in self._dependencies[entry]:
+                    entries[variable].append((j, k))
+        return entries
 
     @cached_property
     def _accelerations(self) -> list[Node]:
@@ -62,24 +57,21 @@ class LagrangianForm(EquationsOfMotion):
 
     @property
     def rhs(self) -> list[Node]:
-        """Q̇ and q̈ of M q̈ = f."""
+        """The rates q̇ and q̈ of M q̈ = f."""
         return [*self._qdot, *self._accelerations]
 
     @property
     def reactions(self) -> list[Node]:
-        """-(M̄ q̈ + Σ Γ v v + ∂V/∂l) of every length l that is held."""
+        """-(M̄ q̈ + Σ Γ v v + ∂V/∂l) of every constant length l."""
         v = self._rates(self._qdot)
         first = len(self._variables) - len(self._system.reactions)
-        return [
-            self._graph.sum(
-                [
-                    *((self._inertia[i][j] * self._accelerations[j], -1) for j in self._n),
-                    (self._inertial(i, v), -1),
-                    (self._derivative(self._potential, self._variables[i]), -1),
-                ]
-            )
-            for i in range(first, len(self._variables))
-        ]
+        forces = []
+        for i in range(first, len(self._variables)):
+            terms = [(self._inertia[i][j] * self._accelerations[j], -1) for j in self._n]
+            terms.append((self._inertial(i, v), -1))
+            terms.append((self._derivative(self._potential, self._variables[i]), -1))
+            forces.append(self._graph.sum(terms))
+        return forces
 
     @property
     def _rational_rates(self) -> list[Node]:
@@ -97,21 +89,18 @@ class LagrangianForm(EquationsOfMotion):
     @property
     def jacobian(self) -> list[Node]:
         """Rows of ∂(q̇, q̈)/∂(q, q̇)."""
-        columns = []
-        for variable in (*self._system.q, *self._system.qdot):
+        variables, columns = (*self._system.q, *self._system.qdot), []
+        for variable in variables:
             change = [self._derivative(force, variable.name) for force in self._forcing]
             shift = self._shifted(variable, self._accelerations)
-            columns.append(
-                self._factorisation.solve([a - b for a, b in zip(change, shift, strict=True)])
-            )
-        return [
-            *(
-                self._graph.node(int(variable is velocity))
-                for velocity in self._system.qdot
-                for variable in (*self._system.q, *self._system.qdot)
-            ),
-            *(column[i] for i in self._n for column in columns),
-        ]
+            right = [a - b for a, b in zip(change, shift, strict=True)]
+            columns.append(self._factorisation.solve(right))
+        upper = (
+            self._graph.node(int(variable is velocity))
+            for velocity in self._system.qdot
+            for variable in variables
+        )
+        return [*upper, *(column[i] for i in self._n for column in columns)]
 
     @property
     def rhs_variational(self) -> list[Node]:
@@ -119,13 +108,10 @@ class LagrangianForm(EquationsOfMotion):
         q, qdot = self._system.q, self._system.qdot
         changes = dict(zip((*q, *qdot), self._nodes(self._system.variations), strict=True))
         shifts = {s: self._shifted(s, self._accelerations) for s in q}
-        change_of_forcing = [
-            self._graph.sum([
-                *((self._derivative(self._forcing[i], s.name) * change, 1)
-                  for s, change in changes.items()),
-                *((shift[i] * changes[s], -1) for s, shift in shifts.items()),
-            ])
-            for i in self._n
-        ]  # fmt: skip
+        change_of_forcing = []
+        for i, force in enumerate(self._forcing):
+            derivatives = ((self._derivative(force, s.name) * x, 1) for s, x in changes.items())
+            inertial = ((shift[i] * changes[s], -1) for s, shift in shifts.items())
+            change_of_forcing.append(self._graph.sum([*derivatives, *inertial]))
         tangent = [*(changes[s] for s in qdot), *self._factorisation.solve(change_of_forcing)]
         return rationalised([*self._rational_rates, *tangent], [q.name for q in self.angles])

@@ -1,4 +1,4 @@
-"""A system in words: what the docstring of its generated module says."""
+"""The description of a system in the docstring of its generated module."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from derive.system.system import System
 #: Unit of the momentum conjugate to a coordinate of this unit.
 MOMENTUM_UNIT = {"rad": "J s", "m": "kg m/s"}
 
-#: With more coordinates than this, equations fill pages.
+#: Equations of systems with more coordinates are too long to read.
 READABLE = 4
 
 STATES: dict[Form, str] = {
     "lagrangian": "State y = (q, qdot)",
     "hamiltonian": "State y = (q, p), in functions of the Hamiltonian form",
     "rational": "State y in functions of the rational form",
-    "variational": "State y of `rhs_variational`: where the motion is, and a small change of it",
+    "variational": "State y of `rhs_variational`: a motion and a small change of it",
 }
 
 
 def units(system: System) -> dict[str, str]:
-    """Unit of everything that has a name."""
+    """Units of all names."""
     rows = {parameter.symbol.name: parameter.unit for parameter in system.parameters}
     for coordinate, qdot, p in zip(system.coordinates, system.qdot, system.p, strict=True):
         rows[coordinate.symbol.name] = coordinate.unit
@@ -63,7 +63,7 @@ def summary(contents: Contents) -> str:
 
 
 def _equations(derivation: Derivation) -> dict[str, list[str]]:
-    """The Lagrangian and the equations of motion, of a system in which people can read them."""
+    """The Lagrangian and the equations of motion, of a small system."""
     if len(derivation.system.q) > READABLE:
         return {}
     return {
@@ -73,7 +73,7 @@ def _equations(derivation: Derivation) -> dict[str, list[str]]:
 
 
 def broken_sum(text: str, width: int) -> str:
-    """A long expression over several lines, broken before a sign outside brackets."""
+    """A long expression on several lines, broken before signs outside brackets."""
     lines, depth, start = [""], 0, 0
     for i, letter in enumerate(text):
         depth += (letter == "(") - (letter == ")")

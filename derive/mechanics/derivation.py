@@ -1,12 +1,11 @@
-"""From positions to motion, one textbook step after the other.
+"""From positions to equations of motion, in the steps of a textbook.
 
-Every step is a plain SymPy value: print it, compare it, or let a notebook set
-it as LaTeX. Time is one more coordinate that the Jacobians of the positions
-know, one whose velocity is 1: M̄ = Σ m J̄ᵀJ̄ with J̄ = ∂r/∂(q, t) holds the mass
-matrix, and beside it what moving pivots do. Everything after it follows from
-M̄, the potential and the applied forces alone (L. D. Landau, E. M. Lifshitz,
-Mechanics, § 5 and § 40; C. Lanczos, The Variational Principles of Mechanics,
-chapter VI, for time as a coordinate).
+Every step is a SymPy value that can be printed, compared, or typeset in a
+notebook. Time is an additional coordinate whose velocity is 1: M̄ = Σ m J̄ᵀJ̄ with
+J̄ = ∂r/∂(q, t) contains the mass matrix and the terms of moving pivots. All other
+results follow from M̄, the potential and the applied forces (L. D. Landau, E. M.
+Lifshitz, Mechanics, § 5 and § 40; C. Lanczos, The Variational Principles of
+Mechanics, chapter VI, for time as a coordinate).
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.mechanics.independence import check_independence
-from derive.mechanics.linearisation import Linearisation, beyond_springs, linearised, resting
+from derive.mechanics.linearisation import Energies, Linearisation
 from derive.mechanics.reduction import collected, reduced
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.symbols import TIME
@@ -31,12 +30,12 @@ HALF = sp.Rational(1, 2)
 
 @dataclass(frozen=True)
 class Derivation:
-    """The mechanics of `system`, derived when asked for.
+    """The mechanics of `system`; each result is derived when it is first used.
 
     Parameters
     ----------
     system : System
-        Positions, masses and potential.
+        A system.
 
     Raises
     ------
@@ -46,8 +45,8 @@ class Derivation:
 
     Notes
     -----
-    Velocities, accelerations and momenta are symbols of their own
-    (``system.qdot``, ``system.qddot``, ``system.p``), not functions of time.
+    Velocities, accelerations and momenta are symbols (``system.qdot``,
+    ``system.qddot``, ``system.p``), not functions of time.
 
     Examples
     --------
@@ -81,14 +80,14 @@ class Derivation:
 
     @cached_property
     def variables(self) -> tuple[sp.Symbol, ...]:
-        """Coordinates, time where positions depend on it, and lengths whose reactions are asked."""
+        """Coordinates, time if positions depend on it, and lengths with requested reactions."""
         positions = sp.Tuple(*(r for m in self.system.masses for _, r in m.motions))
         time = (TIME,) if TIME in positions.free_symbols else ()
         return (*self.system.q, *time, *self.system.reactions)
 
     @cached_property
     def rates(self) -> tuple[sp.Expr, ...]:
-        """Rates of change of the variables: q̇, 1 for time, 0 for what is held."""
+        """Rates of change of the variables: q̇, 1 for time, 0 for constant lengths."""
         n = len(self.system.q)
         others = (sp.S.One if variable == TIME else sp.S.Zero for variable in self.variables[n:])
         return (*self.system.qdot, *others)
@@ -99,19 +98,20 @@ class Derivation:
         motions = [motion for mass in self.system.masses for motion in mass.motions]
 
         @cache
-        def slope(place: sp.Expr, variable: sp.Symbol) -> sp.Expr:
-            # the places of a chain share most of their terms
-            if place.is_Add:
-                return sp.Add(*(slope(term, variable) for term in place.args))
-            return _derivative(place, variable)
+        def derivative(position: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+            # the positions of a chain share most of their terms
+            if position.is_Add:
+                return sp.Add(*(derivative(term, variable) for term in position.args))
+            return _derivative(position, variable)
 
         tangents = [
-            [tuple(slope(r, v) for r in place) for v in self.variables] for _, place in motions
+            [tuple(derivative(r, v) for r in position) for v in self.variables]
+            for _, position in motions
         ]
         dots: dict[object, sp.Expr] = {}
 
         def entry(i: int, j: int) -> sp.Expr:
-            # masses below one joint share their dot products: reduce each product once
+            # masses below a joint share their dot products, which are reduced once
             inertias: dict[sp.Expr, sp.Expr] = {}
             for (inertia, _), tangent in zip(motions, tangents, strict=True):
                 pair = (tangent[i], tangent[j])
@@ -133,7 +133,7 @@ class Derivation:
 
     @cached_property
     def kinetic_energy(self) -> sp.Expr:
-        """T = ½ q̇ᵀ M q̇, and with moving pivots what is linear in q̇ and free of it."""
+        """T = ½ q̇ᵀ M q̇; with moving pivots also terms that are linear in q̇ or independent of it."""
         return self._quadratic(len(self.variables))
 
     def _quadratic(self, n: int) -> sp.Expr:
@@ -156,7 +156,7 @@ class Derivation:
 
     @cached_property
     def effective_potential(self) -> sp.Expr:
-        """U(q, t) = V - T₀, with T₀ the kinetic energy of what moves though q̇ is 0."""
+        """U(q, t) = V - T₀, with T₀ the kinetic energy at q̇ = 0."""
         at_rest = dict.fromkeys(self.system.qdot, 0)
         return self.potential_energy - self.kinetic_energy.subs(at_rest)
 
@@ -173,34 +173,28 @@ class Derivation:
 
     @cached_property
     def momenta(self) -> Matrix:
-        """Momenta p = ∂L/∂q̇ = M q̇ + b, a column; b is there where positions depend on time."""
+        """Momenta p = ∂L/∂q̇ = M q̇ + b, a column."""
         return self.mass_matrix * Matrix(self.system.qdot) + self.drift
 
     @cached_property
     def drift(self) -> Matrix:
-        """Momenta b that are there though q̇ is 0, a column: Σ m Jᵀ ∂r/∂t."""
+        """Momenta b at q̇ = 0, a column: Σ m Jᵀ ∂r/∂t, 0 if positions do not depend on time."""
         n, others = len(self.system.q), len(self.variables) - len(self.system.q)
         return self.inertia[:n, n:] * Matrix(others, 1, self.rates[n:])
 
     @cached_property
     def forcing(self) -> Matrix:
-        """f(q, q̇, t) of M q̈ = f, a column: what is left of the Euler–Lagrange equations.
+        """Right side f(q, q̇, t) of M q̈ = f, a column.
 
         f_i = -Σ_jk Γ_ijk v_j v_k - ∂V/∂q_i + Q_i, with v the rates of all variables and
         Γ_ijk Christoffel's symbols of the first kind of M̄.
         """
-        return Matrix(
-            [
-                collected(
-                    applied - self._inertial(i) - self.potential_energy.diff(q),
-                    *self.system.q,
-                    *self.system.qdot,
-                )
-                for i, (q, applied) in enumerate(
-                    zip(self.system.q, self.system.applied, strict=True)
-                )
-            ]
+        state, applied = self.system.q + self.system.qdot, self.system.applied
+        forces = (
+            collected(applied[i] - self._inertial(i) - self.potential_energy.diff(q), *state)
+            for i, q in enumerate(self.system.q)
         )
+        return Matrix(list(forces))
 
     def _inertial(self, i: int) -> sp.Expr:
         """Σ Γ_ijk v_j v_k for the variable i."""
@@ -222,15 +216,15 @@ class Derivation:
 
     @cached_property
     def euler_lagrange(self) -> Matrix:
-        """Residuals d/dt ∂L/∂q̇ - ∂L/∂q - Q, a column; the motion makes them zero."""
+        """Residuals d/dt ∂L/∂q̇ - ∂L/∂q - Q, a column, which are zero along a motion."""
         return self.mass_matrix * Matrix(self.system.qddot) - self.forcing
 
     @cached_property
     def reactions(self) -> Matrix:
-        """Forces that hold the lengths asked for, a column: a rod's tension, positive if it pulls.
+        """Forces that hold the given lengths constant, a column: a rod's tension is positive.
 
-        The multiplier of the constraint that a length l stays: with l free, it is what has
-        to be applied, -(d/dt ∂L/∂l̇ - ∂L/∂l) where l̇ and l̈ are 0. In q, q̇ and q̈.
+        The multiplier of the constraint that a length l is constant is the force that is
+        required if l is free: -(d/dt ∂L/∂l̇ - ∂L/∂l) at l̇ = l̈ = 0, a function of q, q̇ and q̈.
         """
         first = len(self.variables) - len(self.system.reactions)
         qddot = Matrix(self.system.qddot)
@@ -245,7 +239,7 @@ class Derivation:
 
     @cached_property
     def _adjugate_and_determinant(self) -> tuple[Matrix, sp.Expr]:
-        # for reading only: the adjugate grows as n!, generated code solves M w = p instead
+        # not for generated code, which solves M w = p: the adjugate grows as n!
         return self.mass_matrix.adjugate(), sp.factor_terms(reduced(self.mass_matrix.det()))
 
     def _divided_by_mass(self, column: Matrix) -> Matrix:
@@ -262,7 +256,7 @@ class Derivation:
 
     @cached_property
     def hamiltonian(self) -> sp.Expr:
-        """H(q, p, t) = ½ (p - b)ᵀ M⁻¹ (p - b) + U: the energy, as a function of the momenta."""
+        """H(q, p, t) = ½ (p - b)ᵀ M⁻¹ (p - b) + U, the energy as a function of the momenta."""
         adjugate, determinant = self._adjugate_and_determinant
         p = Matrix(self.system.p) - self.drift
         numerator = collected((p.T * adjugate * p)[0, 0], *self.system.q, *self.system.p)
@@ -270,69 +264,68 @@ class Derivation:
 
     @cached_property
     def hamilton_equations(self) -> tuple[Matrix, Matrix]:
-        """(q̇, ṗ) = (∂H/∂p, -∂H/∂q + Q), two columns; without applied forces, canonical."""
+        """(q̇, ṗ) = (∂H/∂p, -∂H/∂q + Q), two columns; canonical without applied forces."""
         velocities = self._divided_by_mass(Matrix(self.system.p) - self.drift)
         known = dict(zip(self.system.qdot, velocities, strict=True))
-        slopes = (
+        forces = (
             force.subs(known) - self.hamiltonian.diff(q)
             for q, force in zip(self.system.q, self.system.applied, strict=True)
         )
-        return velocities, Matrix(list(slopes))
+        return velocities, Matrix(list(forces))
 
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
-        """Small motions about an equilibrium.
+        """Small oscillations about an equilibrium.
 
         Parameters
         ----------
         equilibrium : sequence of sympy.Expr, optional
-            Coordinates at rest; by default the system's own equilibrium, or zeros.
+            Coordinates; by default those of the system's equilibrium, or zeros.
 
         Returns
         -------
         Linearisation
-            With M₀ and K, n × n.
+            M₀ and K, n × n.
 
         Raises
         ------
         SystemDefinitionError
-            When a force is left at that place, or their number is wrong; when time, applied
-            forces or a rotation of the frame leave more than masses and springs.
+            When a force is not 0 there, or the number of coordinates is wrong; when small
+            motions depend on time, or have applied or gyroscopic forces.
         """
-        return linearised(
-            self.system, self.mass_matrix, self.effective_potential, self.drift,
-            self._place(equilibrium),
-        )  # fmt: skip
+        if equilibrium is None:
+            return self._energies.linearised(self._default_equilibrium)
+        return self._energies.linearised(tuple(map(formula, equilibrium)))
 
     @cached_property
-    def is_sprung(self) -> bool:
-        """Whether small motions are those of masses and springs alone."""
-        parts = self.mass_matrix, self.effective_potential, self.drift
-        return not any(beyond_springs(self.system, *parts).values())
+    def is_linearisable(self) -> bool:
+        """Whether masses and springs alone describe small motions."""
+        return not any(self._energies.other_terms().values())
 
     @cached_property
-    def rest(self) -> tuple[sp.Expr, ...] | None:
-        """The system's equilibrium, or zeros if it stays there; None if none is known.
+    def equilibrium(self) -> tuple[sp.Expr, ...] | None:
+        """The system's equilibrium, or zeros if they are one; None if none is known.
 
         Raises
         ------
         SystemDefinitionError
-            When a force is left at the equilibrium that the system gives.
+            When a force is not 0 at the system's equilibrium.
         """
-        place = self._place(None)
         try:
-            resting(self.system, self.effective_potential, self.drift, place)
+            self._energies.check_equilibrium(self._default_equilibrium)
         except SystemDefinitionError:
             if self.system.equilibrium is not None:
                 raise
             return None
-        return place
+        return self._default_equilibrium
 
-    def _place(self, equilibrium: Sequence[sp.Expr] | None) -> tuple[sp.Expr, ...]:
-        if equilibrium is None:
-            equilibrium = self.system.equilibrium
-        if equilibrium is None:
-            equilibrium = (sp.S.Zero,) * len(self.system.q)
-        return tuple(map(formula, equilibrium))
+    @property
+    def _energies(self) -> Energies:
+        return Energies(self.system, self.mass_matrix, self.effective_potential, self.drift)
+
+    @property
+    def _default_equilibrium(self) -> tuple[sp.Expr, ...]:
+        given = self.system.equilibrium
+        return (sp.S.Zero,) * len(self.system.q) if given is None else tuple(given)
 
 
 def _derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:

@@ -1,4 +1,4 @@
-"""Whether every coordinate moves a mass in a way of its own."""
+"""Independence of the coordinates: each one moves a mass as no other does."""
 
 from __future__ import annotations
 
@@ -8,56 +8,41 @@ from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 from derive.system.system import System
 
-#: A pivot smaller than this part of its diagonal entry, at 50 digits, is zero.
+#: A pivot below this fraction of its diagonal entry, with 50 digits, is zero.
 TINY = sp.Float("1e-30")
 
 
 def check_independence(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> None:
-    """Eliminate the mass matrix at a generic place: a pivot of zero names its coordinate.
-
-    Parameters
-    ----------
-    system : System
-        Whose coordinates are judged.
-    mass_matrix : sympy.Matrix
-        M(q, t), n × n.
-
-    Raises
-    ------
-    SystemDefinitionError
-        When a coordinate moves no mass, or moves the masses only as others do, or has no
-        inertia that is a positive number.
-    """
-    rows = _at_a_place(system, mass_matrix)
+    """Eliminate M(q, t) at a generic state; a zero pivot identifies a dependent coordinate."""
+    rows = _generic_values(system, mass_matrix)
     diagonal = [row[k] for k, row in enumerate(rows)]
     for k, q in enumerate(system.q):
         if not rows[k][k] > diagonal[k] * TINY:
-            why = (
-                "moves no mass"
-                if mass_matrix[k, k] == 0
-                else f"moves the masses only as {', '.join(s.name for s in system.q[:k])} can"
-                if k
-                else "has no inertia that is a positive number"
-            )
+            reason = "has no inertia that is a positive number"
+            if mass_matrix[k, k] == 0:
+                reason = "moves no mass"
+            elif k:
+                others = ", ".join(s.name for s in system.q[:k])
+                reason = f"moves the masses only in ways in which {others} can move them"
             raise SystemDefinitionError(
-                f"coordinate {q.name!r} of system {system.name!r} {why}: leave it out, or let "
-                "a position depend on it"
+                f"coordinate {q.name!r} of system {system.name!r} {reason}: omit it, or let a "
+                "position depend on it"
             )
         for i in range(k + 1, len(rows)):
             ratio = rows[i][k] / rows[k][k]
             rows[i] = [a - ratio * b for a, b in zip(rows[i], rows[k], strict=True)]
 
 
-def _at_a_place(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> list[list[sp.Expr]]:
-    """The mass matrix in numbers, at the first of some places where they are real."""
+def _generic_values(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> list[list[sp.Expr]]:
+    """The mass matrix in numbers, at the first of several states where it is real."""
     symbols = (*system.params, *system.q, TIME)
-    place = {s: sp.Rational(7 * k + 3, 5 * k + 4) for k, s in enumerate(symbols)}
-    # what hangs on a thread stays within its reach, what rolls on a wheel keeps away from its axis
+    values = {s: sp.Rational(7 * k + 3, 5 * k + 4) for k, s in enumerate(symbols)}
+    n = mass_matrix.rows
+    # a thread limits coordinates from above; a wheel's axis limits them from below
     for size in (sp.Rational(1, 8), sp.Integer(5), sp.Integer(1)):
-        there = place | {q: place[q] * size for q in system.q}
-        n = mass_matrix.rows
+        state = values | {q: values[q] * size for q in system.q}
         upper = {
-            (i, j): mass_matrix[i, j].evalf(50, subs=there) for i in range(n) for j in range(i, n)
+            (i, j): mass_matrix[i, j].evalf(50, subs=state) for i in range(n) for j in range(i, n)
         }
         rows = [[upper[min(i, j), max(i, j)] for j in range(n)] for i in range(n)]
         if all(entry.is_real for row in rows for entry in row):

@@ -1,10 +1,9 @@
-"""Targeted reduction of trigonometric sums: of several equal forms, the shortest.
+"""Targeted reduction of trigonometric sums: the shortest of several equal forms.
 
-Products of sines and cosines become sines and cosines of sums of angles, in
-which every identity has already happened: cos a cos b + sin a sin b is
-cos(a - b), sin² a + cos² a is 1. Where that leaves doubled angles, they are
-also tried as squares, since sin² a costs less than (1 - cos 2a)/2 and is exact
-near a = 0.
+Products of sines and cosines become sines and cosines of sums of angles, for
+which every identity holds by cancellation: cos a cos b + sin a sin b is
+cos(a - b), sin² a + cos² a is 1. Squares are tried in place of doubled angles,
+since sin² a costs less than (1 - cos 2a)/2 and is accurate near a = 0.
 """
 
 from __future__ import annotations
@@ -16,12 +15,12 @@ import sympy as sp
 
 Wave = tuple[bool, sp.Expr]  # (is a sine, argument)
 HALF = sp.Rational(1, 2)
-#: Terms of an expression that is expanded; beyond it shorter forms are not looked for.
+#: Terms of the largest expression that is expanded to find a shorter form.
 LARGEST = 5000
 
 
 def reduced(expression: sp.Expr) -> sp.Expr:
-    """The form of `expression` with the fewest operations, of those described above."""
+    """The form of `expression` with the fewest operations."""
     if not expression.has(sp.sin, sp.cos) or _expanded_size(expression, {}) > LARGEST:
         return expression
     waves = harmonics(expression)
@@ -32,22 +31,7 @@ def reduced(expression: sp.Expr) -> sp.Expr:
 
 
 def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
-    """`expression` expanded, one term for each distinct part that depends on `variables`.
-
-    As it is, if that were too many terms.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        What is expanded.
-    *variables : sympy.Symbol
-        Of what parts are told apart.
-
-    Returns
-    -------
-    sympy.Expr
-        Equal to `expression`; the coefficient of each part is factored.
-    """
+    """`expression` expanded, one term for each function of `variables`; unchanged if too long."""
     if _expanded_size(expression, {}) > LARGEST:
         return expression
     coefficients: dict[sp.Expr, sp.Expr] = {}
@@ -58,7 +42,7 @@ def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
 
 
 def _expanded_size(expression: sp.Expr, known: dict[sp.Expr, int]) -> int:
-    """How many terms the expression has when it is expanded, a sine of many as one; bounded."""
+    """Number of terms of the expanded expression, up to a bound."""
     if expression not in known:
         sizes = [_expanded_size(part, known) for part in expression.args]
         if expression.is_Add:
@@ -118,7 +102,7 @@ def _by_cosine(angle: sp.Expr) -> sp.Expr:
 
 
 def _halves(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
-    """Half the arguments of sines and cosines, where that is a sum of whole angles."""
+    """Half the arguments of sines and cosines, where it is an integer combination of angles."""
     halves = {wave: wave.args[0] / 2 for wave in expression.atoms(sp.sin, sp.cos)}
     return {
         wave: half
@@ -131,7 +115,8 @@ def _halved(
     expression: sp.Expr, halves: dict[sp.Expr, sp.Expr], square: Callable[[sp.Expr], sp.Expr]
 ) -> sp.Expr:
     """`expression` with cos 2a as a square and sin 2a as a product."""
-    return sp.expand(expression.xreplace({
+    replacements = {
         wave: square(half) if isinstance(wave, sp.cos) else 2 * sp.sin(half) * sp.cos(half)
         for wave, half in halves.items()
-    }))  # fmt: skip
+    }
+    return sp.expand(expression.xreplace(replacements))

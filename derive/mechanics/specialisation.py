@@ -1,4 +1,4 @@
-"""A system whose parameters have values: they are folded in, and what is zero vanishes."""
+"""Systems with numbers in place of parameters; terms that become zero vanish."""
 
 from __future__ import annotations
 
@@ -12,26 +12,7 @@ from derive.system.system import System
 
 
 def specialised(system: System, values: Mapping[str, float]) -> System:
-    """The system with parameters replaced by numbers, exactly as their digits say.
-
-    Parameters
-    ----------
-    system : System
-        With parameters.
-    values : mapping of str to float
-        By name; parameters that are not named stay.
-
-    Returns
-    -------
-    System
-        Of the same name, with the other parameters only.
-
-    Raises
-    ------
-    SystemDefinitionError
-        When no parameter is called so, or a value is no number; when what is left is no
-        system, since a mass is 0 for instance.
-    """
+    """The system of the same name with the named parameters replaced by their exact values."""
     symbols = {symbol.name: symbol for symbol in system.params}
     for name in values:
         if name not in symbols:
@@ -43,19 +24,21 @@ def specialised(system: System, values: Mapping[str, float]) -> System:
 
 
 def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
-    """The system with parameters replaced by numbers, or by what other parameters make of them."""
+    """The system with parameters replaced by numbers or by formulas of other parameters."""
 
-    def folded(expression: sp.Expr) -> sp.Expr:
+    def substitute(expression: sp.Expr) -> sp.Expr:
         return expression.subs(values)
 
     return replace(
         system,
         parameters=[p for p in system.parameters if p.symbol not in values],
-        masses=[mass.mapped(folded) for mass in system.masses],
-        potential=folded(system.potential_energy),
-        gravity=(sp.S.Zero,) * system.dimension,  # it is in the potential
-        dissipation=folded(system.dissipation),
-        forces=tuple(map(folded, system.forces)),
-        equilibrium=None if system.equilibrium is None else tuple(map(folded, system.equilibrium)),
+        masses=[mass.mapped(substitute) for mass in system.masses],
+        potential=substitute(system.potential_energy),
+        gravity=(sp.S.Zero,) * system.dimension,  # included in the potential
+        dissipation=substitute(system.dissipation),
+        forces=tuple(map(substitute, system.forces)),
+        equilibrium=None
+        if system.equilibrium is None
+        else tuple(map(substitute, system.equilibrium)),
         reactions=[length for length in system.reactions if length not in values],
     )

@@ -1,4 +1,4 @@
-"""A derivation step by step, in words and formulas: what notebooks and pages show."""
+"""A derivation step by step, in words and formulas, for notebooks and pages."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Step:
     Attributes
     ----------
     title, words : str
-        What it gives, and where that comes from.
+        The name of the result, and its origin.
     formulas : tuple of Formula
         The result.
     """
@@ -29,19 +29,19 @@ class Step:
 
 
 def steps(derivation: Derivation) -> Iterator[Step]:
-    """From positions to equations of motion, one step after the other.
+    """The steps of a derivation, from positions to Hamilton's equations.
 
-    Letters are those of the report: K and P are kinetic and potential energy.
+    K and P denote kinetic and potential energy, as in the report on the double pendulum.
 
     Parameters
     ----------
     derivation : Derivation
-        Of any system.
+        The derivation of any system.
 
     Yields
     ------
     Step
-        From the positions to Hamilton's equations.
+        One result, in words and formulas.
 
     Examples
     --------
@@ -50,35 +50,36 @@ def steps(derivation: Derivation) -> Iterator[Step]:
     ['Positions', 'Velocities', 'Energies']
     """
     system, d = derivation.system, derivation
-    places = [f"r{k}" for k in range(1, len(system.masses) + 1)]
+    names = [f"r{k}" for k in range(1, len(system.masses) + 1)]
     positions = [sp.Matrix(mass.position) for mass in system.masses]
-    velocities = [f"{place}_dot" for place in places]
-    rates, pushes = d.hamilton_equations
+    velocities = [f"{name}_dot" for name in names]
+    rates, forces = d.hamilton_equations
     pdot = [symbol.name.replace("p_", "pdot_", 1) for symbol in system.p]
     yield Step(
         "Positions",
-        "Where the masses are: all that is said of the system, beside its forces.",
-        _each(places, positions),
+        "The positions of the masses; with the forces, they define the system.",
+        _each(names, positions),
     )
     yield Step(
-        "Velocities", "Their derivatives, by the chain rule.", _each(velocities, d.velocities)
+        "Velocities",
+        "Time derivatives of the positions, by the chain rule.",
+        _each(velocities, d.velocities),
     )
     yield Step(
         "Energies",
-        "Half of mass times speed squared; and what gravity and springs store.",
+        "Kinetic energy of the masses, and potential energy of gravity and springs.",
         _each("KP", (d.kinetic_energy, d.potential_energy)),
     )
-    yield Step(
-        "Lagrangian", "Kinetic minus potential energy.", _each("L", (d.lagrangian,))
-    )  # fmt: skip
+    lagrangian = _each("L", (d.lagrangian,))
+    yield Step("Lagrangian", "Kinetic minus potential energy.", lagrangian)
     yield Step(
         "Euler–Lagrange equations",
-        "One for each coordinate: what the motion makes zero.",
+        "One for each coordinate.",
         tuple(Formula(f"{sp.sstr(left, order='lex')} = 0") for left in d.euler_lagrange),
     )
     yield Step(
         "Mass matrix",
-        "The equations are linear in the accelerations, and are solved for them.",
+        "The equations are linear in the accelerations.",
         (
             Formula(f"M*[{', '.join(f'[{name}]' for name in _names(system.qddot))}] = f"),
             *_each("Mf", (d.mass_matrix, d.forcing)),
@@ -86,18 +87,18 @@ def steps(derivation: Derivation) -> Iterator[Step]:
     )
     yield Step(
         "Momenta",
-        "The Lagrangian's derivatives by the velocities.",
+        "Derivatives of the Lagrangian with respect to the velocities.",
         _each(_names(system.p), d.momenta),
     )
     yield Step(
         "Hamiltonian",
-        "The energy, by coordinates and momenta instead of velocities.",
+        "The energy as a function of coordinates and momenta.",
         _each("H", (d.hamiltonian,)),
     )
     yield Step(
         "Hamilton's equations",
-        "Its derivatives are the rates of coordinates and momenta.",
-        _each((*_names(system.qdot), *pdot), (*rates, *pushes)),
+        "Rates of coordinates and momenta, from the derivatives of the Hamiltonian.",
+        _each((*_names(system.qdot), *pdot), (*rates, *forces)),
     )
 
 

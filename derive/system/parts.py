@@ -1,4 +1,4 @@
-"""What a system is made of: coordinates, parameters, and what has inertia."""
+"""The parts of a system: coordinates, parameters, point masses and rigid bodies."""
 
 from __future__ import annotations
 
@@ -10,27 +10,11 @@ import sympy as sp
 
 
 class SystemDefinitionError(ValueError):
-    """A system that cannot be derived; the message says which part and what is allowed."""
+    """An invalid system; the message names the part, its value and what is allowed."""
 
 
 def formula(value: sp.Expr | float) -> sp.Expr:
-    """A SymPy expression or a Python number, decimals as the fractions that their digits say.
-
-    Parameters
-    ----------
-    value : sympy.Expr, int or float
-        A number must be finite.
-
-    Returns
-    -------
-    sympy.Expr
-        Without floating-point numbers.
-
-    Raises
-    ------
-    SystemDefinitionError
-        For anything else, text above all: SymPy would execute it.
-    """
+    """`value` as an exact expression; decimals become fractions, and text is refused."""
     if isinstance(value, sp.Expr):
         return value.xreplace({n: sp.Rational(str(n)) for n in value.atoms(sp.Float)})
     if isinstance(value, Real) and not isinstance(value, bool):
@@ -39,58 +23,45 @@ def formula(value: sp.Expr | float) -> sp.Expr:
         except (TypeError, ValueError):
             pass
     raise SystemDefinitionError(
-        f"{str(value)[:50]!r} is no formula: use numbers and SymPy expressions"
+        f"{str(value)[:50]!r} is not a formula: use finite numbers and SymPy expressions"
     )
 
 
-def _place(position: object) -> tuple[sp.Expr, ...]:
+def _position(position: object) -> tuple[sp.Expr, ...]:
     if not isinstance(position, Iterable) or isinstance(position, str):
         raise SystemDefinitionError(
-            f"position {str(position)[:50]!r} is no position: give its components, (x, up) or "
+            f"position {str(position)[:50]!r} is not a sequence: give the components (x, up) or "
             "(x, y, up)"
         )
     return tuple(map(formula, position))
 
 
-def check_text(place: str, text: str) -> None:
-    """Refuse what would end a comment, a docstring or a text of a generated file.
-
-    Parameters
-    ----------
-    place : str
-        What the text is, for the message.
-    text : str
-        One line for people.
-
-    Raises
-    ------
-    SystemDefinitionError
-        With what is allowed.
-    """
+def check_text(name: str, text: str) -> None:
+    """Raise `SystemDefinitionError` if a text cannot be part of a comment or docstring."""
     if not text.isprintable() or any(mark in text for mark in ('"', "\\", "*/", "/*")):
         raise SystemDefinitionError(
-            f"{place} is {text[:50]!r}: it stands in generated files, so that it must be one line "
+            f"{name} is {text[:50]!r}: generated files contain it, so it must be one line "
             'without ", \\, /* and */'
         )
 
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A generalized coordinate: its symbol, its unit and what it measures.
+    """A generalized coordinate: its symbol, its unit and its meaning.
 
     Parameters
     ----------
     symbol : sympy.Symbol
-        Real, or positive where it cannot change its sign; its name is that in generated code.
+        Real, or positive if it cannot change sign; generated code uses its name.
     unit : str
-        Such as ``rad`` or ``m``; a coordinate in ``rad`` is taken for an angle.
+        Such as ``rad`` or ``m``; a coordinate in ``rad`` is an angle.
     meaning : str
-        One line for people.
+        A description of one line.
 
     Raises
     ------
     SystemDefinitionError
-        When `unit` or `meaning` is not one line that can stand in generated files.
+        When `unit` or `meaning` is not one line that generated files can contain.
 
     Examples
     --------
@@ -115,19 +86,19 @@ class Parameter:
     Parameters
     ----------
     symbol : sympy.Symbol
-        Its name is that in generated code. One declared positive
-        (``Symbol("l", positive=True)``) takes positive values only.
+        Generated code uses its name. A positive symbol (``Symbol("l", positive=True)``) allows
+        positive values only.
     unit : str
         Such as ``kg`` or ``m/s^2``.
     default : float
-        Its value in `unit` where nobody gives another.
+        Its default value in `unit`.
     meaning : str
-        One line for people.
+        A description of one line.
 
     Raises
     ------
     SystemDefinitionError
-        When `unit` or `meaning` is not one line that can stand in generated files.
+        When `unit` or `meaning` is not one line that generated files can contain.
 
     Examples
     --------
@@ -153,14 +124,14 @@ class PointMass:
     Parameters
     ----------
     mass : sympy.Expr or number
-        In kg, made of parameters.
+        In kg, a function of parameters.
     position : sequence of sympy.Expr or numbers
         (x, up) or (x, y, up) in m, as functions of coordinates, parameters and ``derive.TIME``.
 
     Raises
     ------
     SystemDefinitionError
-        When the mass cannot be positive, or something is neither an expression nor a number.
+        When the mass is not positive, or a value is neither an expression nor a number.
 
     Examples
     --------
@@ -175,25 +146,25 @@ class PointMass:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mass", formula(self.mass))
-        object.__setattr__(self, "position", _place(self.position))
+        object.__setattr__(self, "position", _position(self.position))
         if self.mass.is_nonpositive:
             raise SystemDefinitionError(
-                f"mass {self.mass} is not positive: give a number or a positive symbol, or leave "
-                "out what has no mass"
+                f"mass {self.mass} is not positive: give a positive number or symbol, or omit the "
+                "point without mass"
             )
 
     @property
     def motions(self) -> tuple[tuple[sp.Expr, tuple[sp.Expr, ...]], ...]:
-        """What moves, each with its inertia: half the inertia times its rate² is energy."""
+        """Pairs of inertia and position; half the inertia times the rate squared is energy."""
         return ((self.mass, self.position),)
 
     @property
     def words(self) -> str:
-        """What it is, and where."""
+        """Mass and position."""
         return f"{self.mass} at ({', '.join(map(str, self.position))})"
 
     def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> PointMass:
-        """The same with every expression replaced by what `function` makes of it."""
+        """A copy with `function` applied to every expression."""
         return PointMass(function(self.mass), tuple(map(function, self.position)))
 
 
@@ -204,19 +175,19 @@ class RigidBody(PointMass):
     Parameters
     ----------
     mass : sympy.Expr or number
-        In kg, made of parameters.
+        In kg, a function of parameters.
     position : sequence of sympy.Expr or numbers
         The centre of mass, (x, up) in m.
     inertia : sympy.Expr or number
         Moment of inertia about the centre of mass in kg m²: m l²/12 for a uniform bar.
     angle : sympy.Expr or number
-        Any angle in rad that turns with the body.
+        The orientation of the body in rad, up to a constant.
 
     Raises
     ------
     SystemDefinitionError
-        When the mass cannot be positive, or the moment of inertia is negative; when the
-        position has not two components, or something is neither an expression nor a number.
+        When the mass is not positive, or the moment of inertia is negative; when the position
+        does not have two components, or a value is neither an expression nor a number.
 
     Examples
     --------
@@ -236,11 +207,13 @@ class RigidBody(PointMass):
         object.__setattr__(self, "inertia", formula(self.inertia))
         object.__setattr__(self, "angle", formula(self.angle))
         if self.inertia.is_negative:
-            raise SystemDefinitionError(f"moment of inertia {self.inertia} is negative")
+            raise SystemDefinitionError(
+                f"moment of inertia {self.inertia} is negative: give a positive one, or 0"
+            )
         if len(self.position) != 2:
             raise SystemDefinitionError(
-                f"the body of mass {self.mass} has a position of {len(self.position)} components: "
-                "rigid bodies move in the plane, with two (x, up)"
+                f"the position of body {self.mass} has {len(self.position)} components: "
+                "give two (x, up), since rigid bodies move in the plane"
             )
 
     @property
@@ -250,10 +223,10 @@ class RigidBody(PointMass):
 
     @property
     def words(self) -> str:
-        """What it is, where, and how it is turned."""
-        return f"{super().words}, moment of inertia {self.inertia}, turned by {self.angle}"
+        """Mass, position, moment of inertia and orientation."""
+        return f"{super().words}, moment of inertia {self.inertia}, orientation {self.angle}"
 
     def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> RigidBody:
-        """The same with every expression replaced by what `function` makes of it."""
+        """A copy with `function` applied to every expression."""
         mass, position = function(self.mass), tuple(map(function, self.position))
         return RigidBody(mass, position, function(self.inertia), function(self.angle))

@@ -1,4 +1,4 @@
-"""Symbols of velocities, accelerations and momenta: named for code, printed as in textbooks."""
+"""Symbols of velocities, accelerations and momenta, with names for code and LaTeX."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mechanical system: where its masses are, as functions of generalized coordinates."""
+"""A mechanical system: positions of masses as functions of generalized coordinates."""
 
 from __future__ import annotations
 
@@ -22,48 +22,47 @@ from derive.system.symbols import TIME, acceleration, momentum, variation, veloc
 
 @dataclass(frozen=True)
 class System:
-    """Positions in: everything that the derivation needs to know of a system.
+    """A holonomic system: coordinates, parameters, masses and forces.
 
     Parameters
     ----------
     name : str
-        Identifier; the generated module is called so.
+        Identifier, also the name of the generated module.
     title : str
-        One line for people.
+        A description of one line.
     coordinates : sequence of Coordinate
         Generalized coordinates q, in the order of the state.
     parameters : sequence of Parameter
         Constants, in the order of ``params``.
     masses : sequence of PointMass and RigidBody
-        What has inertia, with its positions r(q, t) in m; time is ``derive.TIME``.
+        Masses and bodies, with positions r(q, t) in m; time is ``derive.TIME``.
     potential : sympy.Expr, optional
-        All potential energy V(q, t) in J but that of `gravity`. Without either, there is
+        Potential energy V(q, t) in J without that of `gravity`. If neither is given, there is
         uniform gravity along the last axis, downwards, with the parameter named ``g``.
     gravity : sequence of sympy.Expr, optional
         Acceleration of free fall, one component for each of a position's, in m/s².
     dissipation : sympy.Expr, optional
-        Rayleigh's function R(q, q̇, t) in W, half the power that friction takes where it is
-        quadratic in the velocities (``derive.velocity(theta)``): the force is -∂R/∂q̇.
+        Rayleigh's function R(q, q̇, t) in W: the force is -∂R/∂q̇. If it is quadratic in the
+        velocities (``derive.velocity(theta)``), it is half the dissipated power.
     forces : sequence of sympy.Expr, optional
         Further generalized forces Q(q, q̇, t), one for each coordinate: in N along a length,
         in N m about an angle.
     equilibrium : sequence of sympy.Expr, optional
-        Coordinates about which ``linear`` describes small motions. By default
-        zeros if the system is at rest there; else there is no ``linear``.
+        Coordinates of the equilibrium about which ``linear`` describes small motions. By
+        default zeros if they are an equilibrium; otherwise there is no ``linear``.
     reactions : sequence of sympy.Symbol, optional
-        Parameters, lengths of rods for instance, of which the force that holds them is
-        wanted: a rod's tension.
+        Parameters, such as lengths of rods, whose constraint forces are requested: a rod's
+        tension.
 
     Raises
     ------
     SystemDefinitionError
-        When there is no coordinate or no mass; when `title` is not one line that can stand
-        in generated files; when a name is no identifier, or is used twice or reserved; when
-        something is neither an expression nor a number, or names an unknown symbol; when a
-        position has not two or three components, or differs in their number from the
-        others; when `gravity` or `forces` has another number of them than it needs, or
-        no parameter is named ``g`` where its weight is wanted; when `dissipation` depends
-        on no velocity; when there are `reactions` beside forces that no potential gives.
+        When there is no coordinate or no mass; when `title` is not one line that generated
+        files can contain; when a name is no identifier, reserved or used twice; when a value
+        is neither an expression nor a number, or contains an unknown symbol; when positions
+        do not all have two or all three components; when `gravity` or `forces` has a wrong
+        number of components, or weight needs a parameter named ``g``; when `dissipation`
+        depends on no velocity; when `reactions` are combined with applied forces.
 
     Examples
     --------
@@ -149,7 +148,7 @@ class System:
 
     @cached_property
     def potential_energy(self) -> sp.Expr:
-        """V(q, t) of gravity and all else."""
+        """V(q, t), including gravity."""
         gravity, potential = self.gravity, self.potential
         if potential is None and gravity is None:
             gravity = (*[sp.S.Zero] * (self.dimension - 1), -self._named_gravity())
@@ -162,7 +161,7 @@ class System:
 
     @cached_property
     def applied(self) -> tuple[sp.Expr, ...]:
-        """Generalized forces that no potential gives: Q - ∂R/∂q̇, one for each coordinate."""
+        """Generalized forces without a potential: Q - ∂R/∂q̇, one for each coordinate."""
         forces = self.forces or (sp.S.Zero,) * len(self.q)
         return tuple(
             force - self.dissipation.diff(qdot)
@@ -173,8 +172,8 @@ class System:
         g = next((s for s in self.params if s.name == "g"), None)
         if g is None:
             raise SystemDefinitionError(
-                f"system {self.name!r} has no parameter named 'g' for its weight; add one, "
-                "or give the potential yourself (potential=0 for none)"
+                f"system {self.name!r} has no parameter named 'g' for its weight: add one, or give "
+                "the potential (potential=0 for none)"
             )
         return g
 
@@ -190,8 +189,8 @@ class System:
         if len({len(mass.position) for mass in self.masses}) > 1 or not 2 <= self.dimension <= 3:
             counts = ", ".join(str(len(mass.position)) for mass in self.masses)
             raise SystemDefinitionError(
-                f"positions of system {self.name!r} have {counts} components; "
-                "all must have two (x, up) or all three (x, y, up)"
+                f"positions of system {self.name!r} have {counts} components: give all two "
+                "(x, up) or all three (x, y, up)"
             )
         for field, wanted in (("gravity", self.dimension), ("forces", len(self.q))):
             given = getattr(self, field) or ()
@@ -200,8 +199,8 @@ class System:
                     f"{field} of system {self.name!r} has {len(given)} components: give {wanted}"
                 )
 
-    def _places(self) -> Iterator[tuple[str, sp.Basic, set[sp.Symbol]]]:
-        """Every expression: what to call it, itself, and what it may depend on."""
+    def _expressions(self) -> Iterator[tuple[str, sp.Basic, set[sp.Symbol]]]:
+        """Every expression: its name, itself, and the symbols that it may depend on."""
         constants, moving = {*self.params}, {*self.q, *self.params, TIME}
         for mass in self.masses:
             for inertia, position in mass.motions:
@@ -213,32 +212,32 @@ class System:
         yield "the list of reactions", sp.Tuple(*self.reactions), constants
 
     def _check_weight(self) -> None:
-        used = set().union(*(expression.free_symbols for _, expression, _ in self._places()))
+        used = set().union(*(expression.free_symbols for _, expression, _ in self._expressions()))
         weightless = self.potential is not None and self.gravity is None
         if weightless and any(s.name == "g" and s not in used for s in self.params):
             down = ", ".join(["0"] * (self.dimension - 1) + ["-g"])
             raise SystemDefinitionError(
-                f"parameter 'g' of system {self.name!r} is used nowhere: a system with a potential "
-                f"of its own has weight only where gravity says so; give gravity=({down}), the "
-                "acceleration of free fall, or leave g out"
+                f"parameter 'g' of system {self.name!r} is not used: a system with a potential has "
+                f"weight only if gravity is given; give gravity=({down}), the acceleration of free "
+                "fall, or omit g"
             )
 
     def _check_symbols(self) -> None:
-        for place, expression, known in self._places():
+        for name, expression, known in self._expressions():
             unknown = sorted(str(s) for s in expression.free_symbols - known)
             if unknown:
                 raise SystemDefinitionError(
-                    f"{place} names unknown symbols: {', '.join(unknown)}; known there are "
+                    f"{name} contains unknown symbols: {', '.join(unknown)}; known are "
                     f"{', '.join(sorted(s.name for s in known))}; declare them as coordinates or "
-                    "parameters (a symbol of the same name with other assumptions is another one)"
+                    "parameters (a symbol of the same name with other assumptions is different)"
                 )
         if self.dissipation and not self.dissipation.free_symbols & {*self.qdot}:
             raise SystemDefinitionError(
-                f"the dissipation of system {self.name!r} is {self.dissipation}, without a "
-                "velocity: it is Rayleigh's function, such as c*theta_dot**2/2"
+                f"the dissipation of system {self.name!r} is {self.dissipation}, which depends on "
+                "no velocity: give Rayleigh's function, such as c*theta_dot**2/2"
             )
         if self.reactions and any(self.applied):
             raise SystemDefinitionError(
-                f"system {self.name!r} asks for reactions beside forces that no potential gives: "
-                "what these do to a length that is held is not known; leave one of them out"
+                f"system {self.name!r} has reactions and applied forces: the components of applied "
+                "forces along a constant length are not known; omit one of them"
             )
