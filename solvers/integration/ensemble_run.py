@@ -39,7 +39,7 @@ class StopFlag:
         self.array = np.zeros(1, np.int64)
 
     def set(self) -> None:
-        """Stop the motions where they are, with the status ``INTERRUPTED``."""
+        """Stop the motions with the status ``INTERRUPTED``; in Python, after the current one."""
         self.array[0] = 1
 
     @property

@@ -110,15 +110,15 @@ class Ensemble:
         return np.asarray((self.status == Status.FINISHED) | (self.status == Status.EVENT))
 
     def __repr__(self) -> str:
-        numbers = {status: int((self.status == status).sum()) for status in Status}
-        ends = ", ".join(f"{number} {status.name}" for status, number in numbers.items() if number)
-        n, events, occurrences = self.t_events.shape
+        n, events, _ = self.t_events.shape
+        counts = {status.name: int((self.status == status).sum()) for status in Status}
+        ends = "".join(f", {number} {name}" for name, number in counts.items() if number)
         return (
-            f"Ensemble: {n} motions{ends and ': '}{ends}\n"
-            f"  state: {', '.join(self.units)}\n"
-            f"  {len(self.t_eval)} samples, {events} events with {occurrences} occurrences, "
+            f"Ensemble: {n} motions{ends}\n"
+            f"  {len(self.t_eval)} times, {events} event{'s' * (events != 1)}, "
             f"{self.steps.sum()} steps, {self.rejected.sum()} rejected\n"
-            f"  {self.run}"
+            f"  {self.run}\n"
+            f"  state: {', '.join(self.units)}"
         )
 
     def to_table(self) -> dict[str, NDArray[Any]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
-from math import ulp
+from math import isfinite, ulp
 from typing import Any
 
 import numpy as np
@@ -163,7 +163,9 @@ class Prepared:
             When the motion does not reach the end of `t_span`.
         """
         if params is not None or not self._has_defaults:
-            self._set_params(params)
+            self._has_defaults = False
+            self._set_params(self._defaults if params is None else params)
+            self._has_defaults = params is None
         try:
             begin, end = t_span
             self._start[:] = list(y0)  # type: ignore[arg-type]
@@ -191,10 +193,14 @@ class Prepared:
             raise NotFinishedError(status, float(self._batch.motions["t"][0]), y)
         return y
 
-    def _set_params(self, params: Sequence[float] | Mapping[str, float] | None) -> None:
-        module, values = self._problem.form.module, self._defaults if params is None else params
-        self._params[:] = validation.parameters(module, values).tolist()
-        self._has_defaults = params is None
+    def _set_params(self, params: Sequence[float] | Mapping[str, float]) -> None:
+        try:
+            self._params[:] = list(params)  # type: ignore[arg-type]
+            if all(map(isfinite, self._params)):
+                return
+        except (TypeError, ValueError):
+            pass  # a mapping, or invalid
+        self._params[:] = validation.parameters(self._problem.form.module, params).tolist()
 
     def _checked(self, y0: Any) -> list[Any]:
         """An initial state, checked."""

@@ -29,10 +29,12 @@ class Scene:
     ----------
     module : module
         The generated equations of its system.
-    params : tuple of float
-        In the order of ``module.PARAMETERS``; a mass or length of 0 is absent.
-    y0 : tuple of float
-        Coordinates and velocities at time 0, in the order of ``module.STATE``.
+    params : tuple of float, or mapping of str to float
+        In the order of ``module.PARAMETERS``, or by name: parameters that are left out have their
+        default values. A mass or length of 0 is absent.
+    y0 : tuple of float, or mapping of str to float
+        Coordinates and velocities at time 0, in the order of ``module.STATE``, or by name:
+        velocities that are left out are 0.
     duration : float
         In s.
     accuracy : float, optional

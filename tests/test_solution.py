@@ -1,0 +1,112 @@
+"""Solutions and ensembles as text, tables and datasets, and flags that stop ensembles."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import generated.elastic_pendulum as ep
+import generated.single_pendulum as sp
+from solvers import Event, StopFlag, ensemble, integrate
+from solvers.integration.solution import Status
+from solvers.io import xarray_dataset
+
+Y0 = {"r": 1.1, "theta": 0.5}
+
+
+def test_a_solution_shows_status_steps_method_and_final_state() -> None:
+    solution = integrate(ep, (0, 2), Y0, {}, method="rk4", h=0.01)
+    lines = repr(solution).splitlines()
+    assert lines[0] == "Solution: the integration reached the end of the time span"
+    assert lines[1] == "  t = 0 to 2 s, 201 times, 200 steps, 0 rejected"
+    assert "Classical fourth order, rational form, h = 0.01, compiled by" in lines[2]
+    end = solution.y[:, -1]
+    expected = zip(ep.STATE, end, ("m", "rad", "m/s", "rad/s"), strict=True)
+    assert lines[3] == "  final state: " + ", ".join(f"{n} = {y:.6g} {u}" for n, y, u in expected)
+    nothing = integrate(ep, (0, 2), Y0, {}, t_eval=[], max_steps=1)
+    assert "maximum number of steps" in repr(nothing)
+    assert "0 times, 1 steps" in repr(nothing)
+
+
+def test_a_table_of_a_solution_has_a_column_for_each_component() -> None:
+    solution = integrate(ep, (0, 2), Y0, {}, energy=True)
+    table = solution.to_table()
+    assert list(table) == ["t", *ep.STATE, "energy"]
+    assert_array_equal(table["t"], solution.t)
+    for row, name in zip(solution.y, ep.STATE, strict=True):
+        assert_array_equal(table[name], row)
+    assert_array_equal(table["energy"], solution.energy)
+    changes = np.concatenate([solution.y[:, 0], np.ones(4)])
+    variational = integrate(ep, (0, 2), changes, {}, form="variational")
+    assert list(variational.to_table())[5:] == [f"delta_{name}" for name in ep.STATE]
+
+
+def test_a_table_of_an_ensemble_has_a_row_for_each_motion() -> None:
+    y0 = {"theta": [0.5, 3.1415, 1.0]}
+    events = Event(sp, "theta", 0.0, terminal=True)
+    motions = ensemble(sp, (0, 2), y0, {}, events=events, t_eval=[0.1, 0.2])
+    table = motions.to_table()
+    assert list(table) == ["t", "theta", "theta_dot", "status", "steps", "rejected", "nfev"]
+    assert {len(column) for column in table.values()} == {3}
+    assert table["status"].tolist() == ["EVENT", "FINISHED", "EVENT"]
+    assert_array_equal(table["theta_dot"], motions.y[1])
+    lines = repr(motions).splitlines()
+    assert lines[0] == "Ensemble: 3 motions, 1 FINISHED, 2 EVENT"
+    assert lines[1].startswith("  2 times, 1 event, ")
+    changes = ensemble(sp, (0, 2), {"theta": [0.5, 1.0], "delta_theta": 1.0}, {},
+                       form="variational")  # fmt: skip
+    assert np.isfinite(changes.to_table()["growth"]).all()
+
+
+def test_datasets_have_names_and_units() -> None:
+    pytest.importorskip("xarray")
+    solution = integrate(ep, (0, 2), Y0, {}, energy=True)
+    dataset = solution.to_xarray()
+    assert dataset["theta"].dims == ("t",)
+    units = {"t": "s", "r": "m", "theta_dot": "rad/s", "energy": "J"}
+    assert {name: dataset[name].attrs["units"] for name in units} == units
+    assert_array_equal(dataset["theta"], solution.y[1])
+    assert dataset.attrs["status"] == "FINISHED"
+    motions = ensemble(sp, (0, 2), {"theta": [0.5, 1.0, 2.0]}, {}, t_eval=[0, 1.5],
+                       events=Event(sp, "theta", 0.0), occurrences=2)  # fmt: skip
+    dataset = motions.to_xarray()
+    assert dict(dataset.sizes) == {
+        "motion": 3, "component": 2, "time": 2, "event": 1, "occurrence": 2
+    }  # fmt: skip
+    assert_array_equal(dataset["y"].sel(component="theta_dot"), motions.y[1])
+    assert_array_equal(
+        dataset["samples"].sel(component="theta", time=1.5), motions.samples[0, :, 1]
+    )
+    assert dataset["unit"].values.tolist() == ["rad", "rad/s"]
+
+
+def test_without_xarray_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(name: str) -> Any:
+        raise ImportError(name)
+
+    monkeypatch.setattr(xarray_dataset, "import_module", missing)
+    with pytest.raises(ImportError, match=r"pip install 'holonomic\[xarray\]'"):
+        integrate(sp, (0, 1), {"theta": 1.0}, {}).to_xarray()
+
+
+@pytest.mark.parametrize(("backend", "duration"), [("compiled", 1e6), ("python", 20.0)])
+def test_a_stop_flag_stops_its_own_ensembles_only(backend: str, duration: float) -> None:
+    flag, start, results = StopFlag(), {"theta": np.linspace(0.1, 1, 20)}, {}
+    options = {"backend": backend, "max_steps": 10**12, "workers": 1}
+
+    def long() -> None:
+        results["long"] = ensemble(sp, (0, duration), start, {}, stop=flag, **options)
+
+    thread = threading.Thread(target=long)
+    thread.start()
+    other = ensemble(sp, (0, 0.1), start, {}, stop=StopFlag(), **options)
+    flag.set()
+    thread.join()
+    assert set(other.status) == {Status.FINISHED}
+    assert Status.INTERRUPTED in results["long"].status
+    stopped = ensemble(sp, (0, 1), start, {}, stop=flag, **options)
+    assert set(stopped.status) == {Status.INTERRUPTED}
