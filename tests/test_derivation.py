@@ -314,5 +314,5 @@ def test_weight_that_is_forgotten_beside_another_potential_is_asked_for() -> Non
     with pytest.raises(SystemDefinitionError, match=r"'g' .* not used: .*gravity=\(0, -g\)"):
         system(potential=x**2)
     assert system(potential=x**2, gravity=(0, -g)).potential_energy.has(g)
-    with pytest.raises(SystemDefinitionError, match="give its components"):
+    with pytest.raises(SystemDefinitionError, match="give the components"):
         PointMass(mass, x)  # type: ignore[arg-type]

@@ -170,7 +170,7 @@ def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
     (("[[masses]]", "[masses]"), "must be tables: write .*masses"),
     (("title", "title = [[["), "is no TOML file"),
     (('mass = "m"', 'mass = "-m"'), "mass -m is not positive"),
-    (("c*x_dot**2/2", "c*x**2"), "without a velocity"),
+    (("c*x_dot**2/2", "c*x**2"), "depends on no velocity"),
     (('"1/2"', '"50 cm"'), "its unit stands in unit"),
     (("height = ", "late = 'height'\nheight = "), "a definition may use those above it"),
     (("[coordinates]", "[definitions.x]"), "is missing|must be"),
