@@ -44,7 +44,7 @@ def test_a_step_in_vain_leaves_no_trace_in_the_memory() -> None:
 def test_the_first_step_is_within_the_run_and_finite() -> None:
     def first(y: float, rate: float, duration: float) -> float:
         state = np.array([y])
-        return controller().first_step(
+        return controller().initial_step(
             lambda t, y: rate * y, 0.0, state, rate * state, duration
         )  # fmt: skip
 
@@ -61,7 +61,7 @@ def test_a_slope_that_cannot_be_told_ahead_leaves_the_cautious_step() -> None:
         raise ArithmeticError
 
     one = np.array([1.0])
-    assert controller().first_step(broken, 0.0, one, one, 10.0) == pytest.approx(0.01)
+    assert controller().initial_step(broken, 0.0, one, one, 10.0) == pytest.approx(0.01)
 
 
 def test_two_estimates_combine_as_published() -> None:

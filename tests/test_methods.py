@@ -1,8 +1,10 @@
 """Tableaus: orders proved and observed, and what is derived from the numbers alone."""
 
+import re
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from importlib import import_module
 from math import isclose, sqrt
 
 import numpy as np
@@ -13,23 +15,33 @@ from mpmath import fdot, mpf, workdps
 from mpmath import log as mplog
 from mpmath import sin as mpsin
 
+from solvers.runge_kutta import methods
 from solvers.runge_kutta.catalogue import UnknownMethodError, load, names
 from solvers.runge_kutta.order_conditions import density, order, trees
 from solvers.runge_kutta.stepper import Rhs, Stepper
 from solvers.runge_kutta.surd import Surd
 from solvers.runge_kutta.tableau import Tableau
 
-#: Order, embedded order, stages, and whether the last stage is the next step's first: as published.
-PUBLISHED = {
-    "rk1": (1, 0, 1, False), "midpoint": (2, 0, 2, False), "heun": (2, 0, 2, False),
-    "ralston": (2, 0, 2, False), "rk3": (3, 0, 3, False), "rk4": (4, 0, 4, False),
-    "rk4_38": (4, 0, 4, False), "bs32": (3, 2, 4, True), "dp54": (5, 4, 7, True),
-    "tsit54": (5, 4, 7, True), "dop853": (8, 5, 12, False), "verner87": (8, 7, 13, False),
-    "verner98": (9, 8, 16, False), "gauss1": (2, 0, 1, False), "gauss2": (4, 0, 2, False),
-    "gauss3": (6, 0, 3, False), "radau2": (3, 0, 2, False), "radau3": (5, 0, 3, False),
-}  # fmt: skip
-
 EXPLICIT = [name for name in names() if load(name).is_explicit]
+
+#: Properties that the docstring of a method states, as published.
+STATEMENT = re.compile(
+    r".*orders? (?P<order>\d+)(?: and (?P<embedded>\d+))?, (?P<stages>\d+) stages?"
+    r"(?:, with error estimates of orders (?P<first>\d+) and (?P<second>\d+))?"
+    r"(?P<fsal>; the last is the next step's first)?"
+)
+
+
+def stated(name: str) -> dict[str, int]:
+    """What the first line of a method's docstring states; 0 for what it does not mention."""
+    match = STATEMENT.match(documentation(name).replace("\n", " "))
+    assert match, f"{name}.py does not state its order and stages"
+    numbers = {key: int(value or 0) for key, value in match.groupdict().items() if key != "fsal"}
+    return numbers | {"fsal": bool(match["fsal"])}
+
+
+def documentation(name: str) -> str:
+    return str(import_module(f"{methods.__name__}.{name}").__doc__)
 
 
 def test_there_are_as_many_rooted_trees_as_published() -> None:
@@ -47,16 +59,24 @@ def test_densities_are_those_of_the_textbook() -> None:
 @pytest.mark.parametrize("name", names())
 def test_each_method_has_its_published_properties_by_proof(name: str) -> None:
     method = load(name)
-    found = (method.order, method.embedded_order, method.stages, method.is_fsal)
-    assert found == PUBLISHED[name]
+    published = stated(name)
+    assert method.order == published["order"]
+    assert method.embedded_order == published["embedded"] + published["first"]
+    assert method.stages == published["stages"]
+    assert method.is_fsal == published["fsal"]
+
+
+@pytest.mark.parametrize("name", names())
+def test_each_method_names_its_source(name: str) -> None:
+    assert re.search(r"\(\d{4}\)|\bsection\b|\btable\b", documentation(name))
 
 
 @pytest.mark.parametrize("name", names())
 def test_coefficients_that_can_be_exact_are(name: str) -> None:
     method = load(name)
     kinds = {type(x) for row in (*method.A, method.b, method.b_hat, method.b_low) for x in row}
-    decimals = name in ("tsit54", "dop853", "verner87", "verner98")
-    assert kinds <= ({Decimal} if decimals else {Fraction, Surd})
+    has_decimals = "decimals" in documentation(name)
+    assert kinds <= ({Decimal} if has_decimals else {Fraction, Surd})
 
 
 @pytest.mark.parametrize("name", names())
@@ -72,7 +92,7 @@ def test_a_mistake_in_any_coefficient_loses_the_order(name: str) -> None:
                     method.b_hat and order(wrong, method.b_hat) < method.embedded_order
                 )
     low = order(method.A, method.b_low) if method.b_low else 0
-    assert low == (3 if name == "dop853" else 0)
+    assert low == stated(name)["second"]
     for weights, expected in (
         (method.b, method.order), (method.b_hat, method.embedded_order), (method.b_low, low),
     ):  # fmt: skip
@@ -91,11 +111,11 @@ def test_the_proved_order_is_observed(name: str) -> None:
         y, h = mpf(1), mpf(2) / steps
         A, b, c = [[exact(x) for x in row] for row in method.A], method.b, method.c
         for n in range(steps):
-            slopes: list[mpf] = []
+            k: list[mpf] = []
             for row, node in zip(A, map(exact, c), strict=True):
-                moved = y + h * fdot(row[: len(slopes)], slopes)
-                slopes.append(moved * mpcos((n + node) * h))
-            y += h * fdot(map(exact, b), slopes)
+                moved = y + h * fdot(row[: len(k)], k)
+                k.append(moved * mpcos((n + node) * h))
+            y += h * fdot(map(exact, b), k)
         return abs(y - mpexp(mpsin(2)))
 
     with workdps(50):
@@ -131,7 +151,7 @@ def test_one_step_multiplies_by_the_stability_function(name: str) -> None:
 
 @pytest.mark.parametrize("name", EXPLICIT)
 def test_coefficients_are_read_back_from_the_running_stepper(name: str) -> None:
-    # a right-hand side that answers with one chosen stage only tells which number multiplies it
+    # a right-hand side that is 1 in one stage only reveals the coefficients that multiply it
     method = load(name)
     arguments: list[tuple[float, float]] = []
     for j in range(method.stages):

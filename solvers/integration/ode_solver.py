@@ -80,7 +80,7 @@ class _Method(OdeSolver):
         self._point = Point(self.t, self.y, stepper.derivative(self.t, self.y))
         self._max_step = max_step
         self._shortest = SHORTEST * float(np.spacing(max(abs(t0), abs(t_bound))))
-        guess = self._controller.first_step
+        guess = self._controller.initial_step
         self._h = first_step or max(
             2 * self._shortest,
             guess(stepper.derivative, t0, self.y, self._point.derivative, t_bound - t0),

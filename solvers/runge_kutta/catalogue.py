@@ -1,4 +1,4 @@
-"""The methods that ship with holonomic, found by their files' names."""
+"""The catalogue of methods: every file of the package `methods` is one."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def load(name: str) -> Tableau:
     Parameters
     ----------
     name : str
-        One of `names`, such as ``verner87``; SciPy's methods are none of them.
+        One of `names`, such as ``verner87``; SciPy's methods are not among them.
 
     Returns
     -------
@@ -39,12 +39,12 @@ def load(name: str) -> Tableau:
     Raises
     ------
     UnknownMethodError
-        When no file is called so.
+        When no method has this name.
     """
     if name not in names():
         raise UnknownMethodError(
             f"no method is called {name[:50]!r}{did_you_mean(name, names())}; known are: "
             f"{', '.join(names())}"
         )
-    tableau: Tableau = import_module(f"solvers.runge_kutta.methods.{name}").tableau
+    tableau: Tableau = import_module(f"{methods.__name__}.{name}").tableau
     return tableau

@@ -4,7 +4,7 @@ A method has order p when Σ b Φ(τ) = 1/γ(τ) for every rooted tree τ with a
 p nodes (J. C. Butcher, Numerical Methods for Ordinary Differential Equations,
 section 315; E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential
 Equations I, theorem II.2.13). Exact coefficients must fulfil them exactly;
-published decimals to what their last digits leave open.
+published decimals within the rounding of their last digits.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def order(A: Sequence[Sequence[Number]], b: Sequence[Number], most: int = 12) ->
     b : sequence
         Weights, stages of them, of the same kind.
     most : int
-        Trees with more nodes are not looked at.
+        Largest number of nodes of a tree.
 
     Returns
     -------
@@ -90,7 +90,7 @@ def density(tree: Tree) -> int:
 
 
 class _Conditions:
-    """The order conditions of one method, with what trees have in common computed once."""
+    """The order conditions of one method; common subtrees are evaluated once."""
 
     def __init__(self, A: Sequence[Sequence[Number]], b: Sequence[Number]) -> None:
         self._A, self._b = A, b
@@ -113,7 +113,7 @@ class _Conditions:
         if not self._digits:
             return bool(self.weight(tree) == Fraction(1, density(tree)))
         residual = abs(self.weight(tree) - Decimal(1) / density(tree))
-        # every factor is rounded in its last digit, of which one or two may be lost in print
+        # every factor is rounded in its last digit, and one or two digits may be lost in print
         last_digit = Decimal(10) ** (2 - self._digits)
         return bool(residual <= 2 * _nodes(tree) * last_digit * self._magnitudes.weight(tree))
 
@@ -132,6 +132,6 @@ class _Conditions:
 
 
 def _digits(number: Decimal) -> int:
-    """Significant digits as printed; quotients, which fill the working digits, aside."""
+    """Significant digits as printed; 0 for quotients, which fill the working digits."""
     digits = len(number.as_tuple().digits)
     return digits if digits < WORKING_DIGITS else 0

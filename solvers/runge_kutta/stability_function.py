@@ -1,4 +1,4 @@
-"""What a step does to y' = λy: it multiplies y by R(hλ), a rational function known exactly."""
+"""The stability function R: a step of y' = λy multiplies y by R(hλ). Its coefficients are exact."""
 
 from __future__ import annotations
 
@@ -59,8 +59,7 @@ class StabilityFunction:
         StabilityFunction
             With a constant denominator 1 for explicit methods.
         """
-        numerator, denominator = ([_fraction(x) for x in part] for part in
-                                  tableau.stability_function)  # fmt: skip
+        numerator, denominator = (list(map(_fraction, p)) for p in tableau.stability_function)
         if isinstance(tableau.b[0], Decimal):
             for k in range(tableau.order + 1):
                 numerator[k] = Fraction(1, factorial(k))
@@ -93,7 +92,7 @@ def _fraction(number: Fraction | Surd | Decimal) -> Fraction:
         assert number.b == 0  # conjugate stages: R has rational coefficients
         return number.a
     if isinstance(number, Decimal):
-        # rounded at its publication: what is below 30 digits means nothing
+        # rounded at its publication: only 30 digits are significant
         return Fraction(round(Fraction(number) * 10**30), 10**30)
     return Fraction(number)
 

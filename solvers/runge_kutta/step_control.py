@@ -1,4 +1,4 @@
-"""How long the next step is: proportional and integral control of the local error."""
+"""Step size control: proportional-integral control of the local error."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Rhs = Callable[[float, Array], Array]
 
-#: Part of the ideal step that is tried, and limits to its change (E. Hairer, S. P. Nørsett,
-#: G. Wanner, Solving Ordinary Differential Equations I, section II.4).
+#: Fraction of the ideal step that is attempted, and limits to its change (E. Hairer,
+#: S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4).
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 
 
 @dataclass
 class Controller:
-    """Step sizes from error norms; 1 is what the tolerances allow.
+    """Step sizes from error norms, of which 1 is the limit of acceptance.
 
     Parameters
     ----------
@@ -35,42 +35,42 @@ class Controller:
     _previous: float = 1.0
 
     def norm(self, error: Array, y: Array, end: Array) -> float:
-        """Root mean square of the error in parts of what is allowed.
+        """Root mean square of the error relative to the tolerances.
 
-        Of two estimates the first a and the second b combine to a²/√(a² + b²/100) (E. Hairer,
-        S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, section II.10).
+        Two estimates a and b combine to a²/√(a² + b²/100) (E. Hairer, S. P. Nørsett,
+        G. Wanner, Solving Ordinary Differential Equations I, section II.10).
 
         Parameters
         ----------
         error : ndarray of shape (state,) or (estimates, state)
             Of the step, in the units of the state.
         y, end : ndarray of shape (state,)
-            The state before and after it.
+            The states before and after it.
 
         Returns
         -------
         float
-            A step with more than 1 is not kept.
+            A step is accepted if this is at most 1.
         """
         allowed = self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end))
         a, *others = (_rms(estimate, allowed) for estimate in np.atleast_2d(error))
         return a * a / hypot(a, others[0] / 10) if others and a else a
 
     def factor(self, norm: float) -> float:
-        """By what the step changes, after one whose error has this norm.
+        """The factor of the step size after a step with this error norm.
 
         PI control (K. Gustafsson, ACM Transactions on Mathematical Software 17
-        (1991) 533-554) after a step that is kept, the plain rule after one that is not.
+        (1991) 533-554) after an accepted step, the plain rule after a rejected one.
 
         Parameters
         ----------
         norm : float
-            As `norm` gives it.
+            Result of `norm`.
 
         Returns
         -------
         float
-            From `SHRINK` to `GROW`, and below 1 after a step that is not kept.
+            From `SHRINK` to `GROW`, and below 1 after a rejected step.
         """
         k = self.order + 1
         if norm > 1:
@@ -80,8 +80,10 @@ class Controller:
         self._previous = floor
         return min(GROW, max(SHRINK, factor))
 
-    def first_step(self, rhs: Rhs, t: float, y: Array, slope: Array, duration: float) -> float:
-        """A step to begin with, from how the slope changes over a very short one.
+    def initial_step(
+        self, rhs: Rhs, t: float, y: Array, derivative: Array, duration: float
+    ) -> float:
+        """The first step size, from the change of the derivative over a very short step.
 
         E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
         section II.4.
@@ -90,8 +92,8 @@ class Controller:
         ----------
         rhs : callable
             ``rhs(t, y)``.
-        t, y, slope : float and ndarray
-            Time in s, state and slope at the beginning.
+        t, y, derivative : float and ndarray
+            Time in s, state and its derivative at the start.
         duration : float
             Of the whole run in s, negative backwards.
 
@@ -101,21 +103,21 @@ class Controller:
             In s, positive in both directions.
         """
         allowed = self.atol + self.rtol * np.abs(y)
-        size, speed = _rms(y, allowed), _rms(slope, allowed)
-        h = 0.01 * size / speed if size > 1e-5 and 1e-5 < speed < np.inf else 1e-6
-        h = min(h, abs(duration))
-        ahead = float(np.copysign(h, duration))
+        d0, d1 = _rms(y, allowed), _rms(derivative, allowed)
+        h0 = 0.01 * d0 / d1 if d0 > 1e-5 and 1e-5 < d1 < np.inf else 1e-6
+        h0 = min(h0, abs(duration))
+        signed = float(np.copysign(h0, duration))
         try:
-            change = rhs(t + ahead, y + ahead * slope) - slope
+            change = rhs(t + signed, y + signed * derivative) - derivative
         except ArithmeticError:
-            return h
-        bend = max(speed, _rms(change, allowed) / h)
-        longer = (0.01 / max(bend, 1e-15)) ** (1 / (self.order + 1))
-        return min(100 * h, longer, abs(duration))
+            return h0
+        d2 = max(d1, _rms(change, allowed) / h0)
+        h1 = (0.01 / max(d2, 1e-15)) ** (1 / (self.order + 1))
+        return min(100 * h0, h1, abs(duration))
 
 
 def _rms(values: Array, allowed: Array) -> float:
-    """Root mean square of values in parts of what is allowed; a value of 0 always is."""
-    with np.errstate(over="ignore"):  # infinity tells that it is too large
-        parts = np.divide(values, allowed, out=np.zeros_like(values), where=values != 0)
-        return float(np.sqrt(np.mean(parts**2)))
+    """Root mean square of values / allowed; a value of 0 counts as 0 whatever is allowed."""
+    with np.errstate(over="ignore"):  # infinity means that it is too large
+        ratios = np.divide(values, allowed, out=np.zeros_like(values), where=values != 0)
+        return float(np.sqrt(np.mean(ratios**2)))

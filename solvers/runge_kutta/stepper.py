@@ -1,8 +1,8 @@
 """One step of any Runge–Kutta method, explicit or implicit.
 
 A step can be repeated from the same start with a shorter h at the cost of its
-stages; that is how states between steps are computed, to the method's own order
-and without a coefficient of their own.
+stages. States between steps are computed in this way, to the method's own order
+and without further coefficients.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from solvers.runge_kutta.tableau import Tableau
 Array = NDArray[np.float64]
 Rhs = Callable[[float, Array], Array]
 
-#: Newton's iteration ends when a change is this small beside the state, or after so many rounds.
-CLOSE, ROUNDS = 1e-14, 100
+#: Newton's iteration ends at a relative change below the tolerance, or after so many iterations.
+TOLERANCE, MAX_ITERATIONS = 1e-14, 100
 #: Numbers that are not much larger have fewer digits than others.
-FAINT = 1e-290
+TINY = 1e-290
 
 
 class NotFiniteError(ArithmeticError):
@@ -57,7 +57,7 @@ class Stepper:
         self.nfev = self.njev = 0
 
     def derivative(self, t: float, y: Array) -> Array:
-        """The right-hand side, counted and found finite.
+        """The right-hand side, counted and checked.
 
         Parameters
         ----------
@@ -69,7 +69,7 @@ class Stepper:
         Returns
         -------
         ndarray of shape (state,)
-            In the units of the state, a second.
+            In the units of the state per second.
 
         Raises
         ------
@@ -88,25 +88,25 @@ class Stepper:
         return value
 
     def step(self, t: float, y: Array, h: float, first: Array) -> tuple[Array, Array, Array | None]:
-        """The state after `h`, estimates of its local error, and the slope there if known.
+        """The state after `h`, estimates of its local error, and the derivative there if known.
 
         Parameters
         ----------
         t, y : float and ndarray
-            Where the step begins, in s and in the units of the state.
+            Time in s and state at the start of the step.
         h : float
-            Its length in s, negative backwards.
+            Length of the step in s, negative backwards.
         first : ndarray
-            The slope at the beginning.
+            The derivative at the start.
 
         Returns
         -------
         end : ndarray of shape (state,)
             The state.
         error : ndarray of shape (estimates, state)
-            One row of zeros for a method that does not estimate it.
-        slope : ndarray of shape (state,) or None
-            Of methods whose last stage is the first of the next step.
+            One row of zeros for a method without an error estimate.
+        derivative : ndarray of shape (state,) or None
+            For methods whose last stage is the first of the next step.
 
         Raises
         ------
@@ -115,46 +115,42 @@ class Stepper:
         NoConvergenceError
             When the stage equations of an implicit method are not solved.
         """
-        if self._tableau.is_explicit:
-            slopes = self._explicit(t, y, h, first)
-        else:
-            slopes = self._implicit(t, y, h, first)
-        end = y + h * (self._b @ slopes)
-        error = h * (self._error_weights @ slopes) if self._tableau.b_hat else np.zeros((1, len(y)))
-        return end, error, slopes[-1] if self._tableau.is_fsal else None
+        stages = self._explicit if self._tableau.is_explicit else self._implicit
+        k = stages(t, y, h, first)
+        end = y + h * (self._b @ k)
+        error = h * (self._error_weights @ k) if self._tableau.b_hat else np.zeros((1, len(y)))
+        return end, error, k[-1] if self._tableau.is_fsal else None
 
     def _explicit(self, t: float, y: Array, h: float, first: Array) -> Array:
-        slopes = np.empty((len(self._b), len(y)))
-        slopes[0] = first
+        k = np.empty((len(self._b), len(y)))
+        k[0] = first
         for i in range(1, len(self._b)):
-            slopes[i] = self.derivative(t + self._c[i] * h, y + h * (self._A[i, :i] @ slopes[:i]))
-        return slopes
+            k[i] = self.derivative(t + self._c[i] * h, y + h * (self._A[i, :i] @ k[:i]))
+        return k
 
     def _implicit(self, t: float, y: Array, h: float, first: Array) -> Array:
-        """Simplified Newton iteration on all stages at once, from the slope at the beginning."""
+        """Simplified Newton iteration on all stages at once, from the derivative at the start."""
         assert self._jacobian is not None
         stages, n = len(self._b), len(y)
         self.njev += 1
         J = np.asarray(self._jacobian(t, y), dtype=float)
         matrix = np.eye(stages * n) - h * np.kron(self._A, J)
-        slopes = np.tile(first, (stages, 1))
-        # rounding, which a steep slope multiplies, may keep the iteration from getting closer
-        rounding = CLOSE * (100 + np.abs(h * J).max())
+        k = np.tile(first, (stages, 1))
+        times = [t + c * h for c in self._c]
+        # rounding errors, multiplied by a large Jacobian, may prevent closer agreement
+        rounding = TOLERANCE * (100 + np.abs(h * J).max())
         previous = np.inf
-        for _ in range(ROUNDS):
-            states = y + h * (self._A @ slopes)
+        for _ in range(MAX_ITERATIONS):
+            states = y + h * (self._A @ k)
             try:
-                values = np.array([
-                    self.derivative(t + c * h, state)
-                    for c, state in zip(self._c, states, strict=True)
-                ])  # fmt: skip
-                change = np.linalg.solve(matrix, (values - slopes).ravel()).reshape(stages, n)
+                derivatives = np.array(list(map(self.derivative, times, states)))
+                change = np.linalg.solve(matrix, (derivatives - k).ravel()).reshape(stages, n)
             except (NotFiniteError, np.linalg.LinAlgError) as error:
                 raise NoConvergenceError(f"stages at t = {t}, h = {h}: {error}") from error
-            slopes = slopes + change
-            scale = np.abs(y).max() + np.abs(h * slopes).max() + FAINT
+            k = k + change
+            scale = np.abs(y).max() + np.abs(h * k).max() + TINY
             size = float(np.abs(h * change).max() / scale)
-            if size <= CLOSE or (size < rounding and size >= previous / 2):
-                return slopes
+            if size <= TOLERANCE or (size < rounding and size >= previous / 2):
+                return k
             previous = size
         raise NoConvergenceError(f"stages at t = {t}, h = {h} still change by {size:.1e}")

@@ -1,4 +1,4 @@
-"""Where a polynomial first falls below zero, decided by exact arithmetic."""
+"""The first interval on which a polynomial is not negative, by exact arithmetic."""
 
 from __future__ import annotations
 
@@ -9,16 +9,15 @@ from math import inf
 
 Polynomial = Sequence[Fraction]  # coefficients of x⁰, x¹, …
 
-#: A root is found to this part of itself.
+#: Relative accuracy of a root.
 RESOLUTION = Fraction(1, 10**17)
 
 
 def nonnegative_interval(polynomial: Polynomial) -> float:
-    """The largest x such that `polynomial` ≥ 0 on [0, x]; infinity if it is so for all x ≥ 0.
+    """The largest x such that `polynomial` ≥ 0 on [0, x]; infinity if it is for all x ≥ 0.
 
-    Roots are told apart by Sturm's theorem, so that one where the polynomial only touches
-    zero is not taken for a change of sign (D. E. Knuth, The Art of Computer Programming,
-    volume 2, exercise 4.6.2-22).
+    Sturm's theorem separates the roots, so that a double root is not taken for a change of sign
+    (D. E. Knuth, The Art of Computer Programming, volume 2, exercise 4.6.2-22).
 
     Parameters
     ----------
@@ -28,7 +27,7 @@ def nonnegative_interval(polynomial: Polynomial) -> float:
     Returns
     -------
     float
-        A root to `RESOLUTION`, rounded; or 0 or infinity.
+        A root within `RESOLUTION`, or 0, or infinity.
     """
     p = list(polynomial)
     while p and p[-1] == 0:
@@ -45,8 +44,8 @@ def nonnegative_interval(polynomial: Polynomial) -> float:
     def roots(a: Fraction, b: Fraction) -> int:
         return _variations(chain, a) - _variations(chain, b)
 
-    def fall(a: Fraction, b: Fraction) -> Fraction | None:
-        """The first fall in (a, b], of which the ends are no roots."""
+    def sign_change(a: Fraction, b: Fraction) -> Fraction | None:
+        """The first change to negative values in (a, b], whose ends are no roots."""
         count = roots(a, b)
         if count == 0 or (count == 1 and _value(p, b) > 0):
             return None
@@ -55,15 +54,15 @@ def nonnegative_interval(polynomial: Polynomial) -> float:
         middle = (a + b) / 2
         while _value(p, middle) == 0:
             middle = (a + middle) / 2
-        left = fall(a, middle)
-        return fall(middle, b) if left is None else left
+        left = sign_change(a, middle)
+        return sign_change(middle, b) if left is None else left
 
-    found = fall(Fraction(0), bound)
-    return inf if found is None else float(found)
+    root = sign_change(Fraction(0), bound)
+    return inf if root is None else float(root)
 
 
 def _root(p: Polynomial, above: Fraction, below: Fraction) -> Fraction:
-    """The root between a place where `p` is positive and one where it is negative."""
+    """The root between `above`, where `p` is positive, and `below`, where it is negative."""
     while below - above > RESOLUTION * below:
         middle = (above + below) / 2
         above, below = (middle, below) if _value(p, middle) > 0 else (above, middle)

@@ -16,9 +16,9 @@ class Surd:
     Parameters
     ----------
     a, b : Fraction
-        The rational part, and how many of the root.
+        The rational part, and the factor of the root.
     d : int
-        What the root is of, positive and no square.
+        The number under the root, positive and no square.
     """
 
     a: Fraction
@@ -30,15 +30,15 @@ class Surd:
         """√d."""
         return cls(Fraction(0), Fraction(1), d)
 
-    def _of(self, other: Surd | Fraction | int) -> Surd:
+    def _surd(self, other: Surd | Fraction | int) -> Surd:
         return other if isinstance(other, Surd) else Surd(Fraction(other), Fraction(0), self.d)
 
     def __add__(self, other: Surd | Fraction | int) -> Surd:
-        other = self._of(other)
+        other = self._surd(other)
         return Surd(self.a + other.a, self.b + other.b, self.d)
 
     def __mul__(self, other: Surd | Fraction | int) -> Surd:
-        other = self._of(other)
+        other = self._surd(other)
         return Surd(
             self.a * other.a + self.d * self.b * other.b,
             self.a * other.b + self.b * other.a,
@@ -52,7 +52,7 @@ class Surd:
         return Surd(-self.a, -self.b, self.d)
 
     def __sub__(self, other: Surd | Fraction | int) -> Surd:
-        return self + -self._of(other)
+        return self + -self._surd(other)
 
     def __rsub__(self, other: Surd | Fraction | int) -> Surd:
         return -self + other
@@ -70,7 +70,7 @@ class Surd:
         return hash(self.a) if self.b == 0 else hash((self.a, self.b, self.d))
 
     def __float__(self) -> float:
-        # 30 digits of the root as a rational, so that a difference of its parts loses nothing
+        # 30 digits of the root, so that a difference of both parts loses none of the float's
         root = Fraction(int(sqrt(self.d) * 2**52), 2**52)
         for _ in range(2):
             root = (root + self.d / root) / 2

@@ -1,4 +1,4 @@
-"""A Runge–Kutta method is its coefficients; everything else follows from them."""
+"""Butcher tableaus: the coefficients of a method, and the properties that follow from them."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from functools import cached_property
 
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS, Number, order
 
-#: A decimal with more digits than this is a rounded one, a shorter one is meant exactly.
+#: A decimal with more digits is a rounded one, a shorter one is exact.
 LONG = 20
-#: Coefficients of R(z) below this come from rounded decimals: they stand for 0.
+#: Coefficients of R(z) below this are rounding errors of decimals, and count as 0.
 ROUNDING = 1e-25
 
 
@@ -20,12 +20,12 @@ ROUNDING = 1e-25
 class Tableau:
     """Coefficients A, b and, for methods that estimate their error, b_hat.
 
-    Nothing is checked here: `order` and the like say what the coefficients are worth.
+    Coefficients are not checked; `order` and the other properties follow from them.
 
     Parameters
     ----------
     title : str
-        What people call the method.
+        Usual name of the method.
     A : tuple of tuples
         Stage matrix, stages × stages.
     b : tuple
@@ -56,18 +56,16 @@ class Tableau:
     b_low: tuple[Number, ...] = ()
 
     @classmethod
-    def explicit(
-        cls, title: str, rows: str, b: str, b_hat: str = "", b_low: str = ""
-    ) -> Tableau:  # fmt: skip
+    def explicit(cls, title: str, rows: str, b: str, b_hat: str = "", b_low: str = "") -> Tableau:
         """A tableau from text: numbers between spaces, rows of later stages between semicolons.
 
-        Numbers are fractions such as ``1/6`` or decimals, and are meant exactly; if a decimal among
+        Numbers are fractions such as ``1/6`` or decimals, and are exact; if a decimal among
         those of A and b has more than `LONG` characters, all become `decimal.Decimal`.
 
         Parameters
         ----------
         title : str
-            What people call the method.
+            Usual name of the method.
         rows : str
             Rows of A from the second stage on, each left of its diagonal; empty for one stage.
         b : str
@@ -83,9 +81,9 @@ class Tableau:
         Raises
         ------
         ValueError
-            When a text is no number.
+            When a text is not a number.
         ArithmeticError
-            When a number is divided by zero; or a text is no number where all become decimals.
+            When a number is divided by zero, or a text is not a decimal number.
         """
         lines = [[], *(row.split() for row in rows.split(";") if row.strip())]
         numbers = [*(number for line in lines for number in line), *b.split()]
@@ -157,16 +155,16 @@ class Tableau:
         with localcontext() as context:
             context.prec = WORKING_DIGITS
             numerator, denominator = map(_determinant_of_identity_minus, (shifted, self.A))
-        # a stage that b leaves out adds no power of z
+        # a stage with zero weight adds no power of z
         degree = max((k for k, x in enumerate(numerator) if abs(float(x)) > ROUNDING), default=0)
         return numerator[: degree + 1], denominator
 
 
 def _decimal(text: str) -> Decimal:
-    above, _, below = text.partition("/")
+    numerator, _, denominator = text.partition("/")
     with localcontext() as context:
         context.prec = WORKING_DIGITS
-        return Decimal(above) / Decimal(below or 1)
+        return Decimal(numerator) / Decimal(denominator or 1)
 
 
 def _determinant_of_identity_minus(matrix: Sequence[Sequence[Number]]) -> tuple[Number, ...]:

@@ -1,7 +1,7 @@
-"""Bogacki and Shampine's pair of orders 3 and 2; the last stage is the next step's first.
+"""Bogacki and Shampine's pair of orders 3 and 2, 4 stages; the last is the next step's first.
 
 P. Bogacki, L. F. Shampine, A 3(2) pair of Runge-Kutta formulas, Applied Mathematics Letters 2
-(1989) 321-325.
+(1989) 321-325. Known as RK23 and ode23.
 """
 
 from solvers.runge_kutta.tableau import Tableau

@@ -1,7 +1,7 @@
-"""Dormand and Prince's method of order 8 in 12 stages, with error estimates of orders 5 and 3.
+"""Dormand and Prince's method of order 8, 12 stages, with error estimates of orders 5 and 3.
 
 E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.10;
-the decimals are those of their program DOP853.
+the decimals are those of their program DOP853, and the name is that of SciPy's DOP853.
 """
 
 from solvers.runge_kutta.tableau import Tableau

@@ -1,4 +1,4 @@
-"""Dormand and Prince's pair of orders 5 and 4; the last stage is the next step's first.
+"""Dormand and Prince's pair of orders 5 and 4, 7 stages; the last is the next step's first.
 
 J. R. Dormand, P. J. Prince, A family of embedded Runge-Kutta formulae, Journal of Computational
 and Applied Mathematics 6 (1980) 19-26. Known as DOPRI5, RK45 and ode45.

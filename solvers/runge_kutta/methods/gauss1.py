@@ -1,4 +1,4 @@
-"""The implicit midpoint rule, Gauss-Legendre with one stage: order 2, symplectic, A-stable.
+"""The implicit midpoint rule: order 2, 1 stage, symplectic, A-stable. Gauss-Legendre's first.
 
 E. Hairer, Ch. Lubich, G. Wanner, Geometric Numerical Integration, section II.1.3.
 """

@@ -1,6 +1,7 @@
-"""Gauss-Legendre with two stages: order 4, symplectic, A-stable.
+"""Gauss-Legendre collocation: order 4, 2 stages, symplectic, A-stable.
 
-E. Hairer, Ch. Lubich, G. Wanner, Geometric Numerical Integration, section II.1.3.
+E. Hairer, Ch. Lubich, G. Wanner, Geometric Numerical Integration, section II.1.3. Known as the
+method of Hammer and Hollingsworth.
 """
 
 from fractions import Fraction

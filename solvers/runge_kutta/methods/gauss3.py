@@ -1,6 +1,7 @@
-"""Gauss-Legendre with three stages: order 6, symplectic, A-stable.
+"""Gauss-Legendre collocation: order 6, 3 stages, symplectic, A-stable.
 
-E. Hairer, Ch. Lubich, G. Wanner, Geometric Numerical Integration, section II.1.3.
+E. Hairer, Ch. Lubich, G. Wanner, Geometric Numerical Integration, section II.1.3. Known as the
+method of Kuntzmann and Butcher.
 """
 
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""Radau IIA with two stages: order 3, stiffly accurate, L-stable.
+"""Radau IIA: order 3, 2 stages, stiffly accurate, L-stable.
 
 E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, table IV.5.5.
 """

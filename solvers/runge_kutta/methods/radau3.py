@@ -1,6 +1,7 @@
-"""Radau IIA with three stages: order 5, stiffly accurate, L-stable.
+"""Radau IIA: order 5, 3 stages, stiffly accurate, L-stable.
 
-E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, table IV.5.6.
+E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, table IV.5.6. Known as RADAU5;
+SciPy's Radau is the same method.
 """
 
 from fractions import Fraction

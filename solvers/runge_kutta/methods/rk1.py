@@ -1,12 +1,8 @@
-"""Euler's method, the first-order rule: the report's RK1.
+"""Euler's method: order 1, 1 stage, the report's RK1. Also known as forward Euler.
 
 L. Euler, Institutionum calculi integralis I (1768), section 650.
 """
 
 from solvers.runge_kutta.tableau import Tableau
 
-tableau = Tableau.explicit(
-    "Euler",
-    rows="",
-    b="1",
-)
+tableau = Tableau.explicit("Euler", rows="", b="1")

@@ -1,4 +1,4 @@
-"""Kutta's method of order 3.
+"""Kutta's method: order 3, 3 stages.
 
 W. Kutta, Beitrag zur naeherungsweisen Integration totaler Differentialgleichungen, Zeitschrift
 fuer Mathematik und Physik 46 (1901) 435-453.
@@ -6,8 +6,4 @@ fuer Mathematik und Physik 46 (1901) 435-453.
 
 from solvers.runge_kutta.tableau import Tableau
 
-tableau = Tableau.explicit(
-    "Kutta's third order",
-    rows="1/2; -1 2",
-    b="1/6 2/3 1/6",
-)
+tableau = Tableau.explicit("Kutta's third order", rows="1/2; -1 2", b="1/6 2/3 1/6")

@@ -1,8 +1,8 @@
-"""Tsitouras' pair of orders 5 and 4, 7 stages of which the last is the next step's first.
+"""Tsitouras' pair of orders 5 and 4, 7 stages; the last is the next step's first.
 
 Ch. Tsitouras, Runge-Kutta pairs of order 5(4) satisfying only the first column simplifying
-assumption, Computers & Mathematics with Applications 62 (2011) 770-775; higher precision of
-the same coefficients after P. Stone.
+assumption, Computers & Mathematics with Applications 62 (2011) 770-775; more decimals of the
+same coefficients after P. Stone. Known as Tsit5.
 """
 
 from solvers.runge_kutta.tableau import Tableau

@@ -1,8 +1,8 @@
 """Verner's "most efficient" pair of orders 8 and 7, 13 stages.
 
 J. H. Verner, Numerically optimal Runge-Kutta pairs with interpolants, Numerical
-Algorithms 53 (2010) 383-396; coefficients as on the author's pages,
-RKV87.IIa.Efficient.000000282866.081208, without the stages of its interpolant.
+Algorithms 53 (2010) 383-396; decimals as on the author's pages,
+RKV87.IIa.Efficient.000000282866.081208, without the stages of its interpolant. Known as Vern8.
 
 Coefficients as large as 123, rounded to doubles, leave an error of 1.5e-12 after 40 s of a
 pendulum's motion in steps of 0.01 s; those of verner98 leave 1e-14.

@@ -1,8 +1,8 @@
 """Verner's "most efficient" pair of orders 9 and 8, 16 stages.
 
 J. H. Verner, Numerically optimal Runge-Kutta pairs with interpolants, Numerical
-Algorithms 53 (2010) 383-396; coefficients as on the author's pages,
-RKV98.IIa.Efficient.000000349.081209, without the stages of its interpolant.
+Algorithms 53 (2010) 383-396; decimals as on the author's pages,
+RKV98.IIa.Efficient.000000349.081209, without the stages of its interpolant. Known as Vern9.
 """
 
 from solvers.runge_kutta.tableau import Tableau

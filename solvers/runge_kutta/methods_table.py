@@ -1,0 +1,42 @@
+"""The table of methods in the README, derived from the catalogue."""
+
+from __future__ import annotations
+
+from math import inf
+
+from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.stability_function import StabilityFunction
+from solvers.runge_kutta.tableau import Tableau
+
+
+def methods_table() -> str:
+    """All methods as a table in Markdown, explicit ones first, by order.
+
+    Returns
+    -------
+    str
+        Name, title, orders, stages and stability intervals of every method, a line each.
+    """
+    by_name = {name: load(name) for name in names()}
+    ranked = sorted(by_name, key=lambda name: (not by_name[name].is_explicit, by_name[name].order))
+    header = "| name | method | kind | order | embedded | stages | real axis | imaginary axis |"
+    return "\n".join([header, "|" + "---|" * 8, *(_row(name, by_name[name]) for name in ranked)])
+
+
+def _row(name: str, tableau: Tableau) -> str:
+    stability = StabilityFunction.of(tableau)
+    real, imaginary = stability.real_stability_interval, stability.imaginary_stability_interval
+    cells = (
+        f"`{name}`",
+        tableau.title,
+        "explicit" if tableau.is_explicit else "implicit",
+        tableau.order,
+        tableau.embedded_order or "",
+        tableau.stages,
+        *("∞" if x == inf else f"{x:.2f}" for x in (real, imaginary)),
+    )
+    return f"| {' | '.join(map(str, cells))} |"
+
+
+if __name__ == "__main__":
+    print(methods_table())
