@@ -29,64 +29,34 @@ SUFFICIENT_STATES = 5
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two neighbouring sides of a statement, or one entry of each if they are matrices.
-
-    Attributes
-    ----------
-    relation : {"=", "<", "<=", ">", ">="}
-        Their relation.
-    residual : sympy.Expr
-        Left minus right; for an inequality the larger minus the smaller side.
-    comparable : bool
-        Whether both are numbers or both are matrices.
-    """
+    """Two neighbouring sides of a statement, or one entry of each if they are matrices."""
 
     relation: str
-    residual: sp.Expr
-    comparable: bool = True
+    residual: sp.Expr  # left minus right; of an inequality, larger minus smaller side
+    comparable: bool  # both sides are numbers, or both are matrices
 
 
 @dataclass(frozen=True)
 class Check:
-    """The result of checking a statement.
-
-    Attributes
-    ----------
-    holds : bool
-        Whether it holds.
-    comparison : int
-        Index of the first comparison that does not hold.
-    witness : str
-        The residual of that comparison as a number, at the first state of the context.
-    """
+    """Whether a statement holds, and the first comparison in it that does not hold."""
 
     holds: bool
-    comparison: int = 0
-    witness: str = ""
+    comparison: int = 0  # its index
+    witness: str = ""  # its residual as a number, at the first state of the context
 
 
 @dataclass(frozen=True)
 class Context:
-    """The meaning of names, and generic states.
+    """The names that statements can use, and generic states at which they are evaluated.
 
-    Attributes
-    ----------
-    scope : mapping of str to SymPy values and functions
-        Every name that a statement can use.
-    states : tuple of mappings of symbols to numbers
-        Generic states that agree with the substitutions.
-    substitutions : tuple of mappings
-        Applied in order, they leave independent symbols only: they replace momenta by
-        velocities and, where the equations of motion are assumed, accelerations by
-        coordinates and velocities.
-    index_count : int
-        The number of values of an index, which starts at 1.
+    Substitutions, applied in order, leave independent symbols only: they replace momenta by
+    velocities and, if the equations of motion are assumed, accelerations. States agree with them.
     """
 
     scope: Scope
     states: tuple[State, ...]
     substitutions: tuple[State, ...] = ()
-    index_count: int = 0
+    index_count: int = 0  # an index takes the values 1 to index_count
 
     def check(self, text: str, definitions: Mapping[str, Value] | None = None) -> Check:
         """Check every part of `text`, with additional names from `definitions`."""

@@ -17,15 +17,7 @@ from derive.verification.engine import DIGITS, SUFFICIENT_STATES, TINY, Context,
 
 @dataclass(frozen=True)
 class Model:
-    """A derivation, and the names that formulas about its system can use.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        Of the system.
-    names : mapping of str to SymPy values
-        Names in addition to the system's own.
-    """
+    """A derivation, and names that formulas can use in addition to those of its system."""
 
     derivation: Derivation
     names: Scope

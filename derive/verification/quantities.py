@@ -51,25 +51,7 @@ UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")
 
 
 def judge_formula(label: str, text: str, model: Model, kind: str, coordinate: str = "") -> Verdict:
-    """Judge a formula for a quantity, or an equation of motion.
-
-    Parameters
-    ----------
-    label : str
-        Identifier of the equation.
-    text : str
-        The formula, or the equation.
-    model : Model
-        The derivation.
-    kind : str
-        A key of `QUANTITIES`, or ``euler_lagrange``.
-    coordinate : str
-        The name of the coordinate or momentum, for quantities that have one formula for each.
-
-    Returns
-    -------
-    Verdict
-    """
+    """Judge a formula for a key of `QUANTITIES`, or an equation of motion, ``euler_lagrange``."""
     try:
         if kind == "euler_lagrange":
             return _judge_equation_of_motion(label, text, model)

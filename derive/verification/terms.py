@@ -18,21 +18,11 @@ Symbols = Collection[sp.Symbol]
 
 @dataclass(frozen=True)
 class Term:
-    """A term of a printed sum.
+    """A term of a printed sum, or of the difference of the sides of an equation."""
 
-    Attributes
-    ----------
-    text : str
-        As printed, with its sign.
-    value : sympy.Expr
-        Its contribution to the sum.
-    side : {1, -1}
-        -1 for a term on the right of an equation, which is subtracted from its left side.
-    """
-
-    text: str
+    text: str  # as printed, with its sign
     value: sp.Expr
-    side: int = 1
+    side: int = 1  # -1 on the right of an equation
 
 
 @dataclass(frozen=True)

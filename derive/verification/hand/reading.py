@@ -30,17 +30,7 @@ HEADER, EQUATIONS = (
 
 @dataclass(frozen=True)
 class HandDerivation:
-    """The equations of a source, with their verdicts.
-
-    Attributes
-    ----------
-    system : str
-        The system that they describe.
-    source, note : str
-        Where they are published, and remarks.
-    equations : tuple of Verdict
-        In the order of the file.
-    """
+    """The verdicts on the equations of a source, in the order of the file."""
 
     system: str
     source: str

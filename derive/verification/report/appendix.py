@@ -5,7 +5,7 @@ from __future__ import annotations
 from derive.verification.report.chapters import LAGRANGIAN, MOMENTUM_1, MOMENTUM_2
 from derive.verification.report.equation import Equation
 
-LAGRANGE: tuple[Equation, ...] = (
+EQUATIONS: tuple[Equation, ...] = (
     Equation("A1", "x1 = l1*sin(theta1)"),
     Equation("A2", "y1 = -l1*cos(theta1)"),
     Equation("A3", "x2 = l1*sin(theta1) + l2*sin(theta2)"),
@@ -26,9 +26,6 @@ LAGRANGE: tuple[Equation, ...] = (
     Equation("eq93", LAGRANGIAN),
     Equation("eq94", MOMENTUM_1),
     Equation("eq95", MOMENTUM_2),
-)  # fmt: skip
-
-EULER_LAGRANGE: tuple[Equation, ...] = (
     Equation("eq96",
              "ddt(d(L, phidot_i)) - d(L, phi_i) = 0; ddt(p_phi_i) - d(L, phi_i) = 0",
              measure="E_i"),
@@ -116,9 +113,6 @@ EULER_LAGRANGE: tuple[Equation, ...] = (
     Equation("A16", "f_1 = only(f_i, phi1, phi2, omega1, omega2)",
              corrected="f_i = only(f_i, phi1, phi2, omega1, omega2)",
              using=("eq103", "eq104"), note="the left index should be i"),
-)  # fmt: skip
-
-HAMILTON: tuple[Equation, ...] = (
     Equation("eq110", LAGRANGIAN),
     Equation("eq111", MOMENTUM_1),
     Equation("eq112", MOMENTUM_2),

@@ -18,7 +18,7 @@ MOMENTUM_2 = (
     "p_theta2 = d(L, theta2_dot) = m2*l2**2*theta2_dot + m2*l1*l2*theta1_dot*cos(theta1 - theta2)"
 )
 
-INTRODUCTION: tuple[Equation, ...] = (
+EQUATIONS: tuple[Equation, ...] = (
     Equation("eq1", "ddt(d(L, qdot_i)) - d(L, q_i) = 0", measure="E_i"),
     Equation("eq2", "w_0 = alpha", exempt="definition", note="the initial value"),
     Equation("eq3", "w_next = w_i + 1/6*(m_1 + 2*m_2 + 2*m_3 + m_4)", system="method",
@@ -83,9 +83,6 @@ INTRODUCTION: tuple[Equation, ...] = (
     Equation("eq34",
              "m2*l2*(l2*theta2_ddot + l1*cos(theta1 - theta2)*theta1_ddot"
              " - l1*sin(theta1 - theta2)*theta1_dot**2 + g*sin(theta2)) = 0", measure="E2"),
-)  # fmt: skip
-
-METHODOLOGY: tuple[Equation, ...] = (
     Equation("eq35", "L = K - P"),
     Equation("eq36", "w_0 = alpha", exempt="definition", note="the initial value"),
     Equation("eq37", "m_1 = h*f(t_i, w_i)", system="method"),
@@ -98,9 +95,6 @@ METHODOLOGY: tuple[Equation, ...] = (
     Equation("eq44", "-d(L, t) = d(H, t)"),
     Equation("eq45", "ddt(d(L, qdot_i)) - d(L, q_i) = 0", measure="E_i"),
     Equation("eq46", "ddt(d(L, theta1_dot)) = d(L, theta1)", measure="E1"),
-)  # fmt: skip
-
-IMPLEMENTATION: tuple[Equation, ...] = (
     Equation("eq47", "x1 = l1*sin(theta1)"),
     Equation("eq48", "y1 = -l1*cos(theta1)"),
     Equation("eq49", "x2 = l1*sin(theta1) + l2*sin(theta2)"),

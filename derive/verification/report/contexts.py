@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
+from derive.formulas import expression
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.reduction import reduced
 from derive.system.catalogue import load
@@ -22,15 +23,16 @@ from derive.verification.model import depends_on, time_derivative
 Vector: TypeAlias = sp.ImmutableDenseMatrix
 
 #: A generic state for numeric witnesses: unequal masses and lengths, nothing at rest.
-NUMBERS = {
-    "m1": "1.3", "m2": "0.7", "l1": "1.1", "l2": "0.8", "m": "1.3", "l": "1.1", "g": "9.81",
-    "g_dot": "0.21", "theta1": "0.6", "theta2": "-0.9", "theta": "0.6", "theta1_dot": "1.7",
-    "theta2_dot": "-0.4", "theta_dot": "1.7", "theta1_ddot": "0.5", "theta2_ddot": "2.3",
-    "theta_ddot": "0.5", "chi1": "0.3", "chi2": "0.2", "t": "0.4", "theta0": "0.15",
-    "psi": "0.35", "Ixx": "1.1", "Iyy": "1.9", "Izz": "2.7", "omega_x": "0.4",
-    "omega_y": "-0.7", "omega_z": "1.2", "omega_x_dot": "0.8", "omega_y_dot": "0.3",
-    "omega_z_dot": "-0.6", "stray": "0.7",
-}  # fmt: skip
+NUMBERS = dict(
+    pair.split("=")
+    for pair in (
+        "m1=1.3 m2=0.7 l1=1.1 l2=0.8 m=1.3 l=1.1 g=9.81 g_dot=0.21 theta1=0.6 theta2=-0.9 "
+        "theta=0.6 theta1_dot=1.7 theta2_dot=-0.4 theta_dot=1.7 theta1_ddot=0.5 theta2_ddot=2.3 "
+        "theta_ddot=0.5 chi1=0.3 chi2=0.2 t=0.4 theta0=0.15 psi=0.35 Ixx=1.1 Iyy=1.9 Izz=2.7 "
+        "omega_x=0.4 omega_y=-0.7 omega_z=1.2 omega_x_dot=0.8 omega_y_dot=0.3 omega_z_dot=-0.6 "
+        "stray=0.7"
+    ).split()
+)
 
 #: The value of a printed letter without a meaning.
 STRAY = sp.Symbol("stray")
@@ -38,25 +40,22 @@ STRAY = sp.Symbol("stray")
 G_DOT, TIME = sp.symbols("g_dot t", real=True)
 
 FUNCTIONS: dict[str, Any] = {
-    "sin": sp.sin,
-    "cos": sp.cos,
-    "sqrt": sp.sqrt,
-    "pi": sp.pi,
+    **{name: expression.FUNCTIONS[name] for name in ("sin", "cos", "sqrt", "pi")},
     "det": lambda matrix: matrix.det(),
     "inverse": lambda matrix: matrix.inv(),
     "norm": lambda vector: sp.sqrt(sp.factor_terms(reduced(vector.dot(vector)))),
-    "at": lambda expression, symbol, value: expression.subs(symbol, value),
+    "at": lambda value, symbol, point: value.subs(symbol, point),
 }
 
-#: Names of coordinate k and of its derivatives and momentum, with and without underscore.
-SYNONYMS = {
-    "q": "theta{} phi{} q_{} theta_{} phi_{}",
-    "qdot": "theta{}_dot phi{}_dot omega{} qdot_{} thetadot_{} phidot_{}",
-    "qddot": "theta{}_ddot phi{}_ddot",
-    "p": "p_theta{} P_theta{} p_phi{} p_{} P_theta_{} p_theta_{} p_phi_{}",
-    "pdot": "pdot_{} Pdot_theta{} Pdot_theta_{}",
-    "residual": "E{} E_{}",
-}
+#: Names of a coordinate, its velocity, acceleration, momentum, force and Euler–Lagrange residual.
+SYNONYMS = (
+    "theta{} phi{} q_{} theta_{} phi_{}",
+    "theta{}_dot phi{}_dot omega{} qdot_{} thetadot_{} phidot_{}",
+    "theta{}_ddot phi{}_ddot",
+    "p_theta{} P_theta{} p_phi{} p_{} P_theta_{} p_theta_{} p_phi_{}",
+    "pdot_{} Pdot_theta{} Pdot_theta_{}",
+    "E{} E_{}",
+)
 
 
 @cache
@@ -68,34 +67,23 @@ def double_pendulum(*, moving: bool) -> Context:
     (x1, y1), (x2, y2) = (mass.position for mass in system.masses)
     r1, r2 = (Vector([x, -y, 0]) for x, y in ((x1, y1), (x2, y2)))
     M = derivation.mass_matrix
-    scope = _common_scope(derivation) | {"x1": x1, "y1": y1, "x2": x2, "y2": y2, "r1": r1, "r2": r2}
-    scope |= {
-        "H": derivation.hamiltonian,
-        "B": M,
-        "A": Vector(2, 2, lambda i, j: M[i, j] / M[i, i]),
-    }
-    scope |= {name: sp.Symbol(name) for name in ("chi1", "chi2")}
+    A = Vector(2, 2, lambda i, j: M[i, j] / M[i, i])
+    scope = _common_scope(derivation) | {name: sp.Symbol(name) for name in ("chi1", "chi2")}
+    scope |= _named("x1 y1 x2 y2 r1 r2 A B H", x1, y1, x2, y2, r1, r2, A, M, derivation.hamiltonian)
     ddt = scope["ddt"]
     scope |= {f"{name}_dot": ddt(scope[name]) for name in ("x1", "y1", "x2", "y2")}
-    for k in range(2):
-        p = system.p[k]
-        values = (
-            system.q[k],
-            system.qdot[k],
-            system.qddot[k],
-            p,
-            ddt(p),
-            derivation.euler_lagrange[k],
-        )
-        for names, value in zip(SYNONYMS.values(), values, strict=True):
-            scope |= dict.fromkeys(names.replace("{}", str(k + 1)).split(), value)
+    rates, residuals = map(ddt, system.p), derivation.euler_lagrange
+    values = zip(system.q, system.qdot, system.qddot, system.p, rates, residuals, strict=True)
+    for number, row in enumerate(values, 1):
+        for names, value in zip(SYNONYMS, row, strict=True):
+            scope |= dict.fromkeys(names.replace("{}", str(number)).split(), value)
     # rod tensions: projections of Newton's law for each bob on its rod
     weight = Vector([0, g, 0])
     e1, e2 = r1 / l1, (r2 - r1) / l2
     F1, F2 = (m * ddt(ddt(r)) for m, r in ((m1, r1), (m2, r2)))
     T2 = reduced(-(F2 - m2 * weight).dot(e2))
     T1 = reduced(-(F1 - m1 * weight - T2 * e2).dot(e1))
-    scope |= {"g_vector": weight, "F1": F1, "F2": F2, "T1": T1, "T2": T2}
+    scope |= _named("g_vector F1 F2 T1 T2", weight, F1, F2, T1, T2)
     return _context(derivation, scope, moving=moving)
 
 
@@ -105,22 +93,15 @@ def single_pendulum(*, moving: bool) -> Context:
     derivation = Derivation(load("single_pendulum"))
     system = derivation.system
     (m, length, g), (q,), (qdot,), (qddot,) = system.params, system.q, system.qdot, system.qddot
-    linear = derivation.linearisation()
+    linear, residual = derivation.linearisation(), derivation.euler_lagrange[0]
     r, weight = length * Vector([sp.sin(q), sp.cos(q), 0]), Vector([0, g, 0])
-    scope = _common_scope(derivation) | {"theta": q, "theta_dot": qdot, "theta_ddot": qddot}
+    scope = _common_scope(derivation)
     F = m * scope["ddt"](scope["ddt"](r))
-    scope |= {
-        "E": derivation.euler_lagrange[0],
-        "r": r,
-        "z": r[2],
-        "v": sp.sqrt(length**2 * qdot**2),
-        "I": linear.mass_matrix[0],
-        "stiffness": linear.stiffness_matrix[0],
-        "omega": sp.sqrt(g / length),
-        "g_vector": weight,
-        "F": F,
-        "T": -(F - m * weight).dot(r / length),
-    }
+    T = -(F - m * weight).dot(r / length)
+    speed, omega = sp.sqrt(length**2 * qdot**2), sp.sqrt(g / length)
+    scope |= _named("theta theta_dot theta_ddot E omega", q, qdot, qddot, residual, omega)
+    scope |= _named("r z v g_vector F T", r, r[2], speed, weight, F, T)
+    scope |= _named("I stiffness", linear.mass_matrix[0], linear.stiffness_matrix[0])
     scope |= {name: sp.Symbol(name, real=True) for name in ("t", "theta0", "psi")}
     return _context(derivation, scope, moving=moving)
 
@@ -135,8 +116,12 @@ def rigid_body() -> Context:
     torque = spin_rate + Vector(omega).cross(spin)
     symbols = (*inertia, *omega, *omega_dot)
     scope = {s.name: s for s in symbols}
-    scope |= dict(zip(("tau_x", "tau_y", "tau_z"), torque, strict=True))
+    scope |= _named("tau_x tau_y tau_z", *torque)
     return Context(scope, (_numbers(symbols),), index_count=3)
+
+
+def _named(names: str, *values: Any) -> dict[str, Any]:
+    return dict(zip(names.split(), values, strict=True))
 
 
 def _common_scope(derivation: Derivation) -> dict[str, Any]:

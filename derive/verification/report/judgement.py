@@ -22,33 +22,11 @@ from solvers.io.suggestion import did_you_mean
 OrderOf = Callable[[list[list[Fraction]], list[Fraction]], int]
 
 #: The equations of the report by id, in printed order.
-EQUATIONS: dict[str, Equation] = {
-    equation.id: equation
-    for part in (
-        chapters.INTRODUCTION,
-        chapters.METHODOLOGY,
-        chapters.IMPLEMENTATION,
-        appendix.LAGRANGE,
-        appendix.EULER_LAGRANGE,
-        appendix.HAMILTON,
-    )
-    for equation in part
-}
+EQUATIONS = {equation.id: equation for equation in (*chapters.EQUATIONS, *appendix.EQUATIONS)}
 
 
 def verdicts(order_of: OrderOf) -> list[Verdict]:
-    """Judge all equations of the report.
-
-    Parameters
-    ----------
-    order_of : callable
-        ``order_of(A, b)``, the order of a Runge–Kutta method by its order conditions.
-
-    Returns
-    -------
-    list of Verdict
-        One for each of `EQUATIONS`.
-    """
+    """Judge all equations of the report; `order_of` returns the order of a Runge–Kutta method."""
     return [verdict(equation, order_of) for equation in EQUATIONS.values()]
 
 

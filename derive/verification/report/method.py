@@ -20,27 +20,7 @@ class NotRungeKuttaError(ValueError):
 
 
 def coefficients(lines: Sequence[str]) -> tuple[list[list[Fraction]], list[Fraction]]:
-    """Return A and b of ``m_k = h*f(t_i + c*h, w_i + Σ a*m_j)``, …, ``w_next = w_i + Σ b*m_k``.
-
-    Parameters
-    ----------
-    lines : sequence of str
-        The four stages, then the step.
-
-    Returns
-    -------
-    A : list of list of Fraction
-        Stage matrix, one row for each stage.
-    b : list of Fraction
-        Weights of the stages.
-
-    Raises
-    ------
-    NotRungeKuttaError
-        When a line has another form, or c is not the sum of its row of A.
-    ExpressionError
-        When a line is not a formula.
-    """
+    """Return A and b of ``m_k = h*f(t_i + c*h, w_i + Σ a*m_j)``, …, ``w_next = w_i + Σ b*m_k``."""
     *stages, step = lines
     A = []
     for name, line in zip(INCREMENTS, stages, strict=True):

@@ -1,9 +1,8 @@
-"""The report's three Mathematica programs: what each solves, and what would stop it.
+"""The report's three Mathematica programs: the equations that each solves, and its errors.
 
-The formulas are retyped in the language of `derive.formulas.expression`; of the programs'
-text only the lines that a finding rests on are quoted, with dots for what is
-beside the point. The report is known through character recognition, so that a
-bracket may have been lost on the way.
+The formulas are retyped in the language of `derive.formulas.expression`. Of the program
+text, only the lines that show an error are quoted, with dots for omissions. The report is
+known through character recognition only, which can lose a bracket.
 """
 
 from __future__ import annotations
@@ -32,16 +31,16 @@ class Scene:
     duration: sp.Expr
 
     def differences(self, other: Scene) -> tuple[str, ...]:
-        """In words, what is not as in `other`."""
-        mine, theirs = asdict(self), asdict(other)
+        """Describe the values that differ from those of `other`."""
+        own, others = asdict(self), asdict(other)
         return tuple(
-            f"{name}: {sp.sstr(mine[name])} instead of {sp.sstr(theirs[name])}"
-            for name in mine
-            if mine[name] != theirs[name]
+            f"{name}: {sp.sstr(own[name])} instead of {sp.sstr(others[name])}"
+            for name in own
+            if own[name] != others[name]
         )
 
 
-#: What chapters 3 to 5 say of all programs. They name no velocities; program 1 starts at rest.
+#: The values that chapters 3 to 5 state for all programs. Velocities are those of program 1.
 PROSE = Scene(
     masses=(sp.S(1), sp.S(1)),
     lengths=(sp.S(2), sp.S(2)),
@@ -54,32 +53,18 @@ PROSE = Scene(
 
 @dataclass(frozen=True)
 class Program:
-    """What was found about a program.
-
-    Attributes
-    ----------
-    id, title : str
-        Its number, and its place in the report.
-    solves : str
-        The equations that its formulas amount to.
-    scene : Scene
-        What it sets them to.
-    stops : tuple of str
-        What keeps it from running as printed.
-    differs : tuple of str
-        Where it is at odds with the prose, or with itself.
-    """
+    """A program, the equations that it solves, and its errors."""
 
     id: str
     title: str
     solves: str
     scene: Scene
-    stops: tuple[str, ...]
-    differs: tuple[str, ...]
+    stops: tuple[str, ...]  # errors that prevent it from running as printed
+    differs: tuple[str, ...]  # contradictions to the prose, or within the program
 
 
 def programs() -> list[Program]:
-    """The findings on all three programs, computed."""
+    """Analyse all three programs."""
     return [_first(), _second(), _third()]
 
 
@@ -93,48 +78,45 @@ def _first() -> Program:
     call = "NDSolve[ { ..., theta2'[0] == 0, {theta1[t], theta2[t], t}, {t, 0, 5} ]"
     length = _length_solved(equations)
     scene = replace(PROSE, lengths=(length, length))
+    stops = [_bracket_fault(call)]
+    if _has_time_as_unknown(call):
+        stops.append("it passes the time itself to NDSolve as an unknown")
     return Program(
         "program1",
         "Appendix B, figure 1: Lagrangian",
         f"the Euler-Lagrange equations of equal masses on rods of {length} m",
         scene,
-        (
-            _bracket_fault(call),
-            *(
-                ["it asks NDSolve for the time itself as an unknown"]
-                if _asks_for_time(call)
-                else []
-            ),
-        ),
+        tuple(stops),
         scene.differences(PROSE),
     )
 
 
 def _second() -> Program:
-    # the Lagrangian from its positions, s (sin phi, -cos phi) and the same again
+    # the Lagrangian from the program's positions
     x1, y1 = "(l1*sin(phi1))", "(-l1*cos(phi1))"
     x2, y2 = f"({x1} + l2*sin(phi2))", f"({y1} - l2*cos(phi2))"
     lagrangian = (
         f"m1/2*(ddt({x1})**2 + ddt({y1})**2) + m2/2*(ddt({x2})**2 + ddt({y2})**2)"
         f" - g*(m1*{y1} + m2*{y2})"
     )
-    right = double_pendulum(moving=False).check(f"L = {lagrangian}").holds
+    correct = double_pendulum(moving=False).check(f"L = {lagrangian}").holds
     text = "sol = First[NDSolve[...]]; x1[t] := Sin[phi1[t]] /. sol2; ... Plot[... /. sol, ...]"
     scene = replace(PROSE, velocities=(sp.pi, 2 * sp.pi))
+    undefined = (
+        f"the coordinates of the bobs need {name}, which is never assigned; no plot uses them"
+        for name in _unassigned(text)
+    )
     return Program(
         "program2",
         "Appendix B, figure 2: Euler-Lagrangian",
-        f"the Euler-Lagrange equations of {'the right' if right else 'a wrong'} Lagrangian",
+        f"the Euler-Lagrange equations of {'the correct' if correct else 'a wrong'} Lagrangian",
         scene,
         (),
         (
             *scene.differences(PROSE),
-            *(
-                f"the bobs' coordinates need {name}, which is never assigned; no plot uses them"
-                for name in _missing(text)
-            ),
-            "these coordinates leave out the lengths: they would belong to rods of 1 m",
-            "its last plot is phi2 over phi1, not a path of the bobs",
+            *undefined,
+            "these coordinates omit the lengths, as for rods of 1 m",
+            "its last plot shows phi2 over phi1, not a path of the bobs",
         ),
     )
 
@@ -168,7 +150,7 @@ def _third() -> Program:
         "Appendix B, figures 3 and 4: Runge-Kutta",
         f"accelerations: the first {_agreement('theta1_ddot', f3)}, "
         f"the second {_agreement('theta2_ddot', f4)}; "
-        "5000 steps of the classical fourth-order rule, h = 0.01 s",
+        "5000 steps of the classical fourth-order method, h = 0.01 s",
         scene,
         (
             _bracket_fault(loop),
@@ -177,14 +159,14 @@ def _third() -> Program:
         ),
         (
             *scene.differences(PROSE),
-            "it has the fourth-order rule only, and eight plots of that one run: if the figures "
-            "RK1 to RK4 are methods of these orders, no program makes three of them",
+            "it has the fourth-order method only, and eight plots of this one run: if the figures "
+            "RK1 to RK4 show methods of these orders, no program computes three of them",
         ),
     )
 
 
 def _length_solved(equations: tuple[str, ...]) -> sp.Expr:
-    """The common length of the rods for which `equations` are those of the derivation."""
+    """The common length of the rods for which `equations` agree with the derivation."""
     scope = double_pendulum(moving=False).scope
     length = sp.Symbol("length", positive=True)
     values = {scope[f"m{i}"]: m for i, m in enumerate(PROSE.masses, 1)}
@@ -198,40 +180,39 @@ def _length_solved(equations: tuple[str, ...]) -> sp.Expr:
 
 
 def _agreement(name: str, formula: str) -> str:
-    """How the accelerations of the derivation and a program's formula agree."""
+    """How a program's formula agrees with a derived acceleration."""
     context = double_pendulum(moving=True)
     if context.check(f"{name} = {formula}").holds:
-        return "is right"
+        return "is correct"
     derived = context.substitutions[-1][context.scope[name]]
     difference = parse(formula, context.scope) - derived
-    equal = vanishes(difference.subs(context.scope["m2"], context.scope["m1"]))
-    return (
-        "is right for equal masses only (2 m1 + m1 stands for 2 m1 + m2)" if equal else "is wrong"
-    )
+    if vanishes(difference.subs(context.scope["m2"], context.scope["m1"])):
+        return "is correct for equal masses only (2 m1 + m1 stands for 2 m1 + m2)"
+    return "is wrong"
 
 
-def _asks_for_time(call: str) -> bool:
+def _has_time_as_unknown(call: str) -> bool:
     """Whether the variable of the last list, the range, is also one of the unknowns."""
     *_, unknowns, interval = re.findall(r"{([^{}]*)}", call)
     return interval.split(",")[0] in unknowns.replace(" ", "").split(",")
 
 
 def _bracket_fault(text: str) -> str:
-    """The first bracket of `text` that does not match, in words."""
+    """Describe the first unbalanced bracket of `text`; empty if all are balanced."""
     opened: list[tuple[str, int]] = []
-    for place, letter in enumerate(text):
+    for index, letter in enumerate(text):
         if letter in OPENING.values():
-            opened.append((letter, place))
+            opened.append((letter, index))
         elif letter in OPENING:
             if not opened:
-                return f"a {letter!r} too many, after: ...{text[:place][-40:]}"
+                return f"unmatched {letter!r} after: ...{text[:index][-40:]}"
             bracket, start = opened.pop()
             if bracket != OPENING[letter]:
                 return f"the {bracket!r} after {text[:start].strip()!r} is never closed"
-    return f"the {opened[-1][0]!r} at place {opened[-1][1]} is never closed" if opened else ""
+    return f"the {opened[-1][0]!r} at index {opened[-1][1]} is never closed" if opened else ""
 
 
-def _missing(text: str) -> list[str]:
+def _unassigned(text: str) -> list[str]:
     """Names of solutions that are used, as in ``/. name``, and never assigned."""
     used = sorted(set(re.findall(r"/\. (\w+)", text)))
     return [name for name in used if not re.search(rf"\b{name} =", text)]
