@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,8 @@ class _Listed:
     """Axes with listed values."""
 
     values: Mapping[str, Array]
+
+    is_grid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _columns(self.values))
@@ -71,6 +73,8 @@ class Grid(_Listed):
     >>> grid.shape
     (3, 2)
     """
+
+    is_grid: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -151,6 +155,8 @@ class Random:
     count: int
     seed: int
 
+    is_grid: ClassVar[bool] = False
+
     def __post_init__(self) -> None:
         validation.count("count", self.count, 1)
         validation.count("seed", self.seed, 0)
@@ -189,6 +195,13 @@ class Random:
 
 
 Axes: TypeAlias = Grid | Table | Random
+
+
+def coordinates(axes: Axes) -> dict[str, Array]:
+    """Values along each axis of a grid, else of each motion."""
+    if isinstance(axes, Grid):
+        return dict(axes.values)
+    return axes.columns(0, prod(axes.shape))
 
 
 def subset(axes: Axes, count: int) -> dict[str, Array]:

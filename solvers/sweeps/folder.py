@@ -26,7 +26,7 @@ from numpy.lib.format import dtype_to_descr, write_array_header_1_0
 from numpy.typing import NDArray
 
 from solvers.io.atomic_write import replacing, write_text
-from solvers.sweeps.axes import Grid
+from solvers.sweeps.axes import coordinates
 from solvers.sweeps.chunk_length import chunk_length
 from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
@@ -155,8 +155,8 @@ class Folder:
                 write_array_header_1_0(file, header)
                 for rows in self.rows(name):
                     file.write(np.ascontiguousarray(rows).tobytes())
-        if isinstance(self._sweep.axes, Grid):
-            for name, values in self._sweep.axes.values.items():
+        if self._sweep.axes.is_grid:
+            for name, values in coordinates(self._sweep.axes).items():
                 write_text(self.path / f"{name}.npy", _npy(values))
 
     def array(self, name: str) -> NDArray[Any]:

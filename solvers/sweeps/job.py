@@ -17,7 +17,6 @@ import numpy as np
 from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
 from solvers.integration.solution import Status
-from solvers.sweeps.axes import Grid
 from solvers.sweeps.maps import Map
 from solvers.sweeps.sweep import Sweep
 
@@ -68,7 +67,7 @@ class Job:
     @classmethod
     def of(cls, sweep: Sweep) -> Job:
         """The job of a sweep."""
-        columns = () if isinstance(sweep.axes, Grid) else tuple(sweep.axes.smallest)
+        columns = () if sweep.axes.is_grid else tuple(sweep.axes.smallest)
         source, values, maps = Source.of(sweep.module), dict(sweep.values), dict(sweep.maps)
         return cls(source, values, sweep.duration, sweep.options, sweep.samples, maps, columns)
 

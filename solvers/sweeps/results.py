@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.io.xarray_dataset import dataset
-from solvers.sweeps.axes import Grid
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.job import STATUSES
 from solvers.sweeps.sweep import Sweep
@@ -84,7 +83,7 @@ class Results:
         ImportError
             When xarray is not installed: it comes with the extra ``xarray``.
         """
-        is_grid = isinstance(self.definition.axes, Grid)
+        is_grid = self.definition.axes.is_grid
         names = tuple(self.axes) if is_grid else ("motion",)
         coordinates: dict[str, Any] = {
             name: ((name,) if is_grid else names, column, {"units": self.unit(name)})

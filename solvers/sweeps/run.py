@@ -7,7 +7,7 @@ from contextlib import closing
 from pathlib import Path
 
 from solvers.io.progress import Rate
-from solvers.sweeps.axes import Grid
+from solvers.sweeps.axes import coordinates
 from solvers.sweeps.folder import Folder
 from solvers.sweeps.job import Job
 from solvers.sweeps.pool import Pool
@@ -107,7 +107,8 @@ def partial_results(definition: Sweep, folder: str | Path) -> Results:
     """
     stored = Folder(Path(folder), definition, Job.of(definition))
     stored.check()
-    axes = definition.axes
-    varied = axes.values if isinstance(axes, Grid) else axes.columns(0, definition.motions)
-    maps = {name: stored.array(name) for name in definition.maps}
-    return Results(definition, Path(folder), maps, dict(varied), stored.array("status"))
+    maps, axes = (
+        {name: stored.array(name) for name in definition.maps},
+        coordinates(definition.axes),
+    )
+    return Results(definition, Path(folder), maps, axes, stored.array("status"))

@@ -108,8 +108,11 @@ class Sweep:
     @property
     def options(self) -> dict[str, Any]:
         """Options of `solvers.integration.ensemble.ensemble`."""
-        limits = {"rtol": self.rtol, "atol": self.atol, "max_steps": self.max_steps}
-        return {"method": self.method, "form": self.form, **limits}
+        return {"method": self.method, "form": self.form, **self._limits}
+
+    @property
+    def _limits(self) -> dict[str, Any]:
+        return {"rtol": self.rtol, "atol": self.atol, "max_steps": self.max_steps}
 
     @property
     def motions(self) -> int:
@@ -126,9 +129,7 @@ class Sweep:
             "duration": self.duration,
             "values": dict(sorted(self.values.items())),
             "method": self.method,
-            "rtol": self.rtol,
-            "atol": self.atol,
-            "max_steps": self.max_steps,
+            **self._limits,
             "axes": self.axes.as_json,
             "maps": {
                 name: {"kind": type(one).__name__} | asdict(one)  # type: ignore[call-overload]

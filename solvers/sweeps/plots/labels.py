@@ -23,7 +23,7 @@ def label_axis(panel: Axes, axis: str, results: Results, name: str) -> None:
     unit = results.unit(name)
     panel.set(**{f"{axis}label": axis_label(letter(name), unit)})
     if unit == "rad" and np.pi < np.ptp(results.axes[name]) < 5 * np.pi:
-        ticks = getattr(panel, f"{axis}axis")
+        ticks = {"x": panel.xaxis, "y": panel.yaxis}[axis]
         ticks.set_major_locator(MultipleLocator(np.pi / 2))
         ticks.set_major_formatter(FuncFormatter(_multiple_of_pi))
 

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 
 from solvers.io.figures import COLOURS
 from solvers.io.notation import axis_label, symbol
-from solvers.sweeps.axes import Grid
 from solvers.sweeps.plots.labels import add_colour_bar, label_axis
 from solvers.sweeps.plots.quantity import NOTHING, Quantity, wrapped
 from solvers.sweeps.results import Results
@@ -33,7 +32,7 @@ def line(panel: Axes, *, quantity: Quantity) -> None:
         add_colour_bar(panel, points, quantity.label)
         label_axis(panel, "y", results, y)
         return
-    is_joined = isinstance(results.definition.axes, Grid) and not quantity.is_direction
+    is_joined = results.definition.axes.is_grid and not quantity.is_direction
     is_marked = not is_joined or len(values) <= MARKED or np.isnan(values).any()
     style = ("." if is_marked else "") + ("-" if is_joined else "")
     panel.plot(xs, values, style, color=COLOURS[0], linewidth=0.9, markersize=3)

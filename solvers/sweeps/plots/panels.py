@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from solvers.io.notation import symbol
-from solvers.sweeps.axes import Grid
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.maps import Panels
 from solvers.sweeps.plots.image import image
@@ -23,7 +22,7 @@ from solvers.sweeps.results import Results
 def number_panels(name: str, results: Results) -> Panels:
     """A panel for each number of a map: an image over a grid, else a line or points."""
     one = results.definition.maps[name]
-    is_image = isinstance(results.definition.axes, Grid) and len(results.axes) > 1
+    is_image = results.definition.axes.is_grid and len(results.axes) > 1
     draw = image if is_image else line
     for index in np.ndindex(one.shape):
         parts = [labels[k] for labels, k in zip(one.labels, index, strict=False)]
@@ -48,7 +47,7 @@ def section_panels(name: str, results: Results) -> Panels:
 def _groups(results: Results) -> Iterator[tuple[str, Any]]:
     """Titles and indices of motions with the same energy and parameters."""
     axes = results.axes
-    if not isinstance(results.definition.axes, Grid):
+    if not results.definition.axes.is_grid:
         yield "", ...
         return
     names = [name for name in axes if name in (ENERGY, *results.definition.module.PARAMETERS)]
