@@ -4,32 +4,21 @@ import re
 import sys
 import tomllib
 from io import BytesIO
-from math import log
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
-import generated.double_pendulum as dp
-import generated.single_pendulum as sp
 from derive import load, names
 from derive.codegen.functions import contents
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
-from solvers.app.verdict.evidence import Evidence, Setting
-from solvers.app.verdict.objectives import objectives
 from solvers.io.figures import png
 from solvers.scenes.reading import KEYS, scene
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
-from solvers.studies.failure_modes.chaos import CHAOTIC
-from solvers.studies.failure_modes.drift import EnergyDrift
-from solvers.studies.failure_modes.lyapunov import lyapunov
-from solvers.studies.failure_modes.separatrix import upright
-from solvers.studies.failure_modes.stiffness import Stiffness, crossover
-from solvers.studies.stability.critical_step import CriticalStep
 from solvers.sweeps import map_kinds
 from solvers.sweeps.job import STATUSES
 from solvers.sweeps.plots.figure import figure
@@ -92,51 +81,6 @@ def test_the_table_of_operations_is_true(double) -> None:  # type: ignore[no-unt
             assert [min(actual), max(actual)] == stated
         else:
             assert [counted[name] for name in called] == stated
-
-
-def test_the_table_of_longest_steps_is_true(report_steps: dict[str, CriticalStep]) -> None:
-    rows = re.findall(r"^\| `(\w+)` \| (.*) \|$", README, re.MULTILINE)
-    table = {name: cells.split(" | ") for name, cells in rows if name in report_steps}
-    assert set(table) == set(report_steps)
-    for name, step in report_steps.items():
-        figures = (step.order, step.function.imaginary_stability_interval, step.predicted)
-        assert [float(cell.replace("∞", "inf")) for cell in table[name][:3]] == pytest.approx(
-            figures, rel=1e-4
-        )
-        assert float(table[name][3].replace("∞", "inf")) == pytest.approx(step.measured, rel=2e-4)
-
-
-def test_what_is_said_of_failures_is_true(report_steps: dict[str, CriticalStep]) -> None:
-    prose = " ".join(README.split())
-    growth = {name: step.growth_measured for name, step in report_steps.items()}
-    assert f"by {100 * (np.exp(growth['rk1']) - 1):.0f} % a step" in prose
-    assert f"by {growth['verner87']:.0e} with".replace("e-09", "e-9") in prose
-    exponent, error = map(float, re.findall(r"is (0\.\d+) ± (0\.\d+) per s", prose)[0])
-    found = lyapunov(dp, dp.DEFAULTS, CHAOTIC, 5000)
-    assert abs(found.value - exponent) < 4 * np.hypot(found.error, error)
-    for tolerance, horizon in re.findall(r"(1e-\d+) means (\d+) s", prose):
-        assert round(log(1 / float(tolerance)) / exponent) == int(horizon)
-    assert f"after {upright(sp).measured:.3f} s" in prose
-    methods = ("rk4", "verner87", "gauss2", "gauss3")
-    light = Stiffness((10.0, 30.0, 100.0), methods).run(load_module)
-    said = re.findall(r"frequencies of about (\d+), (\d+) and (\d+) on", prose)[0]
-    for family, ratio in zip(("short second rod", "light first mass", "stiff spring"), said,
-                             strict=True):  # fmt: skip
-        assert crossover(light, family, "work_rhs") == pytest.approx(float(ratio), rel=0.25)
-    cases = ("rk4", "lagrangian", 60), ("verner87", "lagrangian", 15), ("gauss3", "hamiltonian", 20)
-    rk4, verner, gauss = EnergyDrift(1000, cases).run(load_module)
-    rates = re.findall(
-        r"at first (\S+) a period,.* gains (\S+) a period;.* within (\S+)\. -", prose
-    )
-    said = list(map(float, rates[0]))
-    assert said == pytest.approx([-rk4.rate, verner.rate, gauss.largest_error], rel=0.1)
-
-
-def test_calls_that_are_quoted_are_those_of_the_verdict() -> None:
-    scene = Setting(dp.DEFAULTS, CHAOTIC, 5.0)
-    verdicts = objectives(Evidence(dp, scene, scene, scene, scene), {"verified": 0, "misprint": 0})
-    said = " ".join(README.split()).replace("`", "")
-    assert verdicts[2].number.removeprefix("for ") in said
 
 
 def test_every_command_that_is_shown_exists() -> None:

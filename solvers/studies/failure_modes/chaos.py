@@ -110,8 +110,8 @@ class Chaos(Study[ChaosResults]):
             for method in self.methods
             for tolerance in TOLERANCES
         ]
-        statistics = [_statistics(double, self.statistics_seconds, run) for run in LONG_RUNS]
-        return ChaosResults(exponent, separation(double, t, reference), horizons, statistics)
+        means = [statistics(double, self.statistics_seconds, run) for run in LONG_RUNS]
+        return ChaosResults(exponent, separation(double, t, reference), horizons, means)
 
     def summary(self, results: ChaosResults) -> Iterator[str]:
         """Exponent, horizons and means."""
@@ -144,7 +144,7 @@ class Chaos(Study[ChaosResults]):
         return figure
 
 
-def _statistics(module: GeneratedModule, duration: float, options: Mapping[str, Any]) -> Statistics:
+def statistics(module: GeneratedModule, duration: float, options: Mapping[str, Any]) -> Statistics:
     """Means over a run whose trajectory agrees with no other."""
     t = np.linspace(0, duration, int(2 * duration) + 1)
     solve = partial(integrate, t_eval=t, energy=True, max_steps=10**8)
