@@ -158,6 +158,19 @@ def test_readme_states_the_verdicts_as_they_are(
     ) in text
 
 
+def test_the_readme_of_verification_states_the_numbers_of_verdicts(
+    verdicts: dict[str, list[dict[str, str]]],
+) -> None:
+    text = (ROOT / "derive" / "verification" / "README.md").read_text(encoding="utf-8")
+    equations, claims = (
+        counted(verdicts[name]).replace(", of them", " |") for name in ("equations", "claims")
+    )
+    stopped = sum(bool(program["stops"]) for program in verdicts["programs"])
+    assert f"| equations | {equations} |" in text
+    assert f"| programs | {len(verdicts['programs'])} | {stopped} do not run" in text
+    assert f"| objectives, claims and recommendations | {claims} |" in text
+
+
 def test_verify_fails_if_an_equation_is_wrong_without_a_proved_correction(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -3,12 +3,17 @@
 import re
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import fields
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 import generated.double_pendulum as dp
 from derive.commands import systems
+from derive.verification.hand.reading import EQUATIONS, HEADER
+from derive.verification.verdict import Verdict, VerdictName
+from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.sweeps import map_kinds, reading
 from solvers.sweeps.job import status_table
@@ -53,6 +58,7 @@ def test_every_link_exists(path: Path) -> None:
 
 
 DERIVE = ROOT / "derive" / "README.md"
+VERIFICATION = ROOT / "derive" / "verification" / "README.md"
 SWEEPS = ROOT / "solvers" / "sweeps" / "README.md"
 
 
@@ -85,6 +91,31 @@ def test_the_system_file_of_the_readme_runs(tmp_path: Path) -> None:
     module = load_module(str(tmp_path / "bead.toml"))
     assert module.TIMED
     assert "power" in module.OPERATIONS
+
+
+def first_column(path: Path, head: str) -> list[str]:
+    """Names in code style in the first column of a table."""
+    table = path.read_text(encoding="utf-8").partition(f"| {head} | ")[2].partition("\n\n")[0]
+    return re.findall(r"`(\w+)`", " ".join(row.split("|")[1] for row in table.split("\n")[2:]))
+
+
+def test_the_hand_derivation_of_the_readme_has_the_verdicts_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (file,) = blocks(VERIFICATION, "toml")
+    (tmp_path / "page.toml").write_text(file)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    assert main(["verify", "page.toml"]) == 1
+    assert blocks(VERIFICATION, "text") == [
+        f"$ holonomic verify page.toml\n{capsys.readouterr().out}"
+    ]
+
+
+def test_the_keys_fields_and_verdicts_of_the_readme_are_those_of_the_code() -> None:
+    assert sorted(first_column(VERIFICATION, "key")) == sorted((*HEADER, *EQUATIONS))
+    assert first_column(VERIFICATION, "field") == [field.name for field in fields(Verdict)]
+    assert first_column(VERIFICATION, "verdict") == [*get_args(VerdictName)]
 
 
 def test_the_keys_and_sweeps_of_the_readme_are_those_of_the_code() -> None:
