@@ -1,5 +1,6 @@
-"""What several tests look at."""
+"""Fixtures that several tests use, and the order of the tests."""
 
+import os
 import shutil
 import signal
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ from typing import Any
 import pytest
 import sympy as sp
 from browser import Player
+from sharing import Shared
 
 from derive import Derivation, load
 from solvers.app.modules import load as load_module
@@ -19,13 +21,34 @@ from solvers.studies.stability.critical_step import CriticalStep
 from solvers.studies.stability.summary import scene_steps
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Let every worker begin with slow tests; workers receive equal parts of the list."""
+    workers = getattr(config, "workerinput", {}).get("workercount", 1)
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    other = [item for item in items if not item.get_closest_marker("slow")]
+    total = len(items)
+    items.clear()
+    for k in range(workers):
+        first = slow[k::workers]
+        size = (total - len(items)) // (workers - k) - len(first)
+        items += [*first, *other[:size]]
+        other = other[size:]
+
+
+@pytest.fixture(scope="session")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Shared:
+    """``shared(name, compute)``: a result that one worker computes and all workers use."""
+    folder = tmp_path_factory.getbasetemp()
+    return Shared(folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder)
+
+
 @pytest.fixture(scope="session", autouse=True)
-def interruptions_arrive() -> None:
-    """Tests interrupt programs; a shell's background job has been told to take no notice."""
+def interrupt_signals() -> None:
+    """Tests interrupt programs; a background job of a shell ignores the signal at first."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-#: Systems that stay as they are, whose coordinates may have any value.
+#: Systems without constraints or explicit time, whose coordinates may have any value.
 PLAIN = ("double_pendulum", "elastic_pendulum", "single_pendulum")
 
 
@@ -40,9 +63,10 @@ def module(derivation: Derivation) -> ModuleType:
 
 
 @pytest.fixture(scope="session")
-def report_steps() -> dict[str, CriticalStep]:
-    """Every method's critical step for the report's scene."""
-    return {step.method: step for step in scene_steps(find("report", load_module))}
+def report_steps(shared: Shared) -> dict[str, CriticalStep]:
+    """Critical steps of all methods for the scene of the report."""
+    steps = shared("report_steps", lambda: scene_steps(find("report", load_module)))
+    return {step.method: step for step in steps}
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import generated.double_pendulum as dp
-from solvers.app.commands.chart import USUAL
+from solvers.app.commands.chart import DEFAULT
 from solvers.app.verdict.claims import claims
 from solvers.app.verdict.evidence import Evidence, Setting
 from solvers.app.verdict.objectives import objectives, recommendations
@@ -49,7 +49,7 @@ def test_figures_that_verdicts_name_are_drawn_by_the_commands_they_name(
 ) -> None:
     drawn = {
         "chart": {f"{kind}_{name}.png" for kind in ("work_precision", "steps", "energy")
-                  for name in USUAL},
+                  for name in DEFAULT},
         "stability": {f"failures_{study.name}.png" for study in studies()},
     }  # fmt: skip
     shown = {claim.figure for claim in claims(evidence) if claim.figure}

@@ -9,6 +9,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from sharing import Shared
 
 from derive.verification.report.equation import Equation
 from solvers.app.cli import COMMANDS, main
@@ -22,8 +23,8 @@ ROOT = Path(__file__).parent.parent
 
 
 @pytest.fixture(scope="module")
-def verdicts() -> dict[str, list[dict[str, str]]]:
-    return report_verdicts()
+def verdicts(shared: Shared) -> dict[str, list[dict[str, str]]]:
+    return shared("report_verdicts", report_verdicts)
 
 
 def test_help_lists_every_command_and_each_command_shows_an_example(

@@ -75,6 +75,7 @@ def test_derivatives_and_hamilton_s_form_go_through_the_loops(chain: ModuleType)
     assert not hasattr(chain, "jacobian_hamiltonian")
 
 
+@pytest.mark.slow
 def test_loops_are_compiled_for_one_motion_and_for_lanes(chain: ModuleType) -> None:
     y, params = np.array([*np.linspace(0.3, 0.9, N), *np.zeros(N)]), chain.DEFAULTS
     truth = taylor(chain, params, y.tolist(), [0.0, 0.5], 22)[-1]
@@ -87,6 +88,7 @@ def test_loops_are_compiled_for_one_motion_and_for_lanes(chain: ModuleType) -> N
     assert_allclose(lanes.y.T[::2], np.tile(truth, (8, 1)), atol=1e-8)
 
 
+@pytest.mark.slow
 def test_texts_grow_no_faster_than_the_square() -> None:
     names, sizes = ("rhs", "rhs_rational", "rhs_hamiltonian", "jacobian", "energy"), {}
     for n in (LARGE, 2 * LARGE):

@@ -109,7 +109,7 @@ def test_a_fall_is_found_exactly_among_touches() -> None:
         assert nonnegative_interval(p) == pytest.approx(expected, rel=1e-15)
 
 
-def test_the_command_prints_every_method_and_where_methods_fail(
+def test_the_command_prints_every_method_of_the_scenes(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(summary, "names", lambda: ("gauss1", "rk1", "rk4"))
@@ -136,7 +136,15 @@ def test_the_command_prints_every_method_and_where_methods_fail(
     assert {Path(path).name for path in found["pictures"]} == {
         path.name for path in tmp_path.iterdir()
     }
-    # and all of it, in small
+    assert main(["stability", "repotr"]) == 2
+    assert "did you mean 'report'" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_without_a_scene_the_command_studies_where_methods_fail(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(summary, "names", lambda: ("gauss1", "rk1", "rk4"))
     monkeypatch.setattr(study, "studies", partial(study.studies, small=True))
     assert main(["stability", "--output", str(tmp_path)]) == 0
     text = capsys.readouterr().out
@@ -147,8 +155,6 @@ def test_the_command_prints_every_method_and_where_methods_fail(
     drawn = {path.name for path in tmp_path.iterdir()}
     plots = {f"failures_{name}.png" for name in ("drift", "chaos", "tolerances")}
     assert {"stability_report.png", *plots} <= drawn
-    assert main(["stability", "repotr"]) == 2
-    assert "did you mean 'report'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("method", names())
