@@ -247,7 +247,7 @@ def test_forces_drives_and_reactions_are_refused_where_they_make_no_sense() -> N
         ({"forces": (F, F)}, "forces of system 'thing' has 2 components: give 1"),
         ({"forces": (y,)}, "the list of forces contains unknown symbols: y"),
         ({"gravity": (0, 0, -1)}, "gravity of system 'thing' has 3 components: give 2"),
-        ({"reactions": (F,), "forces": (F,)}, "asks for reactions beside forces"),
+        ({"reactions": (F,), "forces": (F,)}, "has reactions and applied forces"),
         ({"reactions": (y,)}, "the list of reactions contains unknown symbols: y"),
     ):
         with pytest.raises(SystemDefinitionError, match=words):

@@ -1,10 +1,9 @@
-"""Symmetric elimination, written out operation by operation where the matrix is small.
+"""Symmetric elimination, as straight-line operations for small matrices.
 
-M = c S U D Uᵀ S with U unit upper triangular, D diagonal, S the diagonal of
-those factors that rows and columns have in common (lengths, mostly), and c the
-number that all entries have. It runs
-from the last coordinate to the first, since in a chain the last mass moves
-with the fewest others: its entries are the shortest and cancel.
+M = c S U D Uᵀ S with U unit upper triangular, D diagonal, S the diagonal matrix
+of common factors of rows and columns (mostly lengths), and c the common number
+of all entries. It runs from the last coordinate to the first, since in a chain
+the last mass moves with the fewest others: its entries are the shortest.
 """
 
 from __future__ import annotations
@@ -18,15 +17,15 @@ from typing import Protocol
 from derive.codegen.graph import Graph
 from derive.codegen.node import Let, Node
 
-#: From this size on a loop is as quick as straight-line code, which grows with its cube.
+#: From this size on a loop is as fast as straight-line code, which grows with the cube.
 LARGE = 16
 
-#: A multiplier of more factors than this gets a name, a shorter one is written out.
+#: Multipliers with more factors than this are named.
 SHORT = 3
 
 
 class Solver(Protocol):
-    """A matrix M, ready to solve M x = b."""
+    """A factorised matrix M."""
 
     def solve(self, right: Sequence[Node]) -> list[Node]:
         """The solution x of M x = `right`."""
@@ -34,12 +33,12 @@ class Solver(Protocol):
 
 
 def factorisation(graph: Graph, matrix: Sequence[Sequence[Node]]) -> Solver:
-    """A symmetric positive definite matrix, taken apart as its size asks for."""
+    """The factorisation of a symmetric positive definite matrix; its size decides which."""
     return (Loops if len(matrix) >= LARGE else Factorisation)(graph, matrix)
 
 
 class Loops:
-    """L D Lᵀ by loops: the module has functions that take a matrix apart and solve with it."""
+    """L D Lᵀ by loops, in functions of the generated module."""
 
     def __init__(self, graph: Graph, matrix: Sequence[Sequence[Node]]) -> None:
         self._graph = graph
@@ -86,7 +85,7 @@ class Factorisation:
 
     def _inverse(self, pivot: Node, is_shared: bool) -> Node:
         inverse = self._graph.power(pivot, -1)
-        # one division instead of several, where nothing cancels
+        # one division instead of several, if no factors cancel
         return self._graph.let(inverse) if is_shared and isinstance(pivot, Let) else inverse
 
     def solve(self, right: Sequence[Node]) -> list[Node]:
@@ -113,7 +112,7 @@ class Factorisation:
 
 
 def _content(matrix: Sequence[Sequence[Node]]) -> Fraction:
-    """The largest number of which all entries are whole multiples."""
+    """The largest number of which all entries are integer multiples."""
     numbers = [abs(entry.scaled()[0]) for row in matrix for entry in row]
     return Fraction(
         reduce(gcd, (number.numerator for number in numbers)),

@@ -11,7 +11,7 @@ import sympy as sp
 from derive.codegen.graph import Graph
 from derive.codegen.node import Node
 
-#: Functions that generated code may call, under the names of ``math`` and C99.
+#: Functions that generated code can call, by their names in ``math`` and C99.
 FUNCTIONS: dict[type[sp.Expr], str] = {
     sp.sin: "sin",
     sp.cos: "cos",
@@ -22,42 +22,18 @@ FUNCTIONS: dict[type[sp.Expr], str] = {
 
 
 class UnsupportedFunctionError(ValueError):
-    """An expression that generated code has no counterpart of; the message says what it has."""
+    """An expression without a counterpart in generated code; the message lists the known ones."""
 
 
 class Translation:
-    """Nodes of SymPy expressions in one graph; every symbol becomes a leaf of its name.
-
-    Parameters
-    ----------
-    graph : Graph
-        Where the nodes are.
-    known : mapping of str to Node
-        What stands in place of the leaves of these names.
-    """
+    """Nodes of SymPy expressions; a symbol becomes the `known` node of its name, or a leaf."""
 
     def __init__(self, graph: Graph, known: Mapping[str, Node] = MappingProxyType({})) -> None:
         self.graph, self._known = graph, known
         self._nodes: dict[sp.Expr, Node] = {}
 
     def __call__(self, expression: sp.Expr) -> Node:
-        """The node of `expression`.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Made of symbols, exact numbers and what `FUNCTIONS` has.
-
-        Returns
-        -------
-        Node
-            In the graph of this translation; the same one for the same expression.
-
-        Raises
-        ------
-        UnsupportedFunctionError
-            For a function or power that generated code has no counterpart of.
-        """
+        """The node of an expression of symbols, exact numbers and `FUNCTIONS`."""
         if expression not in self._nodes:
             self._nodes[expression] = self._translated(expression)
         return self._nodes[expression]

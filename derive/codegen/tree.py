@@ -1,4 +1,4 @@
-"""A folder of generated files: written whole or not at all, and compared with what it should be."""
+"""A folder of generated files: compared with the generator's texts, and written atomically."""
 
 from __future__ import annotations
 
@@ -6,59 +6,37 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import unified_diff
 from pathlib import Path
+from typing import Literal
 
 from solvers.io.atomic_write import is_temporary, remove_abandoned, write_texts
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A file that is not what the generator makes.
-
-    Attributes
-    ----------
-    path : Path
-        The file.
-    reason : {"missing", "differs", "orphan"}
-        What is wrong; nothing generates an orphan.
-    diff : str
-        Unified diff from the file to what it should be.
-    """
+    """A file that differs from the generator's text."""
 
     path: Path
-    reason: str
-    diff: str = ""
+    reason: Literal["missing", "differs", "orphan"]  # nothing generates an orphan
+    diff: str = ""  # unified, from the file to the generator's text
 
 
 @dataclass(frozen=True)
 class Tree:
-    """What a folder should hold.
-
-    Attributes
-    ----------
-    folder : Path
-        Where the files are.
-    texts : mapping of str to str
-        The files' texts, by name.
-    complete : bool
-        Whether any other source file in the folder is an orphan.
-    """
+    """The generated texts for the files of a folder."""
 
     folder: Path
-    texts: Mapping[str, str]
-    complete: bool
+    texts: Mapping[str, str]  # by name of the file
+    complete: bool  # whether every other file in the folder is an orphan
 
     def differences(self) -> list[Difference]:
         """Files that are missing, that differ or that nothing generates, by name."""
-        found = [
-            difference
-            for name, text in self.texts.items()
-            if (difference := self._difference(self.folder / name, text))
-        ]
-        found += [Difference(path, "orphan") for path in self.orphans()]
-        return sorted(found, key=lambda difference: difference.path)
+        texts = self.texts.items()
+        compared = (self._difference(self.folder / name, text) for name, text in texts)
+        orphans = (Difference(path, "orphan") for path in self.orphans())
+        return sorted([*filter(None, compared), *orphans], key=lambda each: each.path)
 
     def orphans(self) -> list[Path]:
-        """Files and folders that nothing generates; caches and files on their way aside."""
+        """Files and folders that nothing generates, except caches and temporary folders."""
         if not self.complete or not self.folder.is_dir():
             return []
         return sorted(
@@ -68,21 +46,8 @@ class Tree:
         )
 
     def write(self) -> list[Path]:
-        """Put every file that differs into place, each by one rename; return their paths.
-
-        All files are complete before the first one moves. What an interrupted run
-        left behind is removed.
-
-        Returns
-        -------
-        list of Path
-            Of the files that were written, by name; empty if all were up to date.
-
-        Raises
-        ------
-        OSError
-            When the folder cannot be written to.
-        """
+        """Replace every file that differs by one rename, and return the paths of these files."""
+        # all files are complete before the first rename
         self.folder.mkdir(parents=True, exist_ok=True)
         remove_abandoned(self.folder)
         changed = [d.path.name for d in self.differences() if d.reason != "orphan"]

@@ -24,6 +24,13 @@ class Linearisation:
         q₀.
     mass_matrix, stiffness_matrix : sympy.Matrix
         M₀ = M(q₀) and K = ∂²U/∂q² at q₀, n × n.
+
+    Examples
+    --------
+    >>> from derive import Derivation, load
+    >>> pendulum = Derivation(load("single_pendulum")).linearisation()
+    >>> pendulum.stiffness_matrix
+    Matrix([[g*l*m]])
     """
 
     equilibrium: tuple[sp.Expr, ...]
