@@ -20,7 +20,9 @@ from xml.etree import ElementTree
 
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
+from matplotlib.figure import Figure
 from sphinx.application import Sphinx
+from sphinx_gallery.scrapers import figure_rst
 
 from solvers.io.lazy import homes
 
@@ -65,7 +67,19 @@ autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 toc_object_entries_show_parents = "hide"
 
+
+def figures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:
+    """Save the figures of a gallery script; they are made without pyplot."""
+    paths = []
+    for value in variables["example_globals"].values():
+        if isinstance(value, Figure):
+            paths.append(next(variables["image_path_iterator"]))
+            value.savefig(paths[-1])
+    return str(figure_rst(paths, settings["src_dir"]))
+
+
 sphinx_gallery_conf = {
+    "image_scrapers": (figures,),
     "examples_dirs": str(ROOT / "notebooks" / "gallery"),
     "gallery_dirs": "notebooks/docs/gallery",
     "filename_pattern": r"\.py$",
