@@ -37,8 +37,8 @@ copyright = author  # noqa: A001 - a name of Sphinx
 
 extensions = [
     "myst_nb",
+    "numpydoc",
     "sphinx.ext.autodoc",
-    "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
 ]
@@ -62,7 +62,7 @@ nb_execution_mode = "cache"
 nb_execution_cache_path = str(ROOT / "out" / "docs-cache")
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
-napoleon_google_docstring = False
+numpydoc_show_class_members = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 toc_object_entries_show_parents = "hide"
