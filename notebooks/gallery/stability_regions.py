@@ -2,7 +2,7 @@
 Stability regions
 =================
 
-Where one step does not enlarge a solution of y' = λy: boundaries |R(hλ)| = 1 of five methods, from
+Where one step does not enlarge a solution of y' = λy: the boundaries of five methods, from
 their exact stability functions.
 """
 

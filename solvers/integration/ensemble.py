@@ -60,7 +60,7 @@ def ensemble(
     form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
         The form of the equations, as in `solvers.integration.integrate.integrate`.
     rtol, atol : float, optional
-        The error of a step in a component may be atol + rtol |y|; unused with fixed steps.
+        The error of a step in a component may be atol + rtol * abs(y); unused with fixed steps.
     h : float, optional
         A fixed step size in s; methods without error estimate need one.
     t_eval : array_like of shape (times,), optional

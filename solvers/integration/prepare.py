@@ -66,7 +66,7 @@ def prepare(
     form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
         The form of the equations, as in `solvers.integration.integrate.integrate`.
     rtol, atol : float, optional
-        The error of a step in a component may be atol + rtol |y|.
+        The error of a step in a component may be atol + rtol * abs(y).
     h : float, optional
         A fixed step size in s.
     max_steps : int, optional

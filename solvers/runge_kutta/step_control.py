@@ -26,7 +26,7 @@ class Controller:
     order : int
         Order of the error estimate.
     rtol, atol : float or ndarray
-        The error of a component may be atol + rtol |y|.
+        The error of a component may be atol + rtol * abs(y).
     """
 
     order: int
