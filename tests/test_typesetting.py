@@ -1,4 +1,4 @@
-"""A formula that is set as mathematics says what it said before."""
+"""Typeset formulas have the value of their text."""
 
 import re
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from derive.formulas import typesetting
 from derive.formulas.typesetting import Formula
 from derive.verification.report.judgement import EQUATIONS
 
-#: Names of the report, and how they are written by hand: letter, dots, indices.
+#: Names of the report, and their handwritten form: letter, dots, indices.
 LETTERS = {
     "theta1": "θ1", "theta2": "θ2", "theta1_dot": "θ.1", "theta2_dot": "θ.2",
     "theta1_ddot": "θ..1", "theta2_ddot": "θ..2", "phi1": "φ1", "phi2": "φ2", "phi1_dot": "φ.1",
@@ -33,7 +33,7 @@ LETTERS = {
 
 
 class Power:
-    """What sin² is: a function that is called, and then a power."""
+    """The function sin²: a function, and then a power of its value."""
 
     def __init__(self, function: Callable[[float], float], exponent: float) -> None:
         self.function, self.exponent = function, exponent
@@ -42,9 +42,9 @@ class Power:
         return self.function(x) ** self.exponent
 
 
-def said(element: ElementTree.Element) -> str:
-    """MathML as Python, read as people read it: from left to right, without knowing its source."""
-    parts = [said(child) for child in element]
+def as_python(element: ElementTree.Element) -> str:
+    """Read MathML from left to right, without its source, and return Python."""
+    parts = [as_python(child) for child in element]
     match element.tag:
         case "mi" if element.text in ("sin", "cos"):
             return str(element.text)
@@ -75,21 +75,24 @@ def said(element: ElementTree.Element) -> str:
 def sides(html: str) -> list[str]:
     """The sides of an equation, as Python."""
     whole = ElementTree.fromstring(html)
-    return "".join(map(said, whole)).split("=")
+    return "".join(map(as_python, whole)).split("=")
+
+
+def is_arithmetic(text: str) -> bool:
+    names = {*re.findall(r"[A-Za-z]\w*", text)}
+    return names <= {*LETTERS, "sin", "cos"} and not re.search(r"[<>\[]|\([^()]*,", text)
 
 
 ARITHMETIC = [
     part
     for equation in EQUATIONS.values()
-    for text in (equation.printed, equation.corrected)
-    for part in filter(None, text.split(";"))
-    if {*re.findall(r"[A-Za-z]\w*", part)} <= {*LETTERS, "sin", "cos"} and "=" in part
-    and not re.search(r"[<>\[]|\([^()]*,", part)
-]  # fmt: skip
+    for part in f"{equation.printed};{equation.corrected}".split(";")
+    if "=" in part and is_arithmetic(part)
+]
 
 
-def apart(text: str) -> list[tuple[float, float]]:
-    """The value of each side: of the text, and of what is set."""
+def values(text: str) -> list[tuple[float, float]]:
+    """The values of each side: of the text, and of its MathML."""
     random = Random(7)
     written = {letter: random.uniform(0.2, 1.9) for letter in LETTERS.values()}
     functions: dict[str, Any] = {"sin": sin, "cos": cos, "Power": Power}
@@ -100,13 +103,13 @@ def apart(text: str) -> list[tuple[float, float]]:
     ]
 
 
-def test_there_is_enough_to_be_read() -> None:
+def test_there_are_enough_formulas() -> None:
     assert len(ARITHMETIC) > 70
 
 
 @pytest.mark.parametrize("text", [*dict.fromkeys(ARITHMETIC)])
 def test_a_formula_of_the_report_keeps_its_value(text: str) -> None:
-    assert all(isclose(plain, shown, rel_tol=1e-12) for plain, shown in apart(text))
+    assert all(isclose(plain, shown, rel_tol=1e-12) for plain, shown in values(text))
 
 
 @pytest.mark.parametrize("text", [
@@ -114,43 +117,43 @@ def test_a_formula_of_the_report_keeps_its_value(text: str) -> None:
     "K/(P/L) = K/P/L", "-K*(-P) = K*-P", "K*(-P) = -(K + P)/2", "sin(K)**2*P = (sin(K)*P)**2",
     "K**2**L = K**(P + L)", "-K/P - -L = (-K)**2", "3*K/4 = (K + P)/4*2", "K**-1 = 2*3*K",
 ])  # fmt: skip
-def test_brackets_stand_where_they_must(text: str) -> None:
-    assert all(isclose(plain, shown, rel_tol=1e-12) for plain, shown in apart(text))
+def test_necessary_brackets_are_present(text: str) -> None:
+    assert all(isclose(plain, shown, rel_tol=1e-12) for plain, shown in values(text))
 
 
 @pytest.mark.parametrize(("text", "count"), [
     ("a*b + c*d/e - f**2", 0), ("(a + b)*c", 1), ("a*(b*c)*d/(e + f)", 0), ("-(a*b)", 0),
     ("sin(a)**2", 1), ("(a/b)**2", 1), ("(a + b)/2", 1), ("f(a, b)", 1),
 ])  # fmt: skip
-def test_brackets_stand_where_they_must_and_nowhere_else(text: str, count: int) -> None:
+def test_unnecessary_brackets_are_absent(text: str, count: int) -> None:
     assert Formula(text).html.count(">(<") == count
 
 
-def test_what_is_derived_keeps_its_value(double: Derivation) -> None:
-    for value in (double.lagrangian, double.hamiltonian, *double.hamilton_equations[1],
-                  *double.euler_lagrange):  # fmt: skip
-        assert all(isclose(*pair, rel_tol=1e-12) for pair in apart(f"{sp.sstr(value)} = 0"))
+def test_derived_formulas_keep_their_value(double: Derivation) -> None:
+    energies = double.lagrangian, double.hamiltonian
+    for value in (*energies, *double.hamilton_equations[1], *double.euler_lagrange):
+        assert all(isclose(*pair, rel_tol=1e-12) for pair in values(f"{sp.sstr(value)} = 0"))
 
 
-def test_brackets_that_are_left_out_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_brackets_change_values(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(typesetting, "_operand", lambda node, _: typesetting._markup(node))
-    wrong = [text for text in ARITHMETIC if any(not isclose(*pair) for pair in apart(text))]
+    wrong = [text for text in ARITHMETIC if any(not isclose(*pair) for pair in values(text))]
     assert len(wrong) > 20
 
 
-def test_what_is_no_formula_is_shown_as_it_stands() -> None:
+def test_text_that_is_not_a_formula_is_unchanged() -> None:
     assert Formula("y' = f(t) <b>").html == (
         '<code class="formula">y&#x27; = f(t) &lt;b&gt;</code>'
     )
 
 
 @pytest.mark.parametrize("text", ["x<script>", "a = '</math><script>'", "__import__('os')"])
-def test_no_formula_brings_markup_of_its_own(text: str) -> None:
+def test_markup_in_formulas_is_escaped(text: str) -> None:
     assert "<script" not in Formula(text).html
     assert Formula(text).html.count("<code") <= 1
 
 
-def test_derivatives_matrices_and_indices_are_set() -> None:
+def test_derivatives_matrices_and_indices_are_typeset() -> None:
     assert sides(Formula("d(L, q_i) = 0").html)[0] == "((∂name['L'])/(∂name['qi']))"
     matrix = ElementTree.fromstring(Formula("M = [[a, b], [c, d]]").html)
     rows = [["".join(cell.itertext()) for cell in row] for row in matrix.iter("mtr")]
@@ -159,6 +162,6 @@ def test_derivatives_matrices_and_indices_are_set() -> None:
     assert len([*column.iter("mtr")]) == 2
 
 
-def test_what_is_too_long_is_shown_as_it_stands() -> None:
+def test_too_long_text_is_unchanged() -> None:
     for text in ("x + " * 4000 + "x", "x + " * 40_000 + "x"):
         assert Formula(text).html.startswith("<code")

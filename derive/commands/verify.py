@@ -11,31 +11,7 @@ from derive.verification.table import table_width, verdict_rows, wrapped
 
 
 def verify(names: Sequence[str], *, as_json: bool) -> int:
-    """Judge files, or the published equations of systems, and print the verdicts.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Paths that end in ``.toml``, and names of systems.
-    as_json : bool
-        Whether to print JSON instead of a table.
-
-    Returns
-    -------
-    int
-        Exit code: 0 if all equations are correct, 1 if one is wrong, 2 if one is unreadable.
-
-    Raises
-    ------
-    InputError
-        When a file is invalid, or a system has no published equations.
-    ExpressionError
-        When the value of a parameter is not a formula.
-    UnknownSystemError
-        When no system has one of the names.
-    SystemDefinitionError
-        When the file of a system is invalid.
-    """
+    """Print the verdicts; return 0, 1 if an equation is wrong, or 2 if one is unreadable."""
     derivations = [judge(name) for name in names]
     if as_json:
         print(json.dumps(list(map(asdict, derivations)), indent=2, ensure_ascii=False))

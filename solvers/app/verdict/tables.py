@@ -15,19 +15,7 @@ MARGIN = 20
 
 
 def tables(verdicts: Mapping[str, Any]) -> str:
-    """Format the verdicts on equations, programs and claims as three tables.
-
-    Parameters
-    ----------
-    verdicts : mapping
-        ``equations``, ``programs`` and ``claims`` as ``holonomic verify --json`` prints
-        them, and ``state``, at which the witnesses are computed.
-
-    Returns
-    -------
-    str
-        Wrapped to the width of the terminal, and to 120 characters at most.
-    """
+    """Format the verdicts of ``holonomic verify --json`` for the width of the terminal."""
     width = table_width()
     state = ", ".join(f"{name} = {value}" for name, value in verdicts["state"].items())
     lines = [*verdict_rows([Verdict(**row) for row in verdicts["equations"]], width), ""]
@@ -39,9 +27,7 @@ def tables(verdicts: Mapping[str, Any]) -> str:
         lines += [f"{program['id']:<{MARGIN}}{program['title']}"]
         lines += [*(wrapped(detail, width, MARGIN) for detail in details), ""]
     for claim in verdicts["claims"]:
-        details = [claim["number"]]
-        if claim["figure"]:
-            details.append(f"see {claim['figure']}")
+        details = [claim["number"], *([f"see {claim['figure']}"] if claim["figure"] else [])]
         lines += table_row((claim["id"], claim["verdict"], claim["claim"]), details, width)
     lines += ["", "Lines that end in ... are complete in: holonomic verify --json"]
     lines += [f"equations: {counted(verdicts['equations'])}"]
