@@ -1,1 +1,1 @@
-"""What is true: motions by families of methods that share nothing with those under test."""
+"""Reference solutions, by families of methods that share nothing with those under test."""

@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 
 def pendulum(length: float, gravity: float, y0: tuple[float, float], times: ArrayLike) -> Array:
-    """States (theta, theta_dot) of a single pendulum that has the state `y0` at time 0.
+    """States (theta, theta_dot) of a single pendulum with the state `y0` at time 0.
 
     Parameters
     ----------
@@ -37,29 +37,29 @@ def pendulum(length: float, gravity: float, y0: tuple[float, float], times: Arra
     omega = np.sqrt(gravity / length)
     whole = np.round(y0[0] / (2 * np.pi))
     half, speed = (y0[0] - 2 * np.pi * whole) / 2, y0[1] / (2 * omega)
-    found = swing(omega, np.sin(half), np.cos(half), speed, times)
-    return found + np.array([2 * np.pi * whole, 0.0])
+    states = swing(omega, np.sin(half), np.cos(half), speed, times)
+    return states + np.array([2 * np.pi * whole, 0.0])
 
 
 def swing(omega: float, sine: float, cosine: float, speed: float, times: ArrayLike) -> Array:
-    """The same by ω = √(g/l), and by sin θ/2, cos θ/2 and θ̇/2ω at time 0, with |θ| ≤ π."""
+    """As `pendulum`, from ω = √(g/l) and sin θ/2, cos θ/2 and θ̇/2ω at time 0, with |θ| ≤ π."""
     t = np.asarray(times, dtype=float)
-    k, below = np.hypot(sine, speed), (cosine - speed) * (cosine + speed)  # below = 1 - k²
+    k, complement = np.hypot(sine, speed), (cosine - speed) * (cosine + speed)  # 1 - k²
+    direction = np.sign(speed)
     if k == 0:
         angle, velocity = np.zeros_like(t), np.zeros_like(t)
-    elif below > 0:
-        u = omega * t + elliptic_integral(sine / k, speed / k, below)
-        sn, cn, dn = jacobi(u, below)[:3]
+    elif complement > 0:
+        u = omega * t + elliptic_integral(sine / k, speed / k, complement)
+        sn, cn, dn = jacobi(u, complement)[:3]
         angle, velocity = 2 * np.arctan2(k * sn, dn), 2 * omega * k * cn
-    elif below < 0:
-        way, rest = np.sign(speed), -below / k**2
-        u = omega * k * t + way * elliptic_integral(sine, cosine, rest)
-        _, _, dn, am = jacobi(u, rest)
-        angle, velocity = way * 2 * am, way * 2 * omega * k * dn
+    elif complement < 0:
+        reciprocal = -complement / k**2  # 1 - 1/k²
+        u = omega * k * t + direction * elliptic_integral(sine, cosine, reciprocal)
+        _, _, dn, am = jacobi(u, reciprocal)
+        angle, velocity = direction * 2 * am, direction * 2 * omega * k * dn
     else:
-        way = np.sign(speed)
-        u = way * omega * t + 2 * np.arctanh(sine / (1 + cosine))
-        angle, velocity = 4 * np.arctan(np.tanh(u / 2)), way * 2 * omega / np.cosh(u)
+        u = direction * omega * t + 2 * np.arctanh(sine / (1 + cosine))
+        angle, velocity = 4 * np.arctan(np.tanh(u / 2)), direction * 2 * omega / np.cosh(u)
     return np.stack([angle, velocity], axis=-1)
 
 
@@ -90,8 +90,8 @@ def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
     """Jacobi's sn, cn, dn and am of real `u`, with complement = 1 - k² in (0, 1].
 
     By the arithmetic-geometric mean (NIST Digital Library of Mathematical Functions,
-    22.20(ii)), after `u` has been brought to at most half a quarter period by 22.4(iii),
-    so that cn and dn keep their digits where they are small.
+    22.20(ii)), after reduction of `u` to at most half a quarter period by 22.4(iii), so
+    that cn and dn keep their digits where they are small.
 
     Parameters
     ----------
@@ -108,8 +108,8 @@ def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
     quarter = elliprf(0.0, complement, 1.0)  # K
     halves = np.round(u / (2 * quarter))
     rest = u - 2 * quarter * halves
-    turned = np.abs(rest) > quarter / 2
-    v = np.where(turned, quarter - np.abs(rest), np.abs(rest))
+    is_reflected = np.abs(rest) > quarter / 2
+    v = np.where(is_reflected, quarter - np.abs(rest), np.abs(rest))
     a, b, c = 1.0, np.sqrt(complement), np.sqrt(1 - complement)
     ratios = []
     while c > np.finfo(float).eps * a:
@@ -120,15 +120,14 @@ def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
     for ratio, rest_of_square in reversed(ratios):
         # the arcsine of ratio sin φ, which loses half its digits where both are close to 1
         sine = ratio * np.sin(phi)
-        phi = (
-            phi + np.arctan2(sine, np.hypot(np.cos(phi), np.sqrt(rest_of_square) * np.sin(phi)))
-        ) / 2
+        cosine = np.hypot(np.cos(phi), np.sqrt(rest_of_square) * np.sin(phi))
+        phi = (phi + np.arctan2(sine, cosine)) / 2
     sn, cn = np.sin(phi), np.cos(phi)
     dn = np.sqrt(cn**2 + complement * sn**2)
     root = np.sqrt(complement)
     sn, cn, dn = (
-        np.where(turned, beyond, before)
-        for beyond, before in ((cn / dn, sn), (root * sn / dn, cn), (root / dn, dn))
+        np.where(is_reflected, reflected, direct)
+        for reflected, direct in ((cn / dn, sn), (root * sn / dn, cn), (root / dn, dn))
     )
     sn = np.copysign(sn, rest)
     am = np.arctan2(sn, cn) + np.pi * halves

@@ -1,7 +1,7 @@
-"""Motions by Gragg's extrapolated midpoint rule in the longest floating-point numbers at hand.
+"""Motions by Gragg's extrapolated midpoint rule in extended precision.
 
-The equations are Lagrange's form, with sines and cosines of angles: nothing but the physics is
-shared with `solvers.references.taylor`.
+The equations are in Lagrange's form, with sines and cosines of angles. They share nothing but the
+physics with `solvers.references.taylor`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def extrapolated(
     times: ArrayLike,
     h: float = 0.02,
 ) -> Array:
-    """States (q, q̇) at `times`, the first of which is where `y0` is.
+    """States (q, q̇) at `times`; the state at the first of them is `y0`.
 
     Parameters
     ----------
@@ -39,28 +39,27 @@ def extrapolated(
     times : array_like of shape (n,)
         Increasing or decreasing, in s.
     h : float
-        Longest step in s; it is not controlled.
+        Longest step in s; there is no step control.
 
     Returns
     -------
     ndarray of shape (n, state)
-        The states, rounded to floats at the very end.
+        The states, rounded to floats at the end.
 
     Notes
     -----
     The rule and its extrapolation in h² are W. B. Gragg's (E. Hairer, S. P. Nørsett,
     G. Wanner, Solving Ordinary Differential Equations I, section II.9, without smoothing).
-    Numbers have 64 bits of mantissa where processor and system know them, else 53.
+    Numbers have a mantissa of 64 bits where the platform supports it, else of 53.
     """
     constants = np.array(params, dtype=np.longdouble)
 
     def rhs(y: Long) -> Long:
         return np.asarray(module.rhs_many(0.0, y, constants), dtype=np.longdouble)
 
-    wanted = np.asarray(times, dtype=float)
     y = np.array(y0, dtype=np.longdouble)
     states = [y]
-    for begin, end in pairwise(wanted):
+    for begin, end in pairwise(np.asarray(times, dtype=float)):
         count = int(np.ceil(abs(end - begin) / h))
         length = (np.longdouble(end) - np.longdouble(begin)) / count
         for _ in range(count):
@@ -70,7 +69,7 @@ def extrapolated(
 
 
 def _extrapolated_step(rhs: Callable[[Long], Long], y: Long, h: np.longdouble) -> Long:
-    """The change over a step, by the rule with ever more substeps, extrapolated to none."""
+    """The change over a step, by the rule with more and more substeps, extrapolated."""
     row: list[Long] = []
     for j in range(1, COLUMNS + 1):
         above, row = row, [_midpoint_rule(rhs, y, h, 2 * j)]
@@ -81,7 +80,7 @@ def _extrapolated_step(rhs: Callable[[Long], Long], y: Long, h: np.longdouble) -
 
 
 def _midpoint_rule(rhs: Callable[[Long], Long], y: Long, h: np.longdouble, count: int) -> Long:
-    """The change over `count` substeps, an even number; kept apart from y for its digits."""
+    """The change over `count` substeps, an even number; apart from y it keeps its digits."""
     part = h / count
     before, now = np.zeros_like(y), part * rhs(y)
     for _ in range(count - 1):

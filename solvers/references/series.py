@@ -1,7 +1,7 @@
-"""Power series whose coefficients are known up to some order, and grow by one order at a time.
+"""Power series whose coefficients are computed one order at a time.
 
-A function of plain sums, products and quotients, called once with series, leaves a tape of
-operations; each order of all of them then follows from the lower ones (A. Griewank, A. Walther,
+A function of sums, products and quotients, called once with series, records a tape of operations.
+Each order of all of them follows from the lower ones (A. Griewank, A. Walther,
 Evaluating Derivatives, section 13.2).
 """
 
@@ -12,22 +12,22 @@ from decimal import Decimal
 from operator import mul
 from typing import TypeAlias
 
-#: The operations of a tape: series in the order in which they were made.
+#: The operations of a function: series in the order of their evaluation.
 Tape: TypeAlias = "list[Series]"
 ZERO = Decimal(0)
 
 
 class Series:
-    """Σ coefficients[k] xᵏ, known so far.
+    """Σ coefficients[k] xᵏ, up to the order computed so far.
 
     Parameters
     ----------
     tape : list
-        Where operations on this series are written; constants are not.
+        Records the operations on this series; constants are not recorded.
     coefficients : list of Decimal
-        Those known so far.
+        Coefficients computed so far.
     coefficient : callable, optional
-        Gives the next one, of this order; None for a series that is extended by hand.
+        Computes the coefficient of an order; None for a series that is extended from outside.
     constant : bool
         Whether all coefficients but the first are zero.
     """
@@ -50,24 +50,24 @@ class Series:
         return cls(tape, [Decimal(value)], constant=True)
 
     def extend(self, order: int) -> None:
-        """Find the coefficient of this order; those below are known."""
+        """Compute the coefficient of this order from those below."""
         assert self._coefficient
         self.coefficients.append(self._coefficient(order))
 
     def at(self, order: int) -> Decimal:
-        """A coefficient that is known."""
+        """A computed coefficient."""
         if self.constant and order:
             return ZERO
         return self.coefficients[order]
 
-    def _of(self, other: Series | float) -> Series:
+    def _series(self, other: Series | float) -> Series:
         return other if isinstance(other, Series) else Series.number(self.tape, other)
 
     def __add__(self, other: Series | float) -> Series:
-        return self._combined(self._of(other), 1)
+        return self._combined(self._series(other), 1)
 
     def __sub__(self, other: Series | float) -> Series:
-        return self._combined(self._of(other), -1)
+        return self._combined(self._series(other), -1)
 
     def _combined(self, other: Series, sign: int) -> Series:
         if self.constant and other.constant:
@@ -77,13 +77,13 @@ class Series:
     __radd__ = __add__
 
     def __rsub__(self, other: float) -> Series:
-        return self._of(other) - self
+        return self._series(other) - self
 
     def __neg__(self) -> Series:
         return 0 - self
 
     def __mul__(self, other: Series | float) -> Series:
-        other = self._of(other)
+        other = self._series(other)
         if self.constant and other.constant:
             return Series.number(self.tape, self.at(0) * other.at(0))
         if other.constant:
@@ -97,7 +97,7 @@ class Series:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Series | float) -> Series:
-        other = self._of(other)
+        other = self._series(other)
         if other.constant:
             return self * Series.number(self.tape, 1 / other.at(0))
         a, b, quotient = self, other.coefficients, Series(self.tape, [])
@@ -110,4 +110,4 @@ class Series:
         return quotient
 
     def __rtruediv__(self, other: float) -> Series:
-        return self._of(other) / self
+        return self._series(other) / self

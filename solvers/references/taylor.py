@@ -1,8 +1,8 @@
 """Motions by Taylor series in decimal numbers of any length.
 
 The equations are a generated module's rational form: sums, products and quotients only, so
-that the generated function itself can be called with power series. Nothing here is shared with
-Runge–Kutta methods: neither the numbers, nor the steps, nor the coefficients.
+that the generated function accepts power series. Numbers, steps and coefficients are independent
+of those of Runge–Kutta methods.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.forms import Form, fastest_form
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, named
 from solvers.references.series import Series, Tape
 
 Array = NDArray[np.float64]
 
-#: Digits that are calculated beyond those that are wanted.
+#: Digits computed in addition to those requested.
 GUARD = 6
 
 
@@ -30,7 +30,7 @@ def taylor(
     times: ArrayLike,
     digits: int = 32,
 ) -> Array:
-    """States (q, q̇) at `times`, the first of which is where `y0` is, by Taylor series.
+    """States (q, q̇) at `times` by Taylor series; the state at the first of them is `y0`.
 
     Parameters
     ----------
@@ -42,18 +42,17 @@ def taylor(
     times : array_like of shape (n,)
         Increasing or decreasing, in s.
     digits : int
-        A step neglects terms that are smaller than this many digits of the state; rounding
-        is finer still.
+        A step neglects terms beyond this many digits of the state; rounding errors are smaller.
 
     Returns
     -------
     ndarray of shape (n, state)
-        The states, rounded to floats at the very end.
+        The states, rounded to floats at the end.
 
     Raises
     ------
     NoSeriesError
-        When the equations call a function, be it of parameters only, or depend on time.
+        When the equations call a function, even of parameters only, or depend on time.
 
     Notes
     -----
@@ -61,36 +60,33 @@ def taylor(
     integration of ODEs by means of high-order Taylor methods, Experimental Mathematics 14
     (2005): order -ln(ε)/2 + 1, and 1/e² of the distance to the nearest singularity.
     """
-    wanted = [Decimal(float(t)) for t in np.asarray(times, dtype=float)]
+    samples = [Decimal(float(t)) for t in np.asarray(times, dtype=float)]
     with localcontext() as context:
         context.prec = digits + GUARD
         motion = _Motion(module, params, y0)
         order = int(digits * 2.302585 / 2) + 2
-        states, t = [], wanted[0]
-        for until in wanted:
-            while t != until:
-                h = motion.reach(order)
-                left = until - t
-                if abs(left) <= h:
-                    states_left = motion.moved(left)
-                    t = until
-                else:
-                    states_left = motion.moved(h if left > 0 else -h)
-                    t += h if left > 0 else -h
-                motion.begin(states_left)
+        states, t = [], samples[0]
+        for sample in samples:
+            while t != sample:
+                h = motion.expand(order)
+                left = sample - t
+                is_last = abs(left) <= h
+                step = left if is_last else h if left > 0 else -h
+                t = sample if is_last else t + step
+                motion.restart(motion.state_after(step))
             states.append([float(x) for x in motion.ordinary])
     return np.array(states)
 
 
 class NoSeriesError(ArithmeticError):
-    """Equations that are more than sums, products and quotients of the state."""
+    """The equations are not sums, products and quotients of the state alone."""
 
 
 class _Motion:
-    """A motion as series of its state about where it is.
+    """A motion as power series of its state about the current time.
 
-    The state is that of the fastest form, followed by the angles, whose slopes are
-    velocities that the form holds.
+    The state is that of the fastest form, followed by the angles, whose derivatives are
+    velocities in that state.
 
     Parameters
     ----------
@@ -108,25 +104,25 @@ class _Motion:
         self._tape: Tape = []
         self._state = [Series(self._tape, []) for _ in form.state]
         constants = [Series.number(self._tape, p) for p in params]
-        name = "rhs" if form.name == "lagrangian" else f"rhs_{form.name}"
+        name = named("rhs", form.name)
         if name in module.TIMED:
             raise self._refusal(module, "depend on time")
         try:
-            rates = getattr(module, name)(0.0, self._state, constants)
+            rates = form.function(0.0, self._state, constants)
         except TypeError:  # of the function, which takes numbers only
             raise self._refusal(module, "call a function") from None
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
-        self._places = dict(form.shared_columns)
+        self._columns = dict(form.shared_columns)
         start = [Decimal(0)] * len(form.state)
         for k, i in form.shared_columns:
             start[i] = Decimal(float(y0[k]))
         for angle, (k, i) in enumerate(form.angle_columns):
             start[i], start[i + 1] = sine_and_cosine(Decimal(float(y0[k])))
             start.append(Decimal(float(y0[k])))
-            self._places[k] = len(form.state) + angle
-            self._rates.append(self._state[self._places[self._half + k]])
+            self._columns[k] = len(form.state) + angle
+            self._rates.append(self._state[self._columns[self._half + k]])
             self._state.append(Series(self._tape, []))
-        self.begin(start)
+        self.restart(start)
 
     @staticmethod
     def _refusal(module: GeneratedModule, why: str) -> NoSeriesError:
@@ -136,8 +132,8 @@ class _Motion:
             "do; ask for less accuracy or a shorter duration"
         )
 
-    def begin(self, state: Sequence[Decimal]) -> None:
-        """Series that begin anew at this state."""
+    def restart(self, state: Sequence[Decimal]) -> None:
+        """Discard all coefficients and continue from this state."""
         for series in self._tape:
             series.coefficients.clear()
         for series, value in zip(self._state, state, strict=True):
@@ -145,11 +141,11 @@ class _Motion:
 
     @property
     def ordinary(self) -> list[Decimal]:
-        """Coordinates and velocities where the motion is."""
-        return [self._state[self._places[k]].at(0) for k in range(2 * self._half)]
+        """Coordinates and velocities at the current time."""
+        return [self._state[self._columns[k]].at(0) for k in range(2 * self._half)]
 
-    def reach(self, order: int) -> Decimal:
-        """Find the series up to `order`, and the length of a step within which they serve."""
+    def expand(self, order: int) -> Decimal:
+        """Compute the series up to `order`; return the length of a step."""
         for k in range(order):
             for series in self._tape:
                 series.extend(k)
@@ -163,7 +159,7 @@ class _Motion:
         )
         return radius / Decimal(2).exp()
 
-    def moved(self, h: Decimal) -> list[Decimal]:
+    def state_after(self, h: Decimal) -> list[Decimal]:
         """The state after `h`."""
         state = []
         for series in self._state:
@@ -177,7 +173,7 @@ class _Motion:
 def sine_and_cosine(x: Decimal) -> tuple[Decimal, Decimal]:
     """Sine and cosine to the digits of the current context, by the exponential series."""
     with localcontext() as context:
-        # terms grow up to eˣ before they fall
+        # terms grow up to eˣ before they decrease
         context.prec += int(abs(x) * Decimal("0.4343")) + 5
         smallest = Decimal(10) ** -context.prec
         sums, term, k = [Decimal(0), Decimal(0)], Decimal(1), 0
