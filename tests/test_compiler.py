@@ -183,7 +183,7 @@ def test_a_compiler_that_fails_hands_over_to_the_next(
     script: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     broken, working = fake_compiler(tmp_path, script), (str(shutil.which("cc")),)
-    monkeypatch.setattr(compiler, "PATIENCE", 0.5 if "sleep" in script else 60)
+    monkeypatch.setattr(compiler, "TIME_LIMIT", 0.5 if "sleep" in script else 60)
     monkeypatch.setattr(compiler, "compilers", lambda: iter([broken]))
     with pytest.raises(NoCompilerError, match=message):
         build(SOURCE)

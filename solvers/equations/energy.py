@@ -1,4 +1,4 @@
-"""Energy in parts of what is in play: the energy of a motion above that of the system at rest."""
+"""Energy errors, relative to the energy of a motion above that of the system at rest."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from solvers.equations.module import GeneratedModule, function, has_function
 
 
 def energy_at_rest(module: GeneratedModule, params: Sequence[float]) -> float | None:
-    """Energy of the system at its equilibrium, in J; None where it has none that is known."""
+    """Energy of the system at its equilibrium in J; None if no equilibrium is known."""
     if not has_function(module, "equilibrium"):
         return None
-    place = function(module, "equilibrium")(params)
-    return float(module.energy(0.0, (*place, *[0.0] * len(place)), params))
+    q = function(module, "equilibrium")(params)
+    return float(module.energy(0.0, (*q, *[0.0] * len(q)), params))
 
 
 def energy_error(
     module: GeneratedModule, params: Sequence[float], energy: ArrayLike
 ) -> NDArray[np.float64]:
-    """How far energies in J are from the first of them, in parts of that one above rest.
+    """Differences of energies from the first one, relative to that one above rest.
 
-    At rest there is nothing to be a part of, nor where no rest is known: then in J.
+    In J where the motion starts at rest or no equilibrium is known.
 
     Parameters
     ----------
@@ -38,18 +38,19 @@ def energy_error(
     Returns
     -------
     ndarray of shape (n,)
-        Positive where energy was gained; the first is 0.
+        Positive for a gain of energy; the first is 0.
     """
-    found, rest = np.asarray(energy, dtype=float), energy_at_rest(module, params)
-    return (found - found[0]) / ((found[0] - rest if rest is not None else 0.0) or 1.0)
+    values, rest = np.asarray(energy, dtype=float), energy_at_rest(module, params)
+    scale = values[0] - rest if rest is not None else 0.0
+    return (values - values[0]) / (scale or 1.0)
 
 
 def supplied_energy(
     module: GeneratedModule, t: ArrayLike, y: ArrayLike, params: Sequence[float]
 ) -> NDArray[np.float64]:
-    """Energy in J that forces, friction and what moves by itself have supplied so far.
+    """Energy in J supplied by forces, friction and prescribed motions since the first sample.
 
-    By Simpson's rule over the samples; zeros where nothing does.
+    By Simpson's rule over the samples; zeros for a system without such a supply.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ def supplied_energy(
     Raises
     ------
     ValueError
-        When something is supplied, and three times or more do not increase.
+        When energy is supplied, and three times or more do not increase.
     """
     times = np.asarray(t, dtype=float)
     if not has_function(module, "power"):

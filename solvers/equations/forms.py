@@ -1,6 +1,7 @@
-"""Forms of the equations of motion: the state outside is always (q, q̇), inside it may differ.
+"""Forms of the equations of motion, and conversion of their states.
 
-Of the variational form, both hold a small change of that state, too.
+An ordinary state is (q, q̇); the state of a form may differ. In the variational form, both also
+contain a variation, a small change of the state.
 """
 
 from __future__ import annotations
@@ -11,13 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.equations.module import (
-    GeneratedModule,
-    function,
-    has_function,
-    named,
-    state_names,
-)
+from solvers.equations.module import GeneratedModule, function, has_function, named, state_names
 
 Array = NDArray[np.float64]
 
@@ -32,14 +27,17 @@ class Form:
     name : str
         ``lagrangian``, ``hamiltonian``, ``rational`` or ``variational``.
     params : sequence of float or ndarray
-        In the order of ``module.PARAMETERS``; arrays if motions differ in them.
+        In the order of ``module.PARAMETERS``; arrays if they differ between motions.
 
     Attributes
     ----------
     function : callable
         The generated right-hand side, of a time, a state as numbers, and parameters.
     state, ordinary : tuple of str
-        What the state is made of, inside and outside.
+        Names of the components of the form's state and of an ordinary state.
+    angle_columns, shared_columns : list of pairs of int
+        Indices in an ordinary state and in the form's: of each angle and its sine, which its
+        cosine follows; and of each component that both states share.
 
     Raises
     ------
@@ -56,7 +54,6 @@ class Form:
         self._jacobian = function(module, jacobian) if has_function(module, jacobian) else None
         self.state: tuple[str, ...] = module.STATES[name]
         self.ordinary = state_names(module, name)
-        # where angles stand outside, and their sines inside; the same for all that stays as it is
         self.angle_columns = [
             (k, self.state.index(f"sin_{q}"))
             for k, q in enumerate(module.COORDINATES)
@@ -70,22 +67,21 @@ class Form:
 
     @property
     def angles(self) -> list[tuple[int, int]]:
-        """For each angle known by sine and cosine: where in the state its sine and velocity are."""
-        half = len(self.module.COORDINATES)
-        rates = dict(self.shared_columns)
-        return [(i, rates[half + k]) for k, i in self.angle_columns]
+        """Index of the sine and of the velocity of each angle known by sine and cosine."""
+        n, columns = len(self.module.COORDINATES), dict(self.shared_columns)
+        return [(i, columns[n + k]) for k, i in self.angle_columns]
 
     def locate(self, component: str) -> tuple[bool, int] | None:
-        """Which angle an ordinary component is, or else which number of this state."""
-        k = self.ordinary.index(component)
-        turning = [angle for angle, _ in self.angle_columns]
-        if k in turning:
-            return True, turning.index(k)
-        return (False, dict(self.shared_columns)[k]) if k in dict(self.shared_columns) else None
+        """Whether an ordinary component is an angle known by its sine, and its index."""
+        k, columns = self.ordinary.index(component), dict(self.shared_columns)
+        angles = [angle for angle, _ in self.angle_columns]
+        if k in angles:
+            return True, angles.index(k)
+        return (False, columns[k]) if k in columns else None
 
     @property
     def has_jacobian(self) -> bool:
-        """Whether implicit methods can solve their stages in this form."""
+        """Whether implicit methods can integrate this form."""
         return self._jacobian is not None
 
     def rhs(self, t: float, z: Array) -> Array:
@@ -98,12 +94,12 @@ class Form:
         return np.array(self._jacobian(t, z, self.params))
 
     def from_ordinary(self, t: float, y: Array) -> Array:
-        """The state of this form that belongs to the ordinary state `y` at time `t`."""
+        """The state of this form for the ordinary state `y` at time `t`."""
         if self.name == "hamiltonian":
             return np.array(function(self.module, "hamiltonian_state")(t, y, self.params))
-        return self._regrouped(y[np.newaxis])[0]
+        return self._rearranged(y[np.newaxis])[0]
 
-    def _regrouped(self, y: Array) -> Array:
+    def _rearranged(self, y: Array) -> Array:
         z = np.empty((len(y), len(self.state)))
         for k, i in self.shared_columns:
             z[:, i] = y[:, k]
@@ -112,7 +108,7 @@ class Form:
         return z
 
     def normalised(self, z: Array) -> Array:
-        """`z` with sin² + cos² = 1 restored to rounding."""
+        """`z` with sin² + cos² = 1 restored."""
         z = z.copy()
         for _, i in self.angle_columns:
             z[i : i + 2] /= np.hypot(z[i], z[i + 1])
@@ -121,19 +117,19 @@ class Form:
     def to_ordinary(self, t: float, z: Array, before: Array, elapsed: float) -> Array:
         """The ordinary state of `z` at time `t`.
 
-        Turns of angles that are known by sine and cosine only are counted from the
-        state `before`, `elapsed` seconds ago, with the mean of both velocities.
+        Whole turns of angles known by sine and cosine are counted from the state
+        `before`, `elapsed` seconds ago, with the mean of both velocities.
 
         Parameters
         ----------
         t : float
             In s.
-        z : ndarray of shape (inside,)
+        z : ndarray of shape (m,)
             A state of this form.
         before : ndarray of shape (state,)
-            An ordinary state not long before.
+            An ordinary state shortly before.
         elapsed : float
-            Time since then in s, negative backwards.
+            Time since `before` in s, negative backwards.
 
         Returns
         -------
@@ -145,30 +141,30 @@ class Form:
         y = np.empty_like(before)
         for k, i in self.shared_columns:
             y[k] = z[i]
-        half = len(self.module.COORDINATES)
+        n = len(self.module.COORDINATES)
         for k, i in self.angle_columns:
             angle = np.arctan2(z[i], z[i + 1])
-            expected = before[k] + elapsed * (before[half + k] + y[half + k]) / 2
+            expected = before[k] + elapsed * (before[n + k] + y[n + k]) / 2
             y[k] = angle + 2 * np.pi * np.round((expected - angle) / (2 * np.pi))
         return y
 
     def from_ordinary_many(self, t: ArrayLike, y: Array) -> tuple[Array, Array]:
-        """As `inside`, of states (n, state); and the turns of angles, shape (n, angles)."""
+        """As `from_ordinary`, for states (n, state); and whole turns, shape (n, angles)."""
         if self.name == "hamiltonian":
             return self._many("hamiltonian_state_many", t, y), np.empty((len(y), 0))
-        z = self._regrouped(y)
+        z = self._rearranged(y)
         wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.angle_columns]
         turns = np.reshape(wrapped, (len(self.angle_columns), len(y))).T / (2 * np.pi)
         return z, np.round(turns)
 
     def _many(self, name: str, t: ArrayLike, states: Array) -> Array:
-        """A function of the module over states in rows; what is not a number stays so."""
+        """A vectorised function of the module at states in rows; NaN and infinity propagate."""
         params = [np.asarray(p, float) for p in self.params]
         with np.errstate(all="ignore"):
             return np.asarray(function(self.module, name)(t, states.T, params)).T
 
     def to_ordinary_many(self, t: ArrayLike, z: Array, turns: Array) -> Array:
-        """The ordinary states, shape (n, state), of `z` and `turns` as `inside_many` gives them."""
+        """The ordinary states (n, state) from the results of `from_ordinary_many`."""
         if self.name == "hamiltonian":
             return self._many("lagrangian_state_many", t, z)
         y = np.empty((len(z), len(self.ordinary)))
@@ -180,5 +176,5 @@ class Form:
 
 
 def fastest_form(module: GeneratedModule) -> str:
-    """The form that a compiled loop runs fastest."""
+    """The form that a compiled loop integrates fastest."""
     return "rational" if "rational" in module.FORMS else "lagrangian"

@@ -1,4 +1,4 @@
-"""The modes of a system: how it oscillates about rest, and frozen along a motion."""
+"""Normal modes about an equilibrium, and eigenvalues of the equations along a motion."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Modes:
 
     @classmethod
     def at_rest(cls, module: GeneratedModule, params: Sequence[float]) -> Modes:
-        """The modes about the equilibrium that the module's ``linear`` is written for.
+        """The modes about the equilibrium of the module's function ``linear``.
 
         Parameters
         ----------
@@ -47,12 +47,12 @@ class Modes:
         Returns
         -------
         Modes
-            From slow to fast.
+            In order of frequency.
 
         Raises
         ------
         ValueError
-            When the module knows no equilibrium, or it is not stable, or a mode has no mass.
+            When the system has no known equilibrium, it is not stable, or a mode has no mass.
         """
         name = module.SYSTEM
         if not has_function(module, "linear"):
@@ -60,8 +60,10 @@ class Modes:
         mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
         squares, shapes = eigh(stiffness_matrix, mass_matrix)
         if squares[0] <= 0:
-            raise ValueError(f"{name} does not oscillate about rest with {params}: "
-                             f"squared frequencies are {squares}")  # fmt: skip
+            raise ValueError(
+                f"{name} does not oscillate about rest with {params}: squared frequencies are "
+                f"{squares}"
+            )
         return cls(mass_matrix, stiffness_matrix, np.sqrt(squares), shapes)
 
     @property
@@ -72,7 +74,7 @@ class Modes:
         return np.block([[np.zeros((n, n)), np.eye(n)], [acceleration, np.zeros((n, n))]])
 
     def size(self, y: Array) -> float:
-        """√(2 energy) of y = (x, ẋ) in small motion."""
+        """√(2 energy) of a small motion y = (x, ẋ)."""
         x, velocity = np.split(y, 2)
         twice = velocity @ self.mass_matrix @ velocity + x @ self.stiffness_matrix @ x
         return float(np.sqrt(twice))
@@ -86,7 +88,7 @@ def local_eigenvalues(
 
 
 def mode_spread(module: GeneratedModule, params: Sequence[float]) -> float:
-    """How many times as fast as the slowest mode about rest the fastest is; 1 if none is known."""
+    """Ratio of the largest to the smallest frequency about rest; 1 if no modes are known."""
     try:
         frequencies = Modes.at_rest(module, params).frequencies
     except ValueError:

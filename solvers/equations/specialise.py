@@ -1,35 +1,37 @@
-"""Modules made for one scene: with its parameters folded in, and nothing that it does not need."""
+"""Modules specialised for one scene: constant parameters, and only the functions it requires."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, named
 from solvers.equations.module_cache import cached_module
 from solvers.runge_kutta.catalogue import SCIPY, load
 
-#: What each form needs to be integrated in.
+#: Functions that an integration in each form requires.
 REQUIRED_FUNCTIONS = {
     "lagrangian": ("rhs",),
     "rational": ("rhs_rational",),
     "hamiltonian": ("rhs_hamiltonian", "hamiltonian_state", "lagrangian_state"),
 }
 
-#: Takes a system's name, values by parameter and names of functions; gives texts by file name.
+#: Maps a system's name, values of its parameters and names of functions to texts by file name.
 Generator = Callable[[str, Mapping[str, float], Sequence[str]], Mapping[str, str]]
 
 
 def required_functions(method: str, form: str) -> tuple[str, ...]:
-    """Names of the functions that a method needs of a form: a Jacobian only if it is implicit."""
-    jacobian = "jacobian" if form == "lagrangian" else f"jacobian_{form}"
+    """Names of the functions that a method requires; implicit methods require a Jacobian."""
     is_implicit = method not in SCIPY and not load(method).is_explicit
-    return (*REQUIRED_FUNCTIONS[form], *((jacobian,) if is_implicit else ()))
+    return (*REQUIRED_FUNCTIONS[form], *((named("jacobian", form),) if is_implicit else ()))
 
 
 def specialised_module(
-    module: GeneratedModule, params: Sequence[float], functions: Sequence[str],
-    generator: Generator, version: str,
-) -> GeneratedModule:  # fmt: skip
+    module: GeneratedModule,
+    params: Sequence[float],
+    functions: Sequence[str],
+    generator: Generator,
+    version: str,
+) -> GeneratedModule:
     """A module without parameters, from the cache or newly generated.
 
     Parameters
@@ -39,11 +41,11 @@ def specialised_module(
     params : sequence of float
         In the order of ``module.PARAMETERS``.
     functions : sequence of str
-        What it is to have.
+        Names of its functions.
     generator : callable
-        Writes it, where the cache does not have it.
+        Generates it if it is not in the cache.
     version : str
-        Of the generator: another one writes it anew.
+        Version of the generator; part of the cache's key.
 
     Returns
     -------

@@ -1,9 +1,8 @@
 """A cache of built files that can be trusted.
 
-Files are made in a private folder inside the cache, and the whole folder is then
-renamed into place, with digests beside them: whoever comes second finds them there,
-and nothing that is damaged, half-written or somebody else's is ever loaded. There are
-no locks.
+Files are built in a private folder inside the cache. The whole folder is then renamed into place,
+with digests of its files, so that concurrent processes share one result, and damaged, incomplete or
+foreign files are never loaded. There are no locks.
 """
 
 from __future__ import annotations
@@ -15,18 +14,23 @@ import shutil
 import stat
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
-#: What the files of a finished folder hold, a line each.
+#: The file with the digests of a complete folder, one a line.
 DIGESTS = "digests.sha256"
-#: Names of the folders in which files are made begin so.
+#: Prefix of the folders in which files are built.
 BUILD_PREFIX = "build-"
 
 
+class NotMovedError(OSError):
+    """A complete folder could not be moved into place."""
+
+
 def cache_folder() -> Path:
-    """A folder that only this user can write to: the usual cache, or one until the process ends."""
+    """A folder that only this user can write to: the usual cache, or one for this process."""
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     folder = Path(home) / "holonomic"
     if not folder.is_absolute():
@@ -42,11 +46,8 @@ def cache_folder() -> Path:
 
 def _is_private(folder: Path) -> bool:
     status = folder.lstat()
-    return (
-        stat.S_ISDIR(status.st_mode)
-        and status.st_uid == os.getuid()
-        and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-    )
+    is_own = stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid()
+    return is_own and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
 @cache
@@ -56,53 +57,77 @@ def _private_folder() -> Path:
     return folder
 
 
-def is_intact(place: Path) -> bool:
-    """Whether finished files stand there, as they were made, and only we could change them."""
+def is_intact(folder: Path) -> bool:
+    """Whether a complete folder exists, unchanged, and only this user can write to it."""
     try:
-        lines = (place / DIGESTS).read_text(encoding="ascii").splitlines()
+        lines = (folder / DIGESTS).read_text(encoding="ascii").splitlines()
         expected = [tuple(line.split("  ", 1)) for line in lines]
         names = [name for _, name in expected]
-        are_files = all(stat.S_ISREG((place / name).lstat().st_mode) for name in names)
-        return (
-            bool(names) and are_files and _is_private(place) and expected == _digests(place, names)
-        )
+        if not names or not all(stat.S_ISREG((folder / n).lstat().st_mode) for n in names):
+            return False
+        return _is_private(folder) and expected == _digests(folder, names)
     except (OSError, ValueError):
         return False
 
 
-def write_digests(ready: Path) -> None:
-    """Write down what the files of a folder hold."""
-    names = sorted(path.name for path in ready.iterdir())
-    text = "".join(f"{digest}  {name}\n" for digest, name in _digests(ready, names))
-    (ready / DIGESTS).write_text(text, encoding="ascii")
+@contextmanager
+def folder_in_place(folder: Path, abandoned: float) -> Iterator[Path]:
+    """A private folder to build files in, which is moved into place with their digests.
+
+    Parameters
+    ----------
+    folder : Path
+        The final place, inside the cache.
+    abandoned : float
+        Seconds after which build folders of killed processes are removed.
+
+    Yields
+    ------
+    Path
+        An empty folder.
+
+    Raises
+    ------
+    OSError
+        When the folder cannot be written or moved.
+    """
+    _remove_abandoned(folder.parent, abandoned)
+    with tempfile.TemporaryDirectory(prefix=BUILD_PREFIX, dir=folder.parent) as name:
+        ready = Path(name) / "ready"
+        ready.mkdir(mode=0o700)
+        yield ready
+        files = sorted(path.name for path in ready.iterdir())
+        text = "".join(f"{digest}  {file}\n" for digest, file in _digests(ready, files))
+        (ready / DIGESTS).write_text(text, encoding="ascii")
+        _move(ready, folder, Path(name))
 
 
 def _digests(folder: Path, names: Sequence[str]) -> list[tuple[str, ...]]:
     return [(hashlib.sha256((folder / name).read_bytes()).hexdigest(), name) for name in names]
 
 
-def move_into_place(ready: Path, place: Path, passage: Path) -> str:
-    """Move a finished folder into place, unless another process was faster."""
+def _move(ready: Path, folder: Path, build: Path) -> None:
+    """Move a complete folder into place, unless another process was faster."""
     for attempt in range(3):
         try:
-            os.rename(ready, place)
-            return ""
+            os.rename(ready, folder)
+            return
         except OSError:
-            if is_intact(place):
-                return ""
-            # what stands there is damaged or not ours: take it away, and with it when we leave
+            if is_intact(folder):
+                return
+            # a damaged or foreign folder: move it into the build folder, which is removed
             try:
-                os.rename(place, passage / f"damaged-{attempt}")
+                os.rename(folder, build / f"damaged-{attempt}")
             except OSError:
                 continue
-    return f"cannot move it to {place}"
+    raise NotMovedError(f"cannot move it to {folder}")
 
 
-def remove_abandoned(folder: Path, age: float) -> None:
-    """Remove what killed makers left behind more than `age` seconds ago."""
-    for passage in folder.glob(f"{BUILD_PREFIX}*"):
+def _remove_abandoned(folder: Path, age: float) -> None:
+    """Remove build folders of killed processes that are older than `age` seconds."""
+    for build in folder.glob(f"{BUILD_PREFIX}*"):
         try:
-            if time.time() - passage.stat().st_mtime > age:
-                shutil.rmtree(passage, ignore_errors=True)
+            if time.time() - build.stat().st_mtime > age:
+                shutil.rmtree(build, ignore_errors=True)
         except OSError:
-            continue  # its own process was faster
+            continue  # removed by its own process

@@ -1,4 +1,4 @@
-"""C code to shared libraries, by whichever compiler is at hand, built once."""
+"""C code to shared libraries, by the first compiler that works, built once."""
 
 from __future__ import annotations
 
@@ -9,35 +9,27 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
-from solvers.io.build_cache import (
-    BUILD_PREFIX,
-    cache_folder,
-    is_intact,
-    move_into_place,
-    remove_abandoned,
-    write_digests,
-)
+from solvers.io.build_cache import NotMovedError, cache_folder, folder_in_place, is_intact
 
 #: ``-ffast-math`` would switch the whole process to flushing small numbers to zero.
-#: Vectors of states are written as such; what a compiler makes of loops over a small state is
-#: slower than the loops themselves.
+#: Vectors are explicit in the source: loops over a small state are slower when vectorised.
 FLAGS = (
     *("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC"),
     *("-fno-tree-vectorize", "-Wno-psabi"),
 )
-#: Seconds that a compiler may take, and what it makes.
-PATIENCE, LIBRARY = 120, "library.so"
+#: Time limit of a compiler in s, and the file that it writes.
+TIME_LIMIT, LIBRARY = 120, "library.so"
 
 
 class NoCompilerError(RuntimeError):
-    """No compiler made a library; the message says which were tried and what each said."""
+    """No compiler built the library; the message lists those tried and their errors."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +41,7 @@ class Library:
     path : Path
         The file, whose digest has just been checked.
     compiler : str
-        What built it.
+        The command that built it.
     """
 
     path: Path
@@ -64,46 +56,47 @@ def build(source: str, *, reproducible: bool = False) -> Library:
     source : str
         A complete C99 program text.
     reproducible : bool
-        Whether products and sums must not be fused: then every compiler gives the
-        same bits, and some speed is lost.
+        Whether products and sums must not be fused, so that every compiler gives the
+        same bits, at some cost of speed.
 
     Returns
     -------
     Library
-        By the first of `compilers` that could build it.
+        Built by the first of `compilers` that succeeds.
 
     Raises
     ------
     NoCompilerError
-        When no compiler is there, or none of those there could build it.
+        When there is no compiler, or none succeeds.
     """
     flags = (*FLAGS, "-ffp-contract=off" if reproducible else "-ffp-contract=fast")
-    folder, complaints = cache_folder(), []
+    folder, errors = cache_folder(), []
     for compiler in compilers():
-        place = folder / _key(source, compiler, flags)
-        if not is_intact(place):
-            complaint = _built(source, compiler, flags, place)
-            if complaint:
-                complaints.append(f"{compiler[0]}: {complaint}")
-                continue
-        return Library(place / LIBRARY, " ".join(compiler))
-    tried = "; ".join(complaints) or "none was found"
+        entry = folder / _key(source, compiler, flags)
+        try:
+            if not is_intact(entry):
+                _build(source, compiler, flags, entry)
+        except (_CompilerError, NotMovedError) as error:
+            errors.append(f"{compiler[0]}: {error}")
+            continue
+        return Library(entry / LIBRARY, " ".join(compiler))
+    tried = "; ".join(errors) or "none was found"
     raise NoCompilerError(
         f"no C compiler built the library ({tried}): install one as `cc`, or the package ziglang"
     )
 
 
 def compilers() -> Iterator[tuple[str, ...]]:
-    """Commands that compile C: the system's own, then the one that comes as a Python package."""
-    found = shutil.which("cc")
-    if found:
-        yield (os.path.abspath(found),)
+    """Commands that compile C: the system's compiler, then that of the package ziglang."""
+    path = shutil.which("cc")
+    if path:
+        yield (os.path.abspath(path),)
     if find_spec("ziglang"):
         yield (sys.executable, "-m", "ziglang", "cc")
 
 
 def _key(source: str, compiler: Sequence[str], flags: Sequence[str]) -> str:
-    """A name for what is built: of what, by what, how, and for which processor."""
+    """A digest of the source, the compiler, the flags and the processor."""
     status = Path(compiler[0]).stat()
     parts = (source, *compiler, str(status.st_mtime_ns), str(status.st_size), *flags, _processor())
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
@@ -119,42 +112,37 @@ def _processor() -> str:
     return f"{platform.system()} {platform.machine()} {platform.processor()} {features}"
 
 
-def _built(source: str, compiler: Sequence[str], flags: Sequence[str], place: Path) -> str:
-    """Build into `place`; return what went wrong, if anything did."""
-    remove_abandoned(place.parent, 10 * PATIENCE)
-    with tempfile.TemporaryDirectory(prefix=BUILD_PREFIX, dir=place.parent) as name:
-        passage = Path(name)
-        (passage / "source.c").write_text(source, encoding="utf-8")
-        command = [*compiler, *flags, "-shared", "-o", LIBRARY, "source.c", "-lm"]
-        complaint = _run(command, passage)
-        if complaint:
-            return complaint
-        if not (passage / LIBRARY).is_file() or not (passage / LIBRARY).stat().st_size:
-            return "wrote no library"
-        ready = passage / "ready"
-        ready.mkdir(mode=0o700)
-        os.replace(passage / LIBRARY, ready / LIBRARY)
-        write_digests(ready)
-        return move_into_place(ready, place, passage)
+class _CompilerError(Exception):
+    """A compiler did not build the library."""
 
 
-def _run(command: Sequence[str], folder: Path) -> str:
-    """Run a compiler; return what went wrong. One that hangs is ended with all its children."""
+def _build(source: str, compiler: Sequence[str], flags: Sequence[str], entry: Path) -> None:
+    """Build a library in the cache."""
+    with folder_in_place(entry, 10 * TIME_LIMIT) as ready:
+        folder = ready.parent
+        (folder / "source.c").write_text(source, encoding="utf-8")
+        _run([*compiler, *flags, "-shared", "-o", LIBRARY, "source.c", "-lm"], folder)
+        if not (folder / LIBRARY).is_file() or not (folder / LIBRARY).stat().st_size:
+            raise _CompilerError("wrote no library")
+        os.replace(folder / LIBRARY, ready / LIBRARY)
+
+
+def _run(command: Sequence[str], folder: Path) -> None:
+    """Run a compiler, and end it with all its children if it exceeds the time limit."""
+    nowhere, pipe = subprocess.DEVNULL, subprocess.PIPE
+    options: dict[str, Any] = {"stdin": nowhere, "stdout": nowhere, "stderr": pipe}
     try:
-        process = subprocess.Popen(
-            command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE, start_new_session=True,
-        )  # fmt: skip
+        process = subprocess.Popen(command, cwd=folder, start_new_session=True, **options)
     except OSError as error:
-        return f"cannot be run: {error.strerror}"
+        raise _CompilerError(f"cannot be run: {error.strerror}") from error
     try:
-        _, words = process.communicate(timeout=PATIENCE)
-    except subprocess.TimeoutExpired:
-        return f"did not end within {PATIENCE} s"
+        _, output = process.communicate(timeout=TIME_LIMIT)
+    except subprocess.TimeoutExpired as error:
+        raise _CompilerError(f"did not end within {TIME_LIMIT} s") from error
     finally:
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
     if process.returncode:
-        return words.decode(errors="replace").strip()[-300:] or f"exit {process.returncode}"
-    return ""
+        message = output.decode(errors="replace").strip()[-300:]
+        raise _CompilerError(message or f"exit {process.returncode}")
