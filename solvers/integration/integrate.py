@@ -60,8 +60,8 @@ def integrate(
         loop of an explicit method, and Lagrange's form otherwise. The variational form
         integrates a small change, too: `y0` is then the state, followed by its change.
     rtol, atol : float, optional
-        The error of a step in a component may be atol + rtol * abs(y); in Lagrange's form `atol` may
-        be an array of shape (state,). They are unused with fixed steps.
+        The error of a step in a component may be atol + rtol * abs(y); in Lagrange's form `atol`
+        may be an array of shape (state,). They are unused with fixed steps.
     h : float, optional
         A fixed step size in s; methods without error estimate need one. The last step is
         shortened to end at the end of `t_span`.
