@@ -198,13 +198,10 @@ def test_sine_and_cosine_stay_on_the_circle_over_long_runs(
     method: str, h: float, compensated: bool
 ) -> None:
     # steps leave it by 1e-10, 1e-5 and 1e-3
-    built = kernel(sp, "rational", method, lanes=False, compensated=compensated, reproducible=False)
+    built = kernel(sp, "rational", method, compensated=compensated)
     options = Options(method, "rational", h=h)
     problem = validation.problem(sp, (0.0, 1000.0), (2.0, 0.0), sp.DEFAULTS, options)
-    batch = Batch(
-        built, problem, problem.form, problem.start[np.newaxis],
-        capacity=200_000, occurrences=0, pauses=False,
-    )  # fmt: skip
+    batch = Batch(built, problem, capacity=200_000)
     batch.restart()
     batch.run()
     sine, cosine = batch.rows["z"][0, : batch.motions["rows"][0], :2].T
@@ -275,9 +272,7 @@ def bits(form: str, method: str, *, lanes: bool) -> bytes:
     events, times = [Event(dp, "theta1", 0.3)], np.linspace(0, 3, 7)
     options = Options(method, form, 1e-9, 1e-9, t_eval=times, events=events)
     problem = validation.problem(dp, (0.0, 3.0), REPORT, dp.DEFAULTS, options)
-    batch = Batch(
-        built, problem, problem.form, scatter(40), capacity=7, occurrences=3, pauses=False
-    )
+    batch = Batch(built, problem, scatter(40), capacity=7, occurrences=3)
     batch.restart()
     batch.run()
     assert (batch.motions["status"] == STATUSES.index(Status.FINISHED)).all()

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from warnings import warn
 
-import numpy as np
-
 from solvers.equations.module import header
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
@@ -86,10 +84,8 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
 def loop(problem: Problem, *, lanes: bool = False) -> Kernel:
     """The compiled loop for the problem."""
     form, options = problem.form, problem.options
-    return kernel(
-        form.module, form.name, options.method, lanes=lanes,
-        compensated=options.compensated, reproducible=False,
-    )  # fmt: skip
+    is_compensated = options.compensated
+    return kernel(form.module, form.name, options.method, lanes=lanes, compensated=is_compensated)
 
 
 def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
@@ -97,10 +93,7 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     samples = problem.samples
     outcome.backend = f"compiled by {program.library.compiler}"
     capacity = ROOM if samples is None else len(samples)
-    batch = Batch(
-        program, problem, problem.form, problem.start[np.newaxis],
-        capacity=capacity, occurrences=ROOM_FOR_EVENTS, pauses=True,
-    )  # fmt: skip
+    batch = Batch(program, problem, capacity=capacity, occurrences=ROOM_FOR_EVENTS, pauses=True)
     status = None
     while status is None:
         batch.restart(PATIENCE)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
@@ -55,14 +54,8 @@ def ensemble(
     params : array_like of shape (parameters,) or (parameters, n), or mapping
         In the order of ``module.PARAMETERS``; the same for all motions or different for each. Or
         numbers and arrays by name: parameters that are left out have their default values.
-    method : str, optional
-        One of ``solvers.runge_kutta.catalogue.names()``, or a method of SciPy's ``solve_ivp``.
-    form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
-        The form of the equations, as in `solvers.integration.integrate.integrate`.
-    rtol, atol : float, optional
-        The error of a step in a component may be atol + rtol * abs(y); unused with fixed steps.
-    h : float, optional
-        A fixed step size in s; methods without error estimate need one.
+    method, form, rtol, atol, h, max_steps, backend, compensated : optional
+        As in `solvers.integrate`.
     t_eval : array_like of shape (times,), optional
         Times in s at which states are recorded; none by default.
     events : Event or sequence of Event, optional
@@ -71,12 +64,6 @@ def ensemble(
         How many occurrences of each event to store, counted from the start. Of an
         `solvers.Extremum` those with the smallest and the largest value are stored, so that it
         must be 2 or more.
-    max_steps : int, optional
-        Largest number of steps of a motion.
-    backend : {"compiled", "python"}, optional
-        The backend; by default compiled if that is possible.
-    compensated : bool, optional
-        Whether a compiled loop compensates the rounding errors of the state.
     workers : int, optional
         Number of threads; by default one for each processor.
     stop : StopFlag, optional
@@ -115,10 +102,8 @@ def ensemble(
     >>> dp.energy_many(0.0, motions.y, dp.DEFAULTS).shape
     (20,)
     """
-    options = Options(
-        method, form, rtol, atol, h, () if t_eval is None else t_eval, events, max_steps, backend,
-        compensated,
-    )  # fmt: skip
+    times = () if t_eval is None else t_eval
+    options = Options(method, form, rtol, atol, h, times, events, max_steps, backend, compensated)
     problem = validation.problem_at_rest(module, t_span, options)
     states = validation.state_rows(module, y0, problem.form.name)
     constants = validation.parameter_rows(module, params, len(states))
@@ -128,11 +113,9 @@ def ensemble(
     threads = validation.count("workers", threads, 1)
     problem, program = compiled_loop.select(problem, lanes=True)
     backend_name = f"compiled by {program.library.compiler}" if program else "python"
-    times = np.empty(0) if problem.samples is None else problem.samples
-    result = Ensemble.empty(
-        len(states), problem.units, times, (len(problem.events), occurrences),
-        f"{problem.description}, {backend_name}",
-    )  # fmt: skip
+    assert problem.samples is not None
+    shape, about = (len(problem.events), occurrences), f"{problem.description}, {backend_name}"
+    result = Ensemble.empty(len(states), problem.units, problem.samples, shape, about)
     run = EnsembleRun(problem, states, constants, result, stop or StopFlag())
     try:
         if program:

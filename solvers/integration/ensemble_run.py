@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.equations.forms import Form
 from solvers.integration import loops
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
@@ -72,13 +71,10 @@ class EnsembleRun:
 
     def run_compiled(self, program: Kernel, workers: int) -> None:
         """Integrate all motions by a compiled loop in threads."""
-        problem, result, states = self.problem, self.result, self.states
-        form = Form(problem.form.module, problem.form.name, list(self.params.T))
+        result, states = self.result, self.states
+        problem = self.problem.with_params(list(self.params.T))
         capacity, occurrences = len(result.t_eval), result.t_events.shape[-1]
-        batch = Batch(
-            program, problem, form, states,
-            capacity=capacity, occurrences=occurrences, pauses=False,
-        )  # fmt: skip
+        batch = Batch(program, problem, states, capacity=capacity, occurrences=occurrences)
         batch.task.stop = self.stop.array.ctypes.data
         try:
             self._run_threads(batch, workers)
@@ -126,22 +122,20 @@ class EnsembleRun:
 
     def run_one_by_one(self) -> None:
         """Integrate the motions in Python."""
-        form = self.problem.form
         try:
             for k, start in enumerate(self.states):
                 if self.stop.is_set:
                     return
-                params = self.params[k % len(self.params)].tolist()
-                own_form = Form(form.module, form.name, params)
-                problem = replace(self.problem, start=start, form=own_form)
+                problem = self.problem.with_params(self.params[k % len(self.params)].tolist())
+                problem = replace(problem, start=start)
                 outcome = Outcome.at_start(problem)
                 try:
                     loops.run(problem, outcome)
                 finally:
                     self._store(outcome, k)
         finally:
-            if form.name == "variational":
-                self._set_growth(self.result.y.T[:, len(form.module.STATE) :])
+            if self.problem.form.name == "variational":
+                self._set_growth(self.result.y.T[:, len(self.result.units) // 2 :])
 
     def _store(self, outcome: Outcome, k: int) -> None:
         """Copy the results of motion `k`."""
@@ -160,7 +154,7 @@ class EnsembleRun:
                 result.y_events[:, k, i, column] = states[occurrence]
 
     def _set_growth(self, changes: Array, scale: ArrayLike = 0.0) -> None:
-        before = self.states[:, len(self.problem.form.module.STATE) :]
+        before = self.states[:, len(self.result.units) // 2 :]
         self.result.growth[:] = _log_length(changes, scale) - _log_length(before)
 
 

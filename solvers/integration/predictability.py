@@ -86,10 +86,8 @@ def predictable_until(problem: Problem, end: float) -> float:
         program = loop(variational)
     except NoCompilerError:
         return inf
-    batch = Batch(
-        program, variational, variational.form, np.array([[*start, *np.ones_like(start)]]),
-        capacity=CHUNK, occurrences=0, pauses=True,
-    )  # fmt: skip
+    states = np.array([[*start, *np.ones_like(start)]])
+    batch = Batch(program, variational, states, capacity=CHUNK, pauses=True)
     allowed = np.log(1 / min(USUAL * max(problem.tolerance, np.finfo(float).eps), LARGE))
     base, elapsed, growth = 0.0, np.empty(0), np.empty(0)
     status = None

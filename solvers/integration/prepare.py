@@ -5,9 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Mapping, Sequence
 from math import isfinite, ulp
-from typing import Any
-
-import numpy as np
+from typing import Any, TypeAlias
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration import compiled_loop, validation
@@ -18,6 +16,7 @@ from solvers.integration.problem import SHORTEST, Options, Problem
 from solvers.integration.solution import Status
 from solvers.integration.validation import Values
 
+Numbers: TypeAlias = Sequence[float] | Mapping[str, float]
 #: The result of the C function for a span or state that is not finite.
 NOT_NUMBERS = -1
 
@@ -61,18 +60,8 @@ def prepare(
     params : array_like of shape (parameters,), or mapping of str to float
         In the order of ``module.PARAMETERS``, or by name; ``run((t0, t1), y0, params)`` takes
         others.
-    method : str, optional
-        One of ``solvers.runge_kutta.catalogue.names()``.
-    form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
-        The form of the equations, as in `solvers.integration.integrate.integrate`.
-    rtol, atol : float, optional
-        The error of a step in a component may be atol + rtol * abs(y).
-    h : float, optional
-        A fixed step size in s.
-    max_steps : int, optional
-        Largest number of steps of a motion.
-    compensated : bool, optional
-        Whether the rounding errors of the state are compensated.
+    method, form, rtol, atol, h, max_steps, compensated : optional
+        As in `solvers.integrate`; `method` is none of SciPy's.
 
     Returns
     -------
@@ -106,18 +95,15 @@ def prepare(
     problem = validation.problem_at_rest(module, (0.0, 1.0), options, params)
     problem, program = compiled_loop.select(problem, lanes=False)
     assert program
-    batch = Batch(
-        program, problem, problem.form, problem.start[np.newaxis],
-        capacity=0, occurrences=0, pauses=False,
-    )  # fmt: skip
-    return Prepared(program.single, batch, problem)
+    return Prepared(program.single, Batch(program, problem), problem)
 
 
 class Prepared:
     """A function that integrates one motion after another: ``run((t0, t1), y0, params=None)``.
 
     It takes a time span in s, an ordinary state, and optionally parameters, in order or by name.
-    It returns the state at the end of the time span as a tuple.
+    It returns the state at the end of the time span as a tuple. It raises `ValueError` for invalid
+    arguments, and `NotFinishedError` where the motion does not reach the end of the time span.
     """
 
     def __init__(self, single: Any, batch: Batch, problem: Problem) -> None:
@@ -134,34 +120,9 @@ class Prepared:
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
 
     def __call__(
-        self,
-        t_span: tuple[float, float],
-        y0: Sequence[float] | Mapping[str, float],
-        params: Sequence[float] | Mapping[str, float] | None = None,
+        self, t_span: tuple[float, float], y0: Numbers, params: Numbers | None = None
     ) -> tuple[float, ...]:
-        """The state at the end of `t_span` of the motion that starts with `y0`.
-
-        Parameters
-        ----------
-        t_span : pair of float
-            Start and end in s.
-        y0 : sequence of float, or mapping of str to float
-            The initial state.
-        params : sequence of float, or mapping of str to float, optional
-            Parameters of this motion; by default those given to `prepare`.
-
-        Returns
-        -------
-        tuple of float
-            The state.
-
-        Raises
-        ------
-        ValueError
-            When an argument is invalid.
-        NotFinishedError
-            When the motion does not reach the end of `t_span`.
-        """
+        """The state at the end of `t_span` of the motion that starts with `y0`."""
         if params is not None or not self._has_defaults:
             self._has_defaults = False
             self._set_params(self._defaults if params is None else params)
@@ -193,7 +154,7 @@ class Prepared:
             raise NotFinishedError(status, float(self._batch.motions["t"][0]), y)
         return y
 
-    def _set_params(self, params: Sequence[float] | Mapping[str, float]) -> None:
+    def _set_params(self, params: Numbers) -> None:
         try:
             self._params[:] = list(params)  # type: ignore[arg-type]
             if all(map(isfinite, self._params)):

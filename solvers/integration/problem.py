@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,47 +38,27 @@ class Options:
 
 @dataclass(frozen=True)
 class Problem:
-    """A valid integration problem; `solvers.integration.validation.problem` builds it.
-
-    Attributes
-    ----------
-    form : Form
-        The equations, with parameters.
-    method : Tableau or str
-        A tableau, or the name of a method of SciPy.
-    span : pair of float
-        Start and end in s.
-    start : ndarray of shape (state,)
-        Coordinates and velocities at the start.
-    h : float or None
-        The fixed step size in s; None where steps are controlled.
-    rtol, atol : float and ndarray
-        Tolerances of controlled steps; 0 for fixed steps.
-    samples : ndarray or None
-        Times of the states to record; None for the end of every step.
-    events : list of callable
-        Functions whose zeros are located.
-    max_steps : int
-        Largest number of steps.
-    options : Options
-        The options as given.
-    """
+    """A valid integration problem; `solvers.integration.validation.problem` builds it."""
 
     form: Form
-    method: Tableau | str
+    method: Tableau | str  # a string is the name of a method of SciPy
     span: tuple[float, float]
-    start: Array
-    h: float | None
-    rtol: float
+    start: Array  # an ordinary state
+    h: float | None  # None where steps are controlled
+    rtol: float  # tolerances are 0 for fixed steps
     atol: Array
-    samples: Array | None
+    samples: Array | None  # times of the states to record; None for the end of every step
     events: list[EventFunction]
     max_steps: int
-    options: Options
+    options: Options  # as given
 
     def with_form(self, name: str) -> Problem:
         """The same problem in another form with the same ordinary state."""
         return replace(self, form=Form(self.form.module, name, self.form.params))
+
+    def with_params(self, params: Sequence[Any]) -> Problem:
+        """The same problem with other parameters: numbers, or arrays for several motions."""
+        return replace(self, form=Form(self.form.module, self.form.name, params))
 
     def in_fastest_form(self) -> Problem:
         """The problem in the form that a compiled loop runs fastest, unless a form is given."""
@@ -122,30 +103,13 @@ class Problem:
 
 @dataclass
 class Outcome:
-    """The results of a run so far.
+    """The results of a run so far; times and states are stored in blocks, events as lists."""
 
-    Its fields are those of `Solution`; times and states are stored in blocks, of shape
-    (rows,) and (rows, state), events as lists.
-
-    Attributes
-    ----------
-    end : pair of float and ndarray
-        Time in s and ordinary state reached.
-    t_events, y_events : list of list
-        Times in s and ordinary states, a list for each event.
-    t, y : list of ndarray
-        Blocks of times in s, and of ordinary states in rows.
-    status, nfev, njev, steps, rejected
-        As in `Solution`.
-    backend : str
-        The backend, and its compiler.
-    """
-
-    end: tuple[float, Array]
+    end: tuple[float, Array]  # time and ordinary state reached
     t_events: list[list[float]]
     y_events: list[list[Array]]
-    t: list[Array] = field(default_factory=list)
-    y: list[Array] = field(default_factory=list)
+    t: list[Array] = field(default_factory=list)  # of shape (rows,)
+    y: list[Array] = field(default_factory=list)  # of shape (rows, state)
     status: Status = Status.INTERRUPTED
     nfev: int = 0
     njev: int = 0

@@ -33,11 +33,11 @@ class Kernel:
         One of its forms.
     method : str
         Name of a Runge-Kutta method.
-    lanes : bool
+    lanes : bool, optional
         Whether to run many motions at once, where right-hand side and method allow it.
-    compensated : bool
+    compensated : bool, optional
         Whether the state's rounding errors are carried along.
-    reproducible : bool
+    reproducible : bool, optional
         Whether every compiler must give the same bits.
 
     Attributes
@@ -66,9 +66,9 @@ class Kernel:
         form: str,
         method: str,
         *,
-        lanes: bool,
-        compensated: bool,
-        reproducible: bool,
+        lanes: bool = False,
+        compensated: bool = False,
+        reproducible: bool = False,
     ) -> None:
         tableau, source = load(method), equations(module, form)
         vectors = lanes and source.vectorises and tableau.is_explicit
@@ -101,16 +101,14 @@ class Batch:
     kernel : Kernel
         The compiled program.
     problem : Problem
-        The problem that all motions share.
-    form : Form
-        The problem's form, with parameters for each motion if they differ.
-    starts : ndarray of shape (n, state)
-        Ordinary initial states.
-    capacity : int
+        The problem that all motions share; its form has arrays of parameters if they differ.
+    starts : ndarray of shape (n, state), optional
+        Ordinary initial states; by default that of the problem.
+    capacity : int, optional
         How many rows each motion may write: its samples, or the ends of its steps.
-    occurrences : int
+    occurrences : int, optional
         How many rows each motion may write for each event.
-    pauses : bool
+    pauses : bool, optional
         Whether a motion pauses when its rows are full.
 
     Attributes
@@ -129,14 +127,14 @@ class Batch:
         self,
         kernel: Kernel,
         problem: Problem,
-        form: Form,
-        starts: Array,
+        starts: Array | None = None,
         *,
-        capacity: int,
-        occurrences: int,
-        pauses: bool,
+        capacity: int = 0,
+        occurrences: int = 0,
+        pauses: bool = False,
     ) -> None:
-        n, events = len(starts), cast("list[Event]", problem.events)
+        starts = problem.start[np.newaxis] if starts is None else starts
+        n, events, form = len(starts), cast("list[Event]", problem.events), problem.form
         self._kernel, self.form = kernel, form
         self.motions = np.zeros(n, kernel.trajectory)
         self.motions["t"], self.motions["t_end"] = problem.span

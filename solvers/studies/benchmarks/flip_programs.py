@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
-from solvers.integration import validation
-from solvers.integration.compiled.kernel import Batch, kernel
+from solvers.integration import compiled_loop, validation
+from solvers.integration.compiled.kernel import Batch
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.problem import Options
@@ -63,12 +62,10 @@ def by_ensemble(
 
 def by_single_motions(module: GeneratedModule, method: str, tol: float, state: Array) -> Array:
     """Flip times by the compiled loop with one motion at a time."""
-    form, events = Form(module, "rational", module.DEFAULTS), _events(module)
-    settings = {"lanes": False, "compensated": False, "reproducible": False}
-    program = kernel(module, form.name, method, **settings)
-    options = Options(method, form.name, tol, tol, t_eval=(), events=events)
+    events = _events(module)
+    options = Options(method, "rational", tol, tol, t_eval=(), events=events)
     problem = validation.problem(module, (0, END), state[0], module.DEFAULTS, options)
-    batch = Batch(program, problem, form, state, capacity=0, occurrences=1, pauses=False)
+    batch = Batch(compiled_loop.loop(problem), problem, state, occurrences=1)
     batch.restart()
     batch.run()
     occurred = batch.motions["occurred"][:, : len(events)] > 0
