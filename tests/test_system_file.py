@@ -118,7 +118,7 @@ def test_a_file_becomes_a_module_and_is_checked_like_the_rest(
     path = written(tmp_path, BEAD, "bead")
     output = ["--output", str(tmp_path / "out")]
     assert main([str(path)]) == 2
-    assert "say where to write its module, with --output DIR" in capsys.readouterr().err
+    assert "give a folder for its module, with --output DIR" in capsys.readouterr().err
     assert main([str(path), *output]) == 0
     assert main(["--check", str(path), *output]) == 0
     module = tmp_path / "out" / "bead.py"
@@ -164,7 +164,7 @@ def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
     (("value = 1, unit", "valu = 1, unit"), "unknown key 'valu' in parameters.m"),
     (("value = 1, unit", "value = inf, unit"), "parameters.m"),
     (("value = 1, unit", "value = true, unit"), "must be a text in quotes"),
-    (("height = ", "x = "), "definitions.x: that name is taken"),
+    (("height = ", "x = "), "definitions.x: the name is already used"),
     (('"x", "height"', '"x"'), "1 components"),
     (('["x", "height"]', '"x"'), "must be a list"),
     (("[[masses]]", "[masses]"), "must be tables: write .*masses"),

@@ -71,7 +71,7 @@ def test_one_changed_character_is_found_shown_and_mended(
     assert f"{path}: differs" in shown
     assert "-    sin_xO = sin(x0)\n" in shown
     assert "+    sin_x0 = sin(x0)\n" in shown
-    assert "mend it with: holonomic derive double_pendulum\n" in shown
+    assert "to update it: holonomic derive double_pendulum\n" in shown
     assert main(["double_pendulum"]) == 0
     assert checked(folder, monkeypatch) == 0
 
@@ -92,7 +92,7 @@ def test_an_orphan_is_found_and_left_alone(
 ) -> None:
     (folder / "triple_pendulum.py").write_text("")
     assert checked(folder, monkeypatch) == 1
-    assert f"mend it with: rm {folder / 'triple_pendulum.py'}" in capsys.readouterr().out
+    assert f"to update it: rm {folder / 'triple_pendulum.py'}" in capsys.readouterr().out
     assert main([]) == 0
     assert (folder / "triple_pendulum.py").exists()
 

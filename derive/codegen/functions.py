@@ -208,32 +208,18 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     sizes |= {
         form: len(state) for form, state in states.items() if form in ("rational", "variational")
     }
-    specs = [
-        spec
-        for spec in SPECS
-        if (only is None or spec.name in only)
-        and {*spec.shape.split()} <= {*sizes}
-        and spec.exists(derivation)
-    ]
-    functions = [_function(spec, derivation, states, sizes) for spec in specs]
+    functions = []
+    for spec in SPECS:
+        shape = spec.shape.split()
+        is_requested = only is None or spec.name in only
+        if is_requested and {*shape} <= {*sizes} and spec.exists(derivation):
+            detail, lowering = spec.detail(derivation), _lowering(spec, derivation)
+            texts = spec.summary.format(detail), spec.returns.format(detail)
+            state, lengths = states.get(spec.form, ()), tuple(sizes[word] for word in shape)
+            functions.append(
+                Function(system, spec.name, *texts, spec.form, state, lengths, lowering)
+            )
     return Contents(derivation, states, tuple(functions))
-
-
-def _function(
-    spec: FunctionSpec, derivation: Derivation,
-    states: dict[Form, tuple[str, ...]], sizes: dict[str, int],
-) -> Function:  # fmt: skip
-    system, detail = derivation.system, spec.detail(derivation)
-    return Function(
-        system,
-        spec.name,
-        spec.summary.format(detail),
-        spec.returns.format(detail),
-        spec.form,
-        states.get(spec.form, ()),
-        tuple(sizes[word] for word in spec.shape.split()),
-        _lowering(spec, derivation),
-    )
 
 
 def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:

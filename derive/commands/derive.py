@@ -66,13 +66,13 @@ def _write(tree: Tree) -> int:
 
 
 def planned(systems: list[str], output: Path | None) -> Tree:
-    """What the folder should hold after the command."""
+    """The files that the command writes to a folder."""
     files: dict[str, str] = {}
     for name in systems or names():
         system = load(name)
         if output is None and name not in names():
             raise SystemDefinitionError(
-                f"{name} does not ship: say where to write its module, with --output DIR"
+                f"{name} does not ship: give a folder for its module, with --output DIR"
             )
         files |= texts(Derivation(system))
     if output is not None:
@@ -94,9 +94,9 @@ def _check(tree: Tree, arguments: Namespace) -> int:
     for difference in differences:
         print(f"{difference.path}: {difference.reason}")
         print(difference.diff, end="")
-        print(f"  mend it with: {_mending(difference, arguments)}")
+        print(f"  to update it: {_remedy(difference, arguments)}")
     if not differences:
-        print(f"{_files(len(tree.texts))} in {tree.folder} as holonomic derive writes them")
+        print(f"{_files(len(tree.texts))} in {tree.folder} up to date")
     return 1 if differences else 0
 
 
@@ -108,7 +108,7 @@ def _removal(path: Path) -> str:
     return f"rm {'-r ' if path.is_dir() else ''}{quote(str(path))}"
 
 
-def _mending(difference: Difference, arguments: Namespace) -> str:
+def _remedy(difference: Difference, arguments: Namespace) -> str:
     if difference.reason == "orphan":
         return _removal(difference.path)
     stem = difference.path.stem

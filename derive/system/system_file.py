@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -18,107 +19,103 @@ from derive.system.tables import Table, read
 from solvers.io.toml_input import InputError
 
 KEYS = (
-    "name", "title", "coordinates", "parameters", "definitions", "masses", "potential", "gravity",
-    "dissipation", "forces", "equilibrium", "reactions",
-)  # fmt: skip
-#: What cannot be negative or zero, unless it says so.
+    *("name", "title", "coordinates", "parameters", "definitions", "masses", "potential"),
+    *("gravity", "dissipation", "forces", "equilibrium", "reactions"),
+)
+#: Units of parameters that are positive by default.
 POSITIVE_UNITS = ("kg", "m")
+Scope = Mapping[str, Any]
 
 
 def read_system(path: Path) -> System:
-    """The system that a TOML file describes.
-
-    Parameters
-    ----------
-    path : Path
-        Its name without ``.toml`` is the system's, unless the file gives another.
-
-    Returns
-    -------
-    System
-
-    Raises
-    ------
-    SystemDefinitionError
-        When it describes none; the message says where, and what is allowed.
-    """
+    """The system in a TOML file; its default name is the file's name without ``.toml``."""
     try:
         return _system(path.stem, Table(str(path), read(path), KEYS))
     except (InputError, ExpressionError, SystemDefinitionError) as error:
         message = str(error)
-        raise SystemDefinitionError(
-            message if message.startswith(str(path)) else f"{path}: {message}"
-        ) from error
+        prefix = "" if message.startswith(str(path)) else f"{path}: "
+        raise SystemDefinitionError(f"{prefix}{message}") from error
 
 
 def _system(stem: str, table: Table) -> System:
     name = table.text("name", stem)
     if not IDENTIFIER.match(name):
-        raise InputError(f'{name[:50]!r} cannot be the system\'s name: give another, name = "…"')
+        raise InputError(f'{name[:50]!r} cannot be the name of a system: give another, name = "…"')
     for key in ("coordinates", "masses"):
         if key not in table.values:
             raise InputError(f"{key!r} is missing: a system needs coordinates and masses")
-    coordinates = [
-        Coordinate(
-            _symbol(key, name, positive=row.flag("positive", default=False)),
-            row.text("unit", "rad"), row.text("meaning", key),
-        )
-        for key, row in table.tables("coordinates", ("unit", "meaning", "positive")).items()
-    ]  # fmt: skip
-    parameters = [_parameter(key, name, row) for key, row in table.tables(
-        "parameters", ("value", "unit", "meaning", "positive")).items()]  # fmt: skip
-    symbols = [*(c.symbol for c in coordinates), *(p.symbol for p in parameters), TIME]
-    scope: dict[str, Any] = {
-        **FUNCTIONS, **{s.name: s for s in symbols},
-        **{velocity(c.symbol).name: velocity(c.symbol) for c in coordinates},
-    }  # fmt: skip
-    for key, text in table.entries("definitions").items():
-        check_name(key, name)
-        if key in scope:
-            raise InputError(f"definitions.{key}: that name is taken")
-        try:
-            scope[key] = _value(f"definitions.{key}", text, scope)
-        except InputError as error:
-            raise InputError(f"{error}; a definition may use those above it") from error
-
-    def optional(key: str) -> sp.Expr | None:
-        return _value(key, table.formula(key), scope) if key in table.values else None
-
-    def by_coordinate(key: str) -> list[sp.Expr] | None:
-        given = table.entries(key)
-        known = [c.symbol.name for c in coordinates]
-        for other in set(given) - set(known):
-            raise InputError(f"{key}.{other[:50]}: coordinates are {', '.join(known)}")
-        texts = [given.get(coordinate, "0") for coordinate in known]
-        return [_value(key, text, scope) for text in texts] if given else None
-
-    gravity = [_value("gravity", text, scope) for text in table.formulas("gravity")]
+    rows = table.tables("coordinates", ("unit", "meaning", "positive"))
+    coordinates = [_coordinate(key, name, row) for key, row in rows.items()]
+    rows = table.tables("parameters", ("value", "unit", "meaning", "positive"))
+    parameters = [_parameter(key, name, row) for key, row in rows.items()]
+    q = [coordinate.symbol for coordinate in coordinates]
+    symbols = [*q, *(p.symbol for p in parameters), TIME, *map(velocity, q)]
+    scope = FUNCTIONS | {symbol.name: symbol for symbol in symbols}
+    scope |= _definitions(table, name, scope)
+    formula, each = partial(_formula, table, scope), partial(_by_coordinate, table, scope, q)
     return System(
         name=name,
         title=table.text("title", name),
         coordinates=coordinates,
         parameters=parameters,
         masses=list(_masses(table, scope)),
-        potential=optional("potential"),
-        gravity=gravity or None,
-        dissipation=optional("dissipation") or sp.S.Zero,
-        forces=by_coordinate("forces") or (),
-        equilibrium=by_coordinate("equilibrium"),
-        reactions=[_value("reactions", text, scope) for text in table.formulas("reactions")],
+        potential=formula("potential"),
+        gravity=_list(table, scope, "gravity") or None,
+        dissipation=formula("dissipation") or sp.S.Zero,
+        forces=each("forces") or (),
+        equilibrium=each("equilibrium"),
+        reactions=_list(table, scope, "reactions"),
     )
 
 
-def _masses(table: Table, scope: Mapping[str, Any]) -> Iterator[PointMass]:
+def _definitions(table: Table, system: str, scope: Scope) -> dict[str, Any]:
+    definitions: dict[str, Any] = {}
+    for key, text in table.entries("definitions").items():
+        check_name(key, system)
+        if key in scope:
+            raise InputError(f"definitions.{key}: the name is already used; choose another")
+        try:
+            definitions[key] = _value(f"definitions.{key}", text, {**scope, **definitions})
+        except InputError as error:
+            raise InputError(f"{error}; a definition may use those above it") from error
+    return definitions
+
+
+def _formula(table: Table, scope: Scope, key: str) -> sp.Expr | None:
+    return _value(key, table.formula(key), scope) if key in table.values else None
+
+
+def _list(table: Table, scope: Scope, key: str) -> list[sp.Expr]:
+    return [_value(key, text, scope) for text in table.formulas(key)]
+
+
+def _by_coordinate(
+    table: Table, scope: Scope, q: Sequence[sp.Symbol], key: str
+) -> list[sp.Expr] | None:
+    """One formula for each coordinate, by default 0; None if there are none."""
+    texts = table.entries(key)
+    names = [symbol.name for symbol in q]
+    for other in set(texts) - set(names):
+        raise InputError(f"{key}.{other[:50]}: coordinates are {', '.join(names)}")
+    return [_value(key, texts.get(name, "0"), scope) for name in names] if texts else None
+
+
+def _masses(table: Table, scope: Scope) -> Iterator[PointMass]:
     for row in table.listed("masses", ("mass", "position", "inertia", "angle")):
-        mass = _value(row.name, row.formula("mass"), scope)
-        position = tuple(_value(row.name, text, scope) for text in row.formulas("position"))
+        mass, *position = (
+            _value(row.name, text, scope)
+            for text in (row.formula("mass"), *row.formulas("position"))
+        )
         if "inertia" in row.values or "angle" in row.values:
-            inertia, angle = (
-                _value(row.name, row.formula(key), scope) for key in ("inertia", "angle")
-            )
-            yield RigidBody(mass, position, inertia, angle)
+            inertia, angle = (_value(row.name, row.formula(k), scope) for k in ("inertia", "angle"))
+            yield RigidBody(mass, tuple(position), inertia, angle)
         else:
-            yield PointMass(mass, position)
+            yield PointMass(mass, tuple(position))
+
+
+def _coordinate(key: str, system: str, row: Table) -> Coordinate:
+    symbol = _symbol(key, system, positive=row.flag("positive", default=False))
+    return Coordinate(symbol, row.text("unit", "rad"), row.text("meaning", key))
 
 
 def _parameter(key: str, system: str, row: Table) -> Parameter:
@@ -126,26 +123,25 @@ def _parameter(key: str, system: str, row: Table) -> Parameter:
     try:
         value = float(_value(row.name, row.formula("value"), FUNCTIONS))
     except InputError as error:
-        raise InputError(f"{error}; value is a number, its unit stands in unit = …") from error
+        raise InputError(f"{error}; value is a number, its unit is given by unit = …") from error
     is_positive = row.flag("positive", default=unit in POSITIVE_UNITS)
     if not isfinite(value) or (is_positive and value <= 0):
-        raise InputError(
-            f"{row.name} = {value} must be a {'positive' if is_positive else 'finite'} number"
-        )
+        kind = "positive" if is_positive else "finite"
+        raise InputError(f"{row.name} = {value} must be a {kind} number")
     symbol = _symbol(key, system, positive=is_positive)
     return Parameter(symbol, unit, value, row.text("meaning", key))
 
 
 def _symbol(name: str, system: str, *, positive: bool) -> sp.Symbol:
-    check_name(name, system)  # before SymPy or a compiler sees it
+    check_name(name, system)  # before SymPy or a compiler uses it
     return sp.Symbol(name, positive=True) if positive else sp.Symbol(name, real=True)
 
 
-def _value(place: str, text: str, scope: Mapping[str, Any]) -> sp.Expr:
+def _value(name: str, text: str, scope: Scope) -> sp.Expr:
     try:
         value = parse(text, scope)
     except ExpressionError as error:
-        raise InputError(f"{place}: {error}") from error
+        raise InputError(f"{name}: {error}") from error
     if not isinstance(value, sp.Expr):
-        raise InputError(f"{place}: {text[:50]!r} must be a number, not a column or matrix")
+        raise InputError(f"{name}: {text[:50]!r} must be a number, not a vector or matrix")
     return value
