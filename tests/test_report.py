@@ -55,18 +55,18 @@ def mutants(text: str) -> Iterator[str]:
     """`text` with one mutation: a sign, an index, a power, a function or a number."""
     for part_number, part in enumerate(parts := text.split(";")):
         pieces = RELATION.split(part)
-        for place in range(0, len(pieces), 2):
-            bound = len(pieces) > 1 and re.fullmatch(r"\s*\d+\s*", pieces[place])
-            if bound and pieces[place - 1] != "=":
+        for index in range(0, len(pieces), 2):
+            bound = len(pieces) > 1 and re.fullmatch(r"\s*\d+\s*", pieces[index])
+            if bound and pieces[index - 1] != "=":
                 continue  # a looser bound is not wrong
-            if place == 0:
+            if index == 0:
                 negative = f"-({pieces[0].strip()}) {''.join(pieces[1:])}"
                 yield ";".join([*parts[:part_number], negative, *parts[part_number + 1 :]])
-            count = sum(1 for _ in sites(ast.parse(pieces[place].strip(), mode="eval")))
+            count = sum(1 for _ in sites(ast.parse(pieces[index].strip(), mode="eval")))
             for k in range(count):
-                tree = ast.parse(pieces[place].strip(), mode="eval")
+                tree = ast.parse(pieces[index].strip(), mode="eval")
                 list(sites(tree))[k]()
-                changed = [*pieces[:place], f" {ast.unparse(tree)} ", *pieces[place + 1 :]]
+                changed = [*pieces[:index], f" {ast.unparse(tree)} ", *pieces[index + 1 :]]
                 yield ";".join([*parts[:part_number], "".join(changed), *parts[part_number + 1 :]])
 
 

@@ -75,7 +75,7 @@ def _pair(
 
 
 def differing_functions(terms: Collection[Term], derived: sp.Expr, state: Symbols) -> list[sp.Expr]:
-    """Functions of the state whose coefficients differ between the sum and `derived`."""
+    """Functions of the state that have different coefficients in the sum and in `derived`."""
     a, b = _pair(terms, derived, state)
     return [f for f in {**a, **b} if sp.cancel(a.get(f, 0) - b.get(f, 0))]
 

@@ -1,4 +1,4 @@
-"""Equations (91) to (128) and the displays without a number of Appendix A, typed as printed."""
+"""Equations (91) to (128) and the unnumbered displays of Appendix A, as printed."""
 
 from __future__ import annotations
 

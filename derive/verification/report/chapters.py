@@ -1,4 +1,4 @@
-"""Equations (1) to (90), chapters 1 to 3, typed as they are printed."""
+"""Equations (1) to (90) of chapters 1 to 3, as printed."""
 
 from __future__ import annotations
 
