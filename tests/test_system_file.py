@@ -171,10 +171,10 @@ def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
     (("title", "title = [[["), "is no TOML file"),
     (('mass = "m"', 'mass = "-m"'), "mass -m is not positive"),
     (("c*x_dot**2/2", "c*x**2"), "depends on no velocity"),
-    (('"1/2"', '"50 cm"'), "its unit stands in unit"),
+    (('"1/2"', '"50 cm"'), "its unit is given by unit"),
     (("height = ", "late = 'height'\nheight = "), "a definition may use those above it"),
     (("[coordinates]", "[definitions.x]"), "is missing|must be"),
-    (("title", 'name = "my-bead"\ntitle'), "cannot be the system's name"),
+    (("title", 'name = "my-bead"\ntitle'), "cannot be the name of a system"),
 ])  # fmt: skip
 def test_what_is_no_system_is_refused_at_once(
     change: tuple[str, str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
