@@ -15,9 +15,9 @@ from derive.codegen.functions import contents
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.io.figures import png
+from solvers.scenes.models.catalogue import load as load_models
 from solvers.scenes.reading import KEYS, scene
 from solvers.scenes.run import run_scene
-from solvers.scenes.scene import MODELS
 from solvers.scenes.shipped import find
 from solvers.sweeps import map_kinds
 from solvers.sweeps.job import STATUSES
@@ -145,7 +145,7 @@ def test_keys_and_models_that_are_listed_are_all_that_there_are() -> None:
     named = {key for row in keys.splitlines()[2:] for key in re.findall(r"\w+", row.split("|")[1])}
     shown = {"system", "duration", "accuracy", "parameters", "initial", "label"}
     assert named | shown == {*KEYS}
-    assert all(f'"{model}"' in keys for model in MODELS)
+    assert all(f'"{model}"' in keys for model in load_models())
 
 
 def test_the_sweep_that_is_shown_runs_and_every_kind_is_listed(tmp_path: Path) -> None:

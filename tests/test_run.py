@@ -1,4 +1,4 @@
-"""``holonomic run``: what it prints, writes and draws, and with which code it ends."""
+"""``holonomic run``: its output, files and plots, and its exit codes."""
 
 import json
 import os
@@ -20,20 +20,20 @@ from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.io.notation import symbol
 from solvers.references.taylor import taylor
-from solvers.scenes.geometry import ABOVE, projected, track
+from solvers.scenes.geometry import ELEVATION, projected, track
 from solvers.scenes.plots import _labelled, default_pictures, figure
 from solvers.scenes.run import run_scene
 from solvers.scenes.shipped import find
-from solvers.scenes.summary import special_code, summary, table
+from solvers.scenes.summary import summary, table
 
-KEYS = {"model", "method", "form", "final_state", "accuracy_asked", "error_estimate", "why"}
+KEYS = {"model", "method", "form", "final_state", "requested_accuracy", "error_estimate", "why"}
 
 
 def run(*arguments: str, folder: Path) -> int:
     return main(["run", *arguments, "--output", str(folder)])
 
 
-def test_the_json_says_what_was_chosen_why_and_where_it_ends(
+def test_the_json_contains_the_model_the_reason_and_the_final_state(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert run("report", "--json", folder=tmp_path) == 0
@@ -48,15 +48,15 @@ def test_the_json_says_what_was_chosen_why_and_where_it_ends(
         np.abs(np.array(list(found["final_state"].values())) - truth).max()
         <= (found["error_estimate"])
     )
-    assert found["error_estimate"] <= found["accuracy_asked"] == 1e-9
+    assert found["error_estimate"] <= found["requested_accuracy"] == 1e-9
     assert found["accuracy_met"] is True
-    assert set(found["declined"]) >= {"rest", "normal modes", "quadrature"}
+    assert set(found["declined_models"]) >= {"rest", "normal modes", "quadrature"}
     assert {Path(path).name for path in found["files"].values()} == {
         "report.csv", "report.png", "report.html",
     } == {path.name for path in tmp_path.iterdir()}  # fmt: skip
 
 
-def test_a_named_way_is_told_with_its_error_and_what_is_beside_it(
+def test_a_prescribed_method_is_reported_with_its_error_and_the_runs_beside_it(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert run("program_3", "--json", folder=tmp_path) == 0
@@ -67,10 +67,10 @@ def test_a_named_way_is_told_with_its_error_and_what_is_beside_it(
     apart = [abs(found["final_state"][k] - motion["final_state"][k]) for k in dp.STATE]
     assert 1e-8 < max(apart) < found["error_estimate"] < 1e-5
     assert run("program_3", folder=tmp_path) == 0
-    assert "NOT MET, since it is named how" in capsys.readouterr().out
+    assert "NOT MET, since the scene names the model or the step" in capsys.readouterr().out
 
 
-def test_only_digits_that_can_be_trusted_are_printed(
+def test_only_significant_digits_are_printed(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert run("flea", "one_bob", folder=tmp_path) == 0
@@ -79,7 +79,7 @@ def test_only_digits_that_can_be_trusted_are_printed(
     (digits,) = re.findall(r"theta1 = -?\d+\.(\d+) rad,", flea)
     assert 10.0 ** -len(digits) >= estimate / 10
     assert "theta2" not in one_bob.split("final state:")[1]
-    assert "not normal modes: theta2 moves no mass" in one_bob
+    assert "not normal modes: theta2 has no inertia" in one_bob
 
 
 def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
@@ -91,17 +91,17 @@ def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
     assert rows[:, 0].tolist() == [0, 5, 10, 15, 20]
     assert rows[:, 1].tolist() == found.y[0].tolist()
     assert np.ptp(rows[:, 2]) < 1e-6
-    # no energy unless it is asked for
+    # no energy unless it is requested
     assert run_scene(replace(scene, outputs=("theta1",))).energy is None
 
 
 @pytest.mark.parametrize("name", ["report", "tremor", "single", "weightless", "rest"])
-def test_a_motion_begins_exactly_where_the_scene_says(name: str) -> None:
+def test_a_motion_starts_exactly_at_the_initial_state(name: str) -> None:
     scene = find(name, load_module)
     assert run_scene(scene).y[:, 0].tolist() == [*scene.y0]
 
 
-def test_rods_and_springs_are_told_apart_by_their_lengths() -> None:
+def test_rods_and_springs_are_distinguished_by_their_lengths() -> None:
     rods, spring = (track(run_scene(find(name, load_module))) for name in ("report", "spring"))
     assert (rods.links, rods.springs) == (((-1, 0), (0, 1)), ())
     assert (spring.links, spring.springs) == ((), ((-1, 0),))
@@ -113,7 +113,7 @@ def test_rods_and_springs_are_told_apart_by_their_lengths() -> None:
     # the cart itself hangs on nothing
     ("cart_3", "x = 0\ntheta1 = 1\ntheta2 = 0\ntheta3 = 0", [(0, 1), (1, 2), (2, 3)]),
 ])  # fmt: skip
-def test_what_keeps_its_distance_is_joined(
+def test_masses_at_a_constant_distance_are_joined(
     system: str, initial: str, rods: list[tuple[int, int]], tmp_path: Path
 ) -> None:
     path = tmp_path / "scene.toml"
@@ -123,23 +123,23 @@ def test_what_keeps_its_distance_is_joined(
     assert not seen.springs
 
 
-def test_space_is_seen_from_above_and_from_the_side() -> None:
+def test_motions_in_space_are_projected_obliquely() -> None:
     # of three unit vectors the upright one stays upright, and areas of the ground shrink by
     # the sine of the angle from which they are seen
     east, north, up = projected(np.eye(3)[:, :, None])[:, :, 0]
-    assert up == pytest.approx([0, np.cos(ABOVE)])
-    assert abs(np.linalg.det([east, north])) == pytest.approx(np.sin(ABOVE))
+    assert up == pytest.approx([0, np.cos(ELEVATION)])
+    assert abs(np.linalg.det([east, north])) == pytest.approx(np.sin(ELEVATION))
     assert np.hypot(east[0], north[0]) == pytest.approx(1)
 
 
-def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:
+def test_specialised_code_is_generated_on_request() -> None:
     scene = replace(find("report", load_module), code="specialised")
     found = run_scene(scene, specialiser)
-    assert found.selection.model.asked.module.PARAMETERS == ()
-    assert "def rhs_rational(" in special_code(found).read_text()
+    assert found.selection.model.run.motion.module.PARAMETERS == ()
+    assert "def rhs_rational(" in Path(found.specialised_module.__file__).read_text()
     assert any("specialised code (29 operations instead of 34" in line for line in summary(found))
     plain = run_scene(replace(scene, code=None), specialiser)
-    assert plain.selection.model.asked.module is dp
+    assert plain.selection.model.run.motion.module is dp
     assert np.abs(found.y - plain.y).max() < 2 * scene.accuracy
     with pytest.raises(ValueError, match="needs a specialiser"):
         run_scene(scene)
@@ -148,11 +148,11 @@ def test_specialised_code_is_made_where_a_scene_asks_for_it() -> None:
 @pytest.mark.parametrize(("text", "code", "words"), [
     ("system = 1\n", 2, "is missing"),
     ('system = "double_pendulum"\nduration = 20\nmethod = "dop853"\n'
-     'initial = { theta1 = "pi/2", theta2 = "pi" }\n', 3, "dop853 comes to"),
+     'initial = { theta1 = "pi/2", theta2 = "pi" }\n', 3, "dop853 reaches"),
     ('system = "double_pendulum"\nduration = 1\nmodel = "full"\nparameters = { m2 = "absent" }\n'
-     "initial = { theta1 = 1, theta2 = 0 }\n", 2, "theta2 moves no mass"),
+     "initial = { theta1 = 1, theta2 = 0 }\n", 2, "theta2 has no inertia"),
 ])  # fmt: skip
-def test_it_ends_with_the_code_of_what_went_wrong(
+def test_the_exit_code_depends_on_the_kind_of_error(
     text: str, code: int, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "scene.toml"
@@ -164,7 +164,7 @@ def test_it_ends_with_the_code_of_what_went_wrong(
     assert [p.name for p in tmp_path.iterdir()] == ["scene.toml"]
 
 
-def test_other_commands_refuse_scenes_that_are_not_theirs(
+def test_other_commands_refuse_unsuitable_scenes(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert main(["stability", "weightless", "--output", str(tmp_path)]) == 2
@@ -173,7 +173,7 @@ def test_other_commands_refuse_scenes_that_are_not_theirs(
     assert "there is no such file" in capsys.readouterr().err
 
 
-def test_text_is_drawn_as_it_is_written(tmp_path: Path) -> None:
+def test_text_with_dollar_signs_is_plotted_unchanged(tmp_path: Path) -> None:
     text = 'title = "costs $5 and $x^"\nsystem = "single_pendulum"\nduration = 1\n'
     (tmp_path / "s.toml").write_text(text + "initial = { theta = 1 }\n")
     assert run(str(tmp_path / "s.toml"), folder=tmp_path / "out") == 0
@@ -188,7 +188,7 @@ def lines_of(chart: Figure) -> list[tuple[str, int]]:
     return [(panel.get_ylabel(), len(panel.lines)) for panel in chart.axes if panel.axison]
 
 
-def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> None:
+def test_plots_show_all_existing_quantities_with_units_and_equal_axes_in_space() -> None:
     scene = find("report", load_module)
     assert default_pictures(run_scene(scene)) == (
         "theta1, theta2 over t", "theta1_dot over theta1", "theta2_dot over theta2",
@@ -210,12 +210,12 @@ def test_pictures_show_what_there_is_with_units_and_equal_axes_in_space() -> Non
         "path",
         "energy",
     )
-    # what is drawn is the motion
+    # the curves are the motion
     angles = panels[0].lines
     assert np.array_equal(angles[1].get_ydata(), run_scene(scene).y[1])
 
 
-def test_the_report_s_figures_are_drawn_with_what_is_known_of_them() -> None:
+def test_the_report_s_figures_are_plotted_with_a_note_on_what_is_known() -> None:
     for name, curves in (("figure_3_1", 4), ("figure_3_3", 2), ("figure_3_6", 1),
                          ("figure_4_2", 1), ("figure_4_5", 2)):  # fmt: skip
         scene = find(name, load_module)
@@ -227,7 +227,7 @@ def test_the_report_s_figures_are_drawn_with_what_is_known_of_them() -> None:
         assert "error estimate" in note
 
 
-def test_progress_is_told_on_a_terminal_only_and_wiped_out(tmp_path: Path) -> None:
+def test_progress_is_shown_on_a_terminal_only_and_erased(tmp_path: Path) -> None:
     command = [sys.executable, "-c", (
         "import time\nfrom solvers.io.progress import Progress\n"
         "with Progress() as tell:\n    tell('working')\n    time.sleep(1.6)\nprint('done')"
@@ -245,7 +245,7 @@ def test_progress_is_told_on_a_terminal_only_and_wiped_out(tmp_path: Path) -> No
     assert shown.endswith("\r" + " " * 78 + "\r")
 
 
-def test_units_stand_beside_the_names_that_have_them() -> None:
+def test_axis_labels_contain_the_units_of_all_quantities() -> None:
     units = {"x": "m", "theta1": "rad", "theta2": "rad"}
     assert _labelled(["theta1", "theta2"], units) == r"$\theta_{1}$, $\theta_{2}$ / rad"
     assert _labelled(["x", "theta1"], units) == r"$x$ / m, $\theta_{1}$ / rad"

@@ -1,4 +1,4 @@
-"""What is seen of a motion: where its masses are, what joins them, and its energy's error."""
+"""Geometry of a result: positions of masses, rods and springs, and the energy error."""
 
 from __future__ import annotations
 
@@ -8,22 +8,21 @@ from solvers.equations.energy import energy_error, supplied_energy
 from solvers.player.track import Track
 from solvers.scenes.run import SceneResult, energies
 
-#: Lengths that differ by less are those of rods.
+#: Largest relative change of a rod's length.
 RIGID = 1e-6
-#: How far around and from above motions in space are looked at, in rad.
-AROUND, ABOVE = 0.5, 0.45
+#: Angles of view of motions in space: azimuth and elevation, in rad.
+AZIMUTH, ELEVATION = 0.5, 0.45
 
 
-def places(result: SceneResult) -> np.ndarray:
-    """Positions in m of the masses that there are, shape (masses, axes, samples)."""
-    found = np.asarray(result.scene.module.positions_many(result.t, result.y, result.scene.params))
-    return found[np.isfinite(found).all(axis=(1, 2))]
+def mass_positions(result: SceneResult) -> np.ndarray:
+    """Positions in m of all masses that exist, shape (masses, axes, samples)."""
+    scene = result.scene
+    positions = np.asarray(scene.module.positions_many(result.t, result.y, scene.params))
+    return positions[np.isfinite(positions).all(axis=(1, 2))]
 
 
 def projected(positions: np.ndarray) -> np.ndarray:
-    """Positions as they are seen: in the plane as they are.
-
-    In space from above and from the side, without perspective.
+    """Positions on the plane of view: unchanged in the plane, an oblique view in space.
 
     Parameters
     ----------
@@ -33,20 +32,20 @@ def projected(positions: np.ndarray) -> np.ndarray:
     Returns
     -------
     ndarray of shape (masses, 2, samples)
-        In m, to the right and up.
+        In m, to the right and up, without perspective.
     """
     if positions.shape[1] == 2:
         return positions
     x, y, z = np.moveaxis(positions, 1, 0)
-    depth = np.cos(AROUND) * y - np.sin(AROUND) * x
-    right = np.cos(AROUND) * x + np.sin(AROUND) * y
-    return np.stack([right, np.cos(ABOVE) * z + np.sin(ABOVE) * depth], axis=1)
+    depth = np.cos(AZIMUTH) * y - np.sin(AZIMUTH) * x
+    right = np.cos(AZIMUTH) * x + np.sin(AZIMUTH) * y
+    return np.stack([right, np.cos(ELEVATION) * z + np.sin(ELEVATION) * depth], axis=1)
 
 
 def links(result: SceneResult, positions: np.ndarray) -> list[tuple[int, int]]:
-    """Which masses are joined, by their numbers; -1 is the origin.
+    """Pairs of masses that are joined, by their indices; -1 is the origin.
 
-    Neighbours that keep their distance are, and a single mass whose distance from the origin
+    Neighbours at a constant distance are joined, and a single mass whose distance from the origin
     is a coordinate.
 
     Parameters
@@ -54,50 +53,48 @@ def links(result: SceneResult, positions: np.ndarray) -> list[tuple[int, int]]:
     result : SceneResult
         The motion, with its coordinates.
     positions : ndarray of shape (masses, axes, samples)
-        Its masses' `places` in m.
+        Its `mass_positions` in m.
 
     Returns
     -------
     list of pairs of int
-        In the order of the masses, the one before it first.
+        In the order of the masses, the previous mass first.
     """
-    joined = []
-    before = np.zeros(positions.shape[1:])
-    for k, place in enumerate(positions):
-        if is_rigid(before, place):
-            joined.append((k - 1, k))
-        before = place
-    if len(positions) == 1 and not joined:
+    pairs = []
+    previous = np.zeros(positions.shape[1:])
+    for k, position in enumerate(positions):
+        if is_rigid(previous, position):
+            pairs.append((k - 1, k))
+        previous = position
+    if len(positions) == 1 and not pairs:
         length = np.linalg.norm(positions[0], axis=0)
         coordinates = result.y[: len(result.y) // 2]
         if any(np.allclose(length, coordinate, rtol=RIGID) for coordinate in coordinates):
-            joined.append((-1, 0))
-    return joined
+            pairs.append((-1, 0))
+    return pairs
 
 
 def is_rigid(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two masses keep their distance; positions have the shape (axes, samples)."""
+    """Whether the distance of two masses is constant; positions have the shape (axes, samples)."""
     length = np.linalg.norm(other - one, axis=0)
     return bool(np.ptp(length) <= RIGID * length.max())
 
 
 def energy_errors(result: SceneResult) -> np.ndarray:
-    """Energy errors in parts of the energy above rest, shape (samples,)."""
+    """Energy errors relative to the energy above rest, shape (samples,)."""
     scene = result.scene
-    kept = energies(scene, result.t, result.y)
-    kept -= supplied_energy(scene.module, result.t, result.y, scene.params)
-    return energy_error(scene.module, scene.params, kept)
+    energy = energies(scene, result.t, result.y)
+    energy -= supplied_energy(scene.module, result.t, result.y, scene.params)
+    return energy_error(scene.module, scene.params, energy)
 
 
 def track(result: SceneResult) -> Track:
-    """Masses, joined by rods or, where lengths change, springs."""
-    positions = places(result)
+    """The motion for the page that plays it: masses joined by rods, or by springs."""
+    positions = mass_positions(result)
     rods: list[tuple[int, int]] = []
     springs: list[tuple[int, int]] = []
     for a, b in links(result, positions):
         start = positions[a] if a >= 0 else np.zeros_like(positions[b])
         (rods if is_rigid(start, positions[b]) else springs).append((a, b))
-    return Track(
-        result.scene.label, result.t, projected(positions), tuple(rods), tuple(springs),
-        energy_errors(result),
-    )  # fmt: skip
+    joined = (tuple(rods), tuple(springs))
+    return Track(result.scene.label, result.t, projected(positions), *joined, energy_errors(result))

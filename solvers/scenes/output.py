@@ -1,4 +1,4 @@
-"""Files of a scene: tables, a plot and a page that plays the motion."""
+"""Files of a scene: tables, plots and a page that plays the motion."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from solvers.io.atomic_write import write_text
 from solvers.io.figures import save
 from solvers.player.page import Page
 from solvers.scenes.geometry import track
-from solvers.scenes.plots import accuracy_note, figure
+from solvers.scenes.plots import figure, full_note
 from solvers.scenes.run import SceneResult
-from solvers.scenes.summary import special_code, table
+from solvers.scenes.summary import table
 
 
 def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]:
@@ -24,10 +24,9 @@ def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]
     }
     save(figure(results), paths["picture"])
     write_text(paths["table"], table(results[0]))
-    for n, one in enumerate(results[1:], 2):
-        paths[f"table {n}"] = write_text(folder / f"{scene.name}_{n}.csv", table(one))
-    if code := special_code(results[0]):
-        paths["code"] = code
-    words = [*scene.note.split(), *(accuracy_note(one, named=len(results) > 1) for one in results)]
-    Page(scene.title, " ".join(words), list(map(track, results))).write(paths["page"])
+    for n, result in enumerate(results[1:], 2):
+        paths[f"table {n}"] = write_text(folder / f"{scene.name}_{n}.csv", table(result))
+    if module := results[0].specialised_module:
+        paths["code"] = Path(module.__file__ or "")
+    Page(scene.title, full_note(results), [*map(track, results)]).write(paths["page"])
     return paths

@@ -1,11 +1,13 @@
-"""Pictures of a scene: coordinates over time, phase curves, paths and the energy's error."""
+"""Plots of a scene: coordinates over time, phase curves, paths and the energy error."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import groupby, pairwise
 from math import ceil
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,22 +17,22 @@ from matplotlib.ticker import MaxNLocator
 from solvers.io.figures import COLOURS, panels
 from solvers.io.notation import axis_label, symbol
 from solvers.scenes.checks import curves_of
-from solvers.scenes.geometry import energy_errors, links, places, projected
+from solvers.scenes.geometry import energy_errors, links, mass_positions, projected
 from solvers.scenes.run import SceneResult
 
 STYLES = ("-", "--", ":", "-.")
-#: Energy errors below this are drawn there: a logarithm has no zero.
+#: Smallest energy error on the logarithmic axis.
 LEAST = 1e-17
-#: So many pictures at most stand three in a row, more four.
+#: Most panels in rows of three; more are in rows of four.
 MOST = 6
 #: Height of the title in inches.
 TITLE = 0.22
-#: Width of a panel and height of a row in inches, and characters of a note to the inch.
-PANEL, ROW, WRITTEN = 4.6, 3.6, 15
+#: Width of a panel and height of a row in inches, and characters of the note per inch.
+PANEL, ROW, CHARACTERS = 4.6, 3.6, 15
 
 
 def figure(results: Sequence[SceneResult]) -> Figure:
-    """All that a scene has to show, with what is shown beside it; the note stands below.
+    """All plots of a scene and of those beside it, with the note below.
 
     Parameters
     ----------
@@ -39,32 +41,31 @@ def figure(results: Sequence[SceneResult]) -> Figure:
 
     Returns
     -------
-    matplotlib.chart.Figure
-        A panel for each of the scene's ``pictures``, row by row; without these, for everything
-        that there is to see.
+    matplotlib.figure.Figure
+        A panel for each of the scene's ``pictures``, row by row; by default `default_pictures`.
     """
     main = results[0]
     pictures = main.scene.pictures or default_pictures(main)
     columns = min(len(pictures), 3 if len(pictures) <= MOST else 4)
     rows = ceil(len(pictures) / columns)
     width = max(PANEL * columns, 7.0)
-    words = [*main.scene.note.split(), *(accuracy_note(a, named=len(results) > 1) for a in results)]
-    note = _plain(fill(" ".join(words), int(width * WRITTEN)))
-    chart, axes = panels(
-        _plain(main.scene.title), rows=rows, columns=columns,
-        size=(width, ROW * rows + 0.6 + 0.16 * note.count("\n")),
-    )  # fmt: skip
+    note, title = (
+        _plain(fill(full_note(results), int(width * CHARACTERS))),
+        _plain(main.scene.title),
+    )
+    size = (width, ROW * rows + 0.6 + 0.16 * note.count("\n"))
+    chart, axes = panels(title, rows=rows, columns=columns, size=size)
     for panel, picture in zip(axes, pictures, strict=False):
         _draw(panel, picture, results)
         panel.xaxis.set_major_locator(MaxNLocator(6))
     handles, labels = axes[0].get_legend_handles_labels()
-    if len(results) > 1:  # long words, between the title and the curves
-        chart.suptitle(_plain(main.scene.title) + "\n" * ceil(len(labels) / 2))
-        below = 1 - TITLE / chart.get_figheight()
-        chart.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, below), ncols=2,
-                      frameon=False, fontsize="small")  # fmt: skip
+    legend: dict[str, Any] = {"frameon": False, "fontsize": "small"}
+    if len(results) > 1:  # long labels, between the title and the panels
+        chart.suptitle(title + "\n" * ceil(len(labels) / 2))
+        legend |= {"bbox_to_anchor": (0.5, 1 - TITLE / chart.get_figheight())}
+        chart.legend(handles, labels, loc="upper center", ncols=2, **legend)
     elif labels:
-        axes[0].legend(frameon=False, fontsize="small")
+        axes[0].legend(**legend)
     for panel in axes[len(pictures) :]:
         panel.set_axis_off()
     chart.supxlabel(note, x=0.01, ha="left", fontsize="small", color="#444444")
@@ -72,56 +73,97 @@ def figure(results: Sequence[SceneResult]) -> Figure:
 
 
 def _plain(text: str) -> str:
-    """Text in which a dollar sign is one, and begins no formula."""
+    """Text in which a dollar sign starts no formula."""
     return text.replace("$", r"\$")
 
 
 def default_pictures(result: SceneResult) -> tuple[str, ...]:
-    """Everything that there is to see of what moves."""
-    state, n = result.scene.module.STATE, len(result.scene.module.COORDINATES)
-    there = [k for k in range(n) if np.isfinite(result.y[[k, k + n]]).all()]
-    places, speeds = [state[k] for k in there], [state[k + n] for k in there]
-    units = result.scene.module.UNITS
+    """Pictures of all coordinates and velocities that exist, of the path and the energy."""
+    module = result.scene.module
+    state, n, units = module.STATE, len(module.COORDINATES), module.UNITS
+    indices = [k for k in range(n) if np.isfinite(result.y[[k, k + n]]).all()]
+    coordinates, velocities = [state[k] for k in indices], [state[k + n] for k in indices]
+    groups = [[q for q in coordinates if units[q] == u] for u in {units[q]: 0 for q in coordinates}]
     return (
-        *(
-            f"{', '.join(place for place in places if units[place] == unit)} over t"
-            for unit in dict.fromkeys(units[place] for place in places)
-        ),
-        *(f"{speed} over {place}" for place, speed in zip(places, speeds, strict=True)),
-        *(f"{b} over {a}" for a, b in pairwise(places)),
-        *(f"{b} over {a}" for a, b in pairwise(speeds)),
+        *(f"{', '.join(group)} over t" for group in groups),
+        *(f"{v} over {q}" for q, v in zip(coordinates, velocities, strict=True)),
+        *(f"{b} over {a}" for a, b in pairwise(coordinates)),
+        *(f"{b} over {a}" for a, b in pairwise(velocities)),
         "path",
         "energy",
     )
 
 
-def accuracy_note(result: SceneResult, *, named: bool) -> str:
-    """How a run was made and how sure it is, in brackets, with its name if it is one of several."""
-    model = result.selection.model
-    how = model.name if result.method is None else f"{model.name} by {result.method}"
-    if result.scene.step is not None:
-        how += f" with h = {result.scene.step:g} s"
-    title = f"{result.scene.label}: " if named else ""
-    return f"[{title}{how}, error estimate {model.error_estimate:.1g}.]"
+def full_note(results: Sequence[SceneResult]) -> str:
+    """The scene's note, and the model and error estimate of every run."""
+    words = results[0].scene.note.split()
+    return " ".join([*words, *(_accuracy_note(one, len(results) > 1) for one in results)])
+
+
+def _accuracy_note(result: SceneResult, is_labelled: bool) -> str:
+    """Model, method and error estimate in brackets, with the label if there are several runs."""
+    model, scene = result.selection.model, result.scene
+    text = model.name if result.method is None else f"{model.name} by {result.method}"
+    if scene.step is not None:
+        text += f" with h = {scene.step:g} s"
+    label = f"{scene.label}: " if is_labelled else ""
+    return f"[{label}{text}, error estimate {model.error_estimate:.1g}.]"
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """A run in a panel: its result, the colours of its curves, line style and label."""
+
+    result: SceneResult
+    colours: Sequence[str]
+    style: str
+    label: str
+
+    def plot(self, panel: Axes, picture: str) -> None:
+        """Add the curves of a picture to a panel."""
+        if picture == "path":
+            self._path(panel)
+        elif picture == "energy":
+            error = np.maximum(np.abs(energy_errors(self.result)), LEAST)
+            options: dict[str, Any] = {"color": self.colours[0], "label": self.label}
+            panel.semilogy(self.result.t, error, self.style, linewidth=0.9, **options)
+        else:
+            self._curves(panel, picture)
+
+    def _curves(self, panel: Axes, picture: str) -> None:
+        names, over = curves_of(picture)
+        module, t = self.result.scene.module, self.result.t
+        columns = dict(zip(module.STATE, self.result.y, strict=True)) | {"t": t}
+        units = {**module.UNITS, "t": "s"}
+        for name, colour in zip(names, self.colours, strict=False):
+            words = filter(None, [symbol(name) if len(names) > 1 else "", self.label])
+            options: dict[str, Any] = {"color": colour, "label": ", ".join(words)}
+            panel.plot(columns[over], columns[name], self.style, linewidth=1.1, **options)
+        if over == "t":
+            panel.set_xlim(0, t[-1])
+        panel.set(xlabel=axis_label(symbol(over), units[over]), ylabel=_labelled(names, units))
+
+    def _path(self, panel: Axes) -> None:
+        positions, label = mass_positions(self.result), self.label
+        view = projected(positions)
+        for (x, y), colour in zip(view, self.colours, strict=False):
+            panel.plot(x, y, self.style, color=colour, linewidth=0.9, label=label)
+            panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
+            label = ""
+        for pair in links(self.result, positions):
+            ends = [np.zeros(2) if k < 0 else view[k, :, -1] for k in pair]
+            panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)
 
 
 def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
     for n, (result, style) in enumerate(zip(results, STYLES * len(results), strict=False)):
-        shift = 2 * n % len(COLOURS)  # two curves a run have colours of their own
-        first = COLOURS[shift:] + COLOURS[:shift]
+        shift = 2 * n % len(COLOURS)  # two curves of a run have colours of their own
         label = _plain(result.scene.label) if len(results) > 1 else ""
-        if picture == "path":
-            _path(panel, result, first, style, label)
-        elif picture == "energy":
-            error = np.abs(energy_errors(result))
-            panel.semilogy(result.t, np.maximum(error, LEAST), style, color=first[0], label=label,
-                           linewidth=0.9)  # fmt: skip
-        else:
-            _curves(panel, picture, result, first, style, label)
+        _Curve(result, COLOURS[shift:] + COLOURS[:shift], style, label).plot(panel, picture)
     if picture == "path":
-        in_space = places(results[0]).shape[1] == 3
-        across, upwards = ("to the side", "up, seen from above") if in_space else ("x", "y")
-        panel.set(xlabel=f"{across} / m", ylabel=f"{upwards} / m")
+        in_space = mass_positions(results[0]).shape[1] == 3
+        x, y = ("horizontal", "vertical, seen from above") if in_space else ("x", "y")
+        panel.set(xlabel=f"{x} / m", ylabel=f"{y} / m")
         panel.set_aspect("equal", adjustable="datalim")
         if "positions" not in results[0].scene.module.TIMED:  # else the pivot may move
             panel.plot(0, 0, "k+", markersize=8)
@@ -129,35 +171,7 @@ def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
         panel.set(xlabel=f"{symbol('t')} / s", ylabel="energy error / energy above rest")
 
 
-def _curves(
-    panel: Axes, picture: str, result: SceneResult, colours: Sequence[str], style: str, label: str
-) -> None:
-    names, over = curves_of(picture)
-    columns = dict(zip(result.scene.module.STATE, result.y, strict=True)) | {"t": result.t}
-    units = {**result.scene.module.UNITS, "t": "s"}
-    for name, colour in zip(names, colours, strict=False):
-        words = [symbol(name) if len(names) > 1 else "", label]
-        panel.plot(columns[over], columns[name], style, color=colour, linewidth=1.1,
-                   label=", ".join(filter(None, words)))  # fmt: skip
-    if over == "t":
-        panel.set_xlim(0, result.t[-1])
-    panel.set(xlabel=axis_label(symbol(over), units[over]),
-              ylabel=_labelled(names, units))  # fmt: skip
-
-
 def _labelled(names: Sequence[str], units: Mapping[str, str]) -> str:
     """Names with their units; one unit for those that share it."""
     groups = groupby(names, units.__getitem__)
     return ", ".join(axis_label(", ".join(map(symbol, group)), unit) for unit, group in groups)
-
-
-def _path(panel: Axes, result: SceneResult, colours: Sequence[str], style: str, label: str) -> None:
-    positions = places(result)
-    seen = projected(positions)
-    for (x, y), colour in zip(seen, colours, strict=False):
-        panel.plot(x, y, style, color=colour, linewidth=0.9, label=label)
-        panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
-        label = ""
-    for a, b in links(result, positions):
-        ends = [np.zeros(2) if k < 0 else seen[k, :, -1] for k in (a, b)]
-        panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)

@@ -1,4 +1,4 @@
-"""Scenes from TOML files: everything that makes no sense is refused when the file is read."""
+"""Scenes from TOML files; what is not valid is refused when the file is read."""
 
 from __future__ import annotations
 
@@ -15,157 +15,144 @@ from solvers.io.toml_input import InputError
 from solvers.scenes.checks import check_samples
 from solvers.scenes.scene import Scene
 
-#: How many pictures, outputs and runs there may be.
+#: Most pictures, outputs and runs.
 MOST = 24
 ABSENT, TURN = "absent", 2 * pi
 
-NEEDED = ("system", "duration", "initial")
+REQUIRED = ("system", "duration", "initial")
 NUMBERS = {"duration": "s", "accuracy": "1", "step": "s"}
 LISTS = ("outputs", "pictures")
 TEXTS = ("title", "label", "note", "model", "method", "form", "code")
-#: How it is integrated.
-WAY = {"model", "method", "form", "step"}
-#: What can differ in what is shown beside a scene.
-DIFFERS = ("label", "parameters", "initial", "model", "method", "form", "step", "code", "accuracy")
-KEYS = (
-    "system", "duration", "accuracy", "title", "note", "label", "outputs", "samples", "pictures",
-    "model", "method", "form", "step", "code", "initial", "parameters", "beside",
-)  # fmt: skip
+TABLES = ("initial", "parameters")
+INTEGRATION = {"model", "method", "form", "step"}
+#: Keys of a table [[beside]].
+BESIDE = ("label", *TABLES, "model", "method", "form", "step", "code", "accuracy")
+KEYS = (*REQUIRED, "accuracy", "step", *LISTS, *TEXTS, "samples", "parameters", "beside")
 
 
-def read(path: Path, module: Callable[[str], GeneratedModule]) -> Scene:
+def read(path: Path, load: Callable[[str], GeneratedModule]) -> Scene:
     """The scene in a file.
 
     Parameters
     ----------
     path : Path
         A TOML file.
-    module : callable
-        Gives a generated module by its name; raises `LookupError` for an unknown one.
+    load : callable
+        Returns the generated module of a name; raises `LookupError` for an unknown one.
 
     Returns
     -------
     Scene
-        Named as the file is, without ``.toml``.
+        Its name is that of the file without ``.toml``.
 
     Raises
     ------
     InputError
-        When it makes no sense.
+        When it is not valid.
     OSError
         When the file cannot be read.
     """
-    return toml_input.read(
-        path, lambda table: scene(path.stem, table, lambda name: module(_from_here(path, name)))
-    )
+
+    def load_beside(name: str) -> GeneratedModule:
+        # the path of a system file is relative to the folder of the scene
+        return load(str(path.parent / name) if name.endswith(".toml") else name)
+
+    return toml_input.read(path, lambda table: scene(path.stem, table, load_beside))
 
 
-def _from_here(path: Path, name: str) -> str:
-    """A system's name; that of a file is meant from the folder of the scene."""
-    return str(path.parent / name) if name.endswith(".toml") else name
-
-
-def scene(name: str, table: Mapping[str, Any], module: Callable[[str], GeneratedModule]) -> Scene:
-    """The scene that a table says.
+def scene(name: str, table: Mapping[str, Any], load: Callable[[str], GeneratedModule]) -> Scene:
+    """The scene of a parsed file.
 
     Parameters
     ----------
     name : str
-        What to call it.
+        Name of the scene.
     table : mapping
         A scene's file, parsed.
-    module : callable
-        Gives a generated module by its name; raises `LookupError` for an unknown one.
+    load : callable
+        Returns the generated module of a name; raises `LookupError` for an unknown one.
 
     Returns
     -------
     Scene
-        With those that are to be shown beside it.
+        With the scenes beside it.
 
     Raises
     ------
     InputError
-        When a key or its value makes no sense.
+        When a key or its value is not valid.
     ValueError
-        When values make no sense together.
+        When values exclude each other.
     """
     toml_input.check_keys("a scene", table, KEYS)
-    missing = [key for key in NEEDED if key not in table]
+    missing = [key for key in REQUIRED if key not in table]
     if missing:
-        raise InputError(f"{missing[0]!r} is missing: a scene needs {', '.join(NEEDED)}")
+        raise InputError(f"{missing[0]!r} is missing: a scene needs {', '.join(REQUIRED)}")
     try:
-        equations = module(toml_input.text("system", table["system"]))
+        module = load(toml_input.text("system", table["system"]))
     except LookupError as error:
         raise InputError(f"system = {table['system'][:50]!r}: {error.args[0]}") from error
     if "samples" in table:
         check_samples(table["samples"])
     others = table.get("beside", [])
     if not isinstance(others, list) or not all(isinstance(other, dict) for other in others):
-        raise InputError("'beside' must be tables: write [[beside]] and what differs below it")
+        raise InputError("'beside' must be tables: write [[beside]] and the differences below it")
     if len(others) > MOST:
         raise InputError(f"[[beside]] are {len(others)}: up to {MOST} can be shown")
-    for key in ("initial", "parameters"):
+    for key in TABLES:
         toml_input.table(key, table.get(key, {}))
-    beside = tuple(_beside(equations, name, table, other) for other in others)
-    title = str(equations.__doc__).partition(":")[0].partition(".")[0]
-    return _scene(equations, name, {"title": title, **table}, beside)
+    beside = tuple(_beside(module, name, table, other) for other in others)
+    title = str(module.__doc__).partition(":")[0].partition(".")[0]
+    return _scene(module, name, {"title": title, **table}, beside)
 
 
 def _beside(
     module: GeneratedModule, name: str, table: Mapping[str, Any], other: Mapping[str, Any]
 ) -> Scene:
-    toml_input.check_keys("[[beside]]", other, DIFFERS, KEYS)
+    toml_input.check_keys("[[beside]]", other, BESIDE, KEYS)
     label = ", ".join(_difference(key, value) for key, value in other.items())
-    # another way of integrating owes nothing to this one
-    kept = {key: table[key] for key in table if key not in WAY or not WAY & set(other)}
-    for key in ("initial", "parameters"):
+    # a model or method replaces all settings of the integration
+    replaced = INTEGRATION if INTEGRATION & set(other) else set()
+    settings = {key: table[key] for key in table if key not in replaced}
+    merged = {}
+    for key in TABLES:
         toml_input.table(key, other.get(key, {}))
-        kept[key] = table.get(key, {}) | other.get(key, {})
-    changed = {key: other[key] for key in other if key not in ("initial", "parameters")}
-    return _scene(module, name, {**kept, "label": label, **changed}, ())
+        merged[key] = table.get(key, {}) | other.get(key, {})
+    return _scene(module, name, {**settings, "label": label, **other, **merged}, ())
 
 
 def _difference(key: str, value: object) -> str:
-    """What differs, in words."""
+    """A changed value as text, for the label."""
     if isinstance(value, dict):
         return ", ".join(_difference(name, one) for name, one in value.items())
-    words = shortened(value).strip("'")
-    return words if key == "method" else f"{key} = {words}"
+    text = shortened(value).strip("'")
+    return text if key == "method" else f"{key} = {text}"
 
 
 def _scene(
     module: GeneratedModule, name: str, table: Mapping[str, Any], beside: tuple[Scene, ...]
 ) -> Scene:
-    given: dict[str, Any] = {key: toml_input.text(key, table[key]) for key in TEXTS if key in table}
-    given |= {key: toml_input.texts(key, table[key], MOST) for key in LISTS if key in table}
-    given |= {
-        key: toml_input.number(key, table[key], unit)
-        for key, unit in NUMBERS.items()
-        if key in table
-    }
-    if given.get("outputs") == ():
-        raise InputError("outputs = [] asks for nothing: leave it out to be given the state")
-    return Scene(
-        module,
-        _parameters(module, table.get("parameters", {})),
-        _initial(module, table["initial"]),
-        samples=table.get("samples", 0),
-        name=name,
-        beside=beside,
-        **given,
-    )
+    values: dict[str, Any] = {k: toml_input.text(k, table[k]) for k in TEXTS if k in table}
+    values |= {k: toml_input.texts(k, table[k], MOST) for k in LISTS if k in table}
+    values |= {k: toml_input.number(k, table[k], NUMBERS[k]) for k in NUMBERS if k in table}
+    if values.get("outputs") == ():
+        raise InputError("outputs = [] requests nothing: leave it out to request the state")
+    params = _parameters(module, table.get("parameters", {}))
+    y0, samples = _initial(module, table["initial"]), table.get("samples", 0)
+    return Scene(module, params, y0, samples=samples, name=name, beside=beside, **values)
 
 
 def _parameters(module: GeneratedModule, table: object) -> tuple[float, ...]:
     values = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
     for key, value in _table("parameters", table, module.PARAMETERS).items():
+        name, unit = f"parameters.{key}", module.UNITS[key]
         if value == ABSENT and key in module.POSITIVE:
             values[key] = 0.0
         elif key in module.POSITIVE:
-            way = f'; if it is not there write {key} = "{ABSENT}"' if value == 0 else ""
-            values[key] = toml_input.positive(f"parameters.{key}", value, module.UNITS[key], way)
+            remedy = f'; if it does not exist write {key} = "{ABSENT}"' if value == 0 else ""
+            values[key] = toml_input.positive(name, value, unit, remedy)
         else:
-            values[key] = toml_input.number(f"parameters.{key}", value, module.UNITS[key])
+            values[key] = toml_input.number(name, value, unit)
     return tuple(values.values())
 
 
@@ -173,20 +160,20 @@ def _initial(module: GeneratedModule, table: object) -> tuple[float, ...]:
     given = _table("initial", table, module.STATE)
     missing = [q for q in module.COORDINATES if q not in given]
     if missing:
-        raise InputError(f"initial.{missing[0]} is missing: give {', '.join(module.COORDINATES)}; "
-                         "velocities that are left out are 0")  # fmt: skip
+        names = ", ".join(module.COORDINATES)
+        raise InputError(
+            f"initial.{missing[0]} is missing: give {names}; velocities that are left out are 0"
+        )
+    units = module.UNITS
     for name, value in given.items():
-        if module.UNITS[name] == "rad" and isinstance(value, int | float) and abs(value) > TURN:
-            warnings.warn(
-                f'initial.{name} = {value} is {value / TURN:.3g} turns: write "{value} deg" if '
-                "degrees are meant",
-                stacklevel=2,
-            )
-    return tuple(toml_input.number(f"initial.{name}", given.get(name, 0.0), module.UNITS[name])
-                 for name in module.STATE)  # fmt: skip
+        if units[name] == "rad" and isinstance(value, int | float) and abs(value) > TURN:
+            text = f"initial.{name} = {value} is {value / TURN:.3g} turns"
+            warnings.warn(f'{text}: write "{value} deg" if degrees are meant', stacklevel=2)
+    values = ((name, given.get(name, 0.0)) for name in module.STATE)
+    return tuple(toml_input.number(f"initial.{name}", value, units[name]) for name, value in values)
 
 
 def _table(key: str, value: object, known: Sequence[str]) -> dict[str, Any]:
-    found = toml_input.table(key, value)
-    toml_input.check_keys(f"[{key}]", found, known, KEYS)
-    return found
+    table = toml_input.table(key, value)
+    toml_input.check_keys(f"[{key}]", table, known, KEYS)
+    return table

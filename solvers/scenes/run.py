@@ -1,4 +1,4 @@
-"""A scene answered: which model, how it moves, and how sure that is."""
+"""Run a scene: select a model, and compute the motion."""
 
 from __future__ import annotations
 
@@ -11,41 +11,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration.timing import median_seconds
-from solvers.scenes.models.full_equations import Full
 from solvers.scenes.models.method_choice import MethodChoice, cheapest
-from solvers.scenes.models.model import Motion
+from solvers.scenes.models.motion import Motion
 from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.scene import ENERGY, Scene
 
 Array = NDArray[np.float64]
 
-#: Takes a module, parameters and a choice; gives the module with these parameters folded in.
+#: Takes a module, parameters and a method choice; returns the module for these parameters alone.
 Specialiser = Callable[[GeneratedModule, tuple[float, ...], MethodChoice], GeneratedModule]
 
 
 @dataclass(frozen=True)
 class SceneResult:
-    """What a scene asked, answered.
+    """The motion of a scene, its model and its cost.
 
     Attributes
     ----------
     scene : Scene
-        What was asked.
+        The scene.
     selection : ModelSelection
-        Which model was taken, and why no smaller one.
+        The selected model, and the reasons against simpler ones.
     t : ndarray of shape (samples,)
         Times in s.
     y : ndarray of shape (state, samples)
-        Coordinates and velocities; NaN for those that do not exist.
+        Coordinates and velocities; NaN for coordinates without inertia.
     energy : ndarray of shape (samples,) or None
-        In J, if it was asked for.
-    choosing_seconds, work_seconds : float
-        What it took to choose, and what the state at the end takes with the model.
-    full_seconds : float
-        What the full equations take for a motion of this length, by the record of charts.
-    general_seconds : float
-        What general code takes where specialised code was made; NaN elsewhere.
+        In J, if it is requested.
+    selection_seconds, work_seconds : float
+        Time of the selection, and of the state at the end with the selected model.
+    full_equations_seconds : float
+        Time of the full equations for this duration, by recorded measurements.
+    general_code_seconds : float
+        Time of general code where specialised code is used; NaN elsewhere.
 
     Examples
     --------
@@ -60,68 +58,75 @@ class SceneResult:
     t: Array
     y: Array
     energy: Array | None
-    choosing_seconds: float
+    selection_seconds: float
     work_seconds: float
-    full_seconds: float
-    general_seconds: float
+    full_equations_seconds: float
+    general_code_seconds: float
 
     @property
     def method(self) -> str | None:
-        """How it was integrated; None if nothing was."""
-        model = self.selection.model
-        return model.method_choice.method if isinstance(model, Full) else None
+        """The method of integration; None for a closed form."""
+        run = self.selection.model.run
+        return run.method_choice.method if run else None
 
     @property
     def form(self) -> str | None:
-        """In which form of the equations."""
-        model = self.selection.model
-        return model.method_choice.form if isinstance(model, Full) else None
+        """The form of the equations; None for a closed form."""
+        run = self.selection.model.run
+        return run.method_choice.form if run else None
+
+    @property
+    def specialised_module(self) -> GeneratedModule | None:
+        """The module that was generated for this scene alone; None for general code."""
+        run = self.selection.model.run
+        return run.motion.module if run and run.motion.module is not self.scene.module else None
 
     @property
     def final_state(self) -> dict[str, float]:
-        """What was asked for of the state at the end, by name."""
+        """The requested components of the state at the end, by name."""
         state = dict(zip(self.scene.module.STATE, self.y[:, -1].tolist(), strict=True))
         return {k: v for k, v in state.items() if k in self.scene.outputs and np.isfinite(v)}
 
     @property
     def is_met(self) -> bool:
-        """Whether the error stays below what was asked."""
+        """Whether the error estimate is below the requested accuracy."""
         return self.selection.model.error_estimate <= self.scene.accuracy
 
 
 def run_scene(
-    scene: Scene, specialiser: Specialiser | None = None,
+    scene: Scene,
+    specialiser: Specialiser | None = None,
     report: Callable[[str], None] = lambda _: None,
-) -> SceneResult:  # fmt: skip
-    """The smallest model of a scene that is good enough, and its motion.
+) -> SceneResult:
+    """Select the simplest sufficient model of a scene, and compute its motion.
 
     Parameters
     ----------
     scene : Scene
-        What is asked.
+        The scene.
     specialiser : callable, optional
-        ``specialiser(module, params, choice)`` gives the module with these parameters folded in;
-        needed where ``scene.code`` is ``"specialised"``.
+        ``specialiser(module, params, method_choice)`` returns the module for these parameters
+        alone; needed where ``scene.code`` is ``"specialised"``.
     report : callable, optional
         ``report(text)`` is called with the progress.
 
     Returns
     -------
     SceneResult
-        Its ``is_met`` says whether the error estimate stays below ``scene.accuracy``, which it
-        need not where the scene names a model or a step.
+        Its ``is_met`` states whether the error estimate is below ``scene.accuracy``, which it need
+        not be where the scene names a model or a step.
 
     Raises
     ------
-    solvers.scenes.models.full_equations.NotAccurateError
-        When not even the full equations come as close as asked.
-    solvers.scenes.models.full_equations.TooLongError
-        When they take longer than anybody waits for.
-    solvers.scenes.models.model.OutsideDomainError
-        When there is no model, since a coordinate moves no mass; or when the model that the scene
-        names says nothing about its motion.
+    solvers.scenes.models.integration_run.NotAccurateError
+        When even the full equations do not reach the requested accuracy.
+    solvers.scenes.models.integration_run.TooLongError
+        When they take more steps than the limit.
+    solvers.scenes.models.motion.OutsideDomainError
+        When no model applies, since a coordinate has no inertia; or when the model that the scene
+        names does not apply.
     ValueError
-        When the scene asks for special code and nobody makes any.
+        When the scene requests specialised code and there is no specialiser.
 
     Examples
     --------
@@ -134,47 +139,34 @@ def run_scene(
     True
     """
 
-    def code(asked: Motion, choice: MethodChoice) -> Motion:
+    def specialise(motion: Motion, choice: MethodChoice) -> Motion:
         if scene.code != "specialised":
-            return asked
+            return motion
         if specialiser is None:
             raise ValueError("code = 'specialised' needs a specialiser, which generates it")
         report("specialised code")
-        return replace(asked, module=specialiser(asked.module, asked.params, choice), params=())
+        return replace(motion, module=specialiser(motion.module, motion.params, choice), params=())
 
     before = perf_counter()
-    chosen = select_model(scene, code, report)
-    choosing = perf_counter() - before
-    report(chosen.model.name)
-    t = scene.times
-    y = chosen.model.states(t).T
+    selection = select_model(scene, specialise, report)
+    selection_seconds = perf_counter() - before
+    model, t = selection.model, scene.times
+    report(model.name)
+    y = model.states(t).T
     y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
     energy = energies(scene, t, y) if ENERGY in scene.outputs else None
-    return SceneResult(
-        scene, chosen, t, y, energy, choosing, _work(chosen, scene), _full(scene),
-        _general(chosen, scene),
-    )  # fmt: skip
+    seconds = model.seconds(scene.duration)
+    full_seconds = cheapest(scene.module, scene.params, scene.accuracy).seconds * scene.duration
+    result = SceneResult(
+        scene, selection, t, y, energy, selection_seconds, seconds, full_seconds, nan
+    )
+    if result.specialised_module and model.run:
+        general = replace(model.run, motion=motion_of(scene))
+        return replace(result, general_code_seconds=general.seconds())
+    return result
 
 
 def energies(scene: Scene, t: Array, y: Array) -> Array:
-    """Energy in J along states of shape (state, samples); what does not exist has none."""
+    """Energy in J along states of shape (state, samples); NaN counts as 0."""
     states = np.nan_to_num(y)
     return np.asarray(scene.module.energy_many(t, states, scene.params))
-
-
-def _work(chosen: ModelSelection, scene: Scene) -> float:
-    if isinstance(chosen.model, Full):
-        return chosen.model.seconds()
-    end = np.array([scene.duration])
-    return median_seconds(lambda: chosen.model.states(end))
-
-
-def _general(chosen: ModelSelection, scene: Scene) -> float:
-    if not isinstance(chosen.model, Full) or chosen.model.asked.module is scene.module:
-        return nan
-    return replace(chosen.model, asked=motion_of(scene)).seconds()
-
-
-def _full(scene: Scene) -> float:
-    choice = cheapest(scene.module, scene.params, scene.accuracy)
-    return choice.seconds * scene.duration

@@ -1,4 +1,4 @@
-"""A scene: what moves, from where, for how long, and what is asked of it."""
+"""A scene: a motion, its accuracy and its outputs."""
 
 from __future__ import annotations
 
@@ -11,19 +11,15 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration import validation
 from solvers.scenes import checks
 
-#: Usual samples: so many a second, and at least and at most so many.
+#: Default number of samples: per second, at least and at most.
 RATE, FEWEST, MOST = 100, 501, 20_001
-#: What can be named instead of the smallest model that is good enough.
-MODELS = (
-    "full", "rest", "normal modes", "pendulum", "pendulum and light masses", "quadrature",
-)  # fmt: skip
-#: What else can be asked for, beside components of the state.
+#: An output that is no component of the state.
 ENERGY = "energy"
 
 
 @dataclass(frozen=True)
 class Scene:
-    """What is there, and what is asked.
+    """A motion, its accuracy and its outputs.
 
     Parameters
     ----------
@@ -33,43 +29,43 @@ class Scene:
         In the order of ``module.PARAMETERS``, or by name: parameters that are left out have their
         default values. A mass or length of 0 is absent.
     y0 : tuple of float, or mapping of str to float
-        Coordinates and velocities at time 0, in the order of ``module.STATE``, or by name:
+        Initial coordinates and velocities, in the order of ``module.STATE``, or by name:
         velocities that are left out are 0.
     duration : float
         In s.
     accuracy : float, optional
-        How large the error of what is asked for may be at any time: in rad, rad/s, m, m/s.
+        Largest permitted error of any requested component at any time, in rad, rad/s, m, m/s.
     outputs : tuple of str, optional
-        What is asked for: components of the state, and ``energy``; by default the state.
+        The requested outputs: components of the state, and ``energy``; by default the state.
     samples : int, optional
-        At how many times, evenly over the duration, both ends included; 0 for a hundred a
+        Number of times, evenly spaced over the duration, both ends included; 0 for a hundred a
         second, within `FEWEST` and `MOST`.
     model : str or None
-        One of `MODELS`; by default the smallest that is good enough.
+        A key of `solvers.scenes.models.catalogue.load`; by default the simplest sufficient model.
     method, form : str or None
-        Method of integration, one of those that ship or of SciPy's, and form of the
-        equations, ``lagrangian``, ``hamiltonian`` or ``rational``; by default the cheapest.
+        A method of this package or of SciPy's ``solve_ivp``, and form of the equations,
+        ``lagrangian``, ``hamiltonian`` or ``rational``; by default the cheapest.
     step : float or None
-        A fixed step in s instead of one that is controlled.
+        A fixed step size in s instead of step control.
     code : {"general", "specialised"} or None
-        Whether to integrate with code in which the parameters are folded in; by default
-        it is general.
+        Whether to integrate with code that contains the parameters as numbers; by default it is
+        general.
     pictures : tuple of str, optional
-        What to draw, each as ``theta1, theta2 over t``, or ``path`` or ``energy``; by
-        default all that there is.
+        The pictures, each such as ``theta1, theta2 over t``, or ``path`` or ``energy``; by
+        default all.
     title, name : str, optional
-        What to call it, for people and for files.
+        A title for plots, and a name for files.
     label : str, optional
-        What to call this run beside others; by default its title.
+        The label of this run beside others; by default the title.
     note : str, optional
-        What it shows, and how sure that is.
+        A text below the plots.
     beside : tuple of Scene, optional
-        What to show beside it.
+        Scenes to show beside this one.
 
     Raises
     ------
     ValueError
-        When something makes no sense; the message says what is allowed.
+        When an argument is not valid; the message states what is allowed.
 
     Warns
     -----
@@ -107,37 +103,40 @@ class Scene:
     beside: tuple[Scene, ...] = ()
 
     def __post_init__(self) -> None:
-        known = self.module.STATE
+        state = self.module.STATE
         params = validation.parameters(self.module, self.params)
         object.__setattr__(self, "params", tuple(params.tolist()))
         y0 = validation.initial_state(self.module, self.y0)
         object.__setattr__(self, "y0", tuple(y0.tolist()))
-        object.__setattr__(self, "outputs", tuple(self.outputs) or known)
+        object.__setattr__(self, "outputs", tuple(self.outputs) or state)
         object.__setattr__(self, "label", self.label or self.title)
         validation.check_positive(duration=self.duration, accuracy=self.accuracy, step=self.step)
         checks.check_accuracy(self.accuracy)
         checks.check_params(self.module, self.params)
         checks.check_masses(self.module, self.params, self.y0)
         checks.check_method(self.module, self.method, self.form, self.step, self.duration)
-        checks.check_choice("model", self.model, MODELS)
+        if self.model is not None:
+            from solvers.scenes.models import catalogue
+
+            checks.check_choice("model", self.model, tuple(catalogue.load()))
         checks.check_choice("code", self.code, ("general", "specialised"))
         if self.samples:
             checks.check_samples(self.samples)
-        checks.check_outputs(self.outputs, known, (*known, ENERGY))
-        checks.check_pictures(self.pictures, known)
+        checks.check_outputs(self.outputs, state, (*state, ENERGY))
+        checks.check_pictures(self.pictures, state)
 
     @property
     def times(self) -> NDArray[np.float64]:
-        """When the motion is looked at, in s."""
+        """Times of the samples, in s."""
         usual = min(max(round(RATE * self.duration) + 1, FEWEST), MOST)
         return np.linspace(0, self.duration, self.samples or usual)
 
     @property
-    def wanted(self) -> tuple[int, ...]:
-        """Which components of the state are asked for."""
+    def requested(self) -> tuple[int, ...]:
+        """Indices of the requested components of the state."""
         return tuple(k for k, name in enumerate(self.module.STATE) if name in self.outputs)
 
     @property
-    def is_fixed(self) -> bool:
-        """Whether it says how to integrate, so that no smaller model will do."""
+    def prescribes_integration(self) -> bool:
+        """Whether it names a model or a method, so that no simpler model is considered."""
         return bool(self.model or self.method or self.form or self.step)

@@ -1,4 +1,4 @@
-"""The scenes that ship with holonomic, found by their files' names; and those of anybody else."""
+"""Scenes by name: those that ship with holonomic, and those in other files."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ def names() -> tuple[str, ...]:
     return toml_input.names(FILES)
 
 
-def find(name: str, module: Callable[[str], GeneratedModule]) -> Scene:
-    """The scene of this name, or in this file.
+def find(name: str, load: Callable[[str], GeneratedModule]) -> Scene:
+    """The scene of a name, or in a file.
 
     Parameters
     ----------
     name : str
-        Of a scene that ships, or the path of a file that ends in ``.toml``.
-    module : callable
-        Gives a generated module by its name; raises `LookupError` for an unknown one.
+        Name of a scene that ships, or path of a file that ends in ``.toml``.
+    load : callable
+        Returns the generated module of a name; raises `LookupError` for an unknown one.
 
     Returns
     -------
@@ -36,7 +36,7 @@ def find(name: str, module: Callable[[str], GeneratedModule]) -> Scene:
     Raises
     ------
     solvers.io.toml_input.InputError
-        When there is none, or it makes no sense.
+        When there is no such scene, or it is not valid.
     OSError
         When the file cannot be read.
 
@@ -45,6 +45,6 @@ def find(name: str, module: Callable[[str], GeneratedModule]) -> Scene:
     solvers.scenes.checks.MassMatrixWarning
         When the mass matrix is nearly singular.
     UserWarning
-        When an initial angle without a unit is more than a turn, so that degrees may be meant.
+        When an initial angle without a unit exceeds a whole turn, so that degrees may be meant.
     """
-    return read(toml_input.path("scene", name, FILES), module)
+    return read(toml_input.path("scene", name, FILES), load)

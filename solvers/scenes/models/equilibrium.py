@@ -1,74 +1,71 @@
-"""Rest: an equilibrium stays."""
+"""An equilibrium: the state stays."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar, Self
 
 import numpy as np
 from scipy.linalg import expm
 
-from solvers.scenes.models.model import EPS, ROUNDINGS, Array, Motion, OutsideDomainError
+from solvers.equations.module import GeneratedModule, depends_on_time
+from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
+from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
 
-#: What may be missed between the times that are looked at.
+#: Safety factor for times between the samples.
 MARGIN = 1.5
-#: Beyond this the error is no small one, whatever is asked.
+#: An error above this is not small at any accuracy.
 LARGE = 1e3
 
 
 @dataclass(frozen=True)
-class Rest:
-    """The state does not change."""
+class Equilibrium(ClosedForm):
+    """The initial state at all times.
+
+    The defect d = y' of the constant state obeys e' = J e + d, J the Jacobian there; its solution
+    is a part of one matrix exponential. As e grows, J changes: Gronwall's inequality bounds the
+    growth that this adds.
+    """
+
+    name: ClassVar[str] = "rest"
+    complexity: ClassVar[int] = 10
+    applies_to: ClassVar[str] = "an equilibrium"
+    error_source: ClassVar[str] = "residual acceleration, propagated by a matrix exponential"
 
     y0: tuple[float, ...]
-    error_estimate: float
-    why: str
-    name: str = "rest"
+
+    @classmethod
+    def not_applicable(cls, module: GeneratedModule) -> str:
+        """An equilibrium stays also without conserved energy."""
+        return "the equations depend on time" if depends_on_time(module) else ""
+
+    @classmethod
+    def of(cls, motion: Motion) -> Self:
+        """The equilibrium, with the error that grows from the residual acceleration."""
+        motion.require_inertia()
+        if any(motion.y0[motion.n_coordinates :]):
+            raise OutsideDomainError("the initial velocity is not zero")
+        jacobian = np.array(motion.module.jacobian(0.0, motion.y0, motion.params))
+        defect = np.array(motion.module.rhs(0.0, motion.y0, motion.params))
+        # terms that cancel in the right-hand side are known to rounding only
+        defect += np.copysign(EPS * np.abs(jacobian) @ np.abs(motion.y0), defect)
+        error = _propagated(jacobian, defect, motion.sample_times)
+        largest = np.abs(error).max(axis=0)
+        if not largest.max() < LARGE:
+            raise OutsideDomainError("the motion leaves the initial state")
+        displaced = motion.module.jacobian_many(0.0, (motion.y0 + error).T, motion.params)
+        changes = np.linalg.norm(np.moveaxis(displaced, -1, 0) - jacobian, 2, axis=(1, 2))
+        change = float(changes.max()) * motion.duration
+        bound = MARGIN * np.exp(min(change, 700)) * largest + ROUNDINGS * EPS * np.abs(motion.y0)
+        estimate = float(bound[list(motion.requested)].max())
+        if not estimate < LARGE:
+            raise OutsideDomainError("the motion leaves the initial state")
+        why = f"initial accelerations are at most {np.abs(defect).max():.1g}"
+        return cls(motion.y0, error_estimate=estimate, why=why)
 
     def states(self, t: Array) -> Array:
         """The initial state at all times."""
         return np.tile(self.y0, (len(t), 1))
-
-
-def rest(asked: Motion) -> Rest:
-    """Rest, with the error that grows from what accelerates the system nevertheless.
-
-    The defect d = y' of the state that stays obeys e' = J e + d, J the Jacobian there;
-    its solution is a part of one matrix exponential. As e grows, J changes: Gronwall's
-    inequality bounds what that adds.
-
-    Parameters
-    ----------
-    asked : Motion
-        The motion.
-
-    Returns
-    -------
-    Rest
-
-    Raises
-    ------
-    OutsideDomainError
-        When the system moves, or a coordinate moves no mass.
-    """
-    asked.require_mass()
-    if any(asked.y0[asked.coordinates :]):
-        raise OutsideDomainError("it moves at the beginning")
-    jacobian = np.array(asked.module.jacobian(0.0, asked.y0, asked.params))
-    defect = np.array(asked.module.rhs(0.0, asked.y0, asked.params))
-    # what cancels in the right-hand side is known to rounding only
-    defect += np.copysign(EPS * np.abs(jacobian) @ np.abs(asked.y0), defect)
-    error = _propagated(jacobian, defect, asked.looks)
-    largest = np.abs(error).max(axis=0)
-    if not largest.max() < LARGE:
-        raise OutsideDomainError("it moves away from there")
-    moved = asked.module.jacobian_many(0.0, (asked.y0 + error).T, asked.params)
-    changes = np.linalg.norm(np.moveaxis(moved, -1, 0) - jacobian, 2, axis=(1, 2))
-    change = float(changes.max()) * asked.duration
-    grown = MARGIN * np.exp(min(change, 700)) * largest + ROUNDINGS * EPS * np.abs(asked.y0)
-    estimate = float(grown[list(asked.wanted)].max())
-    if not estimate < LARGE:
-        raise OutsideDomainError("it moves away from there")
-    return Rest(asked.y0, estimate, f"accelerations are at most {np.abs(defect).max():.1g} there")
 
 
 def _propagated(jacobian: Array, defect: Array, times: Array) -> Array:

@@ -1,306 +1,217 @@
-"""The full equations, integrated by one choice and checked by another."""
+"""The full equations, integrated by one method and checked by another."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import nan
+from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
 from solvers.equations.forms import fastest_form
-from solvers.integration.compiled.compiler import NoCompilerError
-from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.prepare import prepare
-from solvers.integration.solution import Status
-from solvers.integration.timing import median_seconds
-from solvers.references.taylor import taylor
+from solvers.scenes.models.integration_run import (
+    MAX_STEPS,
+    IntegrationRun,
+    NotAccurateError,
+    TooLongError,
+)
 from solvers.scenes.models.method_choice import MethodChoice
-from solvers.scenes.models.model import Array, Motion, scattered
+from solvers.scenes.models.model import Model
+from solvers.scenes.models.motion import Array, Motion, golden_points
 
-#: By what a run is checked: at least so many times as accurate, or the finest.
+#: Methods of the check, how much finer its tolerance is, and the finest tolerance.
 CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14
-#: Errors may be so many times as large as the difference between run and check.
+#: Safety factor of the difference between run and check.
 MARGIN = 2.0
-#: How often tolerances or steps are tried, and by how much errors then stay below what is asked.
+#: Number of tolerances or steps to try, and the share of the requested accuracy to aim at.
 TRIES, RESERVE = 6, 0.3
-#: Digits of Taylor series that are tried where ordinary numbers have too few.
-DIGITS, MORE, MOST_DIGITS = 24, 12, 96
-#: Sizes of a state in rad or m that are resolved relatively; and steps of a run.
-BEGINNING, MOST_STEPS = 1e-3, 3 * 10**6
-#: Of so many steps errors are looked at; angles in rad and turns that series can do.
-MOST_LOOKS, LARGEST_ANGLE, MOST_TURNS = 100_000, 1e6, 3000.0
-
-
-class NotAccurateError(ArithmeticError):
-    """No run came as close as was asked; the message says how close."""
-
-
-class TooLongError(ArithmeticError):
-    """A motion that takes more steps than anybody waits for."""
+#: Digits of Taylor series: fewest, increment, most.
+DIGITS, MORE_DIGITS, MOST_DIGITS = 24, 12, 96
+#: Most steps at which errors are estimated.
+MOST_SAMPLES = 100_000
+#: Largest angle in rad and number of turns for Taylor series.
+LARGEST_ANGLE, MOST_TURNS = 1e6, 3000.0
 
 
 @dataclass(frozen=True)
-class Full:
-    """The full equations, by one choice with one tolerance or step.
+class FullEquations(Model):
+    """The full equations, integrated with one tolerance, step size or number of digits.
 
     Attributes
     ----------
-    asked : Motion
-        The motion; its module may be a specialised one.
-    method_choice : MethodChoice
-        Method and form.
-    setting : float
-        Tolerance, or step in s, or digits.
-    error_estimate : float
-        Twice the largest difference from the check, and the check's tolerance.
-    took : float
-        What a run took in s, where it is too long to be timed again.
-    kept : pair of ndarray, optional
-        Times and states of that run.
-    name : str
-        What to call it.
+    run : IntegrationRun
+        The integration.
+    computed : pair of ndarray, optional
+        Times and states that are known already.
+    computing_seconds : float, optional
+        Time of that computation, where it is too long to be repeated.
     """
 
-    asked: Motion
-    method_choice: MethodChoice
-    setting: float
-    error_estimate: float
-    took: float = nan
-    kept: tuple[Array, Array] | None = None
-    name: str = "full equations"
+    name: ClassVar[str] = "full equations"
+    complexity: ClassVar[int] = 100
+    applies_to: ClassVar[str] = "every motion"
+    error_source: ClassVar[str] = "comparison with another method in another form of the equations"
 
-    @property
-    def why(self) -> str:
-        """Why this choice."""
-        return self.method_choice.why
+    run: IntegrationRun = field(kw_only=True)
+    computed: tuple[Array, Array] | None = None
+    computing_seconds: float | None = None
+
+    @classmethod
+    def key(cls) -> str:
+        """The value of ``model`` in a scene file."""
+        return "full"
+
+    @classmethod
+    def of(cls, run: IntegrationRun, error_estimate: float) -> FullEquations:
+        """The model by one run."""
+        return cls(run=run, error_estimate=error_estimate, why=run.method_choice.why)
 
     def states(self, t: Array) -> Array:
         """Integrated to these times, shape (n, state)."""
-        if self.kept and np.array_equal(self.kept[0], t):
-            return self.kept[1]
-        return run(self.asked, self.method_choice, self.setting, t)
+        if self.computed and np.array_equal(self.computed[0], t):
+            return self.computed[1]
+        return self.run.states(t)
 
-    def seconds(self) -> float:
-        """What an integration to the end takes, without what is prepared once."""
-        if self.method_choice.is_series:
-            return self.took
-        end = np.array([self.asked.duration])
-        try:
-            choice = self.method_choice
-            once = prepare(
-                self.asked.module, self.asked.params, method=choice.method, form=choice.form,
-                max_steps=MOST_STEPS, **options(choice, self.setting),
-            )  # fmt: skip
-        except (ValueError, NoCompilerError):  # SciPy's methods, or no compiler
-            return median_seconds(lambda: self.states(end))
-        return median_seconds(lambda: once((0.0, self.asked.duration), self.asked.y0))
+    def seconds(self, duration: float) -> float:
+        """Seconds of an integration to the end, without preparations that are done once."""
+        return self.computing_seconds or self.run.seconds()
 
 
-def run(asked: Motion, choice: MethodChoice, setting: float, t: Array) -> Array:
-    """States at times, shape (n, state).
+def integrated(
+    motion: Motion, choice: MethodChoice, accuracy: float, checked: Motion
+) -> FullEquations:
+    """The full equations at the largest tolerance or step that is sufficient.
 
     Parameters
     ----------
-    asked : Motion
-        The motion.
+    motion : Motion
+        The motion; its module may be a specialised one.
     choice : MethodChoice
-        Method and form.
-    setting : float
-        Tolerance, or step in s, or digits.
-    t : ndarray of shape (n,)
-        Times in s, increasing, within the motion's duration.
-
-    Returns
-    -------
-    ndarray of shape (n, state)
-        Coordinates and velocities.
-
-    Raises
-    ------
-    NotAccurateError
-        When the integration does not reach its end.
-    TooLongError
-        When it takes more steps than anybody waits for.
-    solvers.references.taylor.NoSeriesError
-        When the equations have no Taylor series, as in `taylor`.
-    """
-    if choice.is_series:
-        # its times begin with the start
-        times = t if t[0] == 0 else [0.0, *t]
-        return taylor(asked.module, asked.params, asked.y0, times, int(setting))[-len(t) :]
-    return _integrated(asked, choice, setting, t)[1]
-
-
-def _integrated(
-    asked: Motion, choice: MethodChoice, setting: float, t: Array | None
-) -> tuple[Array, Array]:
-    """Times and states: at `t`, or at the end of every step."""
-    with ignore_predictability():
-        found = integrate(
-            asked.module, (0.0, asked.duration), asked.y0, asked.params, method=choice.method,
-            form=choice.form, t_eval=t, max_steps=MOST_STEPS, **options(choice, setting),
-        )  # fmt: skip
-    if found.status is Status.STEP_LIMIT:
-        raise TooLongError(
-            f"more than {MOST_STEPS:.0e} steps of {choice.method} are needed: shorten the "
-            "duration, or ask for less accuracy"
-        )
-    if found.status is not Status.FINISHED:
-        raise NotAccurateError(f"{choice.method}, {setting:g}: {found.message}")
-    return found.t, found.y.T
-
-
-def options(choice: MethodChoice, setting: float) -> dict[str, Any]:
-    """A step, or tolerances, as the integrator takes them."""
-    if choice.is_fixed:
-        return {"h": setting}
-    # what begins small may grow, as next to the upright place
-    return {"rtol": setting, "atol": BEGINNING * setting}
-
-
-def full(
-    asked: Motion,
-    accuracy: float,
-    choice: MethodChoice,
-    checked: Motion,
-    setting: float | None,
-) -> Full:
-    """The run that is as accurate as asked, at the largest tolerance or step that is.
-
-    Parameters
-    ----------
-    asked : Motion
-        The motion.
+        Method and form; and maybe a step size, which is then taken whatever its error.
     accuracy : float
-        How large errors may be.
-    choice : MethodChoice
-        How to integrate.
+        Largest permitted error.
     checked : Motion
-        The same motion, by which the run is checked.
-    setting : float, optional
-        The one tolerance or step that is tried: then the error is what it is.
+        The same motion for the check, with general code.
 
     Returns
     -------
-    Full
+    FullEquations
         With the estimate of its error.
 
     Raises
     ------
     NotAccurateError
-        When no run is as accurate, or none reaches its end.
+        When no run is sufficiently accurate, or none reaches its end.
     TooLongError
-        When that takes more steps than anybody waits for.
+        When a run takes more steps than the limit.
     """
-    _refuse_endless(checked, MOST_STEPS)
-    if setting is not None:
-        return Full(asked, choice, setting, _error(asked, choice, setting, checked))
-    setting, power = (
-        (asked.duration / 200, choice.order) if choice.is_fixed else (accuracy / 3, 1.0)
-    )
+    _check_length(checked, MAX_STEPS)
+    if choice.step is not None:
+        run = IntegrationRun(motion, choice, choice.step)
+        return FullEquations.of(run, estimated_error(run, checked))
+    is_fixed = choice.is_fixed
+    setting, power = (motion.duration / 200, choice.order) if is_fixed else (accuracy / 3, 1.0)
     best = np.inf
     for _ in range(TRIES):
-        error = _error(asked, choice, setting, checked)
+        run = IntegrationRun(motion, choice, setting)
+        error = estimated_error(run, checked)
         if error <= accuracy:
-            return Full(asked, choice, setting, error)
+            return FullEquations.of(run, error)
         best = min(best, error)
-        if not choice.is_fixed and setting <= FINEST:
+        if not is_fixed and setting <= FINEST:
             break
-        shorter = (RESERVE * accuracy / error) ** (1 / power) if np.isfinite(error) else 0.1
-        setting = max(setting * min(max(shorter, 1e-4), 0.5), FINEST)
+        factor = (RESERVE * accuracy / error) ** (1 / power) if np.isfinite(error) else 0.1
+        setting = max(setting * min(max(factor, 1e-4), 0.5), FINEST)
     raise NotAccurateError(
-        f"{choice.method} comes to {best:.1g} at best where {accuracy:.1g} was asked: a motion "
-        "that loses more digits than numbers have"
+        f"{choice.method} reaches {best:.1g} at best where {accuracy:.1g} is requested: the motion "
+        "loses more digits than double precision has"
     )
 
 
-def _error(asked: Motion, choice: MethodChoice, setting: float, checked: Motion) -> float:
+def estimated_error(run: IntegrationRun, checked: Motion) -> float:
     """Estimated error of a run; infinity for one that does not reach its end."""
     try:
-        times, _ = _integrated(asked, choice, setting, None)
+        times, _ = run.integrate(None)
     except NotAccurateError:
         return np.inf
-    if len(times) > MOST_LOOKS:
-        times = times[np.unique((len(times) * scattered(MOST_LOOKS)).astype(int))]
-    # steps crowd where the motion is quick; between two of them it may be quicker
-    times = np.unique([*times, *(times[1:] + times[:-1]) / 2, *asked.looks])
-    found = run(asked, choice, setting, times)
-    # another method in another form: they share no rounding, not even of the start
+    if len(times) > MOST_SAMPLES:
+        times = times[np.unique((len(times) * golden_points(MOST_SAMPLES)).astype(int))]
+    # steps are dense where the motion is fast; between two of them it may be faster
+    times = np.unique([*times, *(times[1:] + times[:-1]) / 2, *run.motion.sample_times])
+    states = run.states(times)
+    # another method in another form has no rounding in common, not even of the initial state
+    choice = run.method_choice
     method = next(name for name in CHECKS if name != choice.method)
-    fastest = fastest_form(checked.module)
-    truth = MethodChoice(method, fastest if choice.form == "lagrangian" else "lagrangian", "")
+    form = fastest_form(checked.module) if choice.form == "lagrangian" else "lagrangian"
     tolerance = FINEST
     if not choice.is_fixed:
-        tolerance = max(setting / TIGHTER, FINEST)
-    fine = run(checked, truth, tolerance, times)
-    # the check is as wrong as its tolerance, if the run is righter than it should be
-    return _apart(asked, found, fine) + tolerance * float(np.abs(fine).max())
+        tolerance = max(run.setting / TIGHTER, FINEST)
+    reference = IntegrationRun(checked, MethodChoice(method, form, ""), tolerance).states(times)
+    # the check's own error counts where the run is more accurate than its tolerance
+    return _difference(run.motion, states, reference) + tolerance * float(np.abs(reference).max())
 
 
-def _apart(asked: Motion, one: Array, other: Array) -> float:
-    difference = np.abs(one - other)[:, list(asked.wanted)].max()
-    return float(MARGIN * difference)
+def _difference(motion: Motion, one: Array, other: Array) -> float:
+    return float(MARGIN * np.abs(one - other)[:, list(motion.requested)].max())
 
 
-def series(asked: Motion, accuracy: float, choice: MethodChoice, times: Array) -> Full:
-    """Taylor series to these times, with as many digits as it takes.
+def by_series(motion: Motion, choice: MethodChoice, accuracy: float, times: Array) -> FullEquations:
+    """Taylor series with as many digits as are necessary.
 
     Parameters
     ----------
-    asked : Motion
+    motion : Motion
         The motion.
-    accuracy : float
-        How large errors may be.
     choice : MethodChoice
-        Series, and the form that they are made of.
+        The series, and the form of the equations.
+    accuracy : float
+        Largest permitted error.
     times : ndarray of shape (n,)
         In s, increasing.
 
     Returns
     -------
-    Full
-        With the states at `times`, and the seconds that they took.
+    FullEquations
+        With the states at `times`, and the seconds of their computation.
 
     Raises
     ------
     NotAccurateError
-        When not even the most digits are enough.
+        When even the most digits are not sufficient.
     TooLongError
-        When they take longer than anybody waits for.
+        When the motion has too many turns.
     solvers.references.taylor.NoSeriesError
         When the equations have no Taylor series, as in `taylor`.
     """
-    _refuse_endless(asked, MOST_TURNS)
-    if max(map(abs, asked.y0)) > LARGEST_ANGLE:
-        raise TooLongError(f"series of angles above {LARGEST_ANGLE:g} rad take for ever: wind back")
-    digits, error = DIGITS, np.inf
-    rough = run(asked, choice, digits, times)
-    while digits + MORE <= MOST_DIGITS:
-        digits += MORE
+    _check_length(motion, MOST_TURNS)
+    if max(map(abs, motion.y0)) > LARGEST_ANGLE:
+        raise TooLongError(f"angles above {LARGEST_ANGLE:g} rad: reduce them by whole turns")
+    coarse, error = IntegrationRun(motion, choice, DIGITS).states(times), np.inf
+    for digits in range(DIGITS + MORE_DIGITS, MOST_DIGITS + 1, MORE_DIGITS):
+        run = IntegrationRun(motion, choice, digits)
         before = perf_counter()
-        fine = run(asked, choice, digits, times)
-        took = perf_counter() - before
-        # what comes back is rounded to ordinary numbers
-        error = _apart(asked, rough, fine) + float(np.spacing(np.abs(fine).max()))
+        fine = run.states(times)
+        seconds = perf_counter() - before
+        # the result is rounded to double precision
+        error = _difference(motion, coarse, fine) + float(np.spacing(np.abs(fine).max()))
         if error <= accuracy:
-            return Full(asked, choice, digits, error, took, (times, fine))
-        rough = fine
+            model = FullEquations.of(run, error)
+            return replace(model, computed=(times, fine), computing_seconds=seconds)
+        coarse = fine
     raise NotAccurateError(
-        f"{MOST_DIGITS} digits come to {error:.1g} where {accuracy:.1g} is asked"
+        f"{MOST_DIGITS} digits reach {error:.1g} where {accuracy:.1g} is requested"
     )
 
 
-def _refuse_endless(asked: Motion, most: float) -> None:
-    """Refuse motions that turn more often than anybody waits for, by the rates they begin with."""
-    jacobian = np.array(asked.module.jacobian(0.0, asked.y0, asked.params))
+def _check_length(motion: Motion, most: float) -> None:
+    """Refuse motions of more than `most` turns, by the rates at the start."""
+    jacobian = np.array(motion.module.jacobian(0.0, motion.y0, motion.params))
     if not np.isfinite(jacobian).all():
-        raise NotAccurateError(f"the equations are not finite at {asked.y0}")
-    rate = max(np.abs(np.linalg.eigvals(jacobian)).max(), *np.abs(asked.y0[asked.coordinates :]))
-    if rate * asked.duration > most:
+        raise NotAccurateError(f"the equations are not finite at {motion.y0}")
+    velocities = np.abs(motion.y0[motion.n_coordinates :])
+    rate = max(np.abs(np.linalg.eigvals(jacobian)).max(), *velocities)
+    if rate * motion.duration > most:
         raise TooLongError(
-            f"rates of {rate:.3g} per s over {asked.duration:g} s are more than {most:g} turns: "
-            "shorten the duration, or ask for less accuracy"
+            f"rates of {rate:.3g} per s over {motion.duration:g} s are more than {most:g} turns: "
+            "shorten the duration or request less accuracy"
         )

@@ -1,4 +1,4 @@
-"""How to integrate, and the cheapest way by what was measured."""
+"""The method and form of an integration, chosen by recorded measurements."""
 
 from __future__ import annotations
 
@@ -21,33 +21,38 @@ SERIES = "taylor"
 
 @dataclass(frozen=True)
 class MethodChoice:
-    """A method and a form.
+    """The method and form that the full equations are integrated with.
 
     Attributes
     ----------
     method : str
-        One of the catalogue's or SciPy's, or ``taylor`` for series with many digits.
+        A Runge–Kutta method, one of SciPy's, or ``taylor`` for series with many digits.
     form : str
-        Of the equations.
+        Form of the equations.
     why : str
-        Why this one.
+        The reason for this choice.
     seconds : float
-        What it was measured to take for a second of motion.
+        Measured seconds per second of motion.
+    step : float or None
+        A fixed step size in s.
     """
 
     method: str
     form: str
     why: str
     seconds: float = nan
+    step: float | None = None
 
     @property
     def is_series(self) -> bool:
-        """Whether digits are what is set."""
+        """Whether it is a Taylor series, whose setting is the number of digits."""
         return self.method == SERIES
 
     @property
     def is_fixed(self) -> bool:
-        """Whether steps do not follow a tolerance."""
+        """Whether the step size is fixed."""
+        if self.step is not None:
+            return True
         return not self.is_series and self.method not in SCIPY and not load(self.method).b_hat
 
     @property
@@ -57,24 +62,24 @@ class MethodChoice:
 
 
 def usual_form(module: GeneratedModule, method: str) -> str:
-    """The form that runs fastest; where a Jacobian is needed, or it is SciPy's, Lagrange's."""
+    """The fastest form; Lagrange's for SciPy's methods and those that need a Jacobian."""
     is_ours = method in (SERIES, *names())
-    is_plain = is_ours and (method == SERIES or load(method).is_explicit)
-    return fastest_form(module) if is_plain else "lagrangian"
+    is_explicit = is_ours and (method == SERIES or load(method).is_explicit)
+    return fastest_form(module) if is_explicit else "lagrangian"
 
 
 @cache
 def _record() -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = json.loads(RECORD.read_text(encoding="utf-8"))
-    return found
+    record: list[dict[str, Any]] = json.loads(RECORD.read_text(encoding="utf-8"))
+    return record
 
 
 def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) -> MethodChoice:
-    """The way that was cheapest for this accuracy in the charted scene most like this one.
+    """The cheapest method choice for an accuracy in the most similar recorded scene.
 
-    Scenes of the same system are alike, and of these those whose modes are: a method that
-    pays where the fastest mode is hundreds of times as fast as the slowest does not where
-    both are alike. Of scenes as alike the one that was charted first counts.
+    Scenes of the same system are similar, and of these those with a similar spread of modes: a
+    method that pays where the fastest mode is hundreds of times as fast as the slowest does not
+    where both are alike. Of equally similar scenes the first in the record counts.
 
     Parameters
     ----------
@@ -83,30 +88,28 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
     params : sequence of float
         In the order of ``module.PARAMETERS``.
     accuracy : float
-        How large errors may be.
+        Largest permitted error.
 
     Returns
     -------
     MethodChoice
-        Where nothing charted is as accurate, that for the smallest error charted.
+        Where nothing recorded is as accurate, the choice with the smallest recorded error.
     """
     spread = mode_spread(module, params)
-    system = module.SYSTEM
-    own = [scene for scene in _record() if scene["system"] == system] or _record()
-    nearest = min(own, key=lambda scene: abs(log(scene["spread"] / spread)))
+    scenes = [scene for scene in _record() if scene["system"] == module.SYSTEM] or _record()
+    nearest = min(scenes, key=lambda scene: abs(log(scene["spread"] / spread)))
     rows: list[dict[str, Any]] = nearest["frontier"]
-    good = [row for row in rows if row["global_error"] <= accuracy] or rows[-1:]
-    best = good[0]
+    best = next((row for row in rows if row["global_error"] <= accuracy), rows[-1])
+    method, form, seconds = best["method"], best["form"], best["work_seconds"]
     others = ", ".join(
         f"{name} {factor:.2g} x"
-        for choice in ("method", "form")
-        for name, factor in list(best["cost_ratios"][choice].items())[:2]
+        for axis in ("method", "form")
+        for name, factor in list(best["cost_ratios"][axis].items())[:2]
     )
-    return MethodChoice(
-        best["method"],
-        best["form"] if best["form"] in module.FORMS else usual_form(module, best["method"]),
+    why = (
         f"cheapest for {best['global_error']:.0e} as measured in scene {nearest['scene']!r}, whose "
-        f"modes are most alike: {best['work_seconds'] * 1e6:.3g} us for {nearest['duration']:g} s; "
-        f"others there: {others}",
-        best["work_seconds"] / nearest["duration"],
+        f"modes are most similar: {seconds * 1e6:.3g} us for {nearest['duration']:g} s; others "
+        f"there: {others}"
     )
+    form = form if form in module.FORMS else usual_form(module, method)
+    return MethodChoice(method, form, why, seconds / nearest["duration"])

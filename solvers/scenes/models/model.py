@@ -1,120 +1,99 @@
-"""What a model of a motion is asked, and what it answers."""
+"""The base classes of all models of a motion."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Protocol
+from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, depends_on_time, has_function
+from solvers.integration.timing import median_seconds
+from solvers.scenes.models.integration_run import IntegrationRun
+from solvers.scenes.models.motion import Array, Motion
 
-Array = NDArray[np.float64]
-
-#: Relative rounding of a number.
-EPS = float(np.finfo(float).eps)
-#: In so many places of a closed form a number is rounded.
-ROUNDINGS = 32
-#: So often an error is looked at, at times that follow the golden ratio.
-LOOKS, GOLDEN = 128, (5**0.5 - 1) / 2
+#: Relative rounding of a number, and roundings that a closed form is assumed to accumulate.
+EPS, ROUNDINGS = float(np.finfo(float).eps), 32
 
 
-class OutsideDomainError(ValueError):
-    """A model says nothing about this motion; the message says why."""
+@dataclass(frozen=True, kw_only=True)
+class Model(ABC):
+    """A model of a motion, with an estimate of its error.
 
-
-@dataclass(frozen=True)
-class Motion:
-    """A motion, and what is wanted of it.
-
-    Attributes
-    ----------
-    module : module
-        A generated module.
-    params, y0 : tuple of float
-        In the order of ``module.PARAMETERS`` and ``module.STATE``.
-    duration : float
-        In s.
-    wanted : tuple of int
-        Which components of the state.
-    """
-
-    module: GeneratedModule
-    params: tuple[float, ...]
-    y0: tuple[float, ...]
-    duration: float
-    wanted: tuple[int, ...]
-
-    @property
-    def coordinates(self) -> int:
-        """How many there are."""
-        return len(self.module.COORDINATES)
-
-    @cached_property
-    def alive(self) -> tuple[int, ...]:
-        """Coordinates that move mass; others are there in name only, where something is absent."""
-        n = self.coordinates
-        places = np.random.default_rng(0).uniform(0.1, 3.0, (n, 8))
-        row = np.abs(self.module.mass_matrix_many(0.0, np.vstack([places, places]), self.params))
-        return tuple(k for k in range(n) if row[k].max() > 0)
-
-    def require_mass(self) -> None:
-        """Refuse to go on where a coordinate moves no mass.
-
-        Raises
-        ------
-        OutsideDomainError
-            Its message names the coordinates.
-        """
-        idle = [q for k, q in enumerate(self.module.COORDINATES) if k not in self.alive]
-        if idle:
-            raise OutsideDomainError(f"{', '.join(idle)} moves no mass")
-
-    @property
-    def looks(self) -> Array:
-        """Times at which errors are looked at: in step with no period, and at both ends."""
-        return self.duration * np.unique([*scattered(LOOKS), 1.0])
-
-
-def scattered(count: int) -> Array:
-    """So many parts of 1, 0 among them, evenly scattered and in step with nothing."""
-    return np.modf(GOLDEN * np.arange(count))[0]
-
-
-class Model(Protocol):
-    """A motion in closed form, or as good as that.
+    A model is one class in a file of its own in this folder; nothing else lists it.
 
     Attributes
     ----------
     name : str
-        What to call it.
-    why : str
-        Why it may be used here.
+        Its name in results and messages.
+    complexity : int
+        Models are tried in ascending order of this number.
+    applies_to, error_source : str
+        The motions to which it applies, and the origin of its error, for documentation.
     error_estimate : float
-        Largest error of any wanted component at any time, in rad, m, rad/s or m/s.
+        Largest error of any requested component at any time, in rad, m, rad/s or m/s.
+    why : str
+        Why it applies to this motion.
+    run : IntegrationRun or None
+        The integration, for a model that integrates.
     """
 
-    @property
-    def name(self) -> str: ...  # noqa: D102
+    name: ClassVar[str]
+    complexity: ClassVar[int]
+    applies_to: ClassVar[str]
+    error_source: ClassVar[str]
 
-    @property
-    def why(self) -> str: ...  # noqa: D102
+    error_estimate: float
+    why: str
+    run: IntegrationRun | None = None
 
-    @property
-    def error_estimate(self) -> float: ...  # noqa: D102
+    @classmethod
+    def key(cls) -> str:
+        """The value of ``model`` in a scene file."""
+        return cls.name
 
+    @abstractmethod
     def states(self, t: Array) -> Array:
         """Coordinates and velocities at times from 0 on, shape (n, state)."""
-        ...
+
+    def seconds(self, duration: float) -> float:
+        """Seconds that the state at the end of the motion takes."""
+        end = np.array([duration])
+        return median_seconds(lambda: self.states(end))
+
+
+class ClosedForm(Model):
+    """A model that integrates nothing."""
+
+    @classmethod
+    def not_applicable(cls, module: GeneratedModule) -> str:
+        """The reason why no motion of a system has this model; empty where some may."""
+        if depends_on_time(module):
+            return "the equations depend on time"
+        if has_function(module, "power"):
+            return "energy is not conserved"
+        if not has_function(module, "linear"):
+            return "the linearised equations are not M x'' + K x = 0"
+        return ""
+
+    @classmethod
+    @abstractmethod
+    def of(cls, motion: Motion) -> Self:
+        """The model of a motion.
+
+        Raises
+        ------
+        OutsideDomainError
+            When the model does not apply to the motion.
+        """
 
 
 def rounding_error(
     states: Callable[[Array], Array], y0: Sequence[float], sizes: Sequence[float]
 ) -> Array:
-    """What rounding does to a motion in closed form: so much as changes of its start of that size.
+    """Rounding error of a closed form, as the effect of rounding its initial state.
 
     Parameters
     ----------
@@ -123,16 +102,17 @@ def rounding_error(
     y0 : sequence of float
         The initial state.
     sizes : sequence of float
-        For each component the size of what is rounded.
+        For each component the magnitude that is rounded.
 
     Returns
     -------
     ndarray of shape (n, state)
     """
     start = np.array(y0, dtype=float)
-    found = states(start)
-    total = ROUNDINGS * EPS * np.abs(found)
+    reference = states(start)
+    total = ROUNDINGS * EPS * np.abs(reference)
     for k, size in enumerate(sizes):
-        # as far as rounding goes and no farther: near a separatrix nothing is linear
-        total += np.abs(states(start + ROUNDINGS * EPS * size * np.eye(len(start))[k]) - found)
+        # a perturbation of this size and no smaller: near a separatrix nothing is linear
+        perturbed = start + ROUNDINGS * EPS * size * np.eye(len(start))[k]
+        total += np.abs(states(perturbed) - reference)
     return total

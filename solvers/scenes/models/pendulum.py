@@ -1,96 +1,99 @@
-"""The single pendulum by Jacobi's elliptic functions, wherever a motion is one."""
+"""The single pendulum by Jacobi's elliptic functions, for every motion that is one."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar, Self
 
 import numpy as np
 
 from solvers.references.elliptic import pendulum as exact
 from solvers.references.elliptic import swing
-from solvers.scenes.models.model import EPS, ROUNDINGS, Array, Motion, OutsideDomainError
-from solvers.scenes.models.one_degree_of_freedom import energy_form
+from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
+from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
+from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 
-#: Numbers that differ by less are the same, relatively; so many angles tell.
+#: Largest relative difference of equal numbers, and number of angles that are compared.
 SAME, ANGLES = 1e-13, 32
 #: Longest quarter period times ω: K(k) with 1 - k² of the size of a squared rounding.
 QUARTER = 40.0
 
 
 @dataclass(frozen=True)
-class Pendulum:
-    """One angle obeys θ̈ = -ω² sin(θ - bottom); other coordinates are there in name only."""
+class Pendulum(ClosedForm):
+    """One angle obeys θ̈ = -ω² sin(θ - bottom); other coordinates have no inertia.
+
+    Attributes
+    ----------
+    coordinate, n_coordinates : int
+        Index of the angle, and number of coordinates.
+    start : pair of float
+        Initial angle and velocity.
+    omega_squared, bottom : float
+        ω² in 1/s², and the stable equilibrium.
+    """
+
+    name: ClassVar[str] = "pendulum"
+    complexity: ClassVar[int] = 30
+    applies_to: ClassVar[str] = "one angle with inertia, as a pendulum: elliptic functions"
+    error_source: ClassVar[str] = "rounding"
 
     coordinate: int
-    coordinates: int
-    y0: tuple[float, float]
-    square: float
+    n_coordinates: int
+    start: tuple[float, float]
+    omega_squared: float
     bottom: float
-    error_estimate: float
-    why: str
-    name: str = "pendulum"
+
+    @classmethod
+    def of(cls, motion: Motion) -> Self:
+        """The closed form, with its rounding error."""
+        if len(motion.inertial) != 1:
+            raise OutsideDomainError(f"{len(motion.inertial)} coordinates move")
+        reduced, k = ReducedMotion.of(motion), motion.inertial[0]
+        u = 2 * np.pi * np.arange(ANGLES) / ANGLES
+        mu, W, _, _ = reduced.parts(u)
+        pull = -2 * float(W @ np.cos(u)) / ANGLES  # W = const - pull cos u
+        other = np.abs(W - W.mean() + pull * np.cos(u)).max()
+        if not reduced.is_angle or np.ptp(mu) > SAME * mu[0] or other > SAME * abs(pull):
+            raise OutsideDomainError("its potential energy is not that of a pendulum")
+        square, bottom = abs(pull) / float(mu[0]), 0.0 if pull > 0 else np.pi
+        start = (reduced.start[0], reduced.start[1])
+        shifted = (start[0] - bottom, start[1])
+        error = rounding_errors(square, shifted, bool(bottom), motion.sample_times).max()
+        why = f"{motion.module.COORDINATES[k]} alone has inertia, and moves as a pendulum"
+        constants = (k, motion.n_coordinates, start, square, bottom)
+        return cls(*constants, error_estimate=float(error), why=why)
 
     def states(self, t: Array) -> Array:
-        """Angle and velocity; NaN for coordinates that do not exist."""
-        found = np.full((len(t), 2 * self.coordinates), np.nan)
-        start = (self.y0[0] - self.bottom, self.y0[1])
-        places = [self.coordinate, self.coordinate + self.coordinates]
-        found[:, places] = exact(1.0, self.square, start, t)
-        found[:, self.coordinate] += self.bottom
-        return found
+        """Angle and velocity; NaN for other coordinates."""
+        states = np.full((len(t), 2 * self.n_coordinates), np.nan)
+        start = (self.start[0] - self.bottom, self.start[1])
+        columns = [self.coordinate, self.coordinate + self.n_coordinates]
+        states[:, columns] = exact(1.0, self.omega_squared, start, t)
+        states[:, self.coordinate] += self.bottom
+        return states
 
 
-def pendulum(asked: Motion) -> Pendulum:
-    """The closed form, with what rounding does to it.
-
-    Parameters
-    ----------
-    asked : Motion
-        The motion.
-
-    Returns
-    -------
-    Pendulum
-
-    Raises
-    ------
-    OutsideDomainError
-        When more than one coordinate moves, or it does not move as a pendulum does.
-    """
-    if len(asked.alive) != 1:
-        raise OutsideDomainError(f"{len(asked.alive)} coordinates move")
-    form, k = energy_form(asked), asked.alive[0]
-    u = 2 * np.pi * np.arange(ANGLES) / ANGLES
-    mu, W, _, _ = form.parts(u)
-    pull = -2 * float(W @ np.cos(u)) / ANGLES  # W = const - pull cos u
-    other = np.abs(W - W.mean() + pull * np.cos(u)).max()
-    if not form.is_angle or np.ptp(mu) > SAME * mu[0] or other > SAME * abs(pull):
-        raise OutsideDomainError("its weight does not pull as a pendulum's")
-    square, bottom = abs(pull) / float(mu[0]), 0.0 if pull > 0 else np.pi
-    start = (form.start[0], form.start[1])
-    worst = rounding(square, (start[0] - bottom, start[1]), bool(bottom), asked.looks).max()
-    why = f"{asked.module.COORDINATES[k]} alone moves mass, as a pendulum does"
-    return Pendulum(k, asked.coordinates, start, square, bottom, float(worst), why)
-
-
-def rounding(square: float, start: tuple[float, float], is_shifted: bool, times: Array) -> Array:
-    """What rounding does: so much as changes of the numbers that the closed form is made of."""
+def rounding_errors(
+    square: float, start: tuple[float, float], is_shifted: bool, times: Array
+) -> Array:
+    """Rounding errors at `times`, as the effect of rounding the numbers of the closed form."""
     omega, half = np.sqrt(square), start[0] / 2
     if abs(start[0]) > np.pi:
         half = np.remainder(half + np.pi / 2, np.pi) - np.pi / 2
     parts = np.array([omega, np.sin(half), np.cos(half), start[1] / (2 * omega)])
 
-    def states(parts: Array, late: float = 0.0) -> Array:
+    def states(parts: Array, delay: float = 0.0) -> Array:
         omega, sine, cosine, speed = parts.tolist()
-        return swing(omega, sine, cosine, speed, times + late)
+        return swing(omega, sine, cosine, speed, times + delay)
 
-    found = states(parts)
-    total = ROUNDINGS * EPS * (np.abs(found) + abs(start[0]))
+    reference = states(parts)
+    total = ROUNDINGS * EPS * (np.abs(reference) + abs(start[0]))
     changes = [parts * (1 + ROUNDINGS * EPS * unit) for unit in np.eye(4)]
     if is_shifted or abs(start[0]) > np.pi:  # the angle itself was rounded
-        moved = half + ROUNDINGS * EPS * max(abs(start[0]), np.pi)
-        changes.append(np.array([omega, np.sin(moved), np.cos(moved), parts[3]]))
+        shifted = half + ROUNDINGS * EPS * max(abs(start[0]), np.pi)
+        changes.append(np.array([omega, np.sin(shifted), np.cos(shifted), parts[3]]))
     for change in changes:
-        total += np.abs(states(change) - found)
+        total += np.abs(states(change) - reference)
     # a quarter period is rounded, and a long one has many roundings
-    return total + np.abs(states(parts, ROUNDINGS * EPS * QUARTER / omega) - found)
+    return total + np.abs(states(parts, ROUNDINGS * EPS * QUARTER / omega) - reference)

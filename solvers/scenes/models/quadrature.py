@@ -1,7 +1,7 @@
-"""Quadrature: time as an integral over the one degree of freedom that is left.
+"""Quadrature: time as an integral over one degree of freedom.
 
-Between turning points a < b the phase φ with u = (a + b)/2 - (b - a)/2 cos φ goes on for ever, as
-does φ = ±u where u turns over and over. Time and turn are dt/dφ = G, ds/dφ = S with G and S
+Between turning points a < b the phase φ with u = (a + b)/2 - (b - a)/2 cos φ increases without
+bound, as does φ = ±u where u rotates. Time and rotation are dt/dφ = G, ds/dφ = S with G and S
 smooth and periodic, so that their Fourier series converge faster than any power: the trapezoid
 rule integrates them to rounding.
 """
@@ -10,29 +10,89 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from solvers.scenes.models.fourier import Series
-from solvers.scenes.models.model import (
-    EPS,
-    ROUNDINGS,
-    Array,
-    Motion,
-    OutsideDomainError,
-    rounding_error,
-)
-from solvers.scenes.models.one_degree_of_freedom import EnergyForm, energy_form
+from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm, rounding_error
+from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
+from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 
-#: How many points of a period are tried, and how many are looked at for turning points.
+#: Fewest and most points of a period, and points that are searched for turning points.
 FEWEST, MOST, SCAN = 32, 2048, 720
-#: A series ends where its terms are so small, in parts of the first.
+#: A series ends where its terms are below this part of the mean.
 END = 1e-14
-#: In parts of a period over 2π: short enough for rates, long enough not to be rounding.
+#: Part of a period over 2π: short enough for a derivative, long enough for its rounding.
 INSTANT = 1e-5
-#: Newton's steps from an interpolated phase.
+#: Newton iterations from an interpolated phase.
 ITERATIONS = 5
+NO_SERIES = f"no Fourier series of {MOST} points converges"
+
+
+@dataclass(frozen=True)
+class Series:
+    """The integral of a periodic function: mean · φ and its Fourier series without the mean."""
+
+    mean: float
+    terms: NDArray[np.complex128]
+
+    @classmethod
+    def of(cls, values: Array) -> Self:
+        """From values at φ = 2π (k + ½)/n."""
+        n = len(values)
+        order = np.arange(n // 2)
+        terms = np.fft.rfft(values)[: n // 2] * np.exp(-1j * np.pi * order / n) * 2 / n
+        return cls(float(values.mean()), terms[1:])
+
+    @property
+    def tail(self) -> float:
+        """The largest of the last quarter of its terms."""
+        return float(np.abs(self.terms[-len(self.terms) // 4 :]).max())
+
+    def value(self, phi: Array) -> Array:
+        """The function itself."""
+        return self.mean + self._sum(phi, self.terms)
+
+    def integral(self, phi: Array) -> Array:
+        """Its integral, up to a constant."""
+        order = np.arange(1, len(self.terms) + 1)
+        return self.mean * phi + self._sum(phi, self.terms / (1j * order))
+
+    @staticmethod
+    def _sum(phi: Array, terms: NDArray[np.complex128]) -> Array:
+        order = np.arange(1, len(terms) + 1)
+        return (np.exp(1j * np.multiply.outer(phi, order)) @ terms).real
+
+
+@dataclass(frozen=True)
+class Path:
+    """The path of u as a function of the phase: u = centre - amplitude cos φ, or ±φ.
+
+    Attributes
+    ----------
+    centre, amplitude : float
+        An amplitude of 0 denotes u = direction φ.
+    direction : float
+        Sign of the initial velocity.
+    """
+
+    centre: float
+    amplitude: float
+    direction: float
+
+    def u(self, phi: Array) -> Array:
+        """The shape."""
+        if self.amplitude:
+            return self.centre - self.amplitude * np.cos(phi)
+        return self.direction * phi
+
+    def du(self, phi: Array) -> Array:
+        """Its derivative with respect to φ."""
+        if self.amplitude:
+            return self.amplitude * np.sin(phi)
+        return np.full_like(phi, self.direction)
 
 
 @dataclass(frozen=True)
@@ -41,211 +101,167 @@ class Orbit:
 
     Attributes
     ----------
-    form : EnergyForm
-        What moves.
-    middle, half : float
-        u = middle - half cos φ; a half of 0 stands for u = direction φ.
-    direction : float
-        Direction of a motion that turns over.
-    time, turn : Series
+    reduced : ReducedMotion
+        The motion.
+    path : Path
+        u as a function of φ.
+    time, rotation : Series
         G and S.
     phase : float
-        φ at the beginning.
+        φ at the start.
     period_error : float
-        By how much of itself a period may be wrong.
-    place_error, rate_error : float
-        By how much turning points and velocities may be wrong.
+        Relative error of the period.
+    turning_point_error, rate_error : float
+        Errors of turning points and of velocities.
     """
 
-    form: EnergyForm
-    middle: float
-    half: float
-    direction: float
+    reduced: ReducedMotion
+    path: Path
     time: Series
-    turn: Series
+    rotation: Series
     phase: float
     period_error: float
-    place_error: float
+    turning_point_error: float
     rate_error: float
 
     @cached_property
-    def _guesses(self) -> tuple[Array, Array]:
-        """Times and phases between which a phase is sought."""
+    def _table(self) -> tuple[Array, Array]:
+        """Times and phases, for an interpolated phase."""
         phases = np.linspace(-np.pi, 3 * np.pi, 4 * len(self.time.terms))
         return self.time.integral(phases), phases
 
     def states(self, t: Array) -> Array:
         """Coordinates and velocities at times, shape (n, state)."""
-        elapsed = np.asarray(t, dtype=float) + self.time.integral(np.array(self.phase))
+        start = np.array(self.phase)
+        elapsed = np.asarray(t, dtype=float) + self.time.integral(start)
         period = 2 * np.pi * self.time.mean
-        whole = np.floor(elapsed / period)
-        rest = elapsed - whole * period
-        phi = np.interp(rest, *self._guesses)
+        periods = np.floor(elapsed / period)
+        rest = elapsed - periods * period
+        phi = np.interp(rest, *self._table)
         for _ in range(ITERATIONS):
             phi = phi - (self.time.integral(phi) - rest) / self.time.value(phi)
         rate = 1 / self.time.value(phi)
-        s = self.turn.integral(phi) + whole * 2 * np.pi * self.turn.mean
-        s += self.form.start[2] - self.turn.integral(np.array(self.phase))
-        if self.half:
-            u, slope = self.middle - self.half * np.cos(phi), self.half * np.sin(phi)
-        else:
-            u, slope = (
-                self.direction * (phi + whole * 2 * np.pi),
-                np.full_like(phi, self.direction),
-            )
-        return self.form.states(u, slope * rate, s, self.turn.value(phi) * rate)
+        s = self.rotation.integral(phi) + periods * 2 * np.pi * self.rotation.mean
+        s += self.reduced.start[2] - self.rotation.integral(start)
+        u = self.path.u(phi if self.path.amplitude else phi + periods * 2 * np.pi)
+        s_dot = self.rotation.value(phi) * rate
+        return self.reduced.states(u, self.path.du(phi) * rate, s, s_dot)
 
 
 @dataclass(frozen=True)
-class Quadrature:
-    """An orbit with its error."""
+class Quadrature(ClosedForm):
+    """An orbit with the error of its series and of rounding."""
+
+    name: ClassVar[str] = "quadrature"
+    complexity: ClassVar[int] = 50
+    applies_to: ClassVar[str] = "one degree of freedom, as without gravity: Fourier series"
+    error_source: ClassVar[str] = "last terms of the series; rounding"
 
     orbit: Orbit
-    error_estimate: float
-    why: str
-    name: str = "quadrature"
+
+    @classmethod
+    def of(cls, motion: Motion) -> Self:
+        """The orbit; `OutsideDomainError` where the shape rests, does not return, or no series."""
+        result = orbit(ReducedMotion.of(motion))
+        times = motion.sample_times
+
+        def states(y0: Array) -> Array:
+            return orbit(ReducedMotion.of(replace(motion, y0=tuple(y0)))).states(times)
+
+        sizes = [max(abs(component), 1.0) for component in motion.y0]
+        error = rounding_error(states, motion.y0, sizes)
+        # an error of the period is an error of the time
+        later = INSTANT * result.time.mean
+        change = np.abs(result.states(times + later) - result.states(times))
+        speed = change.max(axis=0) / later
+        error = error.max(axis=0) + speed * motion.duration * result.period_error
+        largest_rate = max(1.0, 1 / result.time.mean)
+        error += ROUNDINGS * (result.turning_point_error * largest_rate + result.rate_error)
+        rotates = result.reduced.rotation.any()
+        conserved = "angular momentum and energy are" if rotates else "energy is"
+        why = f"{conserved} conserved, which leaves one degree of freedom"
+        estimate = float(error[list(motion.requested)].max())
+        return cls(result, error_estimate=estimate, why=why)
 
     def states(self, t: Array) -> Array:
         """Coordinates and velocities at times, shape (n, state)."""
         return self.orbit.states(t)
 
 
-def quadrature(asked: Motion) -> Quadrature:
-    """The orbit, with the error of its series and of rounding.
-
-    Parameters
-    ----------
-    asked : Motion
-        The motion.
-
-    Returns
-    -------
-    Quadrature
-
-    Raises
-    ------
-    OutsideDomainError
-        When more than one degree of freedom is left, or that one rests or does not come
-        back, or no series converges.
-    """
-    form = energy_form(asked)
-    found = orbit(form)
-    times = asked.looks
-
-    def states(y0: Array) -> Array:
-        return orbit(energy_form(replace(asked, y0=tuple(y0)))).states(times)
-
-    sizes = [max(abs(component), 1.0) for component in asked.y0]
-    error = rounding_error(states, asked.y0, sizes)
-    # a wrong period is a wrong time
-    here = found.states(times)
-    later = INSTANT * found.time.mean
-    speed = np.abs(found.states(times + later) - here).max(axis=0) / later
-    error = error.max(axis=0) + speed * asked.duration * found.period_error
-    quick = max(1.0, 1 / found.time.mean)
-    error += ROUNDINGS * (found.place_error * quick + found.rate_error)
-    kept = "angular momentum and energy are kept" if form.turn.any() else "energy is kept"
-    return Quadrature(found, float(error[list(asked.wanted)].max()),
-                      f"{kept}, one degree of freedom is left")  # fmt: skip
-
-
-def orbit(form: EnergyForm) -> Orbit:
-    """The series of a motion.
-
-    Parameters
-    ----------
-    form : EnergyForm
-        The motion.
-
-    Returns
-    -------
-    Orbit
-
-    Raises
-    ------
-    OutsideDomainError
-        When the motion does not come back, or rests, or no series of `MOST` points
-        converges.
-    """
-    u, u_dot, _ = form.start
-    ends = _turning_points(form)
+def orbit(reduced: ReducedMotion) -> Orbit:
+    """The orbit of a motion; `OutsideDomainError` where no Fourier series converges."""
+    u, u_dot, _ = reduced.start
+    ends = _turning_points(reduced)
     direction = float(np.sign(u_dot)) or 1.0
-    middle = half = 0.0
     if ends:
         a, b = ends
-        middle, half = (a + b) / 2, (b - a) / 2
-        phase = float(np.arctan2(direction * np.sqrt(max((u - a) * (b - u), 0.0)), middle - u))
+        path = Path((a + b) / 2, (b - a) / 2, direction)
+        root = direction * np.sqrt(max((u - a) * (b - u), 0.0))
+        phase = float(np.arctan2(root, path.centre - u))
     else:
-        phase = direction * u
+        path, phase = Path(0.0, 0.0, direction), direction * u
     n = FEWEST
     while n <= MOST:
-        phi = 2 * np.pi * (np.arange(n) + 0.5) / n
-        where = middle - half * np.cos(phi) if half else direction * phi
-        slope = half * np.sin(phi) if half else np.full_like(phi, direction)
-        mu, W, spin, drag = form.parts(where)
-        kinetic = form.energy - W
-        if not np.all(kinetic > 0):
-            break
-        G = np.abs(slope) * np.sqrt(mu / (2 * kinetic))
-        S = spin * G - drag * slope
-        time, turn = Series.of(G), Series.of(S)
-        # what cancels in E - W, and between a place and a turning point, is known to rounding only
-        lost = EPS * (abs(form.energy) + np.abs(W)) / kinetic
-        if half:
-            lost += EPS * (abs(middle) + half) / (half - np.abs(where - middle))
-        noise = 4 * lost.max() / n
-        if time.tail <= (END + noise) * time.mean and turn.tail <= (END + noise) * np.abs(S).max():
-            period = float((G * lost).mean() / time.mean) + time.tail / time.mean
-            # next to a turning point E - W falls in proportion to the distance from it
-            reach = min(half - abs(where[k] - middle) for k in (0, n // 2)) if half else 0.0
-            place = float(max(lost[0], lost[n // 2]) * abs(reach))
-            rate = float((lost * (np.abs(slope) + np.abs(S)) / G).max())
-            return Orbit(form, middle, half, direction, time, turn, phase, period, place, rate)
+        if result := _converged(reduced, path, phase, n):
+            return result
         n *= 2
-    raise OutsideDomainError(f"no Fourier series of {MOST} points converges")
+    raise OutsideDomainError(NO_SERIES)
 
 
-def _turning_points(form: EnergyForm) -> tuple[float, float] | None:
-    """Where u turns back, on both sides of the beginning; None if it turns over.
+def _converged(reduced: ReducedMotion, path: Path, phase: float, n: int) -> Orbit | None:
+    """The orbit by series of `n` points; None if these do not converge."""
+    phi = 2 * np.pi * (np.arange(n) + 0.5) / n
+    u, du = path.u(phi), path.du(phi)
+    mu, W, spin, drag = reduced.parts(u)
+    kinetic = reduced.energy - W
+    if not np.all(kinetic > 0):
+        raise OutsideDomainError(NO_SERIES)
+    G = np.abs(du) * np.sqrt(mu / (2 * kinetic))
+    S = spin * G - drag * du
+    time, rotation = Series.of(G), Series.of(S)
+    # E - W, and the distance from a turning point, are known to rounding only
+    lost = EPS * (abs(reduced.energy) + np.abs(W)) / kinetic
+    centre, amplitude = path.centre, path.amplitude
+    if amplitude:
+        lost += EPS * (abs(centre) + amplitude) / (amplitude - np.abs(u - centre))
+    end = END + 4 * lost.max() / n
+    if time.tail > end * time.mean or rotation.tail > end * np.abs(S).max():
+        return None
+    period_error = float((G * lost).mean() / time.mean) + time.tail / time.mean
+    # next to a turning point E - W decreases in proportion to the distance from it
+    distance = min(amplitude - abs(u[k] - centre) for k in (0, n // 2)) if amplitude else 0.0
+    turning_point_error = float(max(lost[0], lost[n // 2]) * abs(distance))
+    rate_error = float((lost * (np.abs(du) + np.abs(S)) / G).max())
+    errors = (period_error, turning_point_error, rate_error)
+    return Orbit(reduced, path, time, rotation, phase, *errors)
 
-    Parameters
-    ----------
-    form : EnergyForm
-        The motion.
 
-    Returns
-    -------
-    pair of float or None
-        The lower one first, in the unit of u.
+def _turning_points(reduced: ReducedMotion) -> tuple[float, float] | None:
+    """The turning points of u on both sides of the start, ascending; None if u rotates."""
+    u, u_dot, _ = reduced.start
 
-    Raises
-    ------
-    OutsideDomainError
-        When the motion does not come back, or rests.
-    """
-    u, u_dot, _ = form.start
+    def kinetic(u: float) -> float:
+        return float(reduced.energy - reduced.parts(np.array(u))[1])
 
-    def kinetic(place: float) -> float:
-        return float(form.energy - form.parts(np.array(place))[1])
-
-    reach = 2 * np.pi if form.is_angle else 4 * max(abs(u), 1.0)
+    reach = 2 * np.pi if reduced.is_angle else 4 * max(abs(u), 1.0)
     steps = np.linspace(0, reach, SCAN + 1)[1:]
     ends = []
     for side in (-1.0, 1.0):
-        places = u + side * steps
-        values = form.energy - form.parts(places)[1]
-        fallen = np.flatnonzero(~(values > 0))
-        if not u_dot and fallen.size and fallen[0] == 0:
-            ends.append(u)  # released at rest: the beginning is a turning point
-        elif fallen.size:
-            inner = places[fallen[0] - 1] if fallen[0] else u
-            if not np.isfinite(values[fallen[0]]):
-                raise OutsideDomainError("the motion runs into a singular place")
-            ends.append(float(brentq(kinetic, inner, places[fallen[0]], xtol=1e-300, rtol=4 * EPS)))
-        elif not form.is_angle:
-            raise OutsideDomainError("the motion does not come back")
+        points = u + side * steps
+        values = reduced.energy - reduced.parts(points)[1]
+        forbidden = np.flatnonzero(~(values > 0))
+        if not u_dot and forbidden.size and forbidden[0] == 0:
+            ends.append(u)  # released at rest: the start is a turning point
+        elif forbidden.size:
+            outer = forbidden[0]
+            inner = points[outer - 1] if outer else u
+            if not np.isfinite(values[outer]):
+                raise OutsideDomainError("the motion approaches a singularity")
+            ends.append(float(brentq(kinetic, inner, points[outer], xtol=1e-300, rtol=4 * EPS)))
+        elif not reduced.is_angle:
+            raise OutsideDomainError("the motion does not return")
     if not ends:
         return None
     if len(ends) < 2 or ends[0] == ends[1]:
-        raise OutsideDomainError("the shape rests")
+        raise OutsideDomainError("the shape is at rest")
     return ends[0], ends[1]

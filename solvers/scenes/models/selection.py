@@ -1,4 +1,4 @@
-"""The ladder of models: the smallest that is good enough is taken."""
+"""Selection of the simplest sufficient model."""
 
 from __future__ import annotations
 
@@ -7,39 +7,28 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule, depends_on_time, has_function
-from solvers.scenes.models.equilibrium import rest
-from solvers.scenes.models.full_equations import NotAccurateError, full, series
-from solvers.scenes.models.light_masses import light
+from solvers.scenes.models.catalogue import closed_forms
+from solvers.scenes.models.full_equations import by_series, integrated
+from solvers.scenes.models.integration_run import NotAccurateError
 from solvers.scenes.models.method_choice import SERIES, MethodChoice, cheapest, usual_form
-from solvers.scenes.models.model import Model, Motion, OutsideDomainError
-from solvers.scenes.models.normal_modes import small
-from solvers.scenes.models.pendulum import pendulum
-from solvers.scenes.models.quadrature import quadrature
+from solvers.scenes.models.model import ClosedForm, Model
+from solvers.scenes.models.motion import Motion, OutsideDomainError
 from solvers.scenes.scene import Scene
 
-#: Errors above this say nothing any more.
+#: An error estimate above this is not reported as a number.
 USELESS = 1e3
-#: From the smallest model on, those that integrate nothing.
-RUNGS: dict[str, Callable[[Motion], Model]] = {
-    "rest": rest,
-    "normal modes": small,
-    "pendulum": pendulum,
-    "pendulum and light masses": light,
-    "quadrature": quadrature,
-}
 
 
 @dataclass(frozen=True)
 class ModelSelection:
-    """The model that was taken, and why no smaller one.
+    """The selected model, and the reasons against simpler ones.
 
     Attributes
     ----------
     model : Model
-        What was taken.
+        The selected model.
     declined : dict of str to str
-        Smaller models, and what was wrong with each.
+        Simpler models, and the reason against each.
     """
 
     model: Model
@@ -47,106 +36,93 @@ class ModelSelection:
 
 
 def select_model(
-    scene: Scene, code: Callable[[Motion, MethodChoice], Motion], report: Callable[[str], None]
+    scene: Scene,
+    specialise: Callable[[Motion, MethodChoice], Motion],
+    report: Callable[[str], None],
 ) -> ModelSelection:
-    """The smallest model whose error stays below what is asked.
+    """The simplest model whose error stays below the requested accuracy.
 
     Parameters
     ----------
     scene : Scene
-        What is asked.
-    code : callable
-        Takes a motion and a choice to integrate it; returns the motion with the module to
-        integrate it with, which may be specialised.
+        The scene.
+    specialise : callable
+        Takes a motion and a method choice; returns the motion with the module to integrate.
     report : callable
         Called with the progress.
 
     Returns
     -------
     ModelSelection
-        One of `RUNGS` that the scene names is taken whatever its error.
+        A closed form that the scene names is selected whatever its error.
 
     Raises
     ------
-    solvers.scenes.models.full_equations.NotAccurateError
-        When not even the full equations come as close as asked.
-    solvers.scenes.models.full_equations.TooLongError
-        When they take longer than anybody waits for.
-    solvers.scenes.models.model.OutsideDomainError
-        When the model that the scene names says nothing about its motion, or nothing that is
-        asked for moves mass; when there are no full equations, since a coordinate moves none.
+    solvers.scenes.models.integration_run.NotAccurateError
+        When even the full equations do not reach the requested accuracy.
+    solvers.scenes.models.integration_run.TooLongError
+        When they take more steps than the limit.
+    solvers.scenes.models.motion.OutsideDomainError
+        When the model that the scene names does not apply, when no requested component has
+        inertia, or when a coordinate of the full equations has none.
     """
-    asked = motion_of(scene)
+    motion, models = motion_of(scene), closed_forms()
+    if scene.model in models:
+        return ModelSelection(_closed_form(models[scene.model], motion), {})
     declined: dict[str, str] = {}
-    if scene.model in RUNGS:
-        if obstacle := _obstacle(scene.module, scene.model):
-            raise OutsideDomainError(obstacle)
-        with np.errstate(all="ignore"):
-            return ModelSelection(RUNGS[scene.model](asked), {})
-    if not scene.is_fixed:
-        for name, rung in RUNGS.items():
-            if obstacle := _obstacle(scene.module, name):
-                declined[name] = obstacle
-                continue
-            report(name)
-            try:
-                with np.errstate(all="ignore"):
-                    model = rung(asked)
-            except OutsideDomainError as reason:
-                declined[name] = str(reason)
-                continue
-            except (ArithmeticError, np.linalg.LinAlgError) as reason:
-                declined[name] = f"its numbers are not finite: {reason}"
-                continue
-            if model.error_estimate <= scene.accuracy:
-                return ModelSelection(model, declined)
-            declined[name] = (
-                f"its error may reach {model.error_estimate:.1g}"
-                if model.error_estimate < USELESS
-                else "the motion leaves its domain"
-            )
-    asked.require_mass()
+    for name, model_class in models.items() if not scene.prescribes_integration else ():
+        report(name)
+        try:
+            model = _closed_form(model_class, motion)
+        except OutsideDomainError as error:
+            declined[name] = str(error)
+            continue
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            declined[name] = f"its numbers are not finite: {error}"
+            continue
+        if model.error_estimate <= scene.accuracy:
+            return ModelSelection(model, declined)
+        declined[name] = "the motion leaves its domain"
+        if model.error_estimate < USELESS:
+            declined[name] = f"its error may reach {model.error_estimate:.1g}"
+    motion.require_inertia()
     choice = _method_choice(scene)
     report(f"full equations by {choice.method}")
     try:
-        return ModelSelection(
-            full(code(asked, choice), scene.accuracy, choice, asked, scene.step), declined
-        )
-    except NotAccurateError as reason:
+        full = integrated(specialise(motion, choice), choice, scene.accuracy, motion)
+        return ModelSelection(full, declined)
+    except NotAccurateError as error:
         if scene.method or scene.form:
             raise
-        declined["ordinary numbers"] = str(reason)
+        declined["double precision"] = str(error)
     report("full equations by Taylor series")
     form = usual_form(scene.module, SERIES)
-    choice = MethodChoice(SERIES, form, "the motion loses more digits than ordinary numbers have")
-    return ModelSelection(series(asked, scene.accuracy, choice, scene.times), declined)
+    choice = MethodChoice(SERIES, form, "the motion loses more digits than double precision has")
+    return ModelSelection(by_series(motion, choice, scene.accuracy, scene.times), declined)
 
 
-def _obstacle(module: GeneratedModule, rung: str) -> str:
-    """Why a rung says nothing about a system, whatever its motion; empty if it may."""
-    if depends_on_time(module):
-        return "the equations depend on time"
-    if has_function(module, "power") and rung != "rest":
-        return "energy is not kept"
-    if not has_function(module, "linear") and rung != "rest":
-        return "small motions are not those of masses and springs"
-    return ""
+def _closed_form(model: type[ClosedForm], motion: Motion) -> ClosedForm:
+    if reason := model.not_applicable(motion.module):
+        raise OutsideDomainError(reason)
+    with np.errstate(all="ignore"):
+        return model.of(motion)
 
 
 def motion_of(scene: Scene) -> Motion:
-    """The motion of a scene, and what is wanted of it that exists."""
-    asked = Motion(scene.module, scene.params, scene.y0, scene.duration, scene.wanted)
-    wanted = tuple(k for k in scene.wanted if k % asked.coordinates in asked.alive)
-    if not wanted:
-        raise OutsideDomainError("nothing that is asked for moves mass")
-    return replace(asked, wanted=wanted)
+    """The motion of a scene, without requested components that have no inertia."""
+    motion = Motion(scene.module, scene.params, scene.y0, scene.duration, scene.requested)
+    n = motion.n_coordinates
+    requested = tuple(k for k in scene.requested if k % n in motion.inertial)
+    if not requested:
+        raise OutsideDomainError("no requested component of the state has inertia")
+    return replace(motion, requested=requested)
 
 
 def _method_choice(scene: Scene) -> MethodChoice:
-    """The choice that the scene names, and the cheapest where it does not."""
-    found = cheapest(scene.module, scene.params, scene.accuracy)
+    """The method choice of the scene, completed by the cheapest."""
+    choice = cheapest(scene.module, scene.params, scene.accuracy)
     if scene.method is None and scene.form is None:
-        return found
-    method = scene.method or found.method
+        return choice
+    method = scene.method or choice.method
     form = scene.form or usual_form(scene.module, method)
-    return MethodChoice(method, form, "named in the scene")
+    return MethodChoice(method, form, "named in the scene", step=scene.step)

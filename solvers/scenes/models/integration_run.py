@@ -1,0 +1,101 @@
+"""One integration of a motion: method, form, and tolerance, step size or digits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from solvers.integration.compiled.compiler import NoCompilerError
+from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
+from solvers.integration.prepare import prepare
+from solvers.integration.solution import Status
+from solvers.integration.timing import median_seconds
+from solvers.references.taylor import taylor
+from solvers.scenes.models.method_choice import MethodChoice
+from solvers.scenes.models.motion import Array, Motion
+
+#: Magnitude of a state in rad or m above which it is resolved relatively.
+SMALL_STATE = 1e-3
+#: Largest number of steps of a run.
+MAX_STEPS = 3 * 10**6
+
+
+class NotAccurateError(ArithmeticError):
+    """No run reaches the requested accuracy; the message states the accuracy that is reached."""
+
+
+class TooLongError(ArithmeticError):
+    """A motion takes more steps than the limit."""
+
+
+@dataclass(frozen=True)
+class IntegrationRun:
+    """One integration of the full equations.
+
+    Attributes
+    ----------
+    motion : Motion
+        The motion; its module may be a specialised one.
+    method_choice : MethodChoice
+        Method and form.
+    setting : float
+        Relative tolerance, or step size in s, or number of digits.
+    """
+
+    motion: Motion
+    method_choice: MethodChoice
+    setting: float
+
+    @property
+    def setting_name(self) -> str:
+        """``rtol``, ``h`` or ``digits``."""
+        if self.method_choice.is_series:
+            return "digits"
+        return "h" if self.method_choice.is_fixed else "rtol"
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Arguments of the integrator."""
+        options = {"method": self.method_choice.method, "form": self.method_choice.form}
+        if self.method_choice.is_fixed:
+            return options | {"h": self.setting, "max_steps": MAX_STEPS}
+        # a component that starts small may grow, as next to the upright equilibrium
+        atol = SMALL_STATE * self.setting
+        return options | {"rtol": self.setting, "atol": atol, "max_steps": MAX_STEPS}
+
+    def states(self, t: Array) -> Array:
+        """Coordinates and velocities at increasing times, shape (n, state)."""
+        if self.method_choice.is_series:
+            motion, times = self.motion, t if t[0] == 0 else [0.0, *t]  # which include the start
+            states = taylor(motion.module, motion.params, motion.y0, times, int(self.setting))
+            return states[-len(t) :]
+        return self.integrate(t)[1]
+
+    def integrate(self, t: Array | None) -> tuple[Array, Array]:
+        """Times and states: at `t`, or at the end of every step."""
+        motion, options = self.motion, self.options
+        span = (0.0, motion.duration)
+        with ignore_predictability():
+            solution = integrate(motion.module, span, motion.y0, motion.params, t_eval=t, **options)
+        method = self.method_choice.method
+        if solution.status is Status.STEP_LIMIT:
+            raise TooLongError(
+                f"{method} needs more than {MAX_STEPS:.0e} steps: shorten the duration or request "
+                "less accuracy"
+            )
+        if solution.status is not Status.FINISHED:
+            raise NotAccurateError(f"{method}, {self.setting:g}: {solution.message}")
+        return solution.t, solution.y.T
+
+    def seconds(self) -> float:
+        """Seconds of an integration to the end, without preparations that are done once."""
+        motion = self.motion
+        end = np.array([motion.duration])
+        try:
+            run = prepare(motion.module, motion.params, **self.options)
+        except (ValueError, NoCompilerError):  # SciPy's methods, or no compiler
+            return median_seconds(lambda: self.states(end))
+        return median_seconds(lambda: run((0.0, motion.duration), motion.y0))

@@ -1,0 +1,72 @@
+"""A motion that models describe."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.equations.module import GeneratedModule
+
+Array = NDArray[np.float64]
+
+#: Number of times at which errors are estimated, and the ratio that spaces them.
+SAMPLES, GOLDEN = 128, (5**0.5 - 1) / 2
+
+
+class OutsideDomainError(ValueError):
+    """A model does not apply to a motion; the message states the reason."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion, and the components of its state that are requested.
+
+    Attributes
+    ----------
+    module : module
+        A generated module.
+    params, y0 : tuple of float
+        In the order of ``module.PARAMETERS`` and ``module.STATE``.
+    duration : float
+        In s.
+    requested : tuple of int
+        Indices of the requested components of the state.
+    """
+
+    module: GeneratedModule
+    params: tuple[float, ...]
+    y0: tuple[float, ...]
+    duration: float
+    requested: tuple[int, ...]
+
+    @property
+    def n_coordinates(self) -> int:
+        """Number of coordinates."""
+        return len(self.module.COORDINATES)
+
+    @cached_property
+    def inertial(self) -> tuple[int, ...]:
+        """Coordinates with nonzero inertia; others have none where a mass or length is absent."""
+        n = self.n_coordinates
+        q = np.random.default_rng(0).uniform(0.1, 3.0, (n, 8))
+        row = np.abs(self.module.mass_matrix_many(0.0, np.vstack([q, q]), self.params))
+        return tuple(k for k in range(n) if row[k].max() > 0)
+
+    def require_inertia(self) -> None:
+        """Raise `OutsideDomainError` where a coordinate has no inertia."""
+        absent = [q for k, q in enumerate(self.module.COORDINATES) if k not in self.inertial]
+        if absent:
+            raise OutsideDomainError(f"{', '.join(absent)} has no inertia")
+
+    @property
+    def sample_times(self) -> Array:
+        """Times at which errors are estimated: commensurate with no period, both ends included."""
+        return self.duration * np.unique([*golden_points(SAMPLES), 1.0])
+
+
+def golden_points(count: int) -> Array:
+    """Multiples of the golden ratio modulo 1, from 0 on: evenly spread, without a period."""
+    return np.modf(GOLDEN * np.arange(count))[0]
