@@ -139,7 +139,7 @@ def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
         find(str(written(tmp_path, 'code = "specialised"\n' + text, "special")), load_module),
         specialiser,
     )
-    assert special.selection.model.asked.module.PARAMETERS == ()
+    assert special.selection.model.run.motion.module.PARAMETERS == ()
     assert abs(special.y - found.y).max() < 2e-7
     # a file that changes is another system
     written(tmp_path, BEAD.replace("value = 0.2", "value = 0.4"), "bead")
