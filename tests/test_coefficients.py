@@ -17,7 +17,7 @@ EXPLICIT = [name for name in names() if load(name).is_explicit]
 
 #: A right-hand side that notes where it is asked, and answers with one chosen number.
 PROBE = """
-double probe_places[64][64], probe_times[64];
+double probe_states[64][64], probe_times[64];
 int probe_calls;
 
 static inline void probe_rhs(
@@ -26,7 +26,7 @@ static inline void probe_rhs(
     for (int n = 0; n < {stages}; n++) {{
         result[n] = ({real}){{0}} + (double)(n == probe_calls);
         if (probe_calls >= 0) {{
-            probe_places[probe_calls][n] = *(const double *)&state[n];
+            probe_states[probe_calls][n] = *(const double *)&state[n];
         }}
     }}
     if (probe_calls >= 0) {{
@@ -50,28 +50,28 @@ def probe(folder: Path, stages: int) -> ModuleType:
 def test_coefficients_are_read_back_from_the_running_loop(
     name: str, lanes: bool, tmp_path: Path
 ) -> None:
-    # slope k is the unit vector k: then the place of stage i is row i of A, the step's end is b
+    # derivative k is the unit vector k: then the state of stage i is row i of A, and the end is b
     method = load(name)
     module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
     kernel = Kernel(module, "lagrangian", name, lanes=lanes, compensated=False, reproducible=False)
     library = ctypes.CDLL(str(kernel.library.path))
-    # the loop asks once before the first step, which matters if that is the first stage, too
+    # the loop makes one call before the first step, which is the first stage of an FSAL method
     ctypes.c_int.in_dll(library, "probe_calls").value = 0 if method.is_fsal else -1
     options = {"method": name, "h": 1.0, "backend": "compiled"}
     if lanes:
         end = ensemble(module, (0, 1), np.transpose([rest]), (1.0,), workers=1, **options).y[:, 0]
     else:
         end = integrate(module, (0, 1), rest, (1.0,), **options).y[:, -1]
-    places = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_places"))
+    states = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_states"))
     times = np.array((ctypes.c_double * 64).in_dll(library, "probe_times"))
     stages = slice(0, method.stages)
-    assert np.array_equal(places[stages, stages], np.array(method.A, float))
+    assert np.array_equal(states[stages, stages], np.array(method.A, float))
     assert np.array_equal(times[stages], np.array(method.c, float))
     assert np.array_equal(end, np.array(method.b, float))
 
 
 IMPLICIT_PROBE = """
-double probe_places[64][64];
+double probe_states[64][64];
 
 static inline void probe_rhs(double t, const double *state, const double *params, double *result)
 {{
@@ -79,7 +79,7 @@ static inline void probe_rhs(double t, const double *state, const double *params
     for (int i = 0; i < {stages}; i++) {{
         result[i] = t == nodes[i];
         for (int n = 0; n < {stages} && t == nodes[i]; n++) {{
-            probe_places[i][n] = state[n];
+            probe_states[i][n] = state[n];
         }}
     }}
     (void)params;
@@ -100,7 +100,7 @@ static inline void probe_jacobian(
 def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
     name: str, tmp_path: Path
 ) -> None:
-    # as above; which stage it is, the time says, and the last round of the iteration is read
+    # as above; the time identifies the stage, and the values of the last iteration are read
     method = load(name)
     module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
     module.OPERATIONS["jacobian"] = (0, 0)
@@ -110,9 +110,9 @@ def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
     (tmp_path / "probe.h").write_text(text)
     kernel = Kernel(module, "lagrangian", name, lanes=False, compensated=False, reproducible=False)
     library = ctypes.CDLL(str(kernel.library.path))
-    found = integrate(module, (0, 1), rest, (1.0,), method=name, h=1.0, backend="compiled")
-    places = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_places"))
+    solution = integrate(module, (0, 1), rest, (1.0,), method=name, h=1.0, backend="compiled")
+    states = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_states"))
     stages = slice(0, method.stages)
-    assert np.array_equal(places[stages, stages], np.array(method.A, float))
-    assert np.array_equal(found.y[:, -1], np.array(method.b, float))
-    assert (found.njev, found.nfev) == (1, 2 + 2 * method.stages)
+    assert np.array_equal(states[stages, stages], np.array(method.A, float))
+    assert np.array_equal(solution.y[:, -1], np.array(method.b, float))
+    assert (solution.njev, solution.nfev) == (1, 2 + 2 * method.stages)

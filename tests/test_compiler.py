@@ -86,9 +86,9 @@ def test_other_code_or_other_flags_are_another_library() -> None:
         lambda data: b"something else altogether",
     ],
 )
-def test_a_damaged_library_is_found_out_before_it_is_loaded(damage: object) -> None:
+def test_a_damaged_library_is_detected_before_it_is_loaded(damage: object) -> None:
     library = build(SOURCE)
-    # replaced, not overwritten: a file that is mapped must not change
+    # replaced, not overwritten, since a mapped file must not change
     data = library.path.read_bytes()
     library.path.unlink()
     library.path.write_bytes(damage(data))  # type: ignore[operator]
@@ -111,7 +111,7 @@ def test_nothing_is_left_beside_finished_libraries(own_cache: Path) -> None:
         assert {path.name for path in entry.iterdir()} == {LIBRARY, DIGESTS}
 
 
-def test_what_killed_builds_left_is_removed_once_it_is_old(own_cache: Path) -> None:
+def test_old_remains_of_killed_builds_are_removed(own_cache: Path) -> None:
     build(SOURCE)
     old, new = own_cache / "build-old", own_cache / "build-new"
     old.mkdir()
@@ -146,7 +146,7 @@ def test_a_cache_that_others_could_write_to_is_not_used(
     assert answer(library.path) == 42
 
 
-def test_somebody_else_s_cache_is_not_used(
+def test_a_cache_of_another_user_is_not_used(
     own_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own_cache.mkdir(mode=0o700)
@@ -179,7 +179,7 @@ def fake_compiler(folder: Path, script: str) -> tuple[str, ...]:
         ("sleep 60; true", "did not end within"),
     ],
 )
-def test_a_compiler_that_fails_hands_over_to_the_next(
+def test_after_a_failing_compiler_the_next_is_tried(
     script: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     broken, working = fake_compiler(tmp_path, script), (str(shutil.which("cc")),)
@@ -193,7 +193,7 @@ def test_a_compiler_that_fails_hands_over_to_the_next(
     assert answer(library.path) == 42
 
 
-def test_without_a_compiler_the_message_says_what_to_install(
+def test_without_a_compiler_the_message_names_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(compiler, "compilers", lambda: iter([]))

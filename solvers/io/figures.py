@@ -1,4 +1,4 @@
-"""How every picture is begun and saved."""
+"""Figures: creation, style and files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from solvers.io.atomic_write import write_text
 
-#: Wong's palette, told apart by colour-blind eyes (Nature Methods 8, 441, 2011).
+#: Wong's palette for colour-blind readers (Nature Methods 8, 441, 2011).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
 Value = TypeVar("Value")
@@ -21,24 +21,24 @@ Value = TypeVar("Value")
 
 def panels(
     title: str, *, rows: int = 1, columns: int = 1, size: tuple[float, float] = (10, 5)
-) -> tuple[Figure, list[Axes]]:  # fmt: skip
-    """A figure with a title and axes, row by row.
+) -> tuple[Figure, list[Axes]]:
+    """A figure with a title and a grid of axes.
 
     Parameters
     ----------
     title : str
-        Of the whole figure; what stands between dollar signs is TeX.
+        Title of the figure; text between dollar signs is TeX.
     rows, columns : int, optional
-        How many axes there are below and beside each other.
+        Number of rows and columns of axes.
     size : pair of float, optional
         Width and height in inches.
 
     Returns
     -------
     figure : matplotlib.figure.Figure
-        To be drawn with `save`; no window shows it.
+        A figure without a window; `save` writes it.
     axes : list of matplotlib.axes.Axes
-        As many as rows times columns.
+        Rows times columns of them, row by row.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def panels(
     >>> len(axes)
     2
     """
-    # without pyplot, which would look for a screen and keep every figure
+    # without pyplot, which needs a display and keeps every figure
     figure = Figure(size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
     figure.suptitle(title)
@@ -64,19 +64,19 @@ def legend_beside(axes: Axes, **options: Any) -> None:
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as a PNG file, beside its name first.
+    """Write a figure as a PNG file.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        What to write; its axes lose their upper and right edges.
+        The figure; the upper and right edges of its axes are hidden.
     path : str or Path
-        Where; missing folders are made, and what stands there is replaced.
+        The file. Missing folders are created, and an existing file is replaced.
 
     Raises
     ------
     OSError
-        When it cannot be written; then nothing has changed.
+        When it cannot be written; an existing file is unchanged.
 
     Examples
     --------
@@ -89,18 +89,18 @@ def save(figure: Figure, path: str | Path) -> None:
 
 def png(figure: Figure) -> bytes:
     """A figure as the content of a PNG file."""
-    return _drawn(figure, format="png", dpi=120, metadata={"Software": None})
+    return _rendered(figure, format="png", dpi=120, metadata={"Software": None})
 
 
 def svg(figure: Figure) -> str:
-    """A figure as SVG, whose letters are the reader's."""
+    """A figure as SVG, with text in the reader's fonts."""
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "holonomic"}):
-        return _drawn(figure, format="svg", metadata={"Date": None, "Creator": None}).decode()
+        return _rendered(figure, format="svg", metadata={"Date": None, "Creator": None}).decode()
 
 
-def _drawn(figure: Figure, **options: Any) -> bytes:
+def _rendered(figure: Figure, **options: Any) -> bytes:
     for axes in figure.axes:
         axes.spines[["top", "right"]].set_visible(False)
-    drawn = BytesIO()
-    figure.savefig(drawn, **options)
-    return drawn.getvalue()
+    buffer = BytesIO()
+    figure.savefig(buffer, **options)
+    return buffer.getvalue()

@@ -1,4 +1,4 @@
-"""Results as JSON knows them."""
+"""Results as values that JSON can represent."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 
 def jsonable(value: Any) -> Any:
-    """`value` in dicts, lists, texts and numbers; what is not finite becomes None."""
+    """`value` as dicts, lists, strings and numbers; NaN and infinity become None."""
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: jsonable(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):

@@ -27,7 +27,7 @@ def attach(
     Returns
     -------
     getattr, dir : callable
-        What the package calls ``__getattr__`` and ``__dir__``.
+        The package's ``__getattr__`` and ``__dir__``.
     all : list of str
         The names.
     """

@@ -1,4 +1,4 @@
-"""How pictures write names and units."""
+"""Names and units in figures."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ GREEK = (
 
 
 def symbol(name: str) -> str:
-    r"""A name as mathematics writes it.
+    r"""A name in mathematical notation.
 
     Parameters
     ----------
     name : str
-        Of a coordinate, velocity or parameter: a letter's name and an index, and ``_dot`` after
-        those of a velocity.
+        Name of a coordinate, velocity or parameter: a letter and an index, with ``_dot`` after
+        them for a velocity.
 
     Returns
     -------
@@ -36,5 +36,5 @@ def _tex(name: str) -> str:
 
 
 def axis_label(words: str, unit: str) -> str:
-    """A quantity divided by its unit, which is a number."""
+    """A quantity divided by its unit, as axes are labelled."""
     return f"{words} / {f'({unit})' if '/' in unit else unit}"

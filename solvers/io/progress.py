@@ -1,22 +1,21 @@
-"""One line on a terminal that says what is going on, from the first second on."""
+"""Progress: one line on a terminal, updated while a command runs."""
 
 from __future__ import annotations
 
 import sys
 import threading
 import time
-from types import TracebackType
 
-#: Seconds before the first word, and between two.
+#: Seconds before the first line, and between updates.
 FIRST, NEXT = 1.0, 0.2
-#: Longest line; longer ones would not be wiped out.
+#: Length of the line.
 WIDTH = 78
 
 
 class Progress:
-    """Tells on standard error what goes on, if that is a terminal, and wipes it out in the end.
+    """Shows the current activity on standard error if that is a terminal, and erases it at the end.
 
-    It is called with what is being done; seconds pass by themselves.
+    Call it with a description of the activity; it adds the elapsed seconds.
     """
 
     def __init__(self) -> None:
@@ -25,7 +24,7 @@ class Progress:
         self._thread: threading.Thread | None = None
 
     def __call__(self, text: str) -> None:
-        """Say what is being done from now on."""
+        """Describe the current activity."""
         self._text = text
 
     def __enter__(self) -> Progress:
@@ -34,10 +33,7 @@ class Progress:
             self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:  # fmt: skip
+    def __exit__(self, *_: object) -> None:
         self._stop.set()
         if self._thread:
             self._thread.join()
@@ -56,25 +52,21 @@ class Progress:
 
 
 class Rate:
-    """How far something is that is done part by part, how fast it goes, and how long it will take.
+    """Progress of a number of parts: how many are done, the rate, and the remaining time.
 
     Parameters
     ----------
-    whole : int
-        How many parts there are.
-    left : int
-        How many of them are left.
+    total, left : int
+        Number of parts, and of those that are left.
     """
 
-    def __init__(self, whole: int, left: int) -> None:
-        self._whole, self._left, self._done, self._since = whole, left, 0, time.monotonic()
+    def __init__(self, total: int, left: int) -> None:
+        self._total, self._left, self._done, self._since = total, left, 0, time.monotonic()
 
     def __call__(self, parts: int) -> str:
-        """So many more are done; what there is to say."""
+        """Count further parts as done; describe the progress."""
         self._done += parts
         elapsed = max(time.monotonic() - self._since, 1e-9)
         rate, left = self._done / elapsed, self._left - self._done
-        return (
-            f"{self._whole - left:,} of {self._whole:,}, {rate:,.0f} a second, "
-            f"{left / rate:.0f} s left"
-        )
+        done = f"{self._total - left:,} of {self._total:,}"
+        return f"{done}, {rate:,.0f} a second, {left / rate:.0f} s left"

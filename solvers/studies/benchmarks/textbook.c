@@ -5,18 +5,18 @@
 static void textbook(const double *y, double *dy, const double *params)
 {
     const double *m = params, *l = params + N, g = params[2*N];
-    double s[N], c[N], below[N], M[N][N], f[N], d[N];
+    double s[N], c[N], mass_below[N], M[N][N], f[N], d[N];
     double sum = 0.0;
     for (int i = N - 1; i >= 0; i--) {
         sum += m[i];
-        below[i] = sum;
+        mass_below[i] = sum;
         s[i] = sin(y[i]);
         c[i] = cos(y[i]);
         f[i] = -sum*g*l[i]*s[i];
     }
     for (int i = 0; i < N; i++) {
         for (int j = 0; j <= i; j++) {
-            const double k = below[i]*l[i]*l[j];
+            const double k = mass_below[i]*l[i]*l[j];
             const double turn = k*(s[i]*c[j] - c[i]*s[j]);
             M[i][j] = k*(c[i]*c[j] + s[i]*s[j]);
             f[i] -= turn*y[N + j]*y[N + j];
