@@ -1,1 +1,1 @@
-"""Application: the command line, the demonstration, and the verdict on the report."""
+"""The command line, the demonstration, the verdicts on the report, and scenes by name."""

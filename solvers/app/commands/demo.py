@@ -44,7 +44,7 @@ def run(arguments: Namespace) -> int:
         print(*lines, sep="\n", flush=True)
     page = arguments.output / "demo.html"
     write_page(page, results, versions())
-    print(f"\nall results on one page: {page}")
+    print(f"\npage: {page}")
     return 0
 
 

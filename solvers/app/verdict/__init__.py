@@ -1,1 +1,1 @@
-"""The verdict on the report: its objectives, its claims and its recommendations."""
+"""Verdicts on the report: equations, programs, claims, objectives and recommendations."""

@@ -1,4 +1,4 @@
-"""A claim of the report, what became of it, and where that can be seen."""
+"""A claim of the report with its verdict."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-#: Pictures, each after the command that draws it.
+#: Plots, each after the command that writes it.
 CHART, STEPS = (
     f"holonomic chart: {name}.png" for name in ("work_precision_report", "steps_report")
 )
@@ -17,20 +17,20 @@ CHAOS, TOLERANCES = (
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the report, in our words, and what was found.
+    """A claim of the report, restated, with its verdict.
 
     Attributes
     ----------
     id : str
         Section, and a letter.
     claim : str
-        What is said there.
+        The statement.
     verdict : {"supported", "contradicted", "untestable"}
-        What was found.
+        The result of the test.
     number : str
-        The number that says so, or why there is none.
+        The number that decides, or the reason why there is none.
     figure : str
-        The picture that shows it, and the command that draws it; empty if none does.
+        The plot that shows it, after the command that writes it; empty if there is none.
     """
 
     id: str
@@ -40,6 +40,6 @@ class Claim:
     figure: str = ""
 
 
-def judged(holds: bool | np.bool) -> str:
-    """In a word."""
+def outcome(holds: bool | np.bool) -> str:
+    """``supported`` or ``contradicted``."""
     return "supported" if holds else "contradicted"

@@ -1,10 +1,11 @@
-"""Runs of the report's scenes that several verdicts rest on."""
+"""Runs of the report's scenes, for the verdicts on its claims."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
+from solvers.integration.solution import Solution
 from solvers.references.extrapolation import extrapolated
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import load
@@ -32,31 +34,30 @@ class Setting:
     duration: float
 
 
-#: So often a tolerance is divided by ten, or a step by two, to reach an error.
-MOST_TRIES = 15
+#: Largest number of tolerances or step sizes that are tried to reach an error.
+MAX_ATTEMPTS = 15
 
 
 class Evidence:
-    """Runs of the report's scene that several claims rest on.
+    """Runs of the report's scenes, each computed when a claim first needs it.
 
     Parameters
     ----------
     module : module
         The generated double pendulum.
-    prose, first, second, third : Setting
-        What the prose describes, and what the three programs are set to.
+    prose, *programs : Setting
+        The scenes of the prose and of the three programs.
     """
 
     def __init__(
         self,
         module: GeneratedModule,
         prose: Setting,
-        first: Setting,
-        second: Setting,
-        third: Setting,
+        *programs: Setting,
     ) -> None:
         self._module = module
-        self.prose, self.first, self.second, self.third = prose, first, second, third
+        self.prose = prose
+        self.first, self.second, self.third = programs
 
     def motion(self, setting: Setting, times: Sequence[float] | Array | None = None) -> Array:
         """States at `times`, or at the end, by the Lagrangian form."""
@@ -64,22 +65,22 @@ class Evidence:
 
     @cached_property
     def end(self) -> Array:
-        """State of the prose's scene at its end, by Taylor series."""
+        """Final state of the prose's scene, by Taylor series."""
         return taylor(self._module, self.prose.params, self.prose.y0, [0, self.prose.duration])[-1]
 
     @cached_property
     def references_apart(self) -> float:
-        """Largest difference between two references' angles there."""
+        """Largest difference between the final angles of two reference solutions."""
         scene = self.prose
         other = extrapolated(self._module, scene.params, scene.y0, [0, scene.duration])[-1]
         return float(np.abs(other - self.end)[:2].max())
 
     @cached_property
     def disagreement(self) -> float:
-        """Largest difference between the two forms' angles at the end of the prose's scene.
+        """Largest difference between the final angles of the two forms of the equations.
 
-        Hamilton's is run by DOP853, Lagrange's by Taylor series: neither is a method that
-        the report compares.
+        The Hamiltonian form is integrated by DOP853, the Lagrangian form by Taylor series: the
+        report compares neither method.
         """
         module, prose = self._module, self.prose
         start = module.hamiltonian_state(0.0, prose.y0, prose.params)
@@ -95,43 +96,42 @@ class Evidence:
         end = self._integrated(method, h, self.prose, [self.prose.duration])[:, -1]
         return float(np.abs(end[:2] - self.end[:2]).max())
 
+    def _run(self, setting: Setting, **options: Any) -> Solution:
+        span = (0.0, setting.duration)
+        return integrate(self._module, span, setting.y0, setting.params, **options)
+
     def _integrated(
         self, method: str, h: float, setting: Setting, times: Sequence[float] | None
     ) -> Array:
-        solution = integrate(
-            self._module, (0.0, setting.duration), setting.y0, setting.params,
-            method=REPORT_METHODS[method], form="lagrangian", h=h, t_eval=times,
-        )  # fmt: skip
+        run = partial(self._run, setting, form="lagrangian", t_eval=times)
+        solution = run(method=REPORT_METHODS[method], h=h)
         if not solution.success:
             raise RuntimeError(f"{method} with h = {h}: {solution.message}")
         return solution.y
 
     def energy_change(self, states: Array, setting: Setting) -> float:
-        """Largest change of energy along `states`, in parts of the energy above rest."""
+        """Largest energy error along `states`, relative to the energy above rest."""
         energy = self._module.energy_many(0.0, states, setting.params)
         return float(np.abs(energy_error(self._module, setting.params, energy)).max())
 
-    def liveliness(self, setting: Setting) -> float:
-        """Mean speed of the angles in the second half, in parts of the first half's."""
+    def speed_ratio(self, setting: Setting) -> float:
+        """Mean angular speed in the second half of a run, relative to the first half."""
         times = np.linspace(0.0, setting.duration, 2001)
         speed = np.abs(self.motion(setting, times)[2:]).sum(axis=0)
         return float(speed[1001:].mean() / speed[:1000].mean())
 
     def calls(self, method: str, error: float) -> int:
-        """Right-hand sides that a method takes to end the prose's scene within `error`."""
+        """Evaluations of the right-hand side until the final state is within `error`."""
         scene = self.prose
         controlled = bool(load(method).b_hat)
-        for k in range(MOST_TRIES):
-            setting = {"rtol": 10.0**-k, "atol": 10.0**-k} if controlled else {
-                "h": scene.duration / (10 * 2**k)
-            }  # fmt: skip
+        for k in range(MAX_ATTEMPTS):
+            tolerance, h = 10.0**-k, scene.duration / (10 * 2**k)
+            setting = {"rtol": tolerance, "atol": tolerance} if controlled else {"h": h}
+            run = partial(self._run, scene, form="lagrangian", t_eval=[scene.duration])
             with ignore_predictability():
-                run = integrate(
-                    self._module, (0.0, scene.duration), scene.y0, scene.params, method=method,
-                    form="lagrangian", t_eval=[scene.duration], **setting,
-                )  # fmt: skip
-            if run.success and np.abs(run.y[:, -1] - self.end).max() < error:
-                return run.nfev
+                solution = run(method=method, **setting)
+            if solution.success and np.abs(solution.y[:, -1] - self.end).max() < error:
+                return solution.nfev
         raise RuntimeError(f"{method} does not come within {error} of the motion")
 
     def exponent(self, **changed: float) -> Mean:
@@ -140,7 +140,7 @@ class Evidence:
         return lyapunov(self._module, tuple(params.values()), self.prose.y0, 1500.0)
 
     def divergence(self, offset: float, duration: float) -> float:
-        """By what factor `offset` in the first angle has grown after `duration`."""
+        """Growth factor of an initial difference in the first angle after `duration`."""
         setting = Setting(self.prose.params, self.prose.y0, duration)
         moved = Setting(
             self.prose.params, (self.prose.y0[0] + offset, *self.prose.y0[1:]), duration
@@ -152,10 +152,8 @@ class Evidence:
 def _reference(
     rhs: object, y0: Sequence[float], setting: Setting, times: Sequence[float] | Array | None
 ) -> Array:
-    solution = solve_ivp(
-        rhs, (0.0, setting.duration), y0, method="DOP853", rtol=1e-13, atol=1e-13,
-        t_eval=times, args=(setting.params,),
-    )  # fmt: skip
+    run = partial(solve_ivp, rhs, (0.0, setting.duration), y0, args=(setting.params,))
+    solution = run(method="DOP853", rtol=1e-13, atol=1e-13, t_eval=times)
     if not solution.success:
         raise RuntimeError(f"the reference run stopped at t = {solution.t[-1]}: {solution.message}")
     states: Array = solution.y

@@ -1,25 +1,25 @@
-"""The report's objectives (chapter 1.6) and recommendations (chapter 5), carried out."""
+"""Tests of the report's objectives (chapter 1.6) and recommendations (chapter 5)."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from solvers.app.verdict.claim import CHART, STEPS, Claim, judged
+from solvers.app.verdict.claim import CHART, STEPS, Claim, outcome
 from solvers.app.verdict.evidence import Evidence
 
-#: What shall be best: a method of ours, beside the report's.
+#: A method that competes with those of the report, and the errors of the comparison.
 OURS, ERRORS = "verner87", (1e-3, 1e-6, 1e-9)
 
 
 def objectives(evidence: Evidence, equations: Mapping[str, int]) -> list[Claim]:
-    """Verdicts on what the report set out to do.
+    """Verdicts on the objectives of the report.
 
     Parameters
     ----------
     evidence : Evidence
         Runs of its scenes.
     equations : mapping of str to int
-        How many of its equations have which verdict.
+        Number of its equations for each verdict.
 
     Returns
     -------
@@ -31,7 +31,7 @@ def objectives(evidence: Evidence, equations: Mapping[str, int]) -> list[Claim]:
     wrong = equations.get("wrong", 0)
     return [
         Claim("1.6-1", "Lagrange's equations are derived into Euler-Lagrange's, Hamilton's and "
-              "Runge-Kutta's", judged(wrong == 0),
+              "Runge-Kutta's", outcome(wrong == 0),
               f"{equations['verified']} of its equations hold, {equations['misprint']} do once "
               "corrected; Runge-Kutta is no form of the equations but a way to integrate any of "
               "them"),
@@ -40,7 +40,7 @@ def objectives(evidence: Evidence, equations: Mapping[str, int]) -> list[Claim]:
               "two of them are equations, whose motions are the same to "
               f"{evidence.disagreement:.1g} rad; methods differ: with h = 0.01 s "
               f"RK1 ends {euler:.2g} rad off, RK4 {rk4:.1g}", CHART),
-        Claim("1.6-3", "the best solution is found by comparing", judged(
+        Claim("1.6-3", "the best solution is found by comparing", outcome(
               all(ours >= theirs for theirs, ours in calls)),
               "for errors of " + ", ".join(f"{e:.0e}" for e in ERRORS) + " RK4 takes "
               + ", ".join(str(theirs) for theirs, _ in calls) + f" right-hand sides, {OURS} "
@@ -49,20 +49,20 @@ def objectives(evidence: Evidence, equations: Mapping[str, int]) -> list[Claim]:
 
 
 def recommendations(evidence: Evidence) -> list[Claim]:
-    """What it advises, done."""
+    """Verdicts on the recommendations of the report."""
     steps = (0.01, 1e-3, 1e-4)
     euler = [evidence.error("RK1", h) for h in steps]
     rk4 = evidence.error("RK4", 0.02)
     equal, below, above = (evidence.exponent(**m) for m in ({}, {"m2": 3.0}, {"m1": 3.0}))
     return [
         Claim("5f", "Euler's method gives better results with short steps",
-              judged(euler[-1] < euler[0]),
+              outcome(euler[-1] < euler[0]),
               "off by " + ", ".join(f"{x:.1g}" for x in euler) + " rad with h = "
               + ", ".join(f"{h:g}" for h in steps) + f" s; RK4 is off by {rk4:.1g} with 0.02 s",
               STEPS),
         *(
             Claim(name, f"other masses can be used: {relation}",
-                  judged(abs(found.value - equal.value) > 3 * (found.error + equal.error)),
+                  outcome(abs(found.value - equal.value) > 3 * (found.error + equal.error)),
                   f"largest Lyapunov exponent {found.value:.2f} ± {found.error:.2f} per s with "
                   f"{masses} instead of {equal.value:.2f} ± {equal.error:.2f}: another motion, "
                   "chaotic, too", f"holonomic chart {scene}: work_precision_{scene}.png")

@@ -36,6 +36,6 @@ def tables(verdicts: Mapping[str, Any]) -> str:
 
 
 def counted(rows: Rows) -> str:
-    """Count the verdicts: ``150, of them 119 verified, …``."""
-    counts = Counter(row["verdict"] for row in rows)
-    return f"{len(rows)}, of them " + ", ".join(f"{n} {name}" for name, n in counts.most_common())
+    """Count the verdicts: ``150 (119 verified, …)``."""
+    counts = Counter(row["verdict"] for row in rows).most_common()
+    return f"{len(rows)} ({', '.join(f'{n} {name}' for name, n in counts)})"
