@@ -59,7 +59,7 @@ def test_loops_agree_to_rounding_times_the_condition_of_the_run(method: str, for
         assert (apart < 100 * 10 * 2.2e-16 * condition).all()
 
 
-def test_compiled_implicit_steps_solve_what_iteration_alone_could_not() -> None:
+def test_compiled_implicit_steps_converge_where_fixed_point_iteration_does_not() -> None:
     # a spring a thousand times as fast as the swing: the step is 30 of its radians
     stiff = (1.0, 1e6, 1.0, 9.81)
     start = (*ep.equilibrium(stiff), 0.0, 0.5)
@@ -78,7 +78,7 @@ def test_compiled_implicit_steps_solve_what_iteration_alone_could_not() -> None:
         assert lost.status is Status.NO_CONVERGENCE
 
 
-def test_what_a_motion_is_depends_on_no_other_motion_and_no_thread() -> None:
+def test_a_motion_depends_on_no_other_motion_and_no_thread() -> None:
     starts, n = scatter(101).T, 101
     rng = np.random.default_rng(2)
     params = (dp.DEFAULTS * rng.uniform(0.5, 1.5, (n, 5))).T
@@ -104,7 +104,7 @@ def test_what_a_motion_is_depends_on_no_other_motion_and_no_thread() -> None:
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_lanes_find_the_events_and_samples_of_the_reference(form: str) -> None:
+def test_lanes_give_the_events_and_samples_of_the_reference(form: str) -> None:
     starts, times = scatter(20, 3), np.linspace(0, 3, 31)
     events = [Event(dp, "theta1", 0.5, direction=1), Event(dp, "theta2", pi, terminal=True)]
     if form != "hamiltonian":
@@ -127,7 +127,7 @@ def test_lanes_find_the_events_and_samples_of_the_reference(form: str) -> None:
     assert np.nanmax(np.abs(flips - pi)) < 1e-13
 
 
-def test_a_motion_and_the_same_motion_in_lanes_have_the_same_history() -> None:
+def test_a_single_motion_and_one_in_lanes_have_the_same_events() -> None:
     events = [Event(sp, "theta", 0.0)]
     alone = integrate(sp, (0, 30), (2.0, 0.0), sp.DEFAULTS, events=events, rtol=1e-10)
     many = ensemble(sp, (0, 30), [[2.0] * 3, [0.0] * 3], sp.DEFAULTS, events=events, rtol=1e-10,
@@ -140,7 +140,7 @@ def test_a_motion_and_the_same_motion_in_lanes_have_the_same_history() -> None:
     assert np.ptp(np.diff(alone.t_events[0])) < 1e-8
 
 
-def test_more_steps_and_events_than_there_is_room_for_are_collected_in_turns() -> None:
+def test_steps_and_events_beyond_the_capacity_are_collected_in_parts() -> None:
     events = Event(sp, "theta_dot", 0.0)
     found = integrate(
         sp, (0, 500), (1.0, 0.1), sp.DEFAULTS, method="rk4", h=0.02, events=events, energy=True
@@ -160,7 +160,7 @@ def test_a_prepared_run_ends_where_the_integration_does() -> None:
             assert run(span, start) == pytest.approx(expected.end[1], abs=1e-13)
 
 
-def test_a_prepared_run_refuses_what_makes_no_sense_and_says_where_it_stopped() -> None:
+def test_a_prepared_run_refuses_invalid_arguments_and_reports_where_it_stopped() -> None:
     run = prepare(dp, dp.DEFAULTS, max_steps=3)
     with pytest.raises(ValueError, match="theta1, theta2, theta1_dot, theta2_dot"):
         run((0, 1), (1.0, 2.0))
@@ -209,7 +209,7 @@ def test_sine_and_cosine_stay_on_the_circle_over_long_runs(
     assert np.abs(sine**2 + cosine**2 - 1).max() < 1e-15
 
 
-def test_what_the_loop_approximates_is_as_close_as_it_says() -> None:
+def test_approximations_of_the_loop_have_the_stated_accuracy() -> None:
     text = program(equations(sp, "rational"), load("rk4"), lanes=False, compensated=False)
     text += """
 double logarithm(double x) { return lane_log2(x); }
@@ -231,7 +231,7 @@ double angle(double s, double c)
         assert library.angle(np.sin(x), np.cos(x)) == pytest.approx(x, abs=0.08)
 
 
-def test_compensated_sums_keep_what_rounding_loses() -> None:
+def test_compensated_sums_reduce_rounding_errors() -> None:
     # over 40 000 steps rounding outgrows the method's error, unless it is carried along
     _, length, g = map(mpf, sp.DEFAULTS)
     with workdps(30):

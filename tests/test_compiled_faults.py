@@ -1,4 +1,4 @@
-"""Compiled loops interrupted, without a compiler, or asked for what they cannot do."""
+"""Compiled loops that are interrupted, lack a compiler, or cannot solve the problem."""
 
 import os
 import signal
@@ -35,7 +35,7 @@ def interrupted_after(seconds: float, run: Callable[[], object]) -> Interrupted:
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
-def test_an_interrupted_integration_keeps_what_it_has(backend: str) -> None:
+def test_an_interrupted_integration_returns_its_results_so_far(backend: str) -> None:
     def endless() -> Solution:
         return integrate(
             sp, (0, 1e12), (1.0, 0.0), sp.DEFAULTS, backend=backend, max_steps=10**12,
@@ -52,7 +52,7 @@ def test_an_interrupted_integration_keeps_what_it_has(backend: str) -> None:
     assert on.success
 
 
-def test_an_interrupted_ensemble_keeps_what_it_has() -> None:
+def test_an_interrupted_ensemble_returns_its_results_so_far() -> None:
     starts = [[1.0] * 40, [0.0] * 40]
     kept = interrupted_after(
         0.3, lambda: ensemble(sp, (0, 1e12), starts, sp.DEFAULTS, max_steps=10**12)
@@ -63,7 +63,9 @@ def test_an_interrupted_ensemble_keeps_what_it_has() -> None:
     assert not kept.success.any()
 
 
-def test_without_a_compiler_it_runs_in_python_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_compiler_it_runs_in_python_with_a_warning(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(compiler, "compilers", lambda: iter(()))
     span, start, params = (0.0, 0.7), (1.0, 0.0), sp.DEFAULTS
     options = {"method": "rk4", "h": 0.0703125}  # not built by any other test
@@ -87,7 +89,7 @@ def test_without_a_compiler_it_runs_in_python_and_says_so(monkeypatch: pytest.Mo
     kernel.cache_clear()
 
 
-def test_what_c_does_not_know_runs_in_python() -> None:
+def test_problems_that_cannot_be_compiled_run_in_python() -> None:
     def passes(t: float, y: np.ndarray) -> float:
         return float(y[0])
 
@@ -128,9 +130,7 @@ def test_what_c_does_not_know_runs_in_python() -> None:
         ({"backend": "gpu"}, "backend 'gpu'"),
     ],
 )
-def test_an_ensemble_that_makes_no_sense_is_refused(
-    arguments: dict[str, object], message: str
-) -> None:
+def test_invalid_ensembles_are_refused(arguments: dict[str, object], message: str) -> None:
     usual = {"t_span": (0, 1), "y0": [[1.0] * 2, [0.0] * 2], "params": sp.DEFAULTS}
     with pytest.raises(ValueError, match=message):
         ensemble(sp, **{**usual, **arguments})
@@ -138,9 +138,7 @@ def test_an_ensemble_that_makes_no_sense_is_refused(
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize(("backend", "lanes"), [("compiled", 1), ("compiled", 3), ("python", 1)])
-def test_a_motion_that_leaves_the_numbers_ends_with_a_status(
-    backend: str, lanes: int, form: str
-) -> None:
+def test_a_motion_that_overflows_ends_with_a_status(backend: str, lanes: int, form: str) -> None:
     # Euler with steps far too long, from a huge velocity; its neighbours are left alone
     starts = np.zeros((4, lanes))
     starts[:, 0] = 1.0, 1.0, 1e200, -1e200

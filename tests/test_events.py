@@ -1,4 +1,4 @@
-"""Events of an integration: found, directed, ending a run, refused."""
+"""Events of an integration: location, direction, terminal events, invalid events."""
 
 from functools import partial
 from math import sin, sqrt
@@ -17,7 +17,7 @@ from solvers.integration.integrate import integrate
 from solvers.integration.solution import Status
 
 
-def test_events_are_found_to_rounding() -> None:
+def test_events_are_located_to_rounding() -> None:
     def bottom(t: float, y: np.ndarray) -> float:
         return float(y[0])
 
@@ -42,7 +42,7 @@ def test_events_have_a_direction_and_may_end_the_run() -> None:
     assert len(found.t_events[0]) == 1
 
 
-def test_an_event_function_may_spoil_what_it_is_given() -> None:
+def test_an_event_function_may_modify_its_argument() -> None:
     def spoiling(t: float, y: np.ndarray) -> float:
         y[:] = 0
         return 1.0
@@ -54,7 +54,7 @@ def test_an_event_function_may_spoil_what_it_is_given() -> None:
     assert np.array_equal(plain.y, watched.y)
 
 
-def test_a_run_can_go_on_from_an_event_that_ended_it() -> None:
+def test_a_run_can_resume_from_a_terminal_event() -> None:
     def bottom(t: float, y: np.ndarray) -> float:
         return float(y[0])
 
@@ -67,7 +67,7 @@ def test_a_run_can_go_on_from_an_event_that_ended_it() -> None:
     assert np.diff(times) == pytest.approx(np.diff(times)[0], rel=1e-6)
 
 
-def test_flat_and_abrupt_events_are_found() -> None:
+def test_flat_and_discontinuous_events_are_located() -> None:
     module = handwritten(
         "hand", ("x", "x_dot"), COORDINATES=("x",), rhs=lambda t, y, params: (1.0, 0.0)
     )
@@ -77,7 +77,7 @@ def test_flat_and_abrupt_events_are_found() -> None:
         assert found.t_events[0] == pytest.approx([0.35], abs=1e-3)
 
 
-def test_crossings_say_what_they_cannot_be() -> None:
+def test_invalid_events_are_refused() -> None:
     for arguments, message in (
         (("theta3", 0.0), "did you mean 'theta2'"),
         (("theta1", float("nan")), "must be a finite number"),
@@ -87,7 +87,7 @@ def test_crossings_say_what_they_cannot_be() -> None:
             Event(dp, *arguments)
 
 
-def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
+def test_states_at_events_use_the_parameters_of_their_motion() -> None:
     # momenta become velocities with the masses of the motion in question
     starts = np.array([[0.1, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0], [1.5, 1.0, 0.0, 0.0]])
     params = np.array([[1.0, m, 1.0, 1.0, 9.81] for m in (0.3, 1.0, 3.0)])
@@ -102,7 +102,7 @@ def test_events_of_some_motions_are_told_with_their_own_parameters() -> None:
         assert_allclose(getattr(found[0], name), getattr(found[1], name), atol=1e-8)
 
 
-def test_extremes_have_two_rows_however_many_other_events_have() -> None:
+def test_extremes_have_two_occurrences_whatever_other_events_have() -> None:
     events = [Extremum(dp, "theta1_dot"), Event(dp, "theta1", 0.0)]
     found = [
         ensemble(dp, (0, 12), {"theta1": [1.0], "theta2": 0.5}, {}, events=events, occurrences=5,

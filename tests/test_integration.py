@@ -1,4 +1,4 @@
-"""Integrations against exact solutions, in every form, and how samples and time behave."""
+"""Integrations against exact solutions, in every form; samples and time spans."""
 
 from math import asin, log2, pi, sin, sqrt
 
@@ -43,11 +43,11 @@ def test_the_exact_solution_is_that_of_the_pendulum() -> None:
 
 
 def pendulum_error(method: str, form: str, steps: int, backend: str = "python") -> float:
-    found = integrate(
+    solution = integrate(
         sp, (0, 2), (2.0, 0.0), sp.DEFAULTS,
         method=method, form=form, h=2 / steps, t_eval=[2.0], backend=backend,
     )  # fmt: skip
-    return float(np.abs(found.y[:, 0] - exact_pendulum(2.0, 2.0)).max())
+    return float(np.abs(solution.y[:, 0] - exact_pendulum(2.0, 2.0)).max())
 
 
 #: Steps with which each method has converged, in double precision, to the exact solution's order.
@@ -94,13 +94,13 @@ def test_tolerances_bring_the_report_s_scene_to_its_known_end(
 ) -> None:
     errors = []
     for rtol in (1e-6, 1e-9):
-        found = integrate(
+        solution = integrate(
             dp, (0, 5), REPORT, dp.DEFAULTS, method=method, form=form, rtol=rtol, atol=rtol,
             max_steps=10_000_000, backend=backend,
         )  # fmt: skip
-        assert found.status is Status.FINISHED
-        assert found.t[-1] == 5.0
-        errors.append(np.abs(found.y[:, -1] - END).max())
+        assert solution.status is Status.FINISHED
+        assert solution.t[-1] == 5.0
+        errors.append(np.abs(solution.y[:, -1] - END).max())
     assert errors[1] < 100 * 1e-9 * 10
     assert errors[1] < errors[0] / 50 or errors[1] < 1e-11
 
@@ -108,18 +108,18 @@ def test_tolerances_bring_the_report_s_scene_to_its_known_end(
 @pytest.mark.parametrize("form", FORMS)
 def test_samples_are_as_accurate_as_steps(form: str) -> None:
     times = np.linspace(0, 2, 41)
-    found = integrate(
+    solution = integrate(
         sp, (0, 2), (2.0, 0.0), sp.DEFAULTS, form=form, rtol=1e-10, t_eval=times, energy=True
     )
-    assert np.array_equal(found.t, times)
-    assert np.abs(found.y - exact_pendulum(times, 2.0)).max() < 1e-8
-    assert found.energy is not None
-    assert np.ptp(found.energy) < 1e-8
+    assert np.array_equal(solution.t, times)
+    assert np.abs(solution.y - exact_pendulum(times, 2.0)).max() < 1e-8
+    assert solution.energy is not None
+    assert np.ptp(solution.energy) < 1e-8
     steps = integrate(sp, (0, 2), (2.0, 0.0), sp.DEFAULTS, form=form, rtol=1e-10)
-    assert found.steps == steps.steps == len(steps.t) - 1
+    assert solution.steps == steps.steps == len(steps.t) - 1
 
 
-def test_time_runs_backwards_and_not_at_all() -> None:
+def test_time_may_run_backwards_or_not_at_all() -> None:
     there = integrate(dp, (0, 3), REPORT, dp.DEFAULTS, rtol=1e-12).y[:, -1]
     back = integrate(dp, (3, 0), there, dp.DEFAULTS, rtol=1e-12, t_eval=[3, 1.5, 0])
     assert np.abs(back.y[:, -1] - REPORT).max() < 1e-8
@@ -129,10 +129,10 @@ def test_time_runs_backwards_and_not_at_all() -> None:
     assert still.y[:, 0].tolist() == list(REPORT)
 
 
-def test_fixed_steps_end_at_the_end_and_do_not_drift() -> None:
-    found = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.3)
-    assert found.t == pytest.approx([0, 0.3, 0.6, 0.9, 1.0])
-    assert found.t[-1] == 1.0
+def test_fixed_steps_end_at_the_end_of_the_span_and_do_not_drift() -> None:
+    solution = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.3)
+    assert solution.t == pytest.approx([0, 0.3, 0.6, 0.9, 1.0])
+    assert solution.t[-1] == 1.0
     tenths = integrate(sp, (0, 100), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.1)
     assert tenths.steps == 1000
     assert tenths.t[-2] == pytest.approx(99.9, abs=1e-12)
@@ -182,17 +182,17 @@ def test_the_report_s_runge_kutta_is_reproduced_step_for_step(form: str, backend
         k4 = slope(y + h * k3)
         y = y + h * (k1 + 2 * k2 + 2 * k3 + k4) / 6
         expected.append(y)
-    found = integrate(
+    solution = integrate(
         dp, (0, 50), expected[0], dp.DEFAULTS, method="rk4", h=h, form=form, backend=backend
     )
     states = np.array(expected).T
     if form == "hamiltonian":
         states = dp.lagrangian_state_many(0.0, states, dp.DEFAULTS)
-    assert found.steps == 5000
-    assert np.abs(found.y - states).max() < 1e-10
+    assert solution.steps == 5000
+    assert np.abs(solution.y - states).max() < 1e-10
 
 
-def test_angles_come_back_unwrapped_from_the_rational_form() -> None:
+def test_angles_of_the_rational_form_are_unwrapped() -> None:
     # fast enough to turn over: three turns say so
     spinning = [
         integrate(sp, (0, 4), (0.0, 7.0), sp.DEFAULTS, form=form, rtol=1e-11).y[0, -1]
@@ -204,32 +204,34 @@ def test_angles_come_back_unwrapped_from_the_rational_form() -> None:
 
 def test_the_rational_form_keeps_sine_and_cosine_together() -> None:
     with pytest.warns(PredictabilityWarning):  # its energy means something all the same
-        found = integrate(
+        solution = integrate(
             dp, (0, 50), (2.0, 1.0, 0.0, 0.0), dp.DEFAULTS, form="rational", rtol=1e-6
         )
-    energy = dp.energy_many(0.0, found.y, dp.DEFAULTS)
+    energy = dp.energy_many(0.0, solution.y, dp.DEFAULTS)
     assert np.abs(energy - energy[0]).max() < 0.01 * abs(energy[0])
 
 
 @pytest.mark.parametrize("method", ["gauss1", "gauss2", "gauss3", "radau2", "radau3"])
-def test_implicit_methods_solve_stages_that_iteration_alone_could_not(method: str) -> None:
+def test_implicit_methods_converge_where_fixed_point_iteration_does_not(method: str) -> None:
     # x' = -1e4 (x - cos t): steps a thousand times those of any explicit method
     module = handwritten(
         "hand", ("x", "x_dot"), COORDINATES=("x",), OPERATIONS={"rhs": (0, 0), "jacobian": (0, 0)},
         rhs=lambda t, y, params: (-1e4 * (y[0] - np.cos(t)), 0.0),
         jacobian=lambda t, y, params: ((-1e4, 0.0), (0.0, 0.0)),
     )  # fmt: skip
-    found = integrate(module, (0, 2), (1.0, 0.0), (1.0,), method=method, h=0.1)
-    assert found.status is Status.FINISHED
-    assert found.njev == found.steps == 20
-    assert found.y[0, -1] == pytest.approx(np.cos(2.0), abs=1e-2)
+    solution = integrate(module, (0, 2), (1.0, 0.0), (1.0,), method=method, h=0.1)
+    assert solution.status is Status.FINISHED
+    assert solution.njev == solution.steps == 20
+    assert solution.y[0, -1] == pytest.approx(np.cos(2.0), abs=1e-2)
 
 
 def test_implicit_midpoint_keeps_the_energy_where_euler_does_not() -> None:
     def drift(method: str) -> float:
-        found = integrate(sp, (0, 60), (1.0, 0.0), sp.DEFAULTS, method=method, h=0.05, energy=True)
-        assert found.energy is not None
-        return float(np.abs(found.energy - found.energy[0])[-100:].max())
+        solution = integrate(
+            sp, (0, 60), (1.0, 0.0), sp.DEFAULTS, method=method, h=0.05, energy=True
+        )
+        assert solution.energy is not None
+        return float(np.abs(solution.energy - solution.energy[0])[-100:].max())
 
     assert drift("gauss1") < 0.02
     assert drift("rk1") > 1
@@ -237,17 +239,17 @@ def test_implicit_midpoint_keeps_the_energy_where_euler_does_not() -> None:
 
 def test_angles_are_counted_even_where_a_step_turns_by_more_than_half() -> None:
     # 3.15 rad a step: so long a step blurs the angle, but counting by halves loses every turn
-    found = integrate(
+    solution = integrate(
         sp, (0, 10), (0.0, 35.0), (1, 2, 0), method="verner98", h=0.09, form="rational"
     )
-    assert found.y[0, -1] == pytest.approx(350.0, abs=2)
+    assert solution.y[0, -1] == pytest.approx(350.0, abs=2)
 
 
-def test_rest_stays_rest_at_any_time_and_with_any_tolerance() -> None:
+def test_a_system_at_rest_stays_at_rest_at_any_time_and_tolerance() -> None:
     for options in ({}, {"atol": 0.0}):
-        found = integrate(dp, (1e9, 1e9 + 10), (0, 0, 0, 0), dp.DEFAULTS, **options)
-        assert found.status is Status.FINISHED
-        assert not found.y.any()
+        solution = integrate(dp, (1e9, 1e9 + 10), (0, 0, 0, 0), dp.DEFAULTS, **options)
+        assert solution.status is Status.FINISHED
+        assert not solution.y.any()
 
 
 def test_small_motions_of_implicit_methods_are_solved_as_well_as_large_ones() -> None:
@@ -259,17 +261,17 @@ def test_small_motions_of_implicit_methods_are_solved_as_well_as_large_ones() ->
 
 
 @pytest.mark.parametrize("method", EXPLICIT_PAIRS)
-def test_every_pair_works_inside_solve_ivp(method: str) -> None:
-    found = solve_ivp(
+def test_every_embedded_pair_runs_in_solve_ivp(method: str) -> None:
+    solution = solve_ivp(
         dp.rhs, (0, 5), REPORT, method=ode_solver(method), rtol=1e-8, atol=1e-8,
         t_eval=[1.0, 2.5, 5.0], args=(dp.DEFAULTS,),
     )  # fmt: skip
-    assert found.success
-    assert np.abs(found.y[:, -1] - END).max() < 1e-4
+    assert solution.success
+    assert np.abs(solution.y[:, -1] - END).max() < 1e-4
     reference = solve_ivp(
         dp.rhs, (0, 2.5), REPORT, method="DOP853", rtol=1e-12, atol=1e-12, args=(dp.DEFAULTS,)
     )
-    assert np.abs(found.y[:, 1] - reference.y[:, -1]).max() < 1e-4
+    assert np.abs(solution.y[:, 1] - reference.y[:, -1]).max() < 1e-4
 
 
 def test_solve_ivp_runs_our_methods_backwards_with_events_and_refuses_unknown_options() -> None:
@@ -288,6 +290,6 @@ def test_solve_ivp_runs_our_methods_backwards_with_events_and_refuses_unknown_op
 
 def test_small_angles_have_the_textbook_period() -> None:
     amplitude = 1e-4
-    found = integrate(sp, (0, 10), (amplitude, 0.0), sp.DEFAULTS, rtol=1e-11, atol=1e-16)
+    solution = integrate(sp, (0, 10), (amplitude, 0.0), sp.DEFAULTS, rtol=1e-11, atol=1e-16)
     omega = sqrt(sp.DEFAULTS[2] / sp.DEFAULTS[1])
-    assert asin(sin(found.y[0, -1])) == pytest.approx(amplitude * np.cos(omega * 10), abs=1e-11)
+    assert asin(sin(solution.y[0, -1])) == pytest.approx(amplitude * np.cos(omega * 10), abs=1e-11)

@@ -1,4 +1,4 @@
-"""Integrations that make no sense are refused; those that go wrong end with a status."""
+"""Invalid integrations are refused; failing ones end with a status."""
 
 from math import pi, sqrt
 from types import SimpleNamespace
@@ -20,44 +20,44 @@ REPORT = (pi / 2, pi, 0.0, 0.0)
 END = (2.2280642400930692, -0.2670447339117043, -1.9694093323354762, -2.9859792219408772)
 
 
-def test_a_step_that_cannot_be_filled_ends_with_a_status() -> None:
+def test_a_step_that_always_fails_ends_with_a_status() -> None:
     hole = handwritten(
         "hand",
         ("x", "x_dot"),
         COORDINATES=("x",),
         rhs=lambda t, y, params: (1.0, np.nan if 0.501 < t < 0.502 else 0.0),
     )
-    found = integrate(hole, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=1.0, t_eval=[0.5015])
-    assert found.status is Status.NOT_FINITE
+    solution = integrate(hole, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=1.0, t_eval=[0.5015])
+    assert solution.status is Status.NOT_FINITE
     singular = integrate(sp, (0, 4), (pi, 0), (1, 1, 1), method="gauss1", h=2.0)
     assert singular.status in (Status.NO_CONVERGENCE, Status.FINISHED)
     dividing = integrate(sp, (0, 1), (1, 0), (1, 0, 9.81), method="rk4", h=0.1)
     assert dividing.status is Status.NOT_FINITE
 
 
-def test_nothing_is_evaluated_beyond_what_the_last_step_needs() -> None:
+def test_no_evaluation_exceeds_those_of_the_last_step() -> None:
     edge = handwritten(
         "hand",
         ("x", "x_dot"),
         COORDINATES=("x",),
         rhs=lambda t, y, params: (sqrt(1 - t) if t < 1 else np.nan, 0.0),
     )
-    found = integrate(edge, (0, 1), (0.0, 0.0), (1.0,), method="midpoint", h=0.1)
-    assert found.status is Status.FINISHED
+    solution = integrate(edge, (0, 1), (0.0, 0.0), (1.0,), method="midpoint", h=0.1)
+    assert solution.status is Status.FINISHED
 
 
 @pytest.mark.parametrize("options", [{"first_step": np.nan}, {"first_step": -0.1},
                                      {"max_step": -1}, {"rtol": -1}])  # fmt: skip
-def test_senseless_options_inside_solve_ivp_are_refused(options: dict[str, float]) -> None:
+def test_invalid_options_of_solve_ivp_are_refused(options: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must"):
         solve_ivp(sp.rhs, (0, 1), (1, 0), method=ode_solver("verner87"), args=(sp.DEFAULTS,),
                   **options)  # fmt: skip
 
 
-def test_the_caller_s_arrays_are_left_alone() -> None:
+def test_arguments_are_not_modified() -> None:
     y0, params, times = np.array(REPORT), np.array(dp.DEFAULTS), np.array([0.0, 1.0])
-    found = integrate(dp, (0, 1), y0, params, t_eval=times)
-    found.y[:] = 0
+    solution = integrate(dp, (0, 1), y0, params, t_eval=times)
+    solution.y[:] = 0
     assert y0.tolist() == list(REPORT)
     assert params.tolist() == list(dp.DEFAULTS)
     assert times.tolist() == [0.0, 1.0]
@@ -102,7 +102,7 @@ def scene(**changes: object) -> dict[str, object]:
         ({"form": "linear"}, "form 'linear': .* has lagrangian, hamiltonian, rational"),
     ],
 )
-def test_what_makes_no_sense_is_refused_before_anything_runs(
+def test_invalid_arguments_are_refused_before_anything_runs(
     changes: dict[str, object], message: str
 ) -> None:
     calls = []
@@ -119,17 +119,17 @@ def test_an_unknown_method_is_refused() -> None:
         integrate(**scene(method="verner78"))  # type: ignore[arg-type]
 
 
-def test_a_blow_up_stops_with_what_there_is() -> None:
+def test_a_blow_up_ends_with_a_status_and_the_results_so_far() -> None:
     # x' = x² from 1 has x = 1/(1 - t)
     module = handwritten(
         "hand", ("x", "x_dot"), COORDINATES=("x",), rhs=lambda t, y, params: (y[0] ** 2, 0.0)
     )
-    found = integrate(module, (0, 2), (1.0, 0.0), (1.0,), rtol=1e-8)
-    assert found.status in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
-    assert not found.success
-    assert found.t[-1] == pytest.approx(1.0, abs=1e-6)
-    assert np.isfinite(found.y).all()
-    assert "t = " in found.message
+    solution = integrate(module, (0, 2), (1.0, 0.0), (1.0,), rtol=1e-8)
+    assert solution.status in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
+    assert not solution.success
+    assert solution.t[-1] == pytest.approx(1.0, abs=1e-6)
+    assert np.isfinite(solution.y).all()
+    assert "t = " in solution.message
 
 
 @pytest.mark.parametrize("h", [None, 0.1])
@@ -140,13 +140,13 @@ def test_a_right_hand_side_that_is_not_finite_ends_the_run(h: float | None) -> N
         COORDINATES=("x",),
         rhs=lambda t, y, params: (1.0, np.nan if y[0] > 0.55 else 0.0),
     )
-    found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), h=h)
-    assert found.status in (Status.NOT_FINITE, Status.STEP_TOO_SMALL)
-    assert np.isfinite(found.y).all()
-    assert 0.4 < found.t[-1] < 0.56
+    solution = integrate(module, (0, 1), (0.0, 0.0), (1.0,), h=h)
+    assert solution.status in (Status.NOT_FINITE, Status.STEP_TOO_SMALL)
+    assert np.isfinite(solution.y).all()
+    assert 0.4 < solution.t[-1] < 0.56
 
 
-def test_an_exception_in_the_right_hand_side_is_the_caller_s() -> None:
+def test_exceptions_of_the_right_hand_side_propagate() -> None:
     def failing(t: float, y: object, params: object) -> tuple[float, float]:
         raise RuntimeError("broken model")
 
@@ -159,7 +159,7 @@ def test_an_exception_in_the_right_hand_side_is_the_caller_s() -> None:
         )
 
 
-def test_the_step_limit_leaves_a_state_to_go_on_from() -> None:
+def test_the_step_limit_leaves_a_state_to_resume_from() -> None:
     short = integrate(dp, (0, 5), REPORT, dp.DEFAULTS, rtol=1e-11, max_steps=50, t_eval=[5.0])
     assert short.status is Status.STEP_LIMIT
     assert short.steps == 50

@@ -1,4 +1,4 @@
-"""Compiled loops where it gets narrow: each case once went wrong, or could."""
+"""Edge cases of compiled loops, each of which failed once, or could."""
 
 import os
 import signal
@@ -24,28 +24,28 @@ BACKENDS = ("python", "compiled")
 FORMS = ("lagrangian", "hamiltonian", "rational")
 
 
-def written_by_hand(folder: Path, slopes: str) -> ModuleType:
+def handwritten_module(folder: Path, derivatives: str) -> ModuleType:
     """A module with one number of state, y, and its slope in C."""
     (folder / "hand.h").write_text(
         "static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,\n"
         "    const HOLONOMIC_REAL *params, HOLONOMIC_REAL *result)\n"
-        f"{{ result[0] = {slopes}; (void)t; (void)state; (void)params; }}\n"
+        f"{{ result[0] = {derivatives}; (void)t; (void)state; (void)params; }}\n"
     )
     return handwritten("hand", ("y",), __file__=str(folder / "hand.py"))
 
 
 @pytest.mark.parametrize("lanes", [1, 20])
-def test_a_blow_up_in_finite_time_stops_with_what_there_is(lanes: int, tmp_path: Path) -> None:
+def test_a_blow_up_in_finite_time_ends_with_the_results_so_far(lanes: int, tmp_path: Path) -> None:
     # y' = y² ends at t = 1/y0; neighbours that begin lower go on
-    module = written_by_hand(tmp_path, "state[0]*state[0]*params[0]")
+    module = handwritten_module(tmp_path, "state[0]*state[0]*params[0]")
     starts = [[1.0 / (k + 1) for k in range(lanes)]]
-    found = ensemble(module, (0, 1.5), starts, (1.0,), backend="compiled", rtol=1e-10)
-    assert found.status[0] in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
-    assert found.t[0] == pytest.approx(1.0, abs=1e-6)
-    assert np.isfinite(found.y).all()
+    solution = ensemble(module, (0, 1.5), starts, (1.0,), backend="compiled", rtol=1e-10)
+    assert solution.status[0] in (Status.STEP_TOO_SMALL, Status.NOT_FINITE)
+    assert solution.t[0] == pytest.approx(1.0, abs=1e-6)
+    assert np.isfinite(solution.y).all()
     for k in range(1, lanes):
-        assert found.status[k] is Status.FINISHED
-        assert found.y[0, k] == pytest.approx(1 / (k + 1 - 1.5), rel=1e-7)
+        assert solution.status[k] is Status.FINISHED
+        assert solution.y[0, k] == pytest.approx(1 / (k + 1 - 1.5), rel=1e-7)
     if lanes == 1:
         alone = integrate(module, (0, 1.5), [1.0], (1.0,), backend="compiled", rtol=1e-10)
         assert not alone.success
@@ -54,14 +54,14 @@ def test_a_blow_up_in_finite_time_stops_with_what_there_is(lanes: int, tmp_path:
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_coarse_fixed_steps_never_return_what_is_not_a_number(form: str) -> None:
+def test_coarse_fixed_steps_never_return_nan(form: str) -> None:
     rng = np.random.default_rng(4)
     for method in ("rk1", "heun", "midpoint", "rk4", "verner87"):
         starts = (rng.uniform(-3, 3, (60, 4)) * [1, 1, 1, 1e3]).T
         for h in (0.5, 1.0, 2.0):
-            found = ensemble(dp, (0, 10), starts, dp.DEFAULTS, method=method, h=h, form=form)
-            assert np.isfinite(found.y).all(), (method, h)
-            assert set(found.status) <= {Status.FINISHED, Status.NOT_FINITE}
+            solution = ensemble(dp, (0, 10), starts, dp.DEFAULTS, method=method, h=h, form=form)
+            assert np.isfinite(solution.y).all(), (method, h)
+            assert set(solution.status) <= {Status.FINISHED, Status.NOT_FINITE}
     steps = integrate(dp, (0, 10), (2, 2, 0, 0), dp.DEFAULTS, method="rk4", h=1.0)
     assert not steps.success
     assert np.isfinite(steps.y).all()
@@ -69,33 +69,35 @@ def test_coarse_fixed_steps_never_return_what_is_not_a_number(form: str) -> None
 
 
 def test_sine_and_cosine_far_from_the_circle_come_back_to_it() -> None:
-    found = integrate(sp, (0, 1), (0.5, 1e160), sp.DEFAULTS, method="rk1", h=0.5, form="rational")
-    assert np.isfinite(found.y).all()
+    solution = integrate(
+        sp, (0, 1), (0.5, 1e160), sp.DEFAULTS, method="rk1", h=0.5, form="rational"
+    )
+    assert np.isfinite(solution.y).all()
     # Euler's step from the bottom goes along the tangent: sin = 1000, cos = 1
     one = ensemble(sp, (0, 0.5), [[0.0], [2e3]], sp.DEFAULTS, method="rk1", h=0.5, form="rational")
     assert np.tan(one.y[0, 0]) == pytest.approx(1e3, rel=1e-6)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-def test_a_motion_that_begins_on_an_event_has_not_passed_it(backend: str) -> None:
+def test_a_motion_that_starts_at_an_event_has_not_crossed_it(backend: str) -> None:
     for angle in np.linspace(-3, 3, 61):
         for velocity in (1.0, -1.0):
-            found = integrate(
+            solution = integrate(
                 sp, (0, 0.01), (angle, velocity), sp.DEFAULTS, backend=backend, form="rational",
                 events=Event(sp, "theta", angle, terminal=True),
             )  # fmt: skip
-            assert found.status is Status.FINISHED, (angle, velocity)
+            assert solution.status is Status.FINISHED, (angle, velocity)
 
 
-def test_an_event_at_the_very_end_of_a_step_is_found_once(tmp_path: Path) -> None:
+def test_an_event_at_the_end_of_a_step_is_located_once(tmp_path: Path) -> None:
     # the midpoint rule adds h without rounding: the value is 0 where a step ends
-    module = written_by_hand(tmp_path, "params[0]")
+    module = handwritten_module(tmp_path, "params[0]")
     for direction in (0, 1):
-        found = integrate(
+        solution = integrate(
             module, (0, 1), [0.0], (1.0,), method="midpoint", h=0.25, backend="compiled",
             events=Event(module, "y", 0.5, direction),
         )  # fmt: skip
-        assert found.t_events[0] == pytest.approx([0.5], abs=1e-14)
+        assert solution.t_events[0] == pytest.approx([0.5], abs=1e-14)
     down = integrate(
         module, (0, 1), [0.0], (1.0,), method="midpoint", h=0.25, backend="compiled",
         events=Event(module, "y", 0.5, -1),
@@ -103,37 +105,37 @@ def test_an_event_at_the_very_end_of_a_step_is_found_once(tmp_path: Path) -> Non
     assert not down.t_events[0].size
 
 
-def test_what_comes_after_the_end_of_a_motion_within_its_last_step_does_not_count(
+def test_events_after_a_terminal_event_within_its_step_do_not_count(
     tmp_path: Path,
 ) -> None:
-    module = written_by_hand(tmp_path, "params[0]")
+    module = handwritten_module(tmp_path, "params[0]")
     events = [
         Event(module, "y", value, terminal=end)
         for value, end in ((0.7, True), (0.6, True), (0.8, True), (0.65, False), (0.55, False))
     ]
-    found = integrate(
+    solution = integrate(
         module, (0, 1), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", events=events,
         t_eval=[0.52, 0.58, 0.62],
     )  # fmt: skip
-    assert found.status is Status.EVENT
-    assert found.end[0] == pytest.approx(0.6, abs=1e-14)
-    assert [len(times) for times in found.t_events] == [0, 1, 0, 0, 1]
-    assert found.t.tolist() == [0.52, 0.58]
+    assert solution.status is Status.EVENT
+    assert solution.end[0] == pytest.approx(0.6, abs=1e-14)
+    assert [len(times) for times in solution.t_events] == [0, 1, 0, 0, 1]
+    assert solution.t.tolist() == [0.52, 0.58]
 
 
-def test_steps_that_fail_now_and_then_do_not_end_a_run(tmp_path: Path) -> None:
+def test_occasional_failures_of_steps_do_not_end_a_run(tmp_path: Path) -> None:
     # y = sin t, known only nearby: long steps ask for it too far away, again and again
     near = "fabs(state[0] - sin(t)) < 0.01 ? cos(t)*params[0] : 0.0/0.0"
-    module = written_by_hand(tmp_path, near)
-    found = integrate(
+    module = handwritten_module(tmp_path, near)
+    solution = integrate(
         module, (0, 60), [0.0], (1.0,), method="bs32", rtol=0.5, atol=0.5, backend="compiled"
     )
-    assert found.status is Status.FINISHED
-    assert found.rejected > 30
-    assert np.abs(found.y[0] - np.sin(found.t)).max() < 0.01
+    assert solution.status is Status.FINISHED
+    assert solution.rejected > 30
+    assert np.abs(solution.y[0] - np.sin(solution.t)).max() < 0.01
 
 
-def test_an_event_is_found_in_a_few_tries() -> None:
+def test_an_event_is_located_in_a_few_iterations() -> None:
     run = partial(integrate, sp, (0, 20), (1.0, 0.0), sp.DEFAULTS, backend="compiled", rtol=1e-10)
     plain, watched = run(), run(events=Event(sp, "theta", 0.5))
     tries = (watched.nfev - plain.nfev) / 13 / len(watched.t_events[0])
@@ -141,26 +143,26 @@ def test_an_event_is_found_in_a_few_tries() -> None:
     assert tries < 9
 
 
-def test_a_step_whose_inside_cannot_be_computed_is_taken_back_whole(tmp_path: Path) -> None:
+def test_a_step_whose_inner_states_fail_is_discarded_whole(tmp_path: Path) -> None:
     # a hole that the step jumps over, but not the second sample within it
     hole = "(*(const double *)&t > 0.2099 && *(const double *)&t < 0.2101) ? 0.0/0.0 : params[0]"
-    module = written_by_hand(tmp_path, hole)
-    found = integrate(
+    module = handwritten_module(tmp_path, hole)
+    solution = integrate(
         module, (0, 5), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", t_eval=[0.1, 0.21],
         events=Event(module, "y", 0.4, terminal=True),
     )  # fmt: skip
-    assert found.status is Status.NOT_FINITE
-    assert (found.t.size, found.t_events[0].size, found.end[0]) == (0, 0, 0.0)
+    assert solution.status is Status.NOT_FINITE
+    assert (solution.t.size, solution.t_events[0].size, solution.end[0]) == (0, 0, 0.0)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_an_event_is_located_where_rounding_blurs_its_sign(backend: str) -> None:
-    found = integrate(
+    solution = integrate(
         sp, (-1, -3), (17.880152717337147, -0.3221897508884375), sp.DEFAULTS, t_eval=[],
         form="lagrangian", rtol=1e-8, atol=1e-10, backend=backend,
         events=Event(sp, "theta_dot", -1.3767516817975083),
     )  # fmt: skip
-    assert found.t_events[0] == pytest.approx([-1.28150329, -2.06916657], abs=1e-8)
+    assert solution.t_events[0] == pytest.approx([-1.28150329, -2.06916657], abs=1e-8)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -169,8 +171,8 @@ def test_of_events_at_the_same_time_the_first_in_the_list_counts(backend: str) -
     for events, expected in (
         ([stops, stops, passes], [1, 0, 0]), ([passes, stops, passes], [1, 1, 0]),
     ):  # fmt: skip
-        found = integrate(sp, (0, 5), (1.0, 0.0), sp.DEFAULTS, events=events, backend=backend)
-        assert [len(times) for times in found.t_events] == expected
+        solution = integrate(sp, (0, 5), (1.0, 0.0), sp.DEFAULTS, events=events, backend=backend)
+        assert [len(times) for times in solution.t_events] == expected
 
 
 @pytest.mark.parametrize(
@@ -189,10 +191,10 @@ def test_both_loops_choose_the_same_steps(method: str, rtol: float) -> None:
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-def test_a_step_limit_of_none_takes_none(backend: str) -> None:
-    found = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, max_steps=0, backend=backend)
-    assert (found.steps, found.status) == (0, Status.STEP_LIMIT)
-    assert found.t.tolist() == [0.0]
+def test_a_step_limit_of_0_takes_no_step(backend: str) -> None:
+    solution = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, max_steps=0, backend=backend)
+    assert (solution.steps, solution.status) == (0, Status.STEP_LIMIT)
+    assert solution.t.tolist() == [0.0]
     many = ensemble(sp, (0, 1), [[1.0] * 99, [0.0] * 99], sp.DEFAULTS, max_steps=0, backend=backend)
     assert many.steps.tolist() == [0] * 99
     assert set(many.status) == {Status.STEP_LIMIT}
@@ -210,19 +212,19 @@ def test_a_step_limit_of_none_takes_none(backend: str) -> None:
         ((1.0, 1e200), (1.0, 1.0, 9.8), "rational"),
     ],
 )
-def test_a_motion_without_a_slope_ends_where_it_begins(
+def test_a_motion_without_a_finite_derivative_ends_at_its_start(
     start: tuple[float, float], params: tuple[float, ...], form: str, backend: str
 ) -> None:
-    found = integrate(sp, (0, 1), start, params, form=form, backend=backend)
+    solution = integrate(sp, (0, 1), start, params, form=form, backend=backend)
     if form == "rational":  # huge, but a number: the steps become too short, or not finite
-        assert not found.success
+        assert not solution.success
         return
-    assert found.status is Status.NOT_FINITE
-    assert found.end[0] == 0.0
-    assert found.end[1].tolist() == list(start)
+    assert solution.status is Status.NOT_FINITE
+    assert solution.end[0] == 0.0
+    assert solution.end[1].tolist() == list(start)
 
 
-def test_an_interruption_leaves_rows_that_fit_together() -> None:
+def test_an_interruption_leaves_times_and_states_of_the_same_length() -> None:
     for seconds in (0.05, 0.11, 0.17):
         timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
@@ -237,19 +239,19 @@ def test_an_interruption_leaves_rows_that_fit_together() -> None:
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-def test_samples_have_the_times_that_were_asked_for(backend: str) -> None:
+def test_samples_have_the_requested_times(backend: str) -> None:
     for span, times in (
         ((-1.0, 1.0), [1e-20]), ((10.0, 0.0), np.linspace(0, 10, 3001)[::-1]),
         ((0.0, 1.0), [0.0, 5e-324, 1.0]),
     ):  # fmt: skip
         start = (1e6 + 0.1, 1.0, 0.0, 0.0)
-        found = integrate(dp, span, start, dp.DEFAULTS, t_eval=times, backend=backend)
-        assert np.array_equal(found.t, times)
+        solution = integrate(dp, span, start, dp.DEFAULTS, t_eval=times, backend=backend)
+        assert np.array_equal(solution.t, times)
         if times[0] == span[0]:
-            assert found.y[:, 0].tolist() == list(start)
+            assert solution.y[:, 0].tolist() == list(start)
 
 
-def test_an_ensemble_of_nothing_or_over_no_time_is_what_it_should_be() -> None:
+def test_ensembles_of_no_motions_or_over_no_time_are_valid() -> None:
     assert ensemble(sp, (0, 1), np.zeros((2, 0)), sp.DEFAULTS).y.shape == (2, 0)
     still = ensemble(sp, (2, 2), [[1.0], [0.5]], sp.DEFAULTS, t_eval=[2.0])
     assert (still.steps[0], still.nfev[0], still.status[0]) == (0, 0, Status.FINISHED)
@@ -268,7 +270,7 @@ def test_an_ensemble_of_nothing_or_over_no_time_is_what_it_should_be() -> None:
         Event(sp, "theta", "a")
 
 
-def test_a_prepared_run_names_what_it_refuses() -> None:
+def test_a_prepared_run_names_the_invalid_argument() -> None:
     run = prepare(sp, sp.DEFAULTS)
     for span, start, message in (
         ((0, 0), (float("nan"), 0), "y0 = .* must be finite"),

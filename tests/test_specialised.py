@@ -1,4 +1,4 @@
-"""Code for one scene: parameters folded in, nothing that it does not need, the same motion."""
+"""Code for one scene: folded parameters, required functions only, the same motion."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -105,7 +105,7 @@ def test_a_changed_system_is_generated_anew() -> None:
         assert (ROOT / "derive" / name).read_text() in text
 
 
-def test_what_is_folded_in_costs_nothing_and_what_is_zero_vanishes() -> None:
+def test_folded_parameters_cost_nothing_and_zeros_vanish() -> None:
     plain = {"m1": 1.0, "m2": 1.0, "l1": 2.0, "l2": 2.0, "g": 9.81}
     general = operations("double_pendulum", "rhs_rational")
     any_values = operations("double_pendulum", "rhs_rational", m1=1.3, m2=0.7, l1=1.1, l2=0.9,
@@ -120,7 +120,7 @@ def test_what_is_folded_in_costs_nothing_and_what_is_zero_vanishes() -> None:
         folded(load("double_pendulum"), {"m3": 1.0})
 
 
-def test_only_what_a_scene_needs_is_there() -> None:
+def test_only_functions_that_a_scene_needs_exist() -> None:
     assert required_functions("verner87", "rational") == ("rhs_rational",)
     assert required_functions("gauss2", "lagrangian") == ("rhs", "jacobian")
     assert required_functions("radau3", "hamiltonian")[-1] == "jacobian_hamiltonian"
@@ -134,7 +134,9 @@ def test_only_what_a_scene_needs_is_there() -> None:
 @pytest.mark.parametrize(("method", "form", "h"), [
     ("verner87", "rational", None), ("dop853", "hamiltonian", None), ("gauss2", "lagrangian", 1e-3),
 ])  # fmt: skip
-def test_a_specialised_motion_is_the_general_one(method: str, form: str, h: float | None) -> None:
+def test_a_specialised_motion_equals_the_general_one(
+    method: str, form: str, h: float | None
+) -> None:
     special = specialiser(dp, dp.DEFAULTS, MethodChoice(method, form, ""))
     ends = [
         integrate(module, (0, 5), REPORT, params, method=method, form=form, h=h, rtol=1e-12,
@@ -144,7 +146,7 @@ def test_a_specialised_motion_is_the_general_one(method: str, form: str, h: floa
     assert ends[0] == pytest.approx(ends[1], abs=1e-9)
 
 
-def test_it_is_made_once_and_a_damaged_one_again() -> None:
+def test_a_module_is_generated_once_and_again_when_damaged() -> None:
     made = []
 
     def generator(name, values, functions):

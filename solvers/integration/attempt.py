@@ -59,17 +59,7 @@ class Rejected:
 
 @dataclass(frozen=True)
 class Attempts:
-    """Attempts at steps of one method.
-
-    Parameters
-    ----------
-    stepper : Stepper
-        Computes the steps.
-    controller : Controller or None
-        Controls their size; None for fixed steps.
-    normalise : callable, optional
-        Applied to every new state.
-    """
+    """Attempts at steps of one method; `normalise` is applied to every new state."""
 
     stepper: Stepper
     controller: Controller | None

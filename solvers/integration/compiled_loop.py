@@ -45,25 +45,8 @@ def obstacle(problem: Problem) -> str:
 def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     """The problem in the form to integrate, and its compiled loop; None if it runs in Python.
 
-    Returns
-    -------
-    problem : Problem
-        In the given form; by default in the fastest one in a compiled loop of an explicit method,
-        and in Lagrange's form elsewhere.
-    program : Kernel or None
-        The loop.
-
-    Raises
-    ------
-    ValueError
-        When it must be compiled and cannot.
-    solvers.integration.compiled.compiler.NoCompilerError
-        When it must be compiled and no compiler could.
-
-    Warns
-    -----
-    UserWarning
-        When no compiler could, and it runs in Python.
+    Raises `ValueError` or `NoCompilerError` when it must be compiled and cannot; warns when no
+    compiler could, and it runs in Python.
     """
     must_compile = problem.backend == "compiled"
     reason = "" if problem.backend == "python" else obstacle(problem)

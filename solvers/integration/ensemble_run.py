@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,25 +49,13 @@ class StopFlag:
 
 @dataclass(frozen=True)
 class EnsembleRun:
-    """A run of many motions.
-
-    Attributes
-    ----------
-    problem : Problem
-        The problem of all motions; its initial state and parameters are replaced by theirs.
-    states, params : ndarray of shape (n, state), (n or 1, parameters)
-        Initial states and parameters.
-    result : Ensemble
-        The results so far.
-    stop : StopFlag
-        Stops the run.
-    """
+    """A run of many motions; its problem stands for all, without their states and parameters."""
 
     problem: Problem
-    states: Array
-    params: Array
+    states: Array  # of shape (n, state)
+    params: Array  # of shape (n or 1, parameters)
     result: Ensemble
-    stop: StopFlag = field(default_factory=StopFlag)
+    stop: StopFlag
 
     def run_compiled(self, program: Kernel, workers: int) -> None:
         """Integrate all motions by a compiled loop in threads."""

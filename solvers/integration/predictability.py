@@ -35,17 +35,7 @@ class PredictabilityWarning(UserWarning):
 
 @contextmanager
 def ignore_predictability() -> Iterator[None]:
-    """Suppress `PredictabilityWarning` in a ``with`` block.
-
-    Yields
-    ------
-    None
-
-    Notes
-    -----
-    Python has one list of warning filters for all threads: the warning is suppressed in other
-    threads, too.
-    """
+    """Suppress `PredictabilityWarning` in a ``with`` block, for all threads."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PredictabilityWarning)
         yield
@@ -56,13 +46,8 @@ def predictable_until(problem: Problem, end: float) -> float:
 
     There a small change of the initial state, by the variational equations, has grown by
     1/(10 tolerances) since the first few steps, and faster than in regular motion. A change that
-    is not integrated to the end is extrapolated.
-
-    Returns
-    -------
-    float
-        Infinity if there is no such time before `end`, or if it is unknown: for fixed steps, and
-        without a compiled loop.
+    is not integrated to the end is extrapolated. The result is infinity if there is no such time
+    before `end`, or if it is unknown: for fixed steps, and without a compiled loop.
     """
     begin = problem.span[0]
     module = problem.form.module

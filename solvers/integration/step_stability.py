@@ -22,11 +22,8 @@ def step_instability(problem: Problem, failed: bool) -> str:
     The modes are those of the equations linearised at the start; modes that grow by themselves
     are left out. For a run that `failed`, with numbers that are not finite, less growth suffices.
 
-    Returns
-    -------
-    str
-        The time until which the run is good, and the largest stable step size. Empty if steps are
-        controlled, or if the module has no Jacobian.
+    The text gives the time until which the run is good, and the largest stable step size. It is
+    empty if steps are controlled, or if the module has no Jacobian.
     """
     method, h, module = problem.method, problem.h, problem.form.module
     if h is None or not isinstance(method, Tableau) or not has_function(module, "jacobian"):
