@@ -164,7 +164,7 @@ def test_the_readme_of_verification_states_the_numbers_of_verdicts(
 ) -> None:
     text = (ROOT / "derive" / "verification" / "README.md").read_text(encoding="utf-8")
     equations, claims = (
-        counted(verdicts[name]).replace(", of them", " |") for name in ("equations", "claims")
+        counted(verdicts[name]).rstrip(")").replace(" (", " | ") for name in ("equations", "claims")
     )
     stopped = sum(bool(program["stops"]) for program in verdicts["programs"])
     assert f"| equations | {equations} |" in text

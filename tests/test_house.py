@@ -1,4 +1,4 @@
-"""What helps the next person is there, and says the same everywhere."""
+"""Project files agree with each other: checks, targets, versions and dependencies."""
 
 import re
 import subprocess
@@ -14,7 +14,7 @@ def read(name: str) -> str:
     return (ROOT / name).read_text(encoding="utf-8")
 
 
-def test_a_commit_is_held_to_what_ci_asks_before_the_tests() -> None:
+def test_the_commit_hook_runs_the_first_checks_of_ci() -> None:
     (repository,) = yaml.safe_load(read(".pre-commit-config.yaml"))["repos"]
     (hook,) = repository["hooks"]
     assert hook["entry"] == "make lint types"
@@ -23,20 +23,20 @@ def test_a_commit_is_held_to_what_ci_asks_before_the_tests() -> None:
 
 
 def test_help_lists_every_target() -> None:
-    listed = subprocess.run(["make", "--silent", "help"], cwd=ROOT, capture_output=True, text=True,
-                            check=True).stdout  # fmt: skip
+    command = ["make", "--silent", "help"]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     targets = re.findall(r"^\.PHONY: (.*)$", read("Makefile"), re.MULTILINE)[0].split()
     assert [line.split()[0] for line in listed.splitlines()] == targets
     assert all(len(line.split()) > 1 for line in listed.splitlines())
 
 
-def test_make_check_asks_no_less_than_ci() -> None:
-    made = read("Makefile").partition("\ncheck:")[2].partition("\n\n")[0]
+def test_make_check_covers_ci() -> None:
+    checked = read("Makefile").partition("\ncheck:")[2].partition("\n\n")[0]
     for line in read(".ci/run").splitlines():
         if line.startswith("make "):
-            assert {*line.split()[1:]} <= {*made.split(), "demo"}
+            assert {*line.split()[1:]} <= {*checked.split(), "demo"}
         elif line.startswith(".venv/bin/holonomic"):
-            assert line.removeprefix(".venv/bin/") in made.replace("$(BIN)/", "")
+            assert line.removeprefix(".venv/bin/") in checked.replace("$(BIN)/", "")
 
 
 def test_citation_package_and_changelog_agree() -> None:

@@ -60,7 +60,7 @@ def arrows(package: str) -> dict[tuple[str, str], Path]:
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_each_package_imports_only_what_the_design_allows(package: str) -> None:
+def test_each_package_imports_only_the_allowed_packages(package: str) -> None:
     for path in (ROOT / package).rglob("*.py"):
         if not path.is_relative_to(ROOT / "solvers" / "app"):
             assert not foreign(path, ALLOWED[package]), path
@@ -79,12 +79,12 @@ def test_every_room_has_a_floor_and_imports_only_rooms_below_it(package: str) ->
     assert not upwards
 
 
-def test_rooms_have_as_few_arrows_as_the_plan() -> None:
+def test_rooms_have_few_arrows() -> None:
     assert len(floors("solvers")) == 10
     assert len(arrows("solvers")) <= 35
 
 
-def test_an_import_upwards_would_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_upward_import_is_detected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(globals(), "ROOT", tmp_path)
     for room in ("io", "app"):
         (tmp_path / "solvers" / room).mkdir(parents=True)
@@ -92,7 +92,7 @@ def test_an_import_upwards_would_be_found(tmp_path: Path, monkeypatch: pytest.Mo
     assert arrows("solvers") == {("io", "app"): tmp_path / "solvers" / "io" / "file.py"}
 
 
-def test_what_derive_takes_from_solvers_needs_the_standard_library_only() -> None:
+def test_derive_imports_only_standard_library_modules_of_solvers() -> None:
     code = (
         "import sys, solvers.io.suggestion, solvers.io.atomic_write, solvers.io.toml_input;"
         "print([m for m in ('sympy', 'numpy', 'scipy', 'matplotlib') if m in sys.modules])"
@@ -113,7 +113,7 @@ def test_generated_modules_use_only_math_from_the_standard_library_at_run_time()
         assert names <= {"__future__", "math", "typing"}
 
 
-def test_a_foreign_import_is_noticed(tmp_path: Path) -> None:
+def test_a_foreign_import_is_detected(tmp_path: Path) -> None:
     path = tmp_path / "file.py"
     path.write_text("import os\nfrom sympy.core import Add\nimport derive.codegen.graph")
     assert foreign(path, ALLOWED["solvers"]) == {"sympy.core.Add", "derive.codegen.graph"}

@@ -33,7 +33,7 @@ def lambdified_rhs() -> Callable[..., Any]:
 
 
 def chain(n: int, form: str = "") -> tuple[float, float, str, str]:
-    """Seconds to derive and to emit a right-hand side of n pendulums, and both texts."""
+    """Seconds to derive and to write a right-hand side of n pendulums, and both texts."""
     clear_cache()  # SymPy remembers what it has computed
     begin = time.perf_counter()
     generated = contents(Derivation(load(f"chain_{n}")), (f"rhs{form}",))
