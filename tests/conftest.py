@@ -18,7 +18,7 @@ from derive import Derivation, load
 from solvers.app.modules import load as load_module
 from solvers.scenes.shipped import find
 from solvers.studies.stability.critical_step import CriticalStep
-from solvers.studies.stability.summary import scene_steps
+from solvers.studies.stability.scene_stability import SceneStability
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -65,7 +65,7 @@ def module(derivation: Derivation) -> ModuleType:
 @pytest.fixture(scope="session")
 def report_steps(shared: Shared) -> dict[str, CriticalStep]:
     """Critical steps of all methods for the scene of the report."""
-    steps = shared("report_steps", lambda: scene_steps(find("report", load_module)))
+    steps = shared("report_steps", lambda: SceneStability.of(find("report", load_module)).steps)
     return {step.method: step for step in steps}
 
 

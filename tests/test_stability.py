@@ -24,7 +24,7 @@ from solvers.runge_kutta.stepper import Stepper
 from solvers.runge_kutta.sturm import nonnegative_interval
 from solvers.studies.failure_modes import study
 from solvers.studies.stability import critical_step as critical_step_module
-from solvers.studies.stability import summary
+from solvers.studies.stability import scene_stability
 from solvers.studies.stability.critical_step import CriticalStep, critical_step, limit
 from solvers.studies.stability.plots import boundaries
 
@@ -112,7 +112,7 @@ def test_a_fall_is_found_exactly_among_touches() -> None:
 def test_the_command_prints_every_method_of_the_scenes(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(summary, "names", lambda: ("gauss1", "rk1", "rk4"))
+    monkeypatch.setattr(scene_stability, "names", lambda: ("gauss1", "rk1", "rk4"))
     assert main(["stability", "single", "light_above", "--json", "--output", str(tmp_path)]) == 0
     found = json.loads(capsys.readouterr().out)
     keys = ("scene", "method", "order", "imaginary_stability_interval", "critical_step_predicted")
@@ -144,7 +144,7 @@ def test_the_command_prints_every_method_of_the_scenes(
 def test_without_a_scene_the_command_studies_where_methods_fail(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(summary, "names", lambda: ("gauss1", "rk1", "rk4"))
+    monkeypatch.setattr(scene_stability, "names", lambda: ("gauss1", "rk1", "rk4"))
     monkeypatch.setattr(study, "studies", partial(study.studies, small=True))
     assert main(["stability", "--output", str(tmp_path)]) == 0
     text = capsys.readouterr().out

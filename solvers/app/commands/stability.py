@@ -55,13 +55,13 @@ def _print(arguments: Namespace, results: dict[str, Any], lines: Iterable[str], 
 def _critical_steps(scene: Scene, folder: Path) -> tuple[list[Any], Iterator[str], Path]:
     from solvers.io.figures import save
     from solvers.io.progress import Progress
-    from solvers.studies.stability.summary import picture, row, scene_steps, told
+    from solvers.studies.stability.scene_stability import SceneStability
 
     with Progress() as report:
-        steps = scene_steps(scene, report)
+        study = SceneStability.of(scene, report)
     plot = folder / f"stability_{scene.name}.png"
-    save(picture(scene, steps), plot)
-    return [row(scene, step) for step in steps], told(scene, steps), plot
+    save(study.plot(), plot)
+    return study.rows(), study.summary(), plot
 
 
 def _failure_modes(folder: Path) -> Iterator[tuple[str, Any, Iterable[str], Path]]:

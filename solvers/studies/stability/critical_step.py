@@ -1,14 +1,15 @@
-"""The longest step that lets no oscillation grow: predicted from R(z), and measured.
+"""The longest step with which no oscillation grows: predicted from R(z), and measured.
 
-Measuring knows nothing of the method but how to make steps. A mode of small motion is started
-alone; steps of one length are made; growth is what its size gains. From short steps to long
-ones the first that grows is sought, and the limit between bisected.
+The measurement uses the method only to make steps. A single mode of small motion is integrated
+with a fixed step, and its growth is recorded. The step is increased until the mode grows, and the
+limit is found by bisection.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 
 import numpy as np
@@ -23,43 +24,43 @@ from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Step
 
 Array = NDArray[np.float64]
 
-#: Amplitude of small motion in units of the coordinates: nonlinear parts are below rounding.
+#: Amplitude in units of the coordinates: nonlinear terms are below rounding.
 AMPLITUDE = 1e-7
-#: Growth a step below this is rounding.
-NOTHING = 1e-15
-#: Steps times frequency that are tried, and how closely the limit is then found.
+#: Growth per step below this is rounding.
+NO_GROWTH = 1e-15
+#: Range and ratio of steps times frequency, and the relative resolution of the bisection.
 SHORTEST, LONGEST, RATIO, RESOLUTION = 0.25, 40.0, 1.25, 1e-4
-#: Steps that are made: growth is measured over the second half of them.
+#: Number of steps; growth is measured over the second half.
 STEPS = 400
-#: Sizes of motion, in parts of that at the beginning, that count as none and as no longer small.
+#: Sizes relative to the initial size that count as zero and as no longer small.
 LOST, LARGE = 1e-6, 1e4
-#: So many rounding errors of a place at most add up.
+#: Largest number of rounding errors of a state that add up.
 ROUNDINGS = 100
-#: Growth is stated for a step so much longer than the limit, or for 1/frequency.
+#: Growth is reported for a step longer than the limit by this factor, or for 1/frequency.
 BEYOND = 1.05
 
 
 @dataclass(frozen=True)
 class CriticalStep:
-    """Where a method becomes unstable for a system's fastest small oscillation.
+    """The step at which a method becomes unstable for the fastest small oscillation.
 
     Attributes
     ----------
     method, title : str
-        Its name in the catalogue, and what people call it.
+        Name in the catalogue, and common name.
     order, stages : int
-        Its order and number of stages.
+        Order and number of stages.
     function : StabilityFunction
-        What follows from its coefficients.
+        The exact stability function.
     predicted : float
         The imaginary stability interval over the frequency, in s.
     linear, measured : float
-        The same as found by running the linear equations, and those of the system in
-        small motion. 0: growth even with the shortest step tried; inf: with none.
+        The limit for runs of the linear equations, and of the system's equations in small
+        motion. 0: growth even with the shortest step; inf: growth with none.
     probe : float
-        A step in s for which growth is stated, and
+        A step in s.
     growth_predicted, growth_measured : float
-        growth of the amplitude on the linear equations, as a logarithm a step.
+        Logarithm of the growth per step of the linear equations with this step.
     """
 
     method: str
@@ -76,7 +77,7 @@ class CriticalStep:
 
 
 def critical_step(method: str, module: GeneratedModule, params: Sequence[float]) -> CriticalStep:
-    """Find the longest stable step of a method for small motions of a system about rest.
+    """The longest stable step of a method for small motions about the equilibrium.
 
     Parameters
     ----------
@@ -90,41 +91,41 @@ def critical_step(method: str, module: GeneratedModule, params: Sequence[float])
     Returns
     -------
     CriticalStep
-        The limit in s, as R(z) predicts it and as runs show it.
+        The limit in s, predicted from R(z) and measured.
 
     Raises
     ------
     solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
     ValueError
-        When the system has no stable equilibrium that is known, or a mode without mass.
+        When no stable equilibrium of the system is known, or a mode has no mass.
     """
     modes = Modes.at_rest(module, params)
     fastest = float(modes.frequencies[-1])
     tableau = load(method)
     function = StabilityFunction.of(tableau)
     linear, running = _linear(method, modes), _small_motion(method, module, params, modes)
-    # rounding of M and K, too, lets motion grow: the more, the farther modes are apart
-    nothing = NOTHING * fastest / float(modes.frequencies[0])
-    measured = limit(running, fastest, nothing)
+    # rounding of M and K makes motion grow in proportion to the ratio of frequencies
+    no_growth = NO_GROWTH * fastest / float(modes.frequencies[0])
+    measured = limit(running, fastest, no_growth)
     probe = BEYOND * measured if 0 < measured < inf else 1 / fastest
     return CriticalStep(
-        method, tableau.title, tableau.order, tableau.stages, function,
+        *(method, tableau.title, tableau.order, tableau.stages, function),
         predicted=function.imaginary_stability_interval / fastest,
-        linear=limit(linear, fastest, nothing),
+        linear=limit(linear, fastest, no_growth),
         measured=measured,
         probe=probe,
         growth_predicted=float(np.log(np.abs(function(1j * probe * fastest)))),
         growth_measured=linear(probe),
-    )  # fmt: skip
+    )
 
 
 def limit(
-    growth: Callable[[float], float], frequency: float, nothing: float = NOTHING
-) -> float:  # fmt: skip
-    """The longest step that does not grow: 0 if all that are tried do, inf if none does."""
+    growth: Callable[[float], float], frequency: float, no_growth: float = NO_GROWTH
+) -> float:
+    """The longest step without growth: 0 if all steps in the range have growth, inf if none."""
     stable, h = 0.0, SHORTEST / frequency
-    while growth(h) <= nothing:
+    while growth(h) <= no_growth:
         stable, h = h, h * RATIO
         if h * frequency > LONGEST:
             return inf
@@ -132,12 +133,12 @@ def limit(
         return 0.0
     while h - stable > RESOLUTION * stable:
         middle = (stable + h) / 2
-        stable, h = (middle, h) if growth(middle) <= nothing else (stable, middle)
+        stable, h = (middle, h) if growth(middle) <= no_growth else (stable, middle)
     return stable
 
 
 def _linear(method: str, modes: Modes) -> Callable[[float], float]:
-    """Growth a step on M₀ ẍ + K x = 0, by the stepper in Python."""
+    """Growth per step of M₀ ẍ + K x = 0, by the stepper in Python."""
     matrix = modes.matrix
     start = AMPLITUDE * np.concatenate([modes.shapes[:, -1], np.zeros(len(modes.frequencies))])
 
@@ -160,31 +161,29 @@ def _linear(method: str, modes: Modes) -> Callable[[float], float]:
 def _small_motion(
     method: str, module: GeneratedModule, params: Sequence[float], modes: Modes
 ) -> Callable[[float], float]:
-    """Growth a step of the system itself, by the integrator that people use."""
+    """Growth per step of the system itself, by `integrate`."""
     n = len(modes.frequencies)
     rest = np.concatenate([function(module, "equilibrium")(params), np.zeros(n)])
     start = rest + AMPLITUDE * np.concatenate([modes.shapes[:, -1], np.zeros(n)])
-    # about a place that is not 0, motion has fewer digits
+    # rounding is relative to the coordinates of the equilibrium
     rounding = ROUNDINGS * modes.size(np.finfo(float).eps * rest)
     size = modes.size(start - rest)
 
     def growth(h: float) -> float:
         half = STEPS // 2 * h
-        run = integrate(
-            module, (0, 2 * half), start, params, method=method, form="lagrangian", h=h,
-            t_eval=(half, 2 * half),
-        )  # fmt: skip
+        solve = partial(integrate, method=method, form="lagrangian", h=h)
+        run = solve(module, (0, 2 * half), start, params, t_eval=(half, 2 * half))
         with np.errstate(over="ignore", invalid="ignore"):
             sizes = [modes.size(y - rest) for y in run.y.T]
         if len(sizes) < 2 or not max(sizes) < LARGE * size:
-            return inf  # what has left small motion grew, whatever it does out there
+            return inf  # motion that is no longer small has grown
         return _rate(sizes, LOST * size + 10 * rounding) - rounding / size / STEPS
 
     return growth
 
 
 def _rate(sizes: Sequence[float], lost: float) -> float:
-    """Logarithm of the growth a step over the second half; -inf for a size that counts as none."""
+    """Logarithm of the growth per step over the second half; -inf for a size of zero."""
     halfway, end = sizes
     if not np.isfinite(halfway + end):
         return inf

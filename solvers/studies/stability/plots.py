@@ -1,4 +1,4 @@
-"""Stability regions: each with a scene's modes, or the boundaries of several."""
+"""Stability regions with the modes of a scene, and boundaries of stability regions."""
 
 from __future__ import annotations
 
@@ -11,36 +11,22 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from solvers.io.figures import COLOURS, panels
+from solvers.io.figures import COLOURS, coloured, panels
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.stability.critical_step import CriticalStep
 
-#: What of the complex plane is shown, and how finely.
+Frequencies = NDArray[np.float64]
+Eigenvalues = NDArray[np.complex128]
+
+#: Limits of the plotted part of the complex plane, and points along each axis.
 LEFT, RIGHT, TOP, POINTS = -7.0, 4.0, 7.0, 221
+X, Y = np.linspace(LEFT, RIGHT, POINTS), np.linspace(-TOP, TOP, POINTS)
 
 
 def regions(
-    title: str, steps: Sequence[CriticalStep], frequencies: NDArray[np.float64],
-    along: NDArray[np.complex128],
-) -> Figure:  # fmt: skip
-    """One panel for each stability function: |R| ≤ 1 in colour, h λ on it.
-
-    Parameters
-    ----------
-    title : str
-        Of the picture.
-    steps : sequence of CriticalStep
-        Methods; those with the same function share a panel.
-    frequencies : ndarray of shape (modes,)
-        Of the modes about rest in rad/s, ascending: dots, with h at the limit, or
-        1/frequency of the fastest if there is none.
-    along : ndarray
-        Eigenvalues along the scene's motion in 1/s, with the same h.
-
-    Returns
-    -------
-    Figure
-    """
+    title: str, steps: Sequence[CriticalStep], frequencies: Frequencies, eigenvalues: Eigenvalues
+) -> Figure:
+    """The region |R| ≤ 1 of each stability function, with hλ of modes and along a motion."""
     shared: dict[object, list[CriticalStep]] = {}
     for step in steps:
         shared.setdefault(step.function, []).append(step)
@@ -49,7 +35,7 @@ def regions(
         title, rows=-(-len(shared) // columns), columns=columns, size=(2.6 * columns, 9)
     )
     for panel, group in zip(axes, shared.values(), strict=False):
-        _region(panel, group, frequencies, along)
+        _region(panel, group, frequencies, eigenvalues)
     for panel in axes[len(shared) :]:
         panel.set_axis_off()
     figure.supxlabel("Re h λ")
@@ -63,45 +49,46 @@ def boundaries(functions: Mapping[str, StabilityFunction]) -> Figure:
     Parameters
     ----------
     functions : mapping of str to StabilityFunction
-        By what they are called in the legend; up to seven, which is how many colours there are.
+        By their labels; at most seven.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The plane of hλ, a step times an eigenvalue, which has no unit.
+        The plane of hλ, a step times an eigenvalue.
     """
     figure, (panel,) = panels("", size=(5.2, 4.8))
-    x, y = np.linspace(LEFT, RIGHT, POINTS), np.linspace(-TOP, TOP, POINTS)
-    for function, colour in zip(functions.values(), COLOURS, strict=False):
-        size = np.abs(function(x + 1j * y[:, None]))
-        panel.contour(x, y, size, levels=[1], colors=[colour], linewidths=1.4)
+    for name, colour in coloured(functions):
+        size = np.abs(functions[name](X + 1j * Y[:, None]))
+        panel.contour(X, Y, size, levels=[1], colors=[colour], linewidths=1.4)
     panel.axvline(0, color="#bbbbbb", linewidth=0.6, zorder=0)
     panel.axhline(0, color="#bbbbbb", linewidth=0.6, zorder=0)
     panel.set(xlabel="Re hλ", ylabel="Im hλ", aspect="equal")
-    handles = [Line2D([], [], color=colour) for colour, _ in zip(COLOURS, functions, strict=False)]
-    figure.legend(handles, list(functions), frameon=False, loc="outside upper center", ncols=4,
-                  fontsize="small", columnspacing=1.2)  # fmt: skip
+    handles = [Line2D([], [], color=colour) for _, colour in coloured(functions)]
+    style = {"frameon": False, "fontsize": "small", "columnspacing": 1.2}
+    figure.legend(handles, list(functions), loc="outside upper center", ncols=4, **style)
     return figure
 
 
 def _region(
-    panel: Axes, group: Sequence[CriticalStep], frequencies: NDArray[np.float64],
-    along: NDArray[np.complex128],
-) -> None:  # fmt: skip
+    panel: Axes,
+    group: Sequence[CriticalStep],
+    frequencies: Frequencies,
+    eigenvalues: Eigenvalues,
+) -> None:
     first = group[0]
-    x, y = np.linspace(LEFT, RIGHT, POINTS), np.linspace(-TOP, TOP, POINTS)
-    size = np.abs(first.function(x + 1j * y[:, None]))
-    panel.contourf(x, y, size, levels=[0, 1], colors=["#cfe3f2"])
-    panel.contour(x, y, size, levels=[1], colors=[COLOURS[0]], linewidths=0.8)
+    size = np.abs(first.function(X + 1j * Y[:, None]))
+    panel.contourf(X, Y, size, levels=[0, 1], colors=["#cfe3f2"])
+    panel.contour(X, Y, size, levels=[1], colors=[COLOURS[0]], linewidths=0.8)
     panel.axhline(0, color="#bbbbbb", linewidth=0.5)
     panel.axvline(0, color="#bbbbbb", linewidth=0.5)
     limited = 0 < first.predicted < inf
     h = first.predicted if limited else 1 / frequencies[-1]
-    panel.plot(h * along.real, h * along.imag, ".", color="#999999", markersize=1.5)
+    along = h * eigenvalues
+    panel.plot(along.real, along.imag, ".", color="#999999", markersize=1.5)
     modes = h * np.concatenate([frequencies, -frequencies])
     panel.plot(np.zeros_like(modes), modes, "o", color=COLOURS[1], markersize=3)
     panel.set(xlim=(LEFT, RIGHT), ylim=(-TOP, TOP), aspect="equal")
-    limit = f"h ≤ {first.predicted:.3g} s" if limited else (
-        "no step is stable" if first.predicted == 0 else "every step is stable"
-    )  # fmt: skip
+    limit = "no step is stable" if first.predicted == 0 else "every step is stable"
+    if limited:
+        limit = f"h ≤ {first.predicted:.3g} s"
     panel.set_title(f"{', '.join(step.method for step in group)}\n{limit}", fontsize="small")

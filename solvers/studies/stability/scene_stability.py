@@ -1,0 +1,92 @@
+"""The stability study of a scene: critical steps of every method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from solvers.equations.normal_modes import Modes, local_eigenvalues
+from solvers.integration.integrate import integrate
+from solvers.io.text_table import text_table
+from solvers.runge_kutta.catalogue import names
+from solvers.scenes.scene import Scene
+from solvers.studies.stability.critical_step import CriticalStep, critical_step
+from solvers.studies.stability.plots import regions
+
+#: Samples of a scene's motion at which its modes are computed.
+SAMPLES = 100
+
+
+@dataclass(frozen=True)
+class SceneStability:
+    """Critical steps of every method for small motions with a scene's parameters."""
+
+    scene: Scene
+    steps: list[CriticalStep]
+
+    @classmethod
+    def of(cls, scene: Scene, report: Callable[[str], None] = lambda _: None) -> SceneStability:
+        """The critical steps of all methods, each reported before it is computed."""
+        steps = []
+        for method in names():
+            report(f"{scene.name}: {method}")
+            steps.append(critical_step(method, scene.module, scene.params))
+        return cls(scene, steps)
+
+    def summary(self) -> Iterator[str]:
+        """The critical steps as a table."""
+        yield f"Longest stable steps of {self.scene.title}: its fastest small oscillation, in s"
+        columns = {"method": "", "order": "d", "real": ".4g", "imaginary": ".5g"}
+        columns |= {"predicted": ".5g", "linear": ".5g", "nonlinear": ".5g"}
+        columns |= {"at h": ".3g", "ln growth/step": ".1e", "predicted ln": ".1e"}
+        yield from text_table(columns, map(_cells, self.steps))
+        yield "0: oscillations grow with every step; inf: with none"
+
+    def plot(self) -> Figure:
+        """Stability regions of all methods with the scene's modes."""
+        module, params, duration = self.scene.module, self.scene.params, self.scene.duration
+        t = np.linspace(0, duration, SAMPLES)
+        motion = integrate(module, (0, duration), self.scene.y0, params, t_eval=t)
+        eigenvalues = local_eigenvalues(module, params, motion.y.T).ravel()
+        frequencies = Modes.at_rest(module, params).frequencies
+        title = f"|R(hλ)| ≤ 1, small motions (dots) and the motion (grey) of {self.scene.title}"
+        return regions(title, self.steps, frequencies, eigenvalues)
+
+    def rows(self) -> list[dict[str, Any]]:
+        """The figures of each method, for JSON."""
+        return [{"scene": self.scene.name} | _row(step) for step in self.steps]
+
+
+def _cells(step: CriticalStep) -> tuple[object, ...]:
+    intervals = step.function.real_stability_interval, step.function.imaginary_stability_interval
+    limits = step.predicted, step.linear, step.measured
+    growth = step.probe, step.growth_measured, step.growth_predicted
+    return step.method, step.order, *intervals, *limits, *growth
+
+
+def _row(step: CriticalStep) -> dict[str, Any]:
+    function = step.function
+    return {
+        "method": step.method,
+        "title": step.title,
+        "order": step.order,
+        "stages": step.stages,
+        "stability_function": {
+            "numerator": [str(c) for c in function.numerator],
+            "denominator": [str(c) for c in function.denominator],
+        },
+        "real_stability_interval": function.real_stability_interval,
+        "imaginary_stability_interval": function.imaginary_stability_interval,
+        "critical_step_predicted": step.predicted,
+        "critical_step_measured": step.measured,
+        "critical_step_measured_linear": step.linear,
+        "probe": {
+            "h": step.probe,
+            "growth_predicted": step.growth_predicted,
+            "growth_measured": step.growth_measured,
+        },
+    }
