@@ -13,11 +13,11 @@ from solvers.integration.problem import Outcome, Problem
 from solvers.runge_kutta.tableau import Tableau
 
 #: Steps, and occurrences of an event, that C stores before Python collects them.
-ROOM, ROOM_FOR_EVENTS = 4096, 64
+ROW_CAPACITY, EVENT_CAPACITY = 4096, 64
 #: Most unknowns of an implicit step in C; more would not fit on a thread's stack.
 MOST_UNKNOWNS = 100
 #: Seconds of C between checks for an interruption by the user.
-PATIENCE = 0.05
+TIME_LIMIT = 0.05
 
 
 def obstacle(problem: Problem) -> str:
@@ -75,11 +75,11 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     """Integrate `problem`; `outcome` holds the results so far at any time."""
     samples = problem.samples
     outcome.backend = f"compiled by {program.library.compiler}"
-    capacity = ROOM if samples is None else len(samples)
-    batch = Batch(program, problem, capacity=capacity, occurrences=ROOM_FOR_EVENTS, pauses=True)
+    capacity = ROW_CAPACITY if samples is None else len(samples)
+    batch = Batch(program, problem, capacity=capacity, occurrences=EVENT_CAPACITY, pauses=True)
     status = None
     while status is None:
-        batch.restart(PATIENCE)
+        batch.restart(TIME_LIMIT)
         try:
             batch.run()
         finally:  # an interruption arrives when C returns: collect its results first
@@ -89,7 +89,7 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
 
 
 def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
-    """Move the results of the motion into `outcome`, and make room for more."""
+    """Move the results of the motion into `outcome`, and free their rows."""
     motion, events = batch.motions[0], range(len(problem.events))
     collected = 0 if problem.samples is None else sum(map(len, outcome.t))
     rows = batch.rows[0, collected : motion["rows"]]

@@ -22,9 +22,9 @@ METHOD, TOLERANCE, MOST_STEPS, CHUNK = "verner87", 1e-9, 20_000, 500
 #: In the first steps every change grows, at once where a mode is fast.
 FIRST_STEPS = 10
 #: The usual ratio of an error to the tolerance.
-USUAL = 10.0
+ERROR_RATIO = 10.0
 #: The largest initial error, whatever the tolerance, whose growth to 1 counts.
-LARGE = 0.05
+LARGEST_ERROR = 0.05
 #: In regular motion changes grow in proportion to time; chaos outgrows this power of time.
 POWER = 1.5
 
@@ -73,7 +73,9 @@ def predictable_until(problem: Problem, end: float) -> float:
         return inf
     states = np.array([[*start, *np.ones_like(start)]])
     batch = Batch(program, variational, states, capacity=CHUNK, pauses=True)
-    allowed = np.log(1 / min(USUAL * max(problem.tolerance, np.finfo(float).eps), LARGE))
+    allowed = np.log(
+        1 / min(ERROR_RATIO * max(problem.tolerance, np.finfo(float).eps), LARGEST_ERROR)
+    )
     base, elapsed, growth = 0.0, np.empty(0), np.empty(0)
     status = None
     while status is None:
@@ -90,9 +92,11 @@ def predictable_until(problem: Problem, end: float) -> float:
             rows, size = rows[FIRST_STEPS + 1 :], size[FIRST_STEPS + 1 :]
         if len(rows):
             elapsed, growth = np.abs(rows["t"] - begin), size - base
-        lost = np.flatnonzero((growth >= allowed) & (growth > POWER * np.log(elapsed / first)))
-        if lost.size:
-            return begin + float(np.sign(end - begin) * elapsed[lost[0]])
+        unpredictable = np.flatnonzero(
+            (growth >= allowed) & (growth > POWER * np.log(elapsed / first))
+        )
+        if unpredictable.size:
+            return begin + float(np.sign(end - begin) * elapsed[unpredictable[0]])
     if not elapsed.size or growth[-1] <= POWER * np.log(elapsed[-1] / first):
         return inf
     after = float(allowed / growth[-1] * elapsed[-1])

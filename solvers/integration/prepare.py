@@ -108,14 +108,14 @@ class Prepared:
 
     def __init__(self, single: Any, batch: Batch, problem: Problem) -> None:
         self._batch, self._problem = batch, problem
-        room = ctypes.c_double * len(problem.start)
-        self._start, self._end = room(), room()
+        buffer = ctypes.c_double * len(problem.start)
+        self._start, self._end = buffer(), buffer()
         self._defaults, self._has_defaults = problem.form.params, True
         address = batch.motions["params"].ctypes.data
         self._params = (ctypes.c_double * len(self._defaults)).from_address(address)
         single.argtypes = [ctypes.c_void_p, *[ctypes.c_double] * 2, *[ctypes.c_void_p] * 2]
         single.restype = ctypes.c_int64
-        batch.task.time_limit = compiled_loop.PATIENCE
+        batch.task.time_limit = compiled_loop.TIME_LIMIT
         self._single, self._task = single, ctypes.addressof(batch.task)
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
 
@@ -128,26 +128,26 @@ class Prepared:
             self._set_params(self._defaults if params is None else params)
             self._has_defaults = params is None
         try:
-            begin, end = t_span
+            start, end = t_span
             self._start[:] = list(y0)  # type: ignore[arg-type]
         except (TypeError, ValueError):
-            begin, end = validation.time_span(t_span)
+            start, end = validation.time_span(t_span)
             self._start[:] = self._checked(y0)
-        if begin == end:
+        if start == end:
             validation.time_span(t_span)
             return tuple(self._checked(self._start))
         h = self._problem.h
         try:
-            if h is not None and h < SHORTEST * ulp(max(abs(begin), abs(end))):
+            if h is not None and h < SHORTEST * ulp(max(abs(start), abs(end))):
                 validation.step_size(h, t_span)
-            code = self._single(self._task, begin, end, self._from, self._to)
+            code = self._single(self._task, start, end, self._from, self._to)
         except (ctypes.ArgumentError, TypeError):
             code = NOT_NUMBERS
         if code == NOT_NUMBERS:
             validation.time_span(t_span)
             self._checked(self._start)
         while STATUSES[code] is None:
-            code = self._single(self._task, begin, end, None, self._to)
+            code = self._single(self._task, start, end, None, self._to)
         y, status = tuple(self._end), STATUSES[code]
         if status is not Status.FINISHED:
             assert status is not None

@@ -74,8 +74,10 @@ def _first_step_size(problem: Problem, attempts: Attempts, point: Point, shortes
     if attempts.controller is None:
         assert problem.h is not None
         return problem.h
-    slope, duration = attempts.stepper.derivative, problem.span[1] - point.t
-    guess = attempts.controller.initial_step(slope, point.t, point.y, point.derivative, duration)
+    derivative, duration = attempts.stepper.derivative, problem.span[1] - point.t
+    guess = attempts.controller.initial_step(
+        derivative, point.t, point.y, point.derivative, duration
+    )
     return max(guess, 2 * shortest)
 
 
