@@ -1,7 +1,7 @@
 """Positions in, motion out: the public names of `derive` and `solvers` in one place.
 
-Names are imported when they are first used. ``load`` is that of `solvers`: it gives equations as
-a module; the positions of a system are given by ``derive.load``.
+Names are imported when they are first used. ``load`` is `solvers.load`, which returns a generated
+module; ``derive.load`` returns the `System` with its positions.
 """
 
 from typing import TYPE_CHECKING, Any

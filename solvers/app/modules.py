@@ -1,4 +1,4 @@
-"""Generated modules by name, from a system file, or from a system; built when they do not ship."""
+"""Generated modules of systems: shipped, or built and cached."""
 
 from __future__ import annotations
 
@@ -33,19 +33,18 @@ def load(name: str) -> GeneratedModule:
     Returns
     -------
     module
-        As ``generated.double_pendulum``; what does not ship is kept in the user's cache.
+        As ``generated.double_pendulum``; modules that do not ship are built in the user's cache.
 
     Raises
     ------
     LookupError
-        When no system has this name.
+        If no system has this name.
     ValueError
-        When the file does not exist or does not describe a system.
+        If the file does not exist or does not describe a system.
     derive.codegen.translation.UnsupportedFunctionError
-        When its equations contain a power that generated code does not have, such as
-        ``x**(5/4)``.
+        If its equations contain an unsupported power, such as ``x**(5/4)``.
     OSError
-        When the module cannot be written to the cache.
+        If the module cannot be written to the cache.
 
     Examples
     --------
@@ -66,7 +65,7 @@ def load(name: str) -> GeneratedModule:
 
 
 def build(system: System) -> GeneratedModule:
-    """The generated module of a system, written to the user's cache if it is not there yet.
+    """The generated module of a system, built in the user's cache if it is not there yet.
 
     Parameters
     ----------
@@ -81,9 +80,9 @@ def build(system: System) -> GeneratedModule:
     Raises
     ------
     derive.codegen.translation.UnsupportedFunctionError
-        When its equations contain a power that generated code does not have.
+        If its equations contain an unsupported power.
     OSError
-        When the module cannot be written to the cache.
+        If the module cannot be written to the cache.
 
     Examples
     --------
@@ -128,6 +127,6 @@ def specialiser(
 
 @cache
 def generator_text() -> str:
-    """The source text of the generator: another text writes other modules."""
+    """The source text of the generator, which is part of the key of cached modules."""
     folder = Path(__file__).parents[2] / "derive"
     return "".join(source.read_text(encoding="utf-8") for source in sorted(folder.rglob("*.py")))
