@@ -35,7 +35,12 @@ class PredictabilityWarning(UserWarning):
 
 @contextmanager
 def ignore_predictability() -> Iterator[None]:
-    """Suppress `PredictabilityWarning` in a ``with`` block, for all threads."""
+    """Suppress `PredictabilityWarning` in a ``with`` block, for all threads.
+
+    Yields
+    ------
+    None
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PredictabilityWarning)
         yield
