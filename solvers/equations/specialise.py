@@ -32,30 +32,10 @@ def specialised_module(
     generator: Generator,
     version: str,
 ) -> GeneratedModule:
-    """A module without parameters, from the cache or newly generated.
+    """A module with constant parameters and these functions, from the cache or newly generated.
 
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    params : sequence of float
-        In the order of ``module.PARAMETERS``.
-    functions : sequence of str
-        Names of its functions.
-    generator : callable
-        Generates it if it is not in the cache.
-    version : str
-        Version of the generator; part of the cache's key.
-
-    Returns
-    -------
-    module
-        Its functions take an empty sequence of parameters.
-
-    Raises
-    ------
-    OSError
-        When it cannot be written to the cache.
+    Its functions take an empty sequence of parameters. Another `version` of the generator
+    generates it again.
     """
     name = module.SYSTEM
     values = dict(zip(module.PARAMETERS, map(float, params), strict=True))

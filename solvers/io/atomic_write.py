@@ -14,25 +14,7 @@ TEMPORARY = re.compile(r"\..+\.(\d+)")
 
 
 def write_text(path: Path, text: str | bytes) -> Path:
-    """Write a file under a temporary name, then move it into place.
-
-    Parameters
-    ----------
-    path : Path
-        Its name. Missing folders are created, and an existing file is replaced.
-    text : str or bytes
-        Its content; text is encoded as UTF-8.
-
-    Returns
-    -------
-    Path
-        `path`.
-
-    Raises
-    ------
-    OSError
-        When it cannot be written; an existing file is unchanged.
-    """
+    """Write a file under a temporary name, then move it into place; folders are created."""
     with replacing(path) as file:
         file.write(text.encode() if isinstance(text, str) else text)
     return path
@@ -49,23 +31,7 @@ def write_texts(folder: Path, texts: Mapping[str, str]) -> None:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[IO[bytes]]:
-    """A file to write to, which is moved into place when it is complete.
-
-    Parameters
-    ----------
-    path : Path
-        Its name. Missing folders are created, and an existing file is replaced.
-
-    Yields
-    ------
-    binary file
-        Open for writing, in the same folder.
-
-    Raises
-    ------
-    OSError
-        When it cannot be written; an existing file is unchanged.
-    """
+    """A file to write to, which replaces `path` when it is complete; folders are created."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:

@@ -72,24 +72,9 @@ def is_intact(folder: Path) -> bool:
 
 @contextmanager
 def folder_in_place(folder: Path, abandoned: float) -> Iterator[Path]:
-    """A private folder to build files in, which is moved into place with their digests.
+    """A private folder to build files in, then moved to `folder` with their digests.
 
-    Parameters
-    ----------
-    folder : Path
-        The final place, inside the cache.
-    abandoned : float
-        Seconds after which build folders of killed processes are removed.
-
-    Yields
-    ------
-    Path
-        An empty folder.
-
-    Raises
-    ------
-    OSError
-        When the folder cannot be written or moved.
+    Build folders that killed processes left more than `abandoned` seconds ago are removed.
     """
     _remove_abandoned(folder.parent, abandoned)
     with tempfile.TemporaryDirectory(prefix=BUILD_PREFIX, dir=folder.parent) as name:

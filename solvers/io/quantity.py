@@ -56,25 +56,7 @@ class QuantityError(ValueError):
 
 
 def quantity(value: object, unit: str) -> float:
-    """A number in `unit`.
-
-    Parameters
-    ----------
-    value : int, float or str
-        A number in `unit`, or a text, which may end in another unit of the same dimension.
-    unit : str
-        Such as ``rad`` or ``m/s^2``.
-
-    Returns
-    -------
-    float
-        A finite number.
-
-    Raises
-    ------
-    QuantityError
-        When `value` is not a finite number, or has another dimension.
-    """
+    """A finite number in `unit`; a text may end in another unit of the same dimension."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise QuantityError(
             f"{shortened(value)} is no number: write a number in {unit}, or a text "

@@ -28,27 +28,7 @@ def names(folder: Path) -> tuple[str, ...]:
 
 
 def path(kind: str, name: str, folder: Path) -> Path:
-    """The path of a file in `folder` without its suffix, or of any file that ends in .toml.
-
-    Parameters
-    ----------
-    kind : str
-        ``scene`` or ``sweep``, for messages.
-    name : str
-        A name in the folder, or a path.
-    folder : Path
-        The folder of the files that ship.
-
-    Returns
-    -------
-    Path
-        The file need not exist if `name` is a path.
-
-    Raises
-    ------
-    InputError
-        When `name` is neither.
-    """
+    """The path of a shipped file by its name in `folder`, or of any file that ends in .toml."""
     known = names(folder)
     if name in known:
         return folder / f"{name}.toml"
@@ -62,27 +42,7 @@ def path(kind: str, name: str, folder: Path) -> Path:
 
 
 def read_table(path: Path, hint: str) -> dict[str, Any]:
-    """The table of a TOML file.
-
-    Parameters
-    ----------
-    path : Path
-        A file of at most `MAX_BYTES` bytes.
-    hint : str
-        Advice at the end of the message about a file that is not TOML.
-
-    Returns
-    -------
-    dict
-        Values by key.
-
-    Raises
-    ------
-    InputError
-        When it is not a file, is too large or is not TOML; the message begins with the path.
-    OSError
-        When the file cannot be read.
-    """
+    """The table of a TOML file; `hint` ends the message about a file that is not TOML."""
     if path.exists() and not path.is_file():
         raise InputError(f"{path} is no file")
     if path.stat().st_size > MAX_BYTES:
@@ -94,27 +54,7 @@ def read_table(path: Path, hint: str) -> dict[str, Any]:
 
 
 def read(path: Path, interpret: Callable[[Mapping[str, Any]], T]) -> T:
-    """Read a TOML file and interpret its table.
-
-    Parameters
-    ----------
-    path : Path
-        A TOML file.
-    interpret : callable
-        Takes the table; raises `ValueError` when it is invalid.
-
-    Returns
-    -------
-    object
-        The result of `interpret`.
-
-    Raises
-    ------
-    InputError
-        When the file does not exist or is invalid; the message begins with the path.
-    OSError
-        When the file cannot be read.
-    """
+    """Read a file and `interpret` its table; errors of both name the file."""
     try:
         table = read_table(path, QUANTITY_HINT)
         try:

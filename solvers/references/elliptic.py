@@ -67,18 +67,6 @@ def elliptic_integral(sine: float, cosine: float, complement: float) -> float:
     """F(φ, k) for |φ| ≤ π by its sine and cosine, with complement = 1 - k² in (0, 1].
 
     By Carlson's integral (NIST Digital Library of Mathematical Functions, 19.25.5).
-
-    Parameters
-    ----------
-    sine, cosine : float
-        Of φ.
-    complement : float
-        1 - k².
-
-    Returns
-    -------
-    float
-        With the sign of φ.
     """
     if cosine < 0:
         whole = np.copysign(2 * elliprf(0.0, complement, 1.0), sine)  # ±2K
@@ -87,23 +75,11 @@ def elliptic_integral(sine: float, cosine: float, complement: float) -> float:
 
 
 def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
-    """Jacobi's sn, cn, dn and am of real `u`, with complement = 1 - k² in (0, 1].
+    """Jacobi's sn, cn, dn and am of real `u`, with complement = 1 - k² in (0, 1], am unwrapped.
 
     By the arithmetic-geometric mean (NIST Digital Library of Mathematical Functions,
     22.20(ii)), after reduction of `u` to at most half a quarter period by 22.4(iii), so
     that cn and dn keep their digits where they are small.
-
-    Parameters
-    ----------
-    u : ndarray
-        Of any shape.
-    complement : float
-        1 - k².
-
-    Returns
-    -------
-    sn, cn, dn, am : ndarray
-        Of the shape of `u`; am in rad, not wrapped.
     """
     quarter = elliprf(0.0, complement, 1.0)  # K
     halves = np.round(u / (2 * quarter))

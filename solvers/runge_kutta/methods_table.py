@@ -10,13 +10,7 @@ from solvers.runge_kutta.tableau import Tableau
 
 
 def methods_table() -> str:
-    """All methods as a table in Markdown, explicit ones first, by order.
-
-    Returns
-    -------
-    str
-        Name, title, orders, stages and stability intervals of every method, a line each.
-    """
+    """All methods as a table in Markdown, explicit ones first, by order."""
     by_name = {name: load(name) for name in names()}
     ranked = sorted(by_name, key=lambda name: (not by_name[name].is_explicit, by_name[name].order))
     header = "| name | method | kind | order | embedded | stages | real axis | imaginary axis |"

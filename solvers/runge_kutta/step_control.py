@@ -35,42 +35,20 @@ class Controller:
     _previous: float = 1.0
 
     def norm(self, error: Array, y: Array, end: Array) -> float:
-        """Root mean square of the error relative to the tolerances.
+        """Root mean square of the error relative to the tolerances; at most 1 is accepted.
 
-        Two estimates a and b combine to a²/√(a² + b²/100) (E. Hairer, S. P. Nørsett,
-        G. Wanner, Solving Ordinary Differential Equations I, section II.10).
-
-        Parameters
-        ----------
-        error : ndarray of shape (state,) or (estimates, state)
-            Of the step, in the units of the state.
-        y, end : ndarray of shape (state,)
-            The states before and after it.
-
-        Returns
-        -------
-        float
-            A step is accepted if this is at most 1.
+        Two estimates a and b combine to a²/√(a² + b²/100) (E. Hairer, S. P. Nørsett, G. Wanner,
+        Solving Ordinary Differential Equations I, section II.10).
         """
         allowed = self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end))
         a, *others = (_rms(estimate, allowed) for estimate in np.atleast_2d(error))
         return a * a / hypot(a, others[0] / 10) if others and a else a
 
     def factor(self, norm: float) -> float:
-        """The factor of the step size after a step with this error norm.
+        """The factor of the step size after a step with this error norm, from `SHRINK` to `GROW`.
 
-        PI control (K. Gustafsson, ACM Transactions on Mathematical Software 17
-        (1991) 533-554) after an accepted step, the plain rule after a rejected one.
-
-        Parameters
-        ----------
-        norm : float
-            Result of `norm`.
-
-        Returns
-        -------
-        float
-            From `SHRINK` to `GROW`, and below 1 after a rejected step.
+        PI control (K. Gustafsson, ACM Transactions on Mathematical Software 17 (1991) 533-554)
+        after an accepted step, the plain rule after a rejected one.
         """
         k = self.order + 1
         if norm > 1:
@@ -83,24 +61,10 @@ class Controller:
     def initial_step(
         self, rhs: Rhs, t: float, y: Array, derivative: Array, duration: float
     ) -> float:
-        """The first step size, from the change of the derivative over a very short step.
+        """The first step size, positive, from the change of the derivative over a very short step.
 
         E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
         section II.4.
-
-        Parameters
-        ----------
-        rhs : callable
-            ``rhs(t, y)``.
-        t, y, derivative : float and ndarray
-            Time in s, state and its derivative at the start.
-        duration : float
-            Of the whole run in s, negative backwards.
-
-        Returns
-        -------
-        float
-            In s, positive in both directions.
         """
         allowed = self.atol + self.rtol * np.abs(y)
         d0, d1 = _rms(y, allowed), _rms(derivative, allowed)

@@ -57,25 +57,7 @@ class Stepper:
         self.nfev = self.njev = 0
 
     def derivative(self, t: float, y: Array) -> Array:
-        """The right-hand side, counted and checked.
-
-        Parameters
-        ----------
-        t : float
-            In s.
-        y : ndarray of shape (state,)
-            The state.
-
-        Returns
-        -------
-        ndarray of shape (state,)
-            In the units of the state per second.
-
-        Raises
-        ------
-        NotFiniteError
-            When an entry is NaN or infinite.
-        """
+        """The right-hand side, counted and checked to be finite."""
         self.nfev += 1
         if not np.isfinite(y).all():
             raise NotFiniteError(f"the state at t = {t} is {y}")

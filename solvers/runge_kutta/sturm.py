@@ -14,20 +14,10 @@ RESOLUTION = Fraction(1, 10**17)
 
 
 def nonnegative_interval(polynomial: Polynomial) -> float:
-    """The largest x such that `polynomial` ≥ 0 on [0, x]; infinity if it is for all x ≥ 0.
+    """The largest x such that `polynomial` ≥ 0 on [0, x], to `RESOLUTION`; or infinity.
 
     Sturm's theorem separates the roots, so that a double root is not taken for a change of sign
     (D. E. Knuth, The Art of Computer Programming, volume 2, exercise 4.6.2-22).
-
-    Parameters
-    ----------
-    polynomial : sequence of Fraction
-        Coefficients of x⁰, x¹, ….
-
-    Returns
-    -------
-    float
-        A root within `RESOLUTION`, or 0, or infinity.
     """
     p = list(polynomial)
     while p and p[-1] == 0:

@@ -49,25 +49,10 @@ class Library:
 
 
 def build(source: str, *, reproducible: bool = False) -> Library:
-    """The library of the C program `source`, from the cache or newly built.
+    """The library of a complete C99 program, from the cache or by the first of `compilers`.
 
-    Parameters
-    ----------
-    source : str
-        A complete C99 program text.
-    reproducible : bool
-        Whether products and sums must not be fused, so that every compiler gives the
-        same bits, at some cost of speed.
-
-    Returns
-    -------
-    Library
-        Built by the first of `compilers` that succeeds.
-
-    Raises
-    ------
-    NoCompilerError
-        When there is no compiler, or none succeeds.
+    Reproducible libraries fuse no products and sums: every compiler gives the same bits, at
+    some cost of speed.
     """
     flags = (*FLAGS, "-ffp-contract=off" if reproducible else "-ffp-contract=fast")
     folder, errors = cache_folder(), []

@@ -154,26 +154,11 @@ class Equations:
 def program(
     equations: Equations, tableau: Tableau, *, lanes: bool, compensated: bool, variations: int = 0
 ) -> str:
-    """The text of the program, with the functions ``run`` and, without lanes, ``single``.
+    """The text of the C99 program, with the functions ``run`` and, without lanes, ``single``.
 
-    Parameters
-    ----------
-    equations : Equations
-        The equations of motion.
-    tableau : Tableau
-        The method.
-    lanes : bool
-        Whether the processor's vectors integrate many motions at once; explicit methods only.
-    compensated : bool
-        Whether rounding errors of the state are carried along, as those of time are.
-    variations : int
-        Number of components at the end of the state that are a variation, out of which powers of
-        two are taken where it is large.
-
-    Returns
-    -------
-    str
-        C99, complete, for `solvers.integration.compiled.compiler.build`.
+    With lanes it integrates many motions at once, by explicit methods only. If `compensated`, it
+    carries the rounding errors of the state along. The last `variations` components of the state
+    are a variation, out of which powers of two are taken where it is large.
     """
     sines, rates = ([pair[part] for pair in equations.angles] or [0] for part in (0, 1))
     sizes = equations.sizes(tableau, compensated=compensated, variations=variations)

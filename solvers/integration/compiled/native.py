@@ -40,25 +40,7 @@ class NativeRhs:
 
 
 def equations(module: GeneratedModule, form: str) -> Equations:
-    """One form of a generated module in C.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    form : str
-        One of its forms.
-
-    Returns
-    -------
-    Equations
-        The header's text, and the names and sizes of this form.
-
-    Raises
-    ------
-    ValueError
-        When there is no header beside the module, or no such form.
-    """
+    """One form of a generated module in C."""
     path = header(module)
     if path is None:
         name = module.SYSTEM
