@@ -9,7 +9,19 @@ GREEK = (
 
 
 def symbol(name: str) -> str:
-    r"""A name such as ``theta1_dot`` in TeX between dollar signs, ``$\dot{\theta}_{1}$``."""
+    r"""A name in mathematical notation.
+
+    Parameters
+    ----------
+    name : str
+        Name of a coordinate, velocity or parameter: a letter and an index, with ``_dot`` after
+        them for a velocity.
+
+    Returns
+    -------
+    str
+        TeX between dollar signs: ``$\dot{\theta}_{1}$`` for ``theta1_dot``.
+    """
     return f"${_tex(name)}$"
 
 
