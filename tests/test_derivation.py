@@ -1,4 +1,4 @@
-"""Each step of a derivation against an independent witness."""
+"""Each step of a derivation against an independent calculation."""
 
 import pytest
 import sympy as sp
@@ -137,7 +137,7 @@ def test_small_motions_of_the_double_pendulum_have_the_textbook_frequencies(
     assert sp.simplify((K - 3 * g / l1 * M).det()) != 0
 
 
-def test_linearisation_knows_every_equilibrium_and_refuses_other_places(
+def test_linearisation_accepts_every_equilibrium_and_refuses_other_states(
     double: Derivation,
 ) -> None:
     upright = double.linearisation((0, sp.pi)).stiffness_matrix
@@ -258,7 +258,7 @@ def test_a_superfluous_coordinate_is_refused(position: tuple[sp.Expr, ...], mess
         Derivation(redundant)
 
 
-def test_three_dimensions_and_a_potential_of_ones_own() -> None:
+def test_three_dimensions_and_a_custom_potential() -> None:
     phi, theta = sp.symbols("phi theta", real=True)
     k, l = sp.symbols("k l", positive=True)  # noqa: E741
     spherical = system(
@@ -291,7 +291,7 @@ def test_without_a_known_equilibrium_there_is_no_linear_form() -> None:
         contents(Derivation(system(**(spring | {"equilibrium": (2,)}))))
 
 
-def test_small_motions_on_a_turntable_are_more_than_masses_and_springs() -> None:
+def test_small_motions_on_a_turntable_have_gyroscopic_forces() -> None:
     x, y, turn = sp.symbols("x y turn", real=True)
     c, s = sp.cos(turn * TIME), sp.sin(turn * TIME)
     table = Derivation(
@@ -310,7 +310,7 @@ def test_small_motions_on_a_turntable_are_more_than_masses_and_springs() -> None
         table.linearisation()
 
 
-def test_weight_that_is_forgotten_beside_another_potential_is_asked_for() -> None:
+def test_missing_gravity_beside_another_potential_is_an_error() -> None:
     with pytest.raises(SystemDefinitionError, match=r"'g' .* not used: .*gravity=\(0, -g\)"):
         system(potential=x**2)
     assert system(potential=x**2, gravity=(0, -g)).potential_energy.has(g)

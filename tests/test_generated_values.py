@@ -173,7 +173,7 @@ def test_jacobians_agree_with_complex_steps(module: ModuleType, name: str) -> No
         assert_allclose(jacobian(0.0, y, params), expected, rtol=1e-9, atol=1e-11 * scale)
 
 
-def test_variational_equations_carry_a_small_change_along(module: ModuleType) -> None:
+def test_variational_equations_propagate_a_small_change(module: ModuleType) -> None:
     n, generator = len(module.STATE), np.random.default_rng(4)
     for y, params in states(module):
         change = generator.normal(size=n)
@@ -230,7 +230,7 @@ def test_arrays_may_have_any_number_of_axes_and_numbers_beside_arrays(module: Mo
     assert module.mass_matrix_many(0.0, y, module.DEFAULTS).shape[2:] == (3, 2)
 
 
-def test_functions_take_lists_tuples_and_arrays_and_leave_them_alone(module: ModuleType) -> None:
+def test_functions_take_lists_tuples_and_arrays_and_do_not_modify_them(module: ModuleType) -> None:
     y = [0.3 * k + 0.1 for k in range(2 * len(module.COORDINATES))]
     array, params = np.array(y), np.array(module.DEFAULTS)
     assert module.rhs(0, y, module.DEFAULTS) == module.rhs(0, array, params)
@@ -249,13 +249,18 @@ def test_the_mass_matrix_is_symmetric_and_positive_definite(module: ModuleType) 
         assert np.linalg.eigvalsh(M / np.outer(scale, scale))[0] > 0
 
 
-def test_states_and_energies_convert_from_one_form_to_the_other(module: ModuleType) -> None:
+def test_the_hamiltonian_form_is_the_legendre_transform_of_the_lagrangian(
+    derivation: Derivation, module: ModuleType
+) -> None:
+    system = derivation.system
+    symbols = [[*system.q, *system.qdot], [*system.params]]
+    lagrangian = sp.lambdify(symbols, derivation.lagrangian, "math")
     for y, params in list(states(module))[:20]:
         canonical = module.hamiltonian_state(0.0, y, params)
         assert_allclose(module.lagrangian_state(0.0, canonical, params), y, rtol=1e-11)
         n = len(y) // 2
         M, p = np.array(module.mass_matrix(0.0, y, params)), np.array(canonical[n:])
-        legendre = p @ y[n:] - (p @ y[n:] / 2 - (module.energy(0.0, y, params) - p @ y[n:] / 2))
+        legendre = p @ y[n:] - lagrangian(y, params)
         assert_allclose(p, M @ y[n:], rtol=1e-12, atol=1e-12)
         scale = abs(p @ y[n:]) + abs(module.energy(0.0, y, params))
         assert abs(module.energy_hamiltonian(0.0, canonical, params) - legendre) < 1e-12 * scale
@@ -327,7 +332,7 @@ def operations(tree: ast.AST) -> int:
     )
 
 
-def test_docstrings_count_the_operations_that_the_text_has(module: ModuleType) -> None:
+def test_docstrings_state_the_operations_of_the_text(module: ModuleType) -> None:
     for name in formulas_names(module):
         function = getattr(module, name)
         stated = int(inspect.getdoc(function).split(" operations")[0].split()[-1])

@@ -18,7 +18,7 @@ FUNCTIONS = {"sin": math.sin, "cos": math.cos, "sqrt": math.sqrt, "exp": math.ex
 
 
 def evaluated(lowering: Lowering, values: dict[str, float]) -> list[float]:
-    """The outputs by plain recursion: no names, no text, no order of ours."""
+    """The outputs by plain recursion: no names, texts or order of the generator."""
 
     def value(number: int) -> float:
         operation = lowering.operations[number]
@@ -98,14 +98,14 @@ def test_differences_that_would_cancel_become_squares() -> None:
     assert 1 - math.cos(1e-9) ** 2 == 0
 
 
-def test_what_depends_on_parameters_alone_is_set_apart() -> None:
+def test_terms_of_parameters_alone_are_grouped() -> None:
     lowering = lowered(a * b * x / c + d * x, parameters=("a", "b", "c"))
     constant = [o for o in lowering.operations.values() if o.constant and o.cost()]
     assert sum(o.cost() for o in constant) == 3
     assert evaluated(lowering, {"a": 2, "b": 3, "c": 4, "d": 5, "x": 7})[0] == 45.5
 
 
-def test_unknown_functions_are_refused_with_what_is_known() -> None:
+def test_unknown_functions_are_refused_and_known_ones_listed() -> None:
     with pytest.raises(
         UnsupportedFunctionError, match=r"no generated code for 'gamma\(a\)'.*sin, cos"
     ):
@@ -137,7 +137,7 @@ def test_the_factorisation_solves_symmetric_systems(n: int) -> None:
     assert all(pivot > 0 for pivot in evaluated(Lowering(factorisation.pivots, ()), values))
 
 
-def test_common_lengths_are_taken_out_of_rows_and_columns() -> None:
+def test_common_lengths_of_rows_and_columns_are_factored_out() -> None:
     graph = Graph()
     l1, l2, m, cosine = (graph.leaf(name) for name in ("l1", "l2", "m", "cosine"))
     right = [graph.leaf("f1"), graph.leaf("f2")]
@@ -151,7 +151,7 @@ def leaves(nodes: list[Node]) -> set[str]:
     return {*Lowering(nodes, ()).inputs}
 
 
-def test_equal_terms_and_factors_under_names_of_their_own_are_brought_together() -> None:
+def test_equal_named_terms_and_factors_are_merged() -> None:
     graph = Graph()
     p, q = graph.leaf("p"), graph.leaf("q")
     named = graph.let(p + q)
@@ -162,8 +162,8 @@ def test_equal_terms_and_factors_under_names_of_their_own_are_brought_together()
         named * q / (p + q),  # q
         named / (p + q),  # 1
     ]
-    found = evaluated(Lowering(outputs, ()), {"p": 2.0, "q": 3.0})
-    assert found == [5.0, 0.0, 2.0, 3.0, 1.0]
+    results = evaluated(Lowering(outputs, ()), {"p": 2.0, "q": 3.0})
+    assert results == [5.0, 0.0, 2.0, 3.0, 1.0]
 
 
 @pytest.mark.parametrize("expression", [
@@ -174,6 +174,6 @@ def test_equal_terms_and_factors_under_names_of_their_own_are_brought_together()
 ])  # fmt: skip
 def test_a_sum_that_is_its_own_common_factor_keeps_all_its_powers(expression: sp.Expr) -> None:
     values = {"a": 1.3, "b": -0.7, "c": 2.1, "d": 0.4, "x": 1.9}
-    (found,) = evaluated(lowered(expression), values)
+    (result,) = evaluated(lowered(expression), values)
     exact = expression.subs({sp.Symbol(k, positive=True): v for k, v in values.items()})
-    assert found == pytest.approx(float(exact), rel=1e-13)
+    assert result == pytest.approx(float(exact), rel=1e-13)

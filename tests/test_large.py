@@ -59,7 +59,7 @@ def test_loops_solve_the_textbook_equations(chain: ModuleType) -> None:
         )
 
 
-def test_derivatives_and_hamilton_s_form_go_through_the_loops(chain: ModuleType) -> None:
+def test_derivatives_and_hamilton_s_form_use_the_loops(chain: ModuleType) -> None:
     y, params = state(5)
     steps = y[:, None] + 1e-30j * np.eye(2 * N)
     expected = chain.rhs_many(0.0, steps, params).imag / 1e-30
@@ -98,7 +98,7 @@ def test_texts_grow_no_faster_than_the_square() -> None:
     assert sizes[2 * LARGE] < 4 * sizes[LARGE]
 
 
-def test_a_textbook_s_chain_in_c_is_ours() -> None:
+def test_a_textbook_s_chain_in_c_gives_the_same_rates() -> None:
     for n in (5, LARGE):
         ours, theirs = calls.single(chain_in_c(n)[-1], n), calls.textbook(n)
         lanes = calls.lanes(chain_in_c(n, "_rational")[-1], n)

@@ -11,11 +11,11 @@ from derive.verification.report.judgement import EQUATIONS
 from derive.verification.verdict import Verdict
 
 
-def meant(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
+def values_by_name(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     """What each name on a left side stands for."""
     s = d.system
-    rates, pushes = d.hamilton_equations
-    pushed = (p.name.replace("p_", "pdot_", 1) for p in s.p)
+    rates, forces = d.hamilton_equations
+    force_names = (p.name.replace("p_", "pdot_", 1) for p in s.p)
     return {
         "K": d.kinetic_energy, "P": d.potential_energy, "L": d.lagrangian, "H": d.hamiltonian,
         "M": d.mass_matrix, "f": d.forcing,
@@ -23,34 +23,34 @@ def meant(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
         **{f"r{k}_dot": velocity for k, velocity in enumerate(d.velocities, 1)},
         **dict(zip((p.name for p in s.p), d.momenta, strict=True)),
         **dict(zip((q.name for q in s.qdot), rates, strict=True)),
-        **dict(zip(pushed, pushes, strict=True)),
+        **dict(zip(force_names, forces, strict=True)),
     }  # fmt: skip
 
 
 # three angles take SymPy half a minute, and show nothing more
 @pytest.mark.parametrize("name", [name for name in names() if not name.endswith("_3")])
-def test_every_formula_says_what_is_derived(name: str) -> None:
+def test_every_formula_is_the_derived_one(name: str) -> None:
     derivation = Derivation(load(name))
-    values = meant(derivation)
+    values = values_by_name(derivation)
     symbols = set().union(*(sp.Matrix([v]).free_symbols for v in values.values()))
     scope = {**FUNCTIONS, **{s.name: s for s in symbols | {*derivation.system.qddot}}}
-    said, residuals = set(), []
+    names_shown, residuals = set(), []
     for step in steps(derivation):
         for formula in step.formulas:
             left, right = formula.text.split(" = ")
             if left not in values:
                 residuals.append(left)
                 continue
-            said.add(left)
+            names_shown.add(left)
             apart = sp.Matrix([parse(right, scope)]) - sp.Matrix([values[left]])
             assert apart.expand().is_zero_matrix or sp.simplify(apart).is_zero_matrix, left
-    assert said == {*values}
+    assert names_shown == {*values}
     *equations, product = residuals
     assert [parse(e, scope) for e in equations] == list(derivation.euler_lagrange)
     assert product.startswith("M*[[")
 
 
-def test_every_step_stands_beside_lines_of_its_own(double: Derivation) -> None:
+def test_every_step_is_shown_with_its_own_lines(double: Derivation) -> None:
     def verified(name: str) -> Verdict:
         return Verdict(name, "verified", EQUATIONS[name].printed)
 

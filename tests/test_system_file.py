@@ -1,4 +1,4 @@
-"""Systems as TOML files: what they say, and what is refused, at once and without executing it."""
+"""Systems as TOML files: their content, and refusals of invalid ones without executing them."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -61,7 +61,7 @@ def written(folder: Path, text: str, name: str = "mine") -> Path:
     return path
 
 
-def test_a_file_and_python_say_the_same(tmp_path: Path) -> None:
+def test_a_file_and_python_define_the_same_system(tmp_path: Path) -> None:
     found = read_system(written(tmp_path, PENDULUM, "pendulum"))
     shipped = load("single_pendulum")
     assert found.name == "pendulum"
@@ -69,7 +69,7 @@ def test_a_file_and_python_say_the_same(tmp_path: Path) -> None:
     assert Derivation(found).euler_lagrange == Derivation(shipped).euler_lagrange
 
 
-def test_all_that_python_can_say_a_file_can(tmp_path: Path) -> None:
+def test_a_file_can_define_all_that_python_can(tmp_path: Path) -> None:
     text = """
     gravity = ["g*sin(alpha)", "-g*cos(alpha)"]
     potential = "k*(s - s0)**2/2"
@@ -112,7 +112,7 @@ def test_all_that_python_can_say_a_file_can(tmp_path: Path) -> None:
     assert sp.expand(derivation.forcing[0] - m * g * sp.sin(alpha) + k * (s - s0)) == 0
 
 
-def test_a_file_becomes_a_module_and_is_checked_like_the_rest(
+def test_a_file_becomes_a_module_that_is_checked(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = written(tmp_path, BEAD, "bead")
@@ -128,7 +128,7 @@ def test_a_file_becomes_a_module_and_is_checked_like_the_rest(
     assert f"holonomic derive {path} --output" in capsys.readouterr().out
 
 
-def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
+def test_a_scene_runs_a_system_file(tmp_path: Path) -> None:
     written(tmp_path, BEAD, "bead")
     text = 'system = "bead.toml"\nduration = 5\naccuracy = 1e-7\n[initial]\nx = "50 cm"\n'
     scene = find(str(written(tmp_path, text, "scene")), load_module)
@@ -176,7 +176,7 @@ def test_a_scene_runs_a_system_of_ones_own(tmp_path: Path) -> None:
     (("[coordinates]", "[definitions.x]"), "is missing|must be"),
     (("title", 'name = "my-bead"\ntitle'), "cannot be the name of a system"),
 ])  # fmt: skip
-def test_what_is_no_system_is_refused_at_once(
+def test_an_invalid_system_is_refused(
     change: tuple[str, str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -189,7 +189,7 @@ def test_what_is_no_system_is_refused_at_once(
     assert [p.name for p in tmp_path.iterdir()] == ["mine.toml"]
 
 
-def test_friction_leaves_rest_and_the_full_equations_only(tmp_path: Path) -> None:
+def test_with_friction_only_equilibrium_and_full_equations_apply(tmp_path: Path) -> None:
     text = PENDULUM.replace("[coordinates]", 'dissipation = "theta_dot**2/20"\n[coordinates]', 1)
     written(tmp_path, text, "damped")
     scene = 'system = "damped.toml"\nduration = 20\naccuracy = 1e-7\ninitial = { theta = 1 }\n'
@@ -201,7 +201,7 @@ def test_friction_leaves_rest_and_the_full_equations_only(tmp_path: Path) -> Non
     assert abs(energy_errors(found)).max() < 1e-5  # with what friction took given back
 
 
-def test_deeply_nested_definitions_are_derived_as_they_are(tmp_path: Path) -> None:
+def test_deeply_nested_definitions_are_not_expanded(tmp_path: Path) -> None:
     nested = "d0 = 'theta'\n" + "".join(f"d{k} = 'd{k - 1} + sin(d{k - 1})'\n" for k in range(1, 9))
     text = PENDULUM.replace("[[masses]]", f"[definitions]\n{nested}[[masses]]")
     text = text.replace('["l*sin(theta)", "-l*cos(theta)"]', '["l*d8", "l*d8**2"]')
@@ -210,7 +210,7 @@ def test_deeply_nested_definitions_are_derived_as_they_are(tmp_path: Path) -> No
     assert perf_counter() - begun < 30
 
 
-def test_what_has_no_generated_code_ends_every_command_alike(
+def test_every_command_reports_functions_without_generated_code(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     written(tmp_path, BEAD.replace('"m*g*height"', '"m*g*height**(5/4)"'), "odd")
@@ -221,7 +221,7 @@ def test_what_has_no_generated_code_ends_every_command_alike(
     assert "no generated code for" in capsys.readouterr().err
 
 
-def test_files_that_are_too_large_or_not_there_are_refused(
+def test_large_and_missing_files_are_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = written(tmp_path, "# " + "x" * 600_000)
@@ -231,7 +231,7 @@ def test_files_that_are_too_large_or_not_there_are_refused(
     assert "none.toml cannot be read: No such file" in capsys.readouterr().err
 
 
-def test_forces_drives_and_reactions_are_refused_where_they_make_no_sense() -> None:
+def test_inconsistent_forces_drives_and_reactions_are_refused() -> None:
     x, y, F = sp.symbols("x y F", real=True)
     m = sp.Symbol("m", positive=True)
 
@@ -263,14 +263,14 @@ def test_forces_drives_and_reactions_are_refused_where_they_make_no_sense() -> N
     (('unit = "kg"', "unit = 'kg\\'"), "the unit of m"),
     (('unit = "kg"', 'unit = "k\\ng"'), "the unit of m"),
 ])  # fmt: skip
-def test_words_cannot_become_code(change: tuple[str, str], words: str, tmp_path: Path) -> None:
+def test_text_is_never_executed(change: tuple[str, str], words: str, tmp_path: Path) -> None:
     text = BEAD.replace(*change)
     assert text != BEAD
     with pytest.raises(SystemDefinitionError, match=f"{words}.*must be one line without"):
         read_system(written(tmp_path, text))
 
 
-def test_what_a_file_says_of_signs_is_part_of_its_module(tmp_path: Path) -> None:
+def test_signs_of_symbols_are_part_of_the_module_s_identity(tmp_path: Path) -> None:
     # two systems that print alike: roots of squares may be drawn where a sign is known
     text = PENDULUM.replace('unit = "m"', 'unit = "m", positive = false')
     modules = [load_module(str(written(tmp_path, t, "one"))) for t in (PENDULUM, text, PENDULUM)]
@@ -278,7 +278,7 @@ def test_what_a_file_says_of_signs_is_part_of_its_module(tmp_path: Path) -> None
     assert modules[0].POSITIVE != modules[1].POSITIVE
 
 
-def test_decimals_are_the_fractions_that_their_digits_say() -> None:
+def test_decimals_are_exact_fractions() -> None:
     x, m = sp.symbols("x m", positive=True)
     found = System(
         name="thing", title="", coordinates=[Coordinate(x, "m", "")],
@@ -290,7 +290,7 @@ def test_decimals_are_the_fractions_that_their_digits_say() -> None:
     assert Derivation(found).mass_matrix[0] == m / 100
 
 
-def test_a_thread_that_is_short_is_looked_at_within_its_reach(tmp_path: Path) -> None:
+def test_independence_is_checked_within_the_reach_of_a_short_thread(tmp_path: Path) -> None:
     # at |x| > l the bead's height would be complex, and nothing could be told of its inertia
     text = PENDULUM.replace("theta", "x").replace(
         '["l*sin(x)", "-l*cos(x)"]', '["x", "-sqrt(l**2 - x**2)"]'

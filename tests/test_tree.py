@@ -1,4 +1,4 @@
-"""Generated files: the same bytes everywhere, checked, and never half-written."""
+"""Generated files: the same bytes everywhere, checked, and complete at all times."""
 
 import os
 import shutil
@@ -54,14 +54,14 @@ def test_the_committed_files_are_what_the_generator_writes() -> None:
     assert run.stdout.startswith("28 files in ")
 
 
-def test_files_name_no_place_version_or_time() -> None:
+def test_files_contain_no_path_version_or_date() -> None:
     for path in (ROOT / "generated").glob("*.py"):
         text = path.read_text()
         for foreign in (str(ROOT), os.uname().nodename, "1.14", "202"):
             assert foreign not in text
 
 
-def test_one_changed_character_is_found_shown_and_mended(
+def test_a_changed_character_is_detected_shown_and_restored(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = folder / "double_pendulum.py"
@@ -76,7 +76,7 @@ def test_one_changed_character_is_found_shown_and_mended(
     assert checked(folder, monkeypatch) == 0
 
 
-def test_a_missing_file_is_found(
+def test_a_missing_file_is_detected(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "single_pendulum.py").unlink()
@@ -87,7 +87,7 @@ def test_a_missing_file_is_found(
     assert checked(folder, monkeypatch, "double_pendulum") == 0
 
 
-def test_an_orphan_is_found_and_left_alone(
+def test_an_orphan_is_reported_and_not_removed(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "triple_pendulum.py").write_text("")
@@ -123,7 +123,7 @@ def test_a_folder_that_cannot_be_written_to_is_named(
     assert "--output" in shown
 
 
-def test_what_is_up_to_date_is_not_written_again(tmp_path: Path) -> None:
+def test_current_files_are_not_written_again(tmp_path: Path) -> None:
     tree = Tree(tmp_path, {"a.py": "a\n", "b.py": "b\n"}, complete=True)
     assert [path.name for path in tree.write()] == ["a.py", "b.py"]
     (tmp_path / "b.py").write_text("c\n")
@@ -146,7 +146,7 @@ def test_a_failed_write_leaves_the_old_files_and_nothing_else(
     assert (tmp_path / "a.py").read_text() == "old\n"
 
 
-def test_the_next_run_removes_what_a_killed_one_left_and_spares_a_living_one(
+def test_the_next_run_removes_files_of_a_killed_run_but_not_of_an_active_one(
     tmp_path: Path,
 ) -> None:
     sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
@@ -162,7 +162,7 @@ def test_the_next_run_removes_what_a_killed_one_left_and_spares_a_living_one(
     assert not temporary.exists()
 
 
-def test_killing_it_at_any_moment_leaves_whole_files(tmp_path: Path) -> None:
+def test_a_kill_at_any_moment_leaves_complete_files(tmp_path: Path) -> None:
     old = {f"m{k}.py": "old\n" * 20_000 for k in range(8)}
     code = (
         "import sys; from pathlib import Path; from derive.codegen.tree import Tree\n"

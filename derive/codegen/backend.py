@@ -18,7 +18,7 @@ RESERVED = ("t", "y", "state", "params", "result")
 
 
 class Backend(Notation, ABC):
-    """What a target language adds to the notation of expressions.
+    """The statements and files of a target language.
 
     A file in the folder ``derive/codegen/backends`` defines a subclass and ``backend``, its
     instance; nothing is registered.

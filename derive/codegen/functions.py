@@ -1,4 +1,4 @@
-"""The functions of generated modules: what each takes, returns, and when it exists."""
+"""The functions of generated modules: arguments, results, and when they exist."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ class Function:
 
 @dataclass(frozen=True)
 class Contents:
-    """What the generated files of a system contain, in any language.
+    """The contents of the generated files of a system, in any language.
 
     Attributes
     ----------

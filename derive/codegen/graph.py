@@ -102,12 +102,12 @@ class Graph:
         return self._scale(self._monomial(powers), coefficient)
 
     def _monomial(self, powers: Mapping[Node, int]) -> Node:
-        kept = sorted(((n, p) for n, p in powers.items() if p), key=lambda item: item[0].rank)
-        if not kept:
+        nonzero = sorted(((n, p) for n, p in powers.items() if p), key=lambda item: item[0].rank)
+        if not nonzero:
             return self.node(1)
-        if len(kept) == 1 and kept[0][1] == 1:
-            return kept[0][0]
-        return self._intern(Product, tuple(kept))
+        if len(nonzero) == 1 and nonzero[0][1] == 1:
+            return nonzero[0][0]
+        return self._intern(Product, tuple(nonzero))
 
     def _scale(self, node: Node, coefficient: Fraction) -> Node:
         if isinstance(node, Constant):
@@ -124,15 +124,15 @@ class Graph:
             coefficient, rest = node.scaled()
             key = one if rest is None else rest
             collected[key] = collected.get(key, Fraction(0)) + coefficient * number
-        kept = {node: c for node, c in collected.items() if c}
-        if len(kept) > 1:
-            kept = self._pythagoras(kept)
-        if not kept:
+        nonzero = {node: c for node, c in collected.items() if c}
+        if len(nonzero) > 1:
+            nonzero = self._pythagoras(nonzero)
+        if not nonzero:
             return self.node(0)
-        if len(kept) == 1:
-            ((node, coefficient),) = kept.items()
+        if len(nonzero) == 1:
+            ((node, coefficient),) = nonzero.items()
             return self._scale(node, coefficient)
-        return self._primitive(kept)
+        return self._primitive(nonzero)
 
     def spread(self, node: Node, number: Fraction) -> Node:
         """`number` times `node`, multiplied into every term of a sum."""

@@ -40,7 +40,7 @@ class Linearisation:
 
 @dataclass(frozen=True)
 class Energies:
-    """What small oscillations depend on.
+    """The mass matrix, potential and momenta that determine small oscillations.
 
     Attributes
     ----------

@@ -192,11 +192,11 @@ class System:
                 f"positions of system {self.name!r} have {counts} components: give all two "
                 "(x, up) or all three (x, y, up)"
             )
-        for field, wanted in (("gravity", self.dimension), ("forces", len(self.q))):
+        for field, count in (("gravity", self.dimension), ("forces", len(self.q))):
             given = getattr(self, field) or ()
-            if len(given) not in (0, wanted):
+            if len(given) not in (0, count):
                 raise SystemDefinitionError(
-                    f"{field} of system {self.name!r} has {len(given)} components: give {wanted}"
+                    f"{field} of system {self.name!r} has {len(given)} components: give {count}"
                 )
 
     def _expressions(self) -> Iterator[tuple[str, sp.Basic, set[sp.Symbol]]]:

@@ -28,9 +28,9 @@ class Table:
     Parameters
     ----------
     name : str
-        What messages call it.
+        Its name in messages.
     values : object
-        What was read; a mapping, if it is right.
+        Values as read; a mapping if the file is valid.
     known : collection of str
         Keys that it may have.
 

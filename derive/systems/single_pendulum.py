@@ -24,7 +24,7 @@ system = System(
 )
 
 PUBLISHED = r'''
-source = "L. D. Landau, E. M. Lifshitz, Mechanics, § 11, problem 1, and what follows from it"
+source = "L. D. Landau, E. M. Lifshitz, Mechanics, § 11, problem 1"
 energy = "m*l**2*theta_dot**2/2 - m*g*l*cos(theta)"
 euler_lagrange = ["theta_ddot + g/l*sin(theta) = 0"]
 hamiltonian = "p_theta**2/(2*m*l**2) - m*g*l*cos(theta)"

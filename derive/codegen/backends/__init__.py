@@ -1,1 +1,1 @@
-"""Target languages, one file each; a file defines `backend` and is found by its place here."""
+"""Target languages, one file each, found by their files; each file defines `backend`."""
