@@ -321,6 +321,15 @@ def test_a_scene_can_name_model_method_and_step() -> None:
         selected(absent)
 
 
+def test_a_step_fixes_the_steps_of_methods_that_could_control_them() -> None:
+    scene = replace(find("report", load_module), method="dop853", step=0.05)
+    run = selected(scene).model.run
+    assert (run.setting_name, run.setting) == ("h", 0.05)
+    times, _ = run.integrate(None)
+    assert len(times) == 101
+    assert np.diff(times) == pytest.approx(0.05)
+
+
 @pytest.mark.parametrize(("offset", "periods", "requested"), [
     # a spring that bounces for whole periods, as many as there are samples or half as many; and
     # one whose bouncing makes it swing, of which the swing alone is requested

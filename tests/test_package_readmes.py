@@ -15,6 +15,10 @@ from derive.verification.hand.reading import EQUATIONS, HEADER
 from derive.verification.verdict import Verdict, VerdictName
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
+from solvers.scenes import reading as scenes
+from solvers.scenes.models import catalogue
+from solvers.scenes.run import run_scene
+from solvers.scenes.shipped import find as find_scene
 from solvers.sweeps import map_kinds, reading
 from solvers.sweeps.job import status_table
 from solvers.sweeps.run import sweep
@@ -59,6 +63,7 @@ def test_every_link_exists(path: Path) -> None:
 
 DERIVE = ROOT / "derive" / "README.md"
 VERIFICATION = ROOT / "derive" / "verification" / "README.md"
+SCENES = ROOT / "solvers" / "scenes" / "README.md"
 SWEEPS = ROOT / "solvers" / "sweeps" / "README.md"
 
 
@@ -66,6 +71,7 @@ SWEEPS = ROOT / "solvers" / "sweeps" / "README.md"
     ("path", "marker", "table"),
     [
         (DERIVE, "systems", systems.markdown_table),
+        (SCENES, "models", catalogue.markdown_table),
         (SWEEPS, "map kinds", map_kinds.markdown_table),
         (SWEEPS, "statuses of motions", status_table),
     ],
@@ -118,13 +124,37 @@ def test_the_keys_fields_and_verdicts_of_the_readme_are_those_of_the_code() -> N
     assert first_column(VERIFICATION, "verdict") == [*get_args(VerdictName)]
 
 
+def listed_keys(path: Path) -> list[str]:
+    """Keys in the first column of the table of keys."""
+    table = path.read_text(encoding="utf-8").partition("| key | meaning | default |")[2]
+    rows = table.partition("\n\n")[0].split("\n")[2:]
+    return re.findall(r"`\[*([a-z_]+)", " ".join(row.split("|")[1] for row in rows))
+
+
+def test_the_keys_and_models_of_scenes_in_the_readme_are_those_of_the_code() -> None:
+    assert sorted(listed_keys(SCENES)) == sorted(scenes.KEYS)
+    text = SCENES.read_text(encoding="utf-8").partition("| scene | model |\n|---|---|\n")[2]
+    rows = re.findall(r"^\| (.*) \| (.*) \|$", text.partition("\n\n")[0], re.MULTILINE)
+    assert {model for _, model in rows} == {m.name for m in catalogue.load().values()}
+    for names, model in rows:
+        for name in re.findall(r"`(\w+)`", names):
+            assert run_scene(find_scene(name, load_module)).selection.model.name == model, name
+
+
+def test_the_scene_file_of_the_readme_runs(tmp_path: Path) -> None:
+    (file,) = blocks(SCENES, "toml")
+    (tmp_path / "my_scene.toml").write_text(file)
+    scene = find_scene(str(tmp_path / "my_scene.toml"), load_module)
+    assert run_scene(scene).is_met
+    euler, moved = scene.beside
+    assert not run_scene(euler).is_met
+    assert (euler.label, moved.label) == ("rk1, step = 10 ms", "1e-3 rad further")
+    assert moved.y0[0] - scene.y0[0] == pytest.approx(1e-3)
+
+
 def test_the_keys_and_sweeps_of_the_readme_are_those_of_the_code() -> None:
     text = SWEEPS.read_text(encoding="utf-8")
-    keys = text.partition("| key | meaning | default |")[2].partition("\n\n")[0]
-    listed = re.findall(
-        r"`\[?([a-z_]+)", " ".join(row.split("|")[1] for row in keys.split("\n")[2:])
-    )
-    assert sorted(listed) == sorted(reading.KEYS)
+    assert sorted(listed_keys(SWEEPS)) == sorted(reading.KEYS)
     shipped = text.partition("sweeps ship: ")[2].partition(". Their")[0]
     assert {*re.findall(r"`(\w+)`", shipped)} == {*reading.names()}
 

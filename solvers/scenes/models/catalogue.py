@@ -29,7 +29,7 @@ def closed_forms() -> dict[str, type[ClosedForm]]:
     return {name: model for name, model in load().items() if issubclass(model, ClosedForm)}
 
 
-def table() -> str:
+def markdown_table() -> str:
     """All models as a Markdown table, in ascending order of complexity."""
     rows = [
         f'| `"{key}"` | {model.applies_to} | {model.error_source} |'
