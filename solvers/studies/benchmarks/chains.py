@@ -106,21 +106,21 @@ def _call(row: Mapping[str, float]) -> tuple[float, ...]:
     return row["n"], 1e9 * one, row["textbook"] / one, 1e9 * many, row["heyoka"] / many
 
 
-def summary(found: Mapping[str, Any]) -> Iterator[str]:
+def summary(results: Mapping[str, Any]) -> Iterator[str]:
     """The figures as tables."""
     yield "Chains of n pendulums, derived and emitted; SymPy's LagrangesMethod and lambdify:"
     rows = [
         (row["n"], row["holonomic"], row["sympy"], row["sympy"] / row["holonomic"])
-        for row in found["derived and emitted"]
+        for row in results["derived and emitted"]
     ]
     columns = {"n": "d", "holonomic/s": ".2f", "SymPy/s": ".1f", "ratio": ".0f"}
     yield from text_table(columns, rows)
     yield "Their right-hand sides in C: one state, relative to a textbook; many, to heyoka:"
     columns = {"n": "d", "one/ns": ".0f", "textbook": ".2f", "lanes/ns": ".1f", "heyoka": ".1f"}
-    yield from text_table(columns, map(_call, found["right-hand sides"]))
-    times = found["integrated"]
+    yield from text_table(columns, map(_call, results["right-hand sides"]))
+    times = results["integrated"]
     yield (
         f"A chain of {LENGTH} over {END:g} s, to {ERROR:g}: {times['holonomic'] * 1e3:.2f} ms; "
         f"heyoka takes {times['heyoka'] / times['holonomic']:.1f} times as long"
     )
-    yield from growth.summary(found["growth"], found["exponents"])
+    yield from growth.summary(results["growth"], results["exponents"])

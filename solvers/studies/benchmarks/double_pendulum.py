@@ -47,16 +47,16 @@ def _time_at(curve: list[tuple[float, float]], error: float) -> float:
     return work_at(error, [point[1] for point in curve], [point[0] for point in curve])
 
 
-def summary(found: Mapping[str, Any]) -> Iterator[str]:
+def summary(results: Mapping[str, Any]) -> Iterator[str]:
     """The figures as tables."""
-    yield f"{found['machine']}; heyoka {found['peers']['heyoka']}"
+    yield f"{results['machine']}; heyoka {results['peers']['heyoka']}"
     yield ""
     for title, part in (
         ("One motion: the report's scene, 5 s", "one motion"),
         (f"{MOTIONS} motions from rest, 5 s: one of them, on one core", "many motions"),
     ):
         yield f"{title}. Times relative to holonomic, at equal global error:"
-        rows = found[part]
+        rows = results[part]
         names = dict.fromkeys(name for row in rows for name in row["ratios"])
         columns = {"error": ".0e", "time/us": ".1f", "method": ""} | dict.fromkeys(names, ".3g")
         cells = (
@@ -70,15 +70,15 @@ def summary(found: Mapping[str, Any]) -> Iterator[str]:
         )
         yield from text_table(columns, cells)
         yield ""
-    call = found["right-hand side in Python"]
+    call = results["right-hand side in Python"]
     yield (
         f"Right-hand side in Python, one state: {call['holonomic'] * 1e6:.2f} us; "
         f"lambdify with NumPy takes {call['lambdify'] / call['holonomic']:.1f} times as long."
     )
-    speeds = dict(found["operations a second"])
+    speeds = dict(results["operations a second"])
     peak = speeds.pop("peak")
     yield f"Multiply-add peak of one core: {peak / 1e9:.0f}e9 operations per second."
     yield from (f"  {name}: {rate / 1e9:.0f}e9, {rate / peak:.0%}" for name, rate in speeds.items())
     yield "Preparation, once for each system and method, not included above:"
-    yield from (f"  {name}: {time:.2f} s" for name, time in found["preparation"].items())
+    yield from (f"  {name}: {time:.2f} s" for name, time in results["preparation"].items())
     yield ""

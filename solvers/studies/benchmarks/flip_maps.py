@@ -124,9 +124,9 @@ def _median_seconds(run: Callable[[], object]) -> float:
     return first if first > LONG else float(np.median([seconds(run) for _ in range(5)]))
 
 
-def summary(found: dict[str, Any]) -> Iterator[str]:
+def summary(results: dict[str, Any]) -> Iterator[str]:
     """The figures as tables."""
-    compared, times = found["compared"], found["compared"]["seconds"]
+    compared, times = results["compared"], results["compared"]["seconds"]
     yield (
         f"Flip map, {SIDE} x {SIDE}, {END:g} s, {compared['motions']:,} motions; "
         f"{1 - FRACTION:.0%} of the times to {ERROR:g} s, on one core:"
@@ -145,4 +145,4 @@ def summary(found: dict[str, Any]) -> Iterator[str]:
     yield "Sweeps from random starts, on both cores, and their overhead over the ensemble alone:"
     columns = {"motions": ",", "time/s": ".2f", "overhead": "+.1%"}
     shown = itemgetter("motions", "seconds", "overhead")
-    yield from text_table(columns, map(shown, found["sweeps"]))
+    yield from text_table(columns, map(shown, results["sweeps"]))

@@ -98,11 +98,11 @@ def pipelines(
     return [_measured(name, *prepared()) for name, prepared in programs.items()]
 
 
-def summary(found: list[Pipeline]) -> Iterator[str]:
+def summary(results: list[Pipeline]) -> Iterator[str]:
     """The pipelines as a table."""
     yield f"From positions to 5 s of motion, error below {ERROR:g}; seconds:"
     columns = {"": "", "derivation": ".2f", "preparation": ".2f", "run": ".2g", "ratio": ",.1f"}
-    rows = ((p.name, p.derivation, p.preparation, p.run, p.run / found[0].run) for p in found)
+    rows = ((p.name, p.derivation, p.preparation, p.run, p.run / results[0].run) for p in results)
     yield from text_table(columns, rows)
 
 
@@ -143,11 +143,11 @@ def _heyoka(hy: Any, module: GeneratedModule) -> Prepared:
 
 def _jitcode(package: Any, module: GeneratedModule, mechanics: Mechanics) -> Prepared:
     start = time.perf_counter()
-    found = mechanics(2)
+    system = mechanics(2)
     derived = time.perf_counter()
-    state = {s: package.y(k) for k, s in enumerate((*found.coordinates, *found.speeds))}
-    values = dict(zip(found.constants, module.DEFAULTS, strict=True))
-    field = [rate.subs({**state, **values}) for rate in found.rates]
+    state = {s: package.y(k) for k, s in enumerate((*system.coordinates, *system.speeds))}
+    values = dict(zip(system.constants, module.DEFAULTS, strict=True))
+    field = [rate.subs({**state, **values}) for rate in system.rates]
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         ode = package.jitcode(field, verbose=False)
         ode.set_integrator("dop853")  # compiles
@@ -174,10 +174,10 @@ def _scipy(module: GeneratedModule, chain: Chain) -> Prepared:
 def _pydy(_: GeneratedModule, module: GeneratedModule, mechanics: Mechanics) -> Prepared:
     generators: Any = import_module("pydy.codegen.ode_function_generators")
     start = time.perf_counter()
-    found = mechanics(2)
+    system = mechanics(2)
     derived = time.perf_counter()
-    arguments = found.forcing, list(found.coordinates), list(found.speeds)
-    options = {"constants": list(found.constants), "mass_matrix": found.mass_matrix}
+    arguments = system.forcing, list(system.coordinates), list(system.speeds)
+    options = {"constants": list(system.constants), "mass_matrix": system.mass_matrix}
     field = generators.generate_ode_function(*arguments, **options, generator="cython")
     preparation, params = time.perf_counter() - derived, np.array(module.DEFAULTS)
 

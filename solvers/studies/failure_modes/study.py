@@ -48,5 +48,5 @@ def studies(*, small: bool = False) -> list[Study[Any]]:
     """All studies in alphabetical order, with full or with small settings."""
     for module in iter_modules(failure_modes.__path__):
         import_module(f"{failure_modes.__name__}.{module.name}")
-    found = [kind.small() if small else kind() for kind in Study.__subclasses__()]
-    return sorted(found, key=lambda study: study.name)
+    result = [kind.small() if small else kind() for kind in Study.__subclasses__()]
+    return sorted(result, key=lambda study: study.name)

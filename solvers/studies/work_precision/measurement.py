@@ -89,8 +89,8 @@ def _points(scene: Scene, reference: Reference, combination: Combination) -> Ite
         if run is None:
             continue
         costs = run.work_seconds, run.work_rhs
-        if found := point(scene, reference, setting, *costs, run.end):
-            yield found
+        if new := point(scene, reference, setting, *costs, run.end):
+            yield new
         if run.work_seconds > _longest(combination) / 2:
             return
 

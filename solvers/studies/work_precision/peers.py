@@ -75,8 +75,8 @@ def _points(
         seconds = median_seconds(ready)
         # angles are known up to whole turns: those next to the reference are taken
         end = form.to_ordinary(0.0, state, reference.end, 0.0)
-        if found := point(scene, reference, {key: setting}, seconds, calls, end):
-            yield found
+        if new := point(scene, reference, {key: setting}, seconds, calls, end):
+            yield new
         if seconds > LONGEST["compiled"] / 2:
             return
 
