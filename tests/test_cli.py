@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 import warnings
-from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -140,23 +139,6 @@ def test_verify_prints_a_table_that_fits_the_terminal(
     assert all(len(line) <= 80 for line in lines if " " in line.strip()[:40])
     assert f"equations: {counted(verdicts['equations'])}" in lines
     assert sum(line.startswith("eq") for line in lines) >= 128
-
-
-def test_readme_states_the_verdicts_as_they_are(
-    verdicts: dict[str, list[dict[str, str]]],
-) -> None:
-    text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    equations, claims = (
-        Counter(row["verdict"] for row in verdicts[name]) for name in ("equations", "claims")
-    )
-    stopped = sum(bool(program["stops"]) for program in verdicts["programs"])
-    assert f"{equations['verified']} hold, {equations['misprint']} are misprints" in text
-    assert f"{equations['definition']} are definitions and {equations['context']} concern" in text
-    assert f"three programs {stopped} would not run" in text
-    assert (
-        f"{claims.total()} objectives, claims and recommendations {claims['supported']} hold, "
-        f"{claims['contradicted']} do not, and {claims['untestable']} cannot"
-    ) in text
 
 
 def test_the_readme_of_verification_states_the_numbers_of_verdicts(
