@@ -28,10 +28,22 @@ def compiled(source: str, folder: Path, *options: str, compiler: str = "cc") -> 
     (folder / f"source{suffix}").write_text(source)
     library = folder / "library.so"
     subprocess.run(
-        [compiler, *STRICT, *options, "-fPIC", "-shared", f"-I{GENERATED}", "-o", library,
-         folder / f"source{suffix}", "-lm"],
-        check=True, capture_output=True, text=True,
-    )  # fmt: skip
+        [
+            compiler,
+            *STRICT,
+            *options,
+            "-fPIC",
+            "-shared",
+            f"-I{GENERATED}",
+            "-o",
+            library,
+            folder / f"source{suffix}",
+            "-lm",
+        ],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
     return library
 
 

@@ -147,9 +147,13 @@ def test_motions_and_reactions_satisfy_d_alembert_s_principle(
 
 
 def turned(
-    module: ModuleType, function: str, t: float, y: list[float], rates: np.ndarray,
+    module: ModuleType,
+    function: str,
+    t: float,
+    y: list[float],
+    rates: np.ndarray,
     params: list[float],
-) -> np.ndarray:  # fmt: skip
+) -> np.ndarray:
     """The rate of a function of time and state along `rates`, by a complex step."""
     moved = np.array(y) + 1e-30j * np.array(rates)
     results = getattr(module, f"{function}_many")(t + 1e-30j, moved, params)
@@ -237,8 +241,11 @@ def test_arrays_give_what_single_states_give(module: ModuleType) -> None:
                 state = form.from_ordinary(t, np.resize(y, len(form.ordinary))).tolist()
             given = {"t": t, "y": state, "params": params}
             alone = np.array(one(*(given[key] for key in takes)))
-            given = {"t": np.full(3, t), "y": np.tile(np.array(state)[:, None], 3),
-                     "params": np.tile(np.array(params).reshape(-1, 1), 3)}  # fmt: skip
+            given = {
+                "t": np.full(3, t),
+                "y": np.tile(np.array(state)[:, None], 3),
+                "params": np.tile(np.array(params).reshape(-1, 1), 3),
+            }
             together = many(*(given[key] for key in takes))
             if "y" not in takes and not params:
                 continue  # nothing has more than one value

@@ -153,11 +153,20 @@ def test_linearisation_accepts_every_equilibrium_and_refuses_other_states(
 
 def test_every_step_prints_as_latex(double: Derivation) -> None:
     steps = (
-        *double.velocities, double.kinetic_energy, double.potential_energy, double.lagrangian,
-        double.momenta, double.euler_lagrange, double.mass_matrix, double.forcing,
-        double.accelerations, double.hamiltonian, *double.hamilton_equations, double.energy,
+        *double.velocities,
+        double.kinetic_energy,
+        double.potential_energy,
+        double.lagrangian,
+        double.momenta,
+        double.euler_lagrange,
+        double.mass_matrix,
+        double.forcing,
+        double.accelerations,
+        double.hamiltonian,
+        *double.hamilton_equations,
+        double.energy,
         double.linearisation().stiffness_matrix,
-    )  # fmt: skip
+    )
     assert all(step._repr_latex_().startswith("$") for step in steps)
     assert r"\dot{\theta}_{1}" in double.kinetic_energy._repr_latex_()
     assert r"\ddot{\theta}_{2}" in double.euler_lagrange._repr_latex_()
@@ -263,12 +272,23 @@ def test_three_dimensions_and_a_custom_potential() -> None:
     k, l = sp.symbols("k l", positive=True)  # noqa: E741
     spherical = system(
         coordinates=[Coordinate(theta, "rad", ""), Coordinate(phi, "rad", "")],
-        parameters=[Parameter(mass, "kg", 1.0, ""), Parameter(l, "m", 1.0, ""),
-                    Parameter(k, "J", 1.0, "")],
-        masses=[PointMass(mass, (l * sp.sin(theta) * sp.cos(phi), l * sp.sin(theta) * sp.sin(phi),
-                                 -l * sp.cos(theta)))],
+        parameters=[
+            Parameter(mass, "kg", 1.0, ""),
+            Parameter(l, "m", 1.0, ""),
+            Parameter(k, "J", 1.0, ""),
+        ],
+        masses=[
+            PointMass(
+                mass,
+                (
+                    l * sp.sin(theta) * sp.cos(phi),
+                    l * sp.sin(theta) * sp.sin(phi),
+                    -l * sp.cos(theta),
+                ),
+            )
+        ],
         potential=k * theta**2,
-    )  # fmt: skip
+    )
     derivation = Derivation(spherical)
     assert derivation.mass_matrix == sp.diag(mass * l**2, mass * l**2 * sp.sin(theta) ** 2)
     assert derivation.potential_energy == k * theta**2
@@ -276,9 +296,11 @@ def test_three_dimensions_and_a_custom_potential() -> None:
 
 def test_python_numbers_are_formulas_and_exact() -> None:
     bead = system(
-        coordinates=[Coordinate(x, "m", "")], parameters=[],
-        masses=[PointMass(1.5, (x, 0))], potential=0,
-    )  # fmt: skip
+        coordinates=[Coordinate(x, "m", "")],
+        parameters=[],
+        masses=[PointMass(1.5, (x, 0))],
+        potential=0,
+    )
     assert Derivation(bead).mass_matrix == sp.Matrix([[sp.Rational(3, 2)]])
 
 
@@ -296,12 +318,14 @@ def test_small_motions_on_a_turntable_have_gyroscopic_forces() -> None:
     c, s = sp.cos(turn * TIME), sp.sin(turn * TIME)
     table = Derivation(
         System(
-            name="turntable", title="", potential=x**2 + y**2,
+            name="turntable",
+            title="",
+            potential=x**2 + y**2,
             coordinates=[Coordinate(x, "m", ""), Coordinate(y, "m", "")],
             parameters=[Parameter(turn, "rad/s", 1.0, "")],
             masses=[PointMass(1, (x * c - y * s, x * s + y * c))],
         )
-    )  # fmt: skip
+    )
     assert table.equilibrium == (0, 0)
     names = {f.name for f in contents(table).functions}
     assert "equilibrium" in names

@@ -27,10 +27,19 @@ annotations = __future__.annotations.compiler_flag
 EPS = float(np.finfo(float).eps)
 
 FUNCTIONS = (
-    "rhs", "jacobian", "energy", "mass_matrix", "positions", "hamiltonian_state",
-    "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "lagrangian_state",
-    "equilibrium", "linear",
-)  # fmt: skip
+    "rhs",
+    "jacobian",
+    "energy",
+    "mass_matrix",
+    "positions",
+    "hamiltonian_state",
+    "rhs_hamiltonian",
+    "jacobian_hamiltonian",
+    "energy_hamiltonian",
+    "lagrangian_state",
+    "equilibrium",
+    "linear",
+)
 
 #: How many rounding errors, in units of ε times the condition number, are allowed (0.5 occur).
 FEW = 1
@@ -86,8 +95,10 @@ def states(module: ModuleType) -> Iterator[tuple[list[float], list[float]]]:
         )
     for angle, speed in product((0.0, pi / 2, pi, -pi, 1e6), (0.0, 1.5)):
         yield possible([angle] * n + [speed, *[-speed] * (n - 1)]), list(module.DEFAULTS)
-    light = [1e-9 if name == "m1" else value for name, value in
-             zip(module.PARAMETERS, module.DEFAULTS, strict=True)]  # fmt: skip
+    light = [
+        1e-9 if name == "m1" else value
+        for name, value in zip(module.PARAMETERS, module.DEFAULTS, strict=True)
+    ]
     yield [1.0] * n + [0.5] * n, light
     yield [1.0, *[1.0 + 1e-5] * (n - 1)] + [0.5] * n, light
 
@@ -296,9 +307,20 @@ def test_both_forms_give_the_report_s_motion() -> None:
     assert np.abs(coarse - expected).max() > 1e-10
 
 
-@pytest.mark.parametrize("name", ["rhs", "rhs_hamiltonian", "energy", "energy_hamiltonian",
-                                  "mass_matrix", "jacobian", "jacobian_hamiltonian",
-                                  "equilibrium", "linear"])  # fmt: skip
+@pytest.mark.parametrize(
+    "name",
+    [
+        "rhs",
+        "rhs_hamiltonian",
+        "energy",
+        "energy_hamiltonian",
+        "mass_matrix",
+        "jacobian",
+        "jacobian_hamiltonian",
+        "equilibrium",
+        "linear",
+    ],
+)
 def test_every_mutation_of_a_function_changes_its_values(module: ModuleType, name: str) -> None:
     function = getattr(module, name)
     y, params = next(states(module))

@@ -52,11 +52,19 @@ def random_expression(generator: random.Random, depth: int) -> sp.Expr:
     left, right = (random_expression(generator, depth - 1) for _ in range(2))
     return generator.choice(
         [
-            left + right, left - right, left * right, left**2, sp.sin(left), sp.cos(left - right),
-            left / (3 + sp.sin(right)), sp.sqrt(4 + sp.cos(left)), -left, left**3 * right,
+            left + right,
+            left - right,
+            left * right,
+            left**2,
+            sp.sin(left),
+            sp.cos(left - right),
+            left / (3 + sp.sin(right)),
+            sp.sqrt(4 + sp.cos(left)),
+            -left,
+            left**3 * right,
             left - left * sp.cos(right) ** 2,
         ]
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("seed", range(60))
@@ -66,8 +74,9 @@ def test_lowered_expressions_have_the_value_of_the_original(seed: int) -> None:
     values = {s.name: generator.uniform(0.3, 2) for s in (a, b, c, d)}
     results = evaluated(lowered(*expressions, parameters=("a", "b")), values)
     for result, expression in zip(results, expressions, strict=True):
-        exact = float(expression.evalf(30, subs={sp.Symbol(k, positive=True): v
-                                                 for k, v in values.items()}))  # fmt: skip
+        exact = float(
+            expression.evalf(30, subs={sp.Symbol(k, positive=True): v for k, v in values.items()})
+        )
         assert result == pytest.approx(exact, rel=1e-9, abs=1e-9)
 
 

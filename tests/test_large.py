@@ -113,8 +113,9 @@ def test_sympys_mechanics_derives_the_generated_equations() -> None:
     # the benchmark's rivals get the right equations
     found = mechanics(2)
     y, params = (0.3, -1.2, 0.7, 2.1), (1.3, 0.4, 1.1, 0.6, 9.81)
-    values = dict(zip((*found.coordinates, *found.speeds, *found.constants), (*y, *params),
-                      strict=True))  # fmt: skip
+    values = dict(
+        zip((*found.coordinates, *found.speeds, *found.constants), (*y, *params), strict=True)
+    )
     rates = [float(rate.subs(values)) for rate in found.rates]
     assert rates == pytest.approx(dp.rhs(0.0, y, params), rel=1e-12)
 

@@ -108,8 +108,9 @@ def test_a_changed_system_is_generated_anew() -> None:
 def test_folded_parameters_cost_nothing_and_zeros_vanish() -> None:
     plain = {"m1": 1.0, "m2": 1.0, "l1": 2.0, "l2": 2.0, "g": 9.81}
     general = operations("double_pendulum", "rhs_rational")
-    any_values = operations("double_pendulum", "rhs_rational", m1=1.3, m2=0.7, l1=1.1, l2=0.9,
-                            g=9.81)  # fmt: skip
+    any_values = operations(
+        "double_pendulum", "rhs_rational", m1=1.3, m2=0.7, l1=1.1, l2=0.9, g=9.81
+    )
     equal = operations("double_pendulum", "rhs_rational", **plain)
     weightless = operations("double_pendulum", "rhs_rational", **{**plain, "g": 0.0})
     costs = [general, any_values, equal, weightless]
@@ -139,10 +140,11 @@ def test_a_specialised_motion_equals_the_general_one(
 ) -> None:
     special = specialiser(dp, dp.DEFAULTS, MethodChoice(method, form, ""))
     ends = [
-        integrate(module, (0, 5), REPORT, params, method=method, form=form, h=h, rtol=1e-12,
-                  t_eval=[5]).y[:, -1]
+        integrate(
+            module, (0, 5), REPORT, params, method=method, form=form, h=h, rtol=1e-12, t_eval=[5]
+        ).y[:, -1]
         for module, params in ((special, ()), (dp, dp.DEFAULTS))
-    ]  # fmt: skip
+    ]
     assert ends[0] == pytest.approx(ends[1], abs=1e-9)
 
 

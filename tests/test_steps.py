@@ -17,14 +17,18 @@ def values_by_name(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     rates, forces = d.hamilton_equations
     force_names = (p.name.replace("p_", "pdot_", 1) for p in s.p)
     return {
-        "K": d.kinetic_energy, "P": d.potential_energy, "L": d.lagrangian, "H": d.hamiltonian,
-        "M": d.mass_matrix, "f": d.forcing,
+        "K": d.kinetic_energy,
+        "P": d.potential_energy,
+        "L": d.lagrangian,
+        "H": d.hamiltonian,
+        "M": d.mass_matrix,
+        "f": d.forcing,
         **{f"r{k}": sp.Matrix(mass.position) for k, mass in enumerate(s.masses, 1)},
         **{f"r{k}_dot": velocity for k, velocity in enumerate(d.velocities, 1)},
         **dict(zip((p.name for p in s.p), d.momenta, strict=True)),
         **dict(zip((q.name for q in s.qdot), rates, strict=True)),
         **dict(zip(force_names, forces, strict=True)),
-    }  # fmt: skip
+    }
 
 
 # three angles take SymPy half a minute, and show nothing more

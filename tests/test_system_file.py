@@ -94,17 +94,23 @@ def test_a_file_can_define_all_that_python_can(tmp_path: Path) -> None:
     m, R, k, s0, alpha, g = found.params
     (s,) = found.q
     expected = System(
-        name="mine", title="mine", coordinates=[Coordinate(s, "m", "way down the slope")],
+        name="mine",
+        title="mine",
+        coordinates=[Coordinate(s, "m", "way down the slope")],
         parameters=[
-            Parameter(m, "kg", 2.0, "m"), Parameter(R, "m", 0.1, "R"),
-            Parameter(k, "N/m", 50.0, "k"), Parameter(s0, "m", 0.5, "s0"),
+            Parameter(m, "kg", 2.0, "m"),
+            Parameter(R, "m", 0.1, "R"),
+            Parameter(k, "N/m", 50.0, "k"),
+            Parameter(s0, "m", 0.5, "s0"),
             Parameter(alpha, "rad", float(sp.pi / 6), "alpha"),
             Parameter(g, "m/s^2", 9.81, "g"),
         ],
-        masses=[RigidBody(m, (s, R), m * R**2 / 2, s / R)], potential=k * (s - s0) ** 2 / 2,
-        gravity=(g * sp.sin(alpha), -g * sp.cos(alpha)), reactions=[R],
+        masses=[RigidBody(m, (s, R), m * R**2 / 2, s / R)],
+        potential=k * (s - s0) ** 2 / 2,
+        gravity=(g * sp.sin(alpha), -g * sp.cos(alpha)),
+        reactions=[R],
         equilibrium=[s0 + m * g * sp.sin(alpha) / k],
-    )  # fmt: skip
+    )
     assert found == expected
     # a rolling cylinder: (3/2) m s̈ = m g sin α - k (s - s₀)
     derivation = Derivation(found)
@@ -237,10 +243,13 @@ def test_inconsistent_forces_drives_and_reactions_are_refused() -> None:
 
     def system(**changes: object) -> System:
         parts = {
-            "name": "thing", "title": "", "coordinates": [Coordinate(x, "m", "")],
+            "name": "thing",
+            "title": "",
+            "coordinates": [Coordinate(x, "m", "")],
             "parameters": [Parameter(m, "kg", 1.0, ""), Parameter(F, "N", 1.0, "")],
-            "masses": [PointMass(m, (x, x**2))], "potential": 0,
-        }  # fmt: skip
+            "masses": [PointMass(m, (x, x**2))],
+            "potential": 0,
+        }
         return System(**(parts | changes))  # type: ignore[arg-type]
 
     for changes, words in (
@@ -281,10 +290,13 @@ def test_signs_of_symbols_are_part_of_the_module_s_identity(tmp_path: Path) -> N
 def test_decimals_are_exact_fractions() -> None:
     x, m = sp.symbols("x m", positive=True)
     found = System(
-        name="thing", title="", coordinates=[Coordinate(x, "m", "")],
-        parameters=[Parameter(m, "kg", 1.0, "")], masses=[PointMass(m, (0.1 * x, 0))],
+        name="thing",
+        title="",
+        coordinates=[Coordinate(x, "m", "")],
+        parameters=[Parameter(m, "kg", 1.0, "")],
+        masses=[PointMass(m, (0.1 * x, 0))],
         potential=0.5 * m * x**2,
-    )  # fmt: skip
+    )
     assert found.potential == m * x**2 / 2
     assert replace(found, potential=np.int64(3)).potential == 3
     assert Derivation(found).mass_matrix[0] == m / 100

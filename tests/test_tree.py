@@ -21,8 +21,12 @@ def derive(*arguments: str, hash_seed: str = "random") -> subprocess.CompletedPr
     environment = os.environ | {"PYTHONHASHSEED": hash_seed}
     return subprocess.run(
         [sys.executable, "-m", "derive", *arguments],
-        capture_output=True, text=True, cwd=ROOT, env=environment, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        env=environment,
+        check=False,
+    )
 
 
 @pytest.fixture
