@@ -1,4 +1,4 @@
-"""A page in a real browser, and motions to be played there."""
+"""A page in a real browser, and tracks for it."""
 
 from base64 import b64decode
 from collections.abc import Sequence
@@ -16,23 +16,25 @@ from solvers.player.page import Page
 from solvers.player.track import Track
 
 
-def played(method: str, h: float | None = None) -> Track:
+def track_of(method: str, h: float | None = None) -> Track:
     motion = integrate(dp, (0, 5), (pi / 2, pi, 0, 0), dp.DEFAULTS, method=method, h=h,
                        t_eval=np.linspace(0, 5, 301), energy=True)  # fmt: skip
     assert motion.energy is not None
-    places = np.asarray(dp.positions_many(0.0, motion.y, dp.DEFAULTS))
-    return Track(method, motion.t, places, ((-1, 0), (0, 1)), (),
+    positions = np.asarray(dp.positions_many(0.0, motion.y, dp.DEFAULTS))
+    return Track(method, motion.t, positions, ((-1, 0), (0, 1)), (),
                  motion.energy / motion.energy[0] - 1)  # fmt: skip
 
 
-def at_rest(place: tuple[float, float] = (0.3, -1.0), error: Any = 1e-9, end: float = 5) -> Track:
+def at_rest(
+    position: tuple[float, float] = (0.3, -1.0), error: Any = 1e-9, end: float = 5
+) -> Track:
     n = 501
-    places = np.tile(np.reshape(place, (1, 2, 1)), n)
-    return Track("at rest", np.linspace(0, end, n), places, (), ((-1, 0),), np.full(n, error))
+    positions = np.tile(np.reshape(position, (1, 2, 1)), n)
+    return Track("at rest", np.linspace(0, end, n), positions, (), ((-1, 0),), np.full(n, error))
 
 
 class Player:
-    """A page in a browser, and what a reader sees and does there."""
+    """A page in a browser, with the actions of a reader."""
 
     def __init__(self, driver: Any, path: Path) -> None:
         self.driver, self.path = driver, path

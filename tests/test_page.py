@@ -1,4 +1,4 @@
-"""The page plays what it was given, in a real browser, and does nothing else."""
+"""The page plays its tracks in a real browser, and does nothing else."""
 
 import re
 import shutil
@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import Player, at_rest, played
+from browser import Player, at_rest, track_of
 
 from solvers.player import page
 from solvers.player.track import Track
 
 BOBS, ROD = ((0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00)), (0x4A, 0x52, 0x59)
-# runs take the colours after those of their masses
+# runs have the colours after those of their masses
 AFTER_ONE, AFTER_TWO = (BOBS[1], (0x00, 0x9E, 0x73)), ((0x00, 0x9E, 0x73), (0xCC, 0x79, 0xA7))
-PANELS, STRIP = "#panels canvas", "#strip canvas"
+PANELS, CHART = "#panels canvas", "#energy-chart canvas"
 HOSTILE = (
     "</script><script>document.title=1</script><img src=x onerror=document.title=2> $note &lt;"
 )
@@ -26,26 +26,26 @@ HOSTILE = (
 
 @pytest.fixture(scope="module")
 def tracks() -> tuple[Track, Track]:
-    return played("verner87"), played("rk1", 0.01)
+    return track_of("verner87"), track_of("rk1", 0.01)
 
 
 @pytest.fixture(scope="module")
 def slow_tracks(tracks: tuple[Track, Track]) -> list[Track]:
-    """Runs of 100 s, which do not end while a busy machine looks at them."""
+    """Runs of 100 s, which do not end during a test on a busy machine."""
     return [replace(track, t=20 * track.t) for track in tracks]
 
 
 def fitted(player: Player, tracks: Sequence[Track]) -> tuple[np.ndarray, float]:
-    """Scale and origin in pixels, from bobs at four times, and the farthest off bob's distance.
+    """Scale and origin in pixels, from masses at four times, and the largest deviation.
 
-    Nothing is known of the page's own scale: one scale and one origin must fit all bobs on
+    The scale of the page is not known: one scale and one origin must fit all masses on
     all canvases, with x to the right and y up.
     """
     rows: list[tuple[float, float, float]] = []
-    seen: list[float] = []
-    width = player.find("#scrub").rect["width"]
+    pixels: list[float] = []
+    width = player.find("#time-slider").rect["width"]
     for part in (0.05, 0.31, 0.62, 0.9):
-        player.drag("#scrub", 0.5 * width, part * width)
+        player.drag("#time-slider", 0.5 * width, part * width)
         assert player.time == pytest.approx(part * 5, abs=0.3)
         for number, track in enumerate(tracks):
             for mass, colour in zip(track.positions, BOBS, strict=True):
@@ -53,13 +53,13 @@ def fitted(player: Player, tracks: Sequence[Track]) -> tuple[np.ndarray, float]:
                 rows += [(x, 1, 0), (-y, 0, 1)]
                 where = np.nonzero((player.pixels(PANELS, number) == colour).all(-1))
                 assert len(where[0]) > 30, "the colour is not there"
-                seen += [float(np.median(found)) for found in where[::-1]]
-    fit = np.linalg.lstsq(np.array(rows), np.array(seen), rcond=None)[0]
-    return fit, float(np.abs(rows @ fit - seen).max())
+                pixels += [float(np.median(axis)) for axis in where[::-1]]
+    fit = np.linalg.lstsq(np.array(rows), np.array(pixels), rcond=None)[0]
+    return fit, float(np.abs(rows @ fit - pixels).max())
 
 
 @pytest.mark.parametrize(("width", "density"), [(1280, 1), (390, 3)])
-def test_bobs_are_where_the_data_says_on_any_screen(
+def test_masses_are_at_their_positions_on_any_screen(
     width: int, density: int, player: Player, tracks: tuple[Track, Track]
 ) -> None:
     player.open(tracks, size=(width, 800), density=density)
@@ -72,7 +72,7 @@ def test_bobs_are_where_the_data_says_on_any_screen(
 
 
 def mutated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str, old: str, new: str) -> None:
-    """Let pages be written with a mistake in one of the player's sources."""
+    """Plant a mistake in one of the sources of the player."""
     sources = Path(shutil.copytree(page.SOURCES, tmp_path / "sources"))
     text = (sources / name).read_text(encoding="utf-8")
     assert text.count(old) == 1
@@ -88,7 +88,7 @@ def mutated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str, old: str
         ("motion.js", "(time - t[k]) / (t[k + 1] - t[k])", "1"),
     ],
 )
-def test_a_bob_elsewhere_is_noticed(
+def test_a_mass_at_a_wrong_position_is_noticed(
     name: str, old: str, new: str, player: Player, tracks: tuple[Track, Track],
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
 ) -> None:  # fmt: skip
@@ -98,7 +98,7 @@ def test_a_bob_elsewhere_is_noticed(
 
 
 def pace(player: Player) -> float:
-    """Seconds of motion a second, from the beginning, between two of the browser's frames."""
+    """Seconds of motion per second, from the start, between two frames of the browser."""
     first, last = player.driver.execute_async_script("""
         const [done, frames] = [arguments[0], []];
         const look = (now) => {
@@ -114,7 +114,7 @@ def pace(player: Player) -> float:
 
 
 @pytest.mark.parametrize("speed", [0.25, 1, 4])
-def test_it_plays_in_real_time_or_as_much_faster_as_asked(
+def test_it_plays_at_the_selected_speed(
     speed: float, player: Player, slow_tracks: list[Track]
 ) -> None:
     player.open(slow_tracks)
@@ -130,7 +130,7 @@ def test_a_clock_of_twice_the_speed_is_noticed(
     assert pace(player) == pytest.approx(2, rel=0.2)
 
 
-def test_it_plays_at_once_and_pause_holds_it(player: Player, slow_tracks: list[Track]) -> None:
+def test_it_plays_at_once_and_can_be_paused(player: Player, slow_tracks: list[Track]) -> None:
     player.open(slow_tracks, playing=True)
     assert player.playing
     assert 0 < player.time < 100
@@ -145,12 +145,14 @@ def test_it_plays_at_once_and_pause_holds_it(player: Player, slow_tracks: list[T
     assert (player.pixels(PANELS) == seen).all()
 
 
-def test_who_wants_less_motion_gets_it_paused(player: Player, tracks: tuple[Track, Track]) -> None:
+def test_it_is_paused_for_readers_who_prefer_reduced_motion(
+    player: Player, tracks: tuple[Track, Track]
+) -> None:
     player.open(tracks)
     assert (player.playing, player.time) == (False, 0)
 
 
-def test_it_stops_at_the_end_and_begins_again(player: Player) -> None:
+def test_it_stops_at_the_end_and_starts_again(player: Player) -> None:
     player.open([at_rest(end=1)])
     player.find("#speed [value='4']").click()
     player.find("#play").click()
@@ -188,25 +190,25 @@ def test_the_keyboard_plays_pauses_and_steps(player: Player, slow_tracks: list[T
     assert player.time > held
     held = player.time
     player.press(tab + right)
-    assert player.js("document.activeElement.id") == "scrub"
+    assert player.js("document.activeElement.id") == "time-slider"
     assert player.time == pytest.approx(held + 0.02)
 
 
 @pytest.mark.parametrize("kind", ["mouse", "touch"])
-def test_the_chart_of_errors_has_a_logarithmic_scale_and_leads_to_any_time(
+def test_the_energy_chart_has_a_logarithmic_scale_and_selects_any_time(
     kind: str, player: Player
 ) -> None:
     jump = np.where(np.linspace(0, 5, 501) < 3.7, 1e-8, 1e-2)
     player.open([at_rest(error=jump), at_rest(error=-1e-5)])
-    first, second = ((player.pixels(STRIP) == colour).all(-1) for colour in AFTER_ONE)
+    first, second = ((player.pixels(CHART) == colour).all(-1) for colour in AFTER_ONE)
     low, high = (np.median(np.nonzero(part)[0]) for part in (first[:, 100:600], first[:, 1000:]))
     assert np.median(np.nonzero(second)[0]) == pytest.approx((low + high) / 2, abs=1)
     assert low - high > 30
     column = np.argmax(first.sum(0))  # that of the jump
-    player.drag(STRIP, 200, column + 4, kind)
+    player.drag(CHART, 200, column + 4, kind)
     assert player.time == pytest.approx(3.7, abs=0.03)
     left = player.js("document.getElementById('cursor').getBoundingClientRect().x")
-    assert left + 1 == pytest.approx(column + 4 + player.find(STRIP).rect["x"], abs=1)
+    assert left + 1 == pytest.approx(column + 4 + player.find(CHART).rect["x"], abs=1)
     assert player.texts("#legend li") == ["at rest: 1.0 × 10⁻²", "at rest: 1.0 × 10⁻⁵"]
 
 
@@ -219,14 +221,14 @@ def test_each_run_has_its_canvas_and_its_entry_in_the_legend(
         assert player.js(f"document.querySelectorAll('{PANELS}').length") == count
         assert player.texts("#legend li") == ["verner87: 0", "rk1: 0"][:count]
         for colour in AFTER_TWO[:count]:
-            assert (player.pixels(STRIP) == colour).all(-1).sum() > 100
+            assert (player.pixels(CHART) == colour).all(-1).sum() > 100
 
 
 def test_traces_fade_over_two_seconds(player: Player) -> None:
     t = np.linspace(0, 5, 301)
     across = Track("across", t, np.array([[t, 0 * t - 0.55]]), (), (), t)
     player.open([across])
-    player.find("#scrub").send_keys("\ue010")  # the key End
+    player.find("#time-slider").send_keys("\ue010")  # the key End
     player.settle()
     seen = player.pixels(PANELS)
     row, column = (np.median(found) for found in np.nonzero((seen == BOBS[0]).all(-1)))
@@ -238,29 +240,29 @@ def test_traces_fade_over_two_seconds(player: Player) -> None:
     assert sorted(set(reds), reverse=True) == reds
 
 
-def test_it_says_how_far_apart_the_last_masses_are(
+def test_it_shows_the_distance_of_the_last_masses(
     player: Player, tracks: tuple[Track, Track]
 ) -> None:
     player.open([at_rest((0.3, -1.0)), at_rest((0.0, -0.6))])
-    assert player.find("#apart").text == "last masses 0.50000 m apart"
+    assert player.find("#distance").text == "last masses 0.50000 m apart"
     player.open([at_rest((0.3, -1.0)), at_rest((0.3, -1.0)), at_rest((0.0, -0.6))])
-    assert player.find("#apart").text == "last masses up to 0.50000 m apart"
+    assert player.find("#distance").text == "last masses up to 0.50000 m apart"
     player.open([at_rest(end=5), at_rest(end=4)])
-    player.find("#scrub").send_keys("\ue010")  # the key End
+    player.find("#time-slider").send_keys("\ue010")  # the key End
     player.settle()
-    assert player.find("#apart").text == "a run has ended"
+    assert player.find("#distance").text == "a run has ended"
     player.open(tracks)
-    player.drag("#scrub", 10, 300)
+    player.drag("#time-slider", 10, 300)
     places = [[np.interp(player.time, track.t, axis) for axis in track.positions[-1]]
               for track in tracks]  # fmt: skip
-    shown = re.fullmatch(r"last masses (\d\.\d{4}) m apart", player.find("#apart").text)
+    shown = re.fullmatch(r"last masses (\d\.\d{4}) m apart", player.find("#distance").text)
     assert shown
     assert float(shown[1]) == pytest.approx(np.hypot(*np.subtract(*places)), abs=2e-4)
     player.open(tracks[:1])
-    assert not player.find("#apart").is_displayed()
+    assert not player.find("#distance").is_displayed()
 
 
-def test_a_phone_shows_runs_below_each_other_with_the_controls_in_reach(
+def test_a_phone_shows_runs_in_a_column_with_visible_controls(
     player: Player, tracks: tuple[Track, Track]
 ) -> None:
     long = [replace(track, label="method_with_a_long_name " * 4 + "x" * 80) for track in tracks]
@@ -277,7 +279,7 @@ def test_a_phone_shows_runs_below_each_other_with_the_controls_in_reach(
     assert tops[390][1] > tops[390][0] + 300
 
 
-def test_springs_and_dark_pages_are_drawn(player: Player) -> None:
+def test_springs_and_the_dark_scheme_are_drawn(player: Player) -> None:
     drawn = {}
     for scheme in ("light", "dark"):
         player.open([at_rest((0, -1))], scheme=scheme)
@@ -291,7 +293,7 @@ def test_springs_and_dark_pages_are_drawn(player: Player) -> None:
     assert across[0] > across[1] + 6
 
 
-def test_text_is_shown_and_never_run(player: Player) -> None:
+def test_text_is_shown_and_never_executed(player: Player) -> None:
     player.open([replace(at_rest(), label=HOSTILE)], text=HOSTILE)
     assert player.driver.title == HOSTILE
     for selector in ("h1", "#note", "figcaption"):
@@ -300,7 +302,7 @@ def test_text_is_shown_and_never_run(player: Player) -> None:
     assert len(player.driver.find_elements("css selector", "script")) == 2
 
 
-def test_unescaped_text_is_noticed_and_still_not_run(
+def test_unescaped_text_is_noticed_and_still_not_executed(
     player: Player, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(page, "escape", lambda text: text)
@@ -312,13 +314,13 @@ def test_unescaped_text_is_noticed_and_still_not_run(
 
 @pytest.fixture
 def served() -> Iterator[tuple[str, dict[str, bytes], list[str]]]:
-    """A server's address, the pages that it hands out, and what it was asked for."""
+    """Address, pages and requests of a server."""
     pages: dict[str, bytes] = {}
-    asked: list[str] = []
+    requests: list[str] = []
 
-    class Answer(BaseHTTPRequestHandler):
+    class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
-            asked.append(self.path)
+            requests.append(self.path)
             self.send_response(200)
             self.send_header("Content-Type", "text/html")
             self.end_headers()
@@ -327,27 +329,27 @@ def served() -> Iterator[tuple[str, dict[str, bytes], list[str]]]:
         def log_message(self, *_: object) -> None:
             pass
 
-    with ThreadingHTTPServer(("127.0.0.1", 0), Answer) as server:
+    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
-        yield f"http://127.0.0.1:{server.server_port}", pages, asked
+        yield f"http://127.0.0.1:{server.server_port}", pages, requests
         server.shutdown()
         thread.join()
 
 
 @pytest.mark.parametrize("has_policy", [True, False])
-def test_it_asks_for_nothing_and_could_not(
+def test_it_sends_no_requests_and_the_policy_blocks_them(
     has_policy: bool, player: Player, served: tuple[str, dict[str, bytes], list[str]]
 ) -> None:
     player.open([at_rest()])
     assert player.js("performance.getEntriesByType('resource').length") == 0
     text = player.path.read_text(encoding="utf-8")
-    address, pages, asked = served
+    address, pages, requests = served
     pages["/page"] = (text if has_policy else re.sub("<meta http-equiv.*", "", text)).encode()
     player.driver.get(f"{address}/page")
     player.settle()
-    assert asked == ["/page"]
+    assert requests == ["/page"]
     assert player.driver.get_log("browser") == []
     player.driver.execute_async_script("fetch('/spy').catch(() => 0).then(arguments[0])")
-    assert ("/spy" in asked) is not has_policy
+    assert ("/spy" in requests) is not has_policy
     assert bool(player.driver.get_log("browser")) is has_policy

@@ -1,4 +1,4 @@
-"""What a page is given: small, exact, refused where it cannot be played, written whole or not."""
+"""Tracks of a page: small and exact, refused if they cannot be values, written atomically."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import at_rest, played
+from browser import at_rest, track_of
 
 from solvers.player.page import Page
 from solvers.player.track import MOST_SAMPLES, Track
@@ -17,34 +17,34 @@ from solvers.player.track import MOST_SAMPLES, Track
 
 @pytest.fixture(scope="module")
 def tracks() -> list[Track]:
-    return [played("verner87")]
+    return [track_of("verner87")]
 
 
 def motions(path: Path) -> list[dict[str, Any]]:
-    found = re.search(r'id="motions">(.*?)</script>', path.read_text(encoding="utf-8"))
-    assert found
-    return json.loads(found[1])
+    match = re.search(r'id="motions">(.*?)</script>', path.read_text(encoding="utf-8"))
+    assert match
+    return json.loads(match[1])
 
 
-def test_a_page_is_small_and_as_exact_as_can_be_seen(tracks: list[Track], tmp_path: Path) -> None:
+def test_a_page_is_small_and_as_exact_as_a_screen(tracks: list[Track], tmp_path: Path) -> None:
     path = tmp_path / "new" / "page.html"
     Page("", "", tracks).write(path)
     assert path.stat().st_size < 50_000
-    (played,) = motions(path)
+    (values,) = motions(path)
     for name, tolerance in (("t", 1e-6), ("positions", 1e-5), ("energy_error", 1e-9)):
-        assert np.array(played[name]) == pytest.approx(getattr(tracks[0], name), abs=tolerance)
+        assert np.array(values[name]) == pytest.approx(getattr(tracks[0], name), abs=tolerance)
     assert not re.search(r"https?:|\bsrc=|@import|url\(", path.read_text(encoding="utf-8"))
 
 
-def test_very_many_samples_are_thinned_out_evenly(tmp_path: Path) -> None:
+def test_many_samples_are_reduced_evenly(tmp_path: Path) -> None:
     n = 3 * MOST_SAMPLES
     t = np.linspace(1e4, 1e4 + 6, n)
     track = Track("many", t, np.array([[t, t]]), (), (), t)
     Page("", "", [track]).write(tmp_path / "page.html")
-    (played,) = motions(tmp_path / "page.html")
-    assert len(played["t"]) == len(played["positions"][0][0]) == MOST_SAMPLES
-    assert (played["t"][0], played["t"][-1]) == (t[0], t[-1])
-    steps = np.diff(played["t"])
+    (values,) = motions(tmp_path / "page.html")
+    assert len(values["t"]) == len(values["positions"][0][0]) == MOST_SAMPLES
+    assert (values["t"][0], values["t"][-1]) == (t[0], t[-1])
+    steps = np.diff(values["t"])
     assert 1e-4 < steps.min() <= steps.max() < 5e-4
 
 
@@ -68,7 +68,7 @@ HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
         ({"springs": ((-2, 0),)}, r"springs holds \(-2, 0\)"),
     ],
 )
-def test_what_cannot_be_played_is_refused(
+def test_tracks_that_cannot_be_played_are_refused(
     wrong: dict[str, Any], words: str, tmp_path: Path
 ) -> None:
     with pytest.raises(ValueError, match="track 'at rest': " + words):
@@ -97,4 +97,4 @@ def test_a_failed_write_leaves_the_old_page_and_nothing_else(
     monkeypatch.setattr(os, step, full)
     with pytest.raises(OSError, match="No space"):
         Page("new", "", [REST]).write(path)
-    assert [(found.name, found.read_bytes()) for found in tmp_path.iterdir()] == [(path.name, old)]
+    assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [(path.name, old)]

@@ -1,1 +1,1 @@
-"""A page that plays motions in real time: one HTML file that needs nothing else."""
+"""A page that plays motions in real time: one HTML file without external resources."""

@@ -1,4 +1,4 @@
-"""One HTML file that loads nothing from anywhere: its head, and what the browser may do."""
+"""One HTML file without external resources, with a policy that permits none."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 from string import Template
 
-FRAME = Path(__file__).with_name("document.html")
+TEMPLATE = Path(__file__).with_name("document.html")
 
 
 def document(title: str, body: str, *, style: str, script: str) -> str:
@@ -19,23 +19,23 @@ def document(title: str, body: str, *, style: str, script: str) -> str:
     title : str
         Plain text.
     body : str
-        HTML. Its style attributes and scripts are not obeyed.
+        HTML. Its style attributes and scripts are blocked.
     style, script : str
-        The only ones that the browser may obey.
+        The only ones that the browser applies and runs.
 
     Returns
     -------
     str
         HTML, a whole file.
     """
-    # Template fills in once, so that no text of the user's is itself filled in
-    return Template(FRAME.read_text(encoding="utf-8")).substitute(
-        policy=_policy(script, style), title=escape(title), style=style, body=body, script=script,
-    )  # fmt: skip
+    # Template substitutes once, so that nothing is substituted in the texts themselves
+    values = {"title": escape(title), "style": style, "body": body, "script": script}
+    template = Template(TEMPLATE.read_text(encoding="utf-8"))
+    return template.substitute(values, policy=_policy(script, style))
 
 
 def _policy(script: str, style: str) -> str:
-    """Run exactly this script and style, and fetch nothing."""
+    """Permit exactly this script and style, and no requests."""
     return (
         f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; "
         "img-src data:; base-uri 'none'; form-action 'none'"

@@ -1,11 +1,11 @@
-// The motions: which times they cover, and where everything is at one of them.
+// The motions: their time span, and positions and energy errors at any time.
 
 const tracks = JSON.parse(document.getElementById("motions").textContent);
 
-const begin = Math.min(...tracks.map((track) => track.t[0]));
-const end = Math.max(...tracks.map((track) => track.t.at(-1)));
+const startTime = Math.min(...tracks.map((track) => track.t[0]));
+const endTime = Math.max(...tracks.map((track) => track.t.at(-1)));
 
-/** Number of the last sample that is not after `time`. */
+/** Index of the last sample that is not after `time`. */
 function sampleAt(t, time) {
   let low = 0;
   let high = t.length;
@@ -17,28 +17,28 @@ function sampleAt(t, time) {
   return low;
 }
 
-/** Straight between samples; before the first and after the last one as there. */
+/** Linear interpolation between samples; constant before the first and after the last one. */
 function valueAt(t, values, time) {
   const k = sampleAt(t, time);
   if (time < t[0] || k === t.length - 1) return values[k];
-  // t[k + 1] is after `time` and t[k] is not: equal times divide nothing by zero
+  // t[k + 1] is after `time` and t[k] is not, so that equal times cause no division by zero
   return values[k] + ((time - t[k]) / (t[k + 1] - t[k])) * (values[k + 1] - values[k]);
 }
 
-/** Where a mass is, in m; mass -1 is the pivot. */
-function placeAt(track, mass, time) {
+/** Position of a mass in m; mass -1 is the pivot. */
+function positionAt(track, mass, time) {
   if (mass < 0) return [0, 0];
   return track.positions[mass].map((axis) => valueAt(track.t, axis, time));
 }
 
-/** Where a mass was from one time to another: all samples between, and both ends. */
+/** Path of a mass between two times: all samples between them, and both ends. */
 function pathOf(track, mass, from, to) {
   const [x, y] = track.positions[mass];
-  const path = [placeAt(track, mass, from)];
+  const path = [positionAt(track, mass, from)];
   for (let k = sampleAt(track.t, from) + 1; k < track.t.length && track.t[k] < to; k += 1) {
     path.push([x[k], y[k]]);
   }
-  path.push(placeAt(track, mass, to));
+  path.push(positionAt(track, mass, to));
   return path;
 }
 
@@ -47,17 +47,17 @@ function hasEnded(track, time) {
 }
 
 /** The largest distance between the last masses of any two runs, in m. */
-function distanceApart(time) {
-  const places = tracks.map((track) => placeAt(track, track.positions.length - 1, time));
+function largestDistance(time) {
+  const positions = tracks.map((track) => positionAt(track, track.positions.length - 1, time));
   let largest = 0;
-  for (const [ax, ay] of places) {
-    for (const [bx, by] of places) largest = Math.max(largest, Math.hypot(ax - bx, ay - by));
+  for (const [ax, ay] of positions) {
+    for (const [bx, by] of positions) largest = Math.max(largest, Math.hypot(ax - bx, ay - by));
   }
   return largest;
 }
 
-/** The box around all places of all runs and the pivot: its centre, width and height, in m. */
-function reach() {
+/** The box around all positions of all runs and the pivot: its centre, width and height in m. */
+function boundingBox() {
   const edges = [0, 1].map((axis) => {
     let [low, high] = [0, 0];
     for (const track of tracks) {
@@ -71,7 +71,7 @@ function reach() {
     return [low, high];
   });
   const [width, height] = edges.map(([low, high]) => high - low);
-  // masses that never leave the pivot still need a scale
+  // masses that never leave the pivot need a scale, too
   const least = Math.max(width, height) * 1e-3 || 1;
   return {
     centre: edges.map(([low, high]) => (low + high) / 2),

@@ -1,4 +1,4 @@
-"""A page: the player and the motions in one file, which loads nothing from anywhere."""
+"""A page: the player and the motions in one file without external resources."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from solvers.player.document import document
 from solvers.player.track import Track
 
 SOURCES = Path(__file__).parent
-#: The player's parts, each of which uses those before it.
-SCRIPTS = ("motion.js", "sheet.js", "panel.js", "strip.js", "player.js")
+#: The parts of the player; each uses those before it.
+SCRIPTS = ("motion.js", "canvas.js", "panel.js", "energy_chart.js", "player.js")
 
 
 @dataclass(frozen=True)
 class Page:
-    """A page that plays motions side by side; notebooks show it as it is.
+    """A page that plays motions side by side; notebooks display it.
 
     Parameters
     ----------
     title, note : str
-        What the page shows, and what to look at; plain text.
+        Title and description, as plain text.
     tracks : sequence of Track
-        The runs. Of more than 20 000 samples of a run, 20 000 evenly chosen ones are kept.
+        The runs. A run with more than 20 000 samples is reduced to 20 000 evenly spaced ones.
 
     Raises
     ------
     ValueError
-        When there is no track, or one cannot be played: the message says why.
+        When there is no track, or one cannot be played; the message states the reason.
     """
 
     title: str
@@ -50,12 +50,12 @@ class Page:
         return document(self.title, body, style=style(), script=script())
 
     def write(self, path: Path) -> None:
-        """Write the file beside its name, and move it into place; missing folders are made.
+        """Write the file atomically; missing folders are created, an existing file is replaced.
 
         Parameters
         ----------
         path : Path
-            Its name; what stands there is replaced.
+            Path of the file.
 
         Raises
         ------
@@ -65,8 +65,8 @@ class Page:
         write_text(path, self.html)
 
     def _repr_html_(self) -> str:
-        look = 'width="100%" height="760" style="border: 0"'
-        return f'<iframe {look} srcdoc="{escape(self.html)}"></iframe>'
+        attributes = 'width="100%" height="760" style="border: 0"'
+        return f'<iframe {attributes} srcdoc="{escape(self.html)}"></iframe>'
 
 
 def player(tracks: Sequence[Track]) -> str:
@@ -80,16 +80,16 @@ def player(tracks: Sequence[Track]) -> str:
     Returns
     -------
     str
-        HTML, to stand in a body.
+        HTML for the body of a page.
 
     Raises
     ------
     ValueError
-        When there is no track, or one cannot be played: the message says why.
+        When there is no track, or one cannot be played; the message states the reason.
     """
     _check(tracks)
-    motions = json.dumps([track.plain() for track in tracks], separators=(",", ":"))
-    return Template(_source("player.html")).substitute(motions=_inert(motions))
+    motions = json.dumps([track.json_values() for track in tracks], separators=(",", ":"))
+    return Template(_source("player.html")).substitute(motions=_escaped(motions))
 
 
 def _check(tracks: Sequence[Track]) -> None:
@@ -100,12 +100,12 @@ def _check(tracks: Sequence[Track]) -> None:
 
 
 def style() -> str:
-    """How a page looks, and the player in it."""
+    """The style sheet of a page and the player in it."""
     return _source("player.css")
 
 
 def script() -> str:
-    """What the player does."""
+    """The script of the player."""
     return "\n".join(map(_source, SCRIPTS))
 
 
@@ -113,6 +113,6 @@ def _source(name: str) -> str:
     return (SOURCES / name).read_text(encoding="utf-8")
 
 
-def _inert(data: str) -> str:
-    """JSON in which no tag or comment can end or begin."""
+def _escaped(data: str) -> str:
+    """JSON without characters that start or end a tag or a comment."""
     return data.replace("&", r"\u0026").replace("<", r"\u003c").replace(">", r"\u003e")

@@ -1,43 +1,43 @@
-// The clock and what moves it: the button, the bar, the chart and the keyboard.
+// The clock and its controls: the button, the slider, the chart and the keyboard.
 
-/** What an arrow key steps by, in s. */
-const STEP = 0.02;
+/** Step of an arrow key in s. */
+const KEY_STEP = 0.02;
 
-const part = (name) => document.getElementById(name);
-const [play, scrub, speed] = ["play", "scrub", "speed"].map(part);
-const box = reach();
+const element = (name) => document.getElementById(name);
+const [playButton, slider, speed] = ["play", "time-slider", "speed"].map(element);
+const box = boundingBox();
 const panels = tracks.map((track, number) => new Panel(track, number, box));
-const strip = new Strip(part("strip"));
+const energyChart = new EnergyChart(element("energy-chart"));
 const errors = tracks.map((track, number) => legendEntry(track.label, number));
-const clock = { time: begin, playing: false, lastFrame: null };
-let frameIsDue = false;
+const clock = { time: startTime, playing: false, lastFrame: null };
+let frameIsRequested = false;
 
 function legendEntry(label, number) {
   const value = document.createElement("span");
   value.className = "number";
   const entry = document.createElement("li");
   entry.append(swatch(number), `${label}: `, value);
-  part("legend").append(entry);
+  element("legend").append(entry);
   return value;
 }
 
-/** Ask for one frame, however many changes there are before it. */
+/** Request one frame, however many changes precede it. */
 function redraw() {
-  if (frameIsDue) return;
-  frameIsDue = true;
+  if (frameIsRequested) return;
+  frameIsRequested = true;
   requestAnimationFrame(frame);
 }
 
 function frame(now) {
-  frameIsDue = false;
+  frameIsRequested = false;
   if (clock.playing) {
-    // real time: what passed since the last frame, whatever the frame rate
+    // real time: the time since the last frame, whatever the frame rate
     if (clock.lastFrame !== null) {
       clock.time += (Number(speed.value) * (now - clock.lastFrame)) / 1000;
     }
     clock.lastFrame = now;
-    if (clock.time >= end) {
-      clock.time = end;
+    if (clock.time >= endTime) {
+      clock.time = endTime;
       setPlaying(false);
     } else {
       redraw();
@@ -49,89 +49,89 @@ function frame(now) {
 function show() {
   const { time } = clock;
   for (const panel of panels) panel.draw(time);
-  strip.moveCursor(time);
-  scrub.value = String(time);
+  energyChart.moveCursor(time);
+  slider.value = String(time);
   const text = `${time.toFixed(3).replace("-", "−")} s`;
-  part("time").textContent = `${text} of ${Number(end.toPrecision(6))} s`;
-  // spoken at rest only: it would never end otherwise
-  if (!clock.playing) scrub.setAttribute("aria-valuetext", text);
+  element("time").textContent = `${text} of ${Number(endTime.toPrecision(6))} s`;
+  // screen readers announce it only when paused
+  if (!clock.playing) slider.setAttribute("aria-valuetext", text);
   tracks.forEach((track, number) => {
     errors[number].textContent = scientific(Math.abs(valueAt(track.t, track.energy_error, time)));
   });
-  part("apart").textContent = apartText(time);
+  element("distance").textContent = distanceText(time);
   Object.assign(document.documentElement.dataset, { time, playing: clock.playing });
 }
 
-function apartText(time) {
+function distanceText(time) {
   if (tracks.some((track) => hasEnded(track, time))) return "a run has ended";
-  const distance = fixed(distanceApart(time), 5e-5 * Math.max(box.width, box.height));
+  const distance = withDecimals(largestDistance(time), 5e-5 * Math.max(box.width, box.height));
   return `last masses ${tracks.length > 2 ? "up to " : ""}${distance} m apart`;
 }
 
 function setPlaying(playing) {
   clock.playing = playing;
   clock.lastFrame = null;
-  play.textContent = playing ? "Pause" : "Play";
+  playButton.textContent = playing ? "Pause" : "Play";
   redraw();
 }
 
 function togglePlaying() {
-  if (!clock.playing && clock.time >= end) clock.time = begin;
+  if (!clock.playing && clock.time >= endTime) clock.time = startTime;
   setPlaying(!clock.playing);
 }
 
-/** Go to a time and stay there: whoever chooses a moment wants to look at it. */
+/** Go to a time and pause there. */
 function seek(time) {
-  clock.time = Math.min(Math.max(time, begin), end);
+  clock.time = Math.min(Math.max(time, startTime), endTime);
   setPlaying(false);
 }
 
-function isInSight(element) {
-  const { top, bottom } = element.getBoundingClientRect();
+function isVisible(node) {
+  const { top, bottom } = node.getBoundingClientRect();
   return top < window.innerHeight && bottom > 0;
 }
 
-function listen() {
-  play.addEventListener("click", togglePlaying);
-  scrub.addEventListener("input", () => seek(Number(scrub.value)));
-  const follow = (event) => seek(strip.timeAt(event.offsetX));
-  strip.canvas.addEventListener("pointerdown", (event) => {
-    // captured: the drag goes on when the pointer leaves the chart
-    strip.canvas.setPointerCapture(event.pointerId);
-    follow(event);
+function addListeners() {
+  playButton.addEventListener("click", togglePlaying);
+  slider.addEventListener("input", () => seek(Number(slider.value)));
+  const seekToPointer = (event) => seek(energyChart.timeAt(event.offsetX));
+  energyChart.canvas.addEventListener("pointerdown", (event) => {
+    // captured, so that the drag continues outside the chart
+    energyChart.canvas.setPointerCapture(event.pointerId);
+    seekToPointer(event);
   });
-  strip.canvas.addEventListener("pointermove", (event) => {
-    if (strip.canvas.hasPointerCapture(event.pointerId)) follow(event);
+  energyChart.canvas.addEventListener("pointermove", (event) => {
+    if (energyChart.canvas.hasPointerCapture(event.pointerId)) seekToPointer(event);
   });
   document.addEventListener("keydown", (event) => {
-    // a list of choices has its own keys, and so have the browser's shortcuts
+    // a list of options and the shortcuts of the browser have keys of their own
     if (event.target.matches("select") || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (!isInSight(part("player"))) return; // on a long page the keys scroll
-    // a button that has the focus is clicked by the space bar anyway
+    if (!isVisible(element("player"))) return; // on a long page these keys scroll
+    // the space bar clicks a focused button anyway
     if (event.key === " " && !event.target.matches("button")) togglePlaying();
-    else if (event.key === "ArrowLeft") seek(clock.time - STEP);
-    else if (event.key === "ArrowRight") seek(clock.time + STEP);
+    else if (event.key === "ArrowLeft") seek(clock.time - KEY_STEP);
+    else if (event.key === "ArrowRight") seek(clock.time + KEY_STEP);
     else return;
     event.preventDefault();
   });
-  // a hidden page gets no frames: the motion waits, instead of leaping when it is seen again
+  // a hidden page has no frames: the motion waits, instead of jumping when it is visible again
   document.addEventListener("visibilitychange", () => {
     clock.lastFrame = null;
   });
   const redrawAll = () => {
-    strip.draw();
+    energyChart.draw();
     redraw();
   };
   const observer = new ResizeObserver(redrawAll);
-  for (const { canvas } of [...panels, strip]) observer.observe(canvas);
+  for (const { canvas } of [...panels, energyChart]) observer.observe(canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redrawAll);
 }
 
-part("panels").append(...panels.map((panel) => panel.figure));
-part("apart").hidden = tracks.length < 2;
-part("trail").textContent = String(TRAIL);
-scrub.min = String(begin);
-scrub.max = String(end);
-listen();
-strip.draw();
+element("panels").append(...panels.map((panel) => panel.figure));
+element("distance").hidden = tracks.length < 2;
+element("trace-seconds").textContent = String(TRACE_SECONDS);
+slider.min = String(startTime);
+slider.max = String(endTime);
+addListeners();
+energyChart.draw();
 setPlaying(!matchMedia("(prefers-reduced-motion: reduce)").matches);

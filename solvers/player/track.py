@@ -1,4 +1,4 @@
-"""What the page plays: one run of a system, sampled."""
+"""A run of a system for the page that plays it: sampled positions and energy errors."""
 
 from __future__ import annotations
 
@@ -11,28 +11,26 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Pairs = tuple[tuple[int, int], ...]
 
-#: More samples than this make a page slow and show nothing more.
+#: More samples make a page slow without a visible difference.
 MOST_SAMPLES = 20_000
 
 
 @dataclass(frozen=True)
 class Track:
-    """One run: where its masses were, and how well it kept its energy.
-
-    It may hold anything: `check` says whether it can be played, and a `Page` asks.
+    """Positions of masses and energy errors of one run; a `Page` checks it.
 
     Attributes
     ----------
     label : str
-        Which run, such as ``"rk4, h = 0.05 s"``.
+        Label of the run, such as ``"rk4, h = 0.05 s"``.
     t : ndarray of shape (n,)
         Increasing times in s, two at least.
     positions : ndarray of shape (masses, 2, n)
         In m; x points to the right and y up.
     links : tuple of pairs of int
-        What a rod joins: numbers of masses; -1 is the pivot, which is the origin.
+        Indices of masses that a rod joins; -1 is the pivot, which is the origin.
     springs : tuple of pairs of int
-        What a spring joins, likewise.
+        Indices of masses that a spring joins, likewise.
     energy_error : ndarray of shape (n,)
         Relative energy error, with its sign.
     """
@@ -45,7 +43,7 @@ class Track:
     energy_error: Array
 
     def check(self) -> None:
-        """Nothing, if this can be played.
+        """Check that this run can be played.
 
         Raises
         ------
@@ -59,65 +57,59 @@ class Track:
         for name, pairs in (("links", self.links), ("springs", self.springs)):
             for pair in pairs:
                 if len(pair) != 2 or not all(-1 <= end < masses for end in pair):
-                    raise self._refusal(
+                    raise self._error(
                         f"{name} holds {pair}, but a pair joins two of the masses 0 to "
                         f"{masses - 1} and the pivot, -1: number the masses as in positions"
                     )
 
     def _check_shapes(self) -> None:
-        times, places, errors = (
-            np.shape(array) for array in (self.t, self.positions, self.energy_error)
-        )
+        times, positions = np.shape(self.t), np.shape(self.positions)
+        errors = np.shape(self.energy_error)
         if len(times) != 1 or times[0] < 2:
-            raise self._refusal(
+            raise self._error(
                 f"t has shape {times}, but it must be (n,) with n at least 2: give the times in s"
             )
         n = times[0]
-        if len(places) != 3 or places[0] < 1 or places[1:] != (2, n):
-            raise self._refusal(
-                f"positions has shape {places}, but with {n} times it must be (masses, 2, {n}): "
+        if len(positions) != 3 or positions[0] < 1 or positions[1:] != (2, n):
+            raise self._error(
+                f"positions has shape {positions}, but with {n} times it must be (masses, 2, {n}): "
                 "positions_many of a generated module gives that for y of shape (state, n)"
             )
         if errors != (n,):
-            raise self._refusal(
+            raise self._error(
                 f"energy_error has shape {errors}, but with {n} times it must be ({n},): "
                 "give one number for each time"
             )
 
     def _check_numbers(self) -> None:
-        for name in ("t", "positions", "energy_error"):
-            array = np.asarray(getattr(self, name))
-            wrong = np.argwhere(~np.isfinite(array))
-            if len(wrong):
-                place = tuple(int(k) for k in wrong[0])
-                raise self._refusal(
-                    f"{name}[{', '.join(map(str, place))}] is {array[place]}, but every number "
-                    "must be finite: leave out the samples after the run broke down"
+        arrays = {"t": self.t, "positions": self.positions, "energy_error": self.energy_error}
+        for name, values in arrays.items():
+            array = np.asarray(values)
+            for index in np.argwhere(~np.isfinite(array)).tolist()[:1]:
+                raise self._error(
+                    f"{name}{index} is {array[tuple(index)]}, but every number must be finite: "
+                    "leave out the samples after the run failed"
                 )
-        (falls,) = np.nonzero(np.diff(self.t) <= 0)
-        if len(falls):
-            k = int(falls[0])
-            raise self._refusal(
+        for k in np.flatnonzero(np.diff(self.t) <= 0).tolist()[:1]:
+            raise self._error(
                 f"t[{k + 1}] = {self.t[k + 1]} follows t[{k}] = {self.t[k]}, but times must "
                 "increase: sort the samples by time, and keep one of equal ones"
             )
 
-    def _refusal(self, words: str) -> ValueError:
-        return ValueError(f"track {self.label!r}: {words}")
+    def _error(self, text: str) -> ValueError:
+        return ValueError(f"track {self.label!r}: {text}")
 
-    def plain(self) -> dict[str, object]:
-        """The run as JSON has it: no more samples and digits than a screen can show."""
+    def json_values(self) -> dict[str, object]:
+        """Values for JSON, with no more samples and digits than a screen can show."""
         n = len(self.t)
         kept = np.arange(n)
         if n > MOST_SAMPLES:
             kept = np.linspace(0, n - 1, MOST_SAMPLES).round().astype(int)
+        # late times differ in late digits only, so that the duration determines the rounding
+        decimals = 6 - floor(log10(self.t[-1] - self.t[0]))
         return {
             "label": self.label,
-            # late times differ in late digits only: what counts is how long the run lasts
-            "t": [
-                round(time, 6 - floor(log10(self.t[-1] - self.t[0])))
-                for time in self.t[kept].tolist()
-            ],
+            "t": [round(time, decimals) for time in self.t[kept].tolist()],
             "positions": [[_rounded(axis[kept], 6) for axis in mass] for mass in self.positions],
             "links": [list(pair) for pair in self.links],
             "springs": [list(pair) for pair in self.springs],
