@@ -7,9 +7,8 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.app.commands.chart import DEFAULT
-from solvers.app.verdict.claims import claims
+from solvers.app.verdict.claims import claims, objectives, recommendations
 from solvers.app.verdict.evidence import Evidence, Setting
-from solvers.app.verdict.objectives import objectives, recommendations
 from solvers.studies.failure_modes.lyapunov import Mean
 from solvers.studies.failure_modes.study import studies
 

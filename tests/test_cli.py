@@ -14,8 +14,7 @@ from derive.verification.report.equation import Equation
 from solvers.app.cli import COMMANDS, main
 from solvers.app.commands import verify
 from solvers.app.verdict import report
-from solvers.app.verdict.report import report_verdicts
-from solvers.app.verdict.tables import counted, tables
+from solvers.app.verdict.report import counted, report_verdicts, tables
 from solvers.runge_kutta.order_conditions import order
 
 ROOT = Path(__file__).parent.parent

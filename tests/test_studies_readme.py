@@ -10,8 +10,8 @@ import pytest
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.app.modules import load
+from solvers.app.verdict.claims import objectives
 from solvers.app.verdict.evidence import Evidence, Setting
-from solvers.app.verdict.objectives import objectives
 from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, statistics
 from solvers.studies.failure_modes.drift import EnergyDrift
 from solvers.studies.failure_modes.lyapunov import lyapunov

@@ -33,8 +33,7 @@ def run(arguments: Namespace) -> int:
         from derive.commands.verify import verify
 
         return verify(arguments.equations, as_json=arguments.json)
-    from solvers.app.verdict.report import report_verdicts
-    from solvers.app.verdict.tables import tables
+    from solvers.app.verdict.report import report_verdicts, tables
     from solvers.io.progress import Progress
 
     with Progress() as report:

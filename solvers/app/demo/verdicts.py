@@ -11,8 +11,7 @@ from derive.verification.report.comparison import verdict_html
 from derive.verification.verdict import Verdict
 from solvers.app.demo.html import details, table
 from solvers.app.demo.stage import Number, Stage
-from solvers.app.verdict.report import report_verdicts
-from solvers.app.verdict.tables import counted
+from solvers.app.verdict.report import counted, report_verdicts
 
 DESCRIPTIONS = {
     "verified": "hold as printed",

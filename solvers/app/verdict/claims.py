@@ -1,18 +1,43 @@
-"""Tests of the claims in chapters 3 to 5 of the report.
+"""Tests of the report's objectives (chapter 1.6), claims (3 to 5) and recommendations (5).
 
-Each claim is ``supported`` or ``contradicted`` by a reproducible number, or ``untestable`` if no
-number could decide it.
+Each is ``supported`` or ``contradicted`` by a reproducible number, or ``untestable`` if no number
+could decide it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from solvers.app.verdict.claim import CHAOS, CHART, STEPS, TOLERANCES, Claim, outcome
 from solvers.app.verdict.evidence import Evidence
 from solvers.studies.work_precision.measurement import REPORT_METHODS
+
+#: Plots, each after the command that writes it.
+CHART = "holonomic chart: work_precision_report.png"
+STEPS = "holonomic chart: steps_report.png"
+CHAOS = "holonomic stability: failures_chaos.png"
+TOLERANCES = "holonomic stability: failures_tolerances.png"
+#: A method that competes with those of the report, and the errors of the comparison.
+OURS, ERRORS = "verner87", (1e-3, 1e-6, 1e-9)
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim of the report, restated, with its verdict."""
+
+    id: str  # section, and a letter
+    claim: str
+    verdict: str
+    number: str  # the number that decides, or the reason why there is none
+    figure: str = ""  # the plot that shows it, after the command that writes it
+
+
+def outcome(holds: bool | np.bool) -> str:
+    """``supported`` or ``contradicted``."""
+    return "supported" if holds else "contradicted"
 
 
 def claims(evidence: Evidence) -> list[Claim]:
@@ -20,44 +45,66 @@ def claims(evidence: Evidence) -> list[Claim]:
     return [*_chapter_3(evidence), *_chapter_4(evidence), *_chapter_5(evidence)]
 
 
+def objectives(e: Evidence, equations: Mapping[str, int]) -> list[Claim]:
+    """Verdicts on the objectives; `equations` counts the report's equations by verdict."""
+    euler, rk4 = e.error("RK1", 0.01), e.error("RK4", 0.01)
+    theirs, ours = ([e.calls(name, error) for error in ERRORS] for name in ("rk4", OURS))
+    return [
+        Claim("1.6-1", "Lagrange's equations are derived into Euler-Lagrange's, Hamilton's and "
+              "Runge-Kutta's", outcome(equations.get("wrong", 0) == 0),
+              f"{equations['verified']} of its equations hold, and {equations['misprint']} hold "
+              "once corrected; Runge-Kutta is not a form of the equations but a method of "
+              "integrating any form"),
+        Claim("1.6-2", "three methods are compared: Lagrange's equation, Euler's method, "
+              "Runge-Kutta", "contradicted",
+              "two of them are equations, and their motions agree to "
+              f"{e.disagreement:.1g} rad; methods differ: with h = 0.01 s the error of RK1 is "
+              f"{euler:.2g} rad and that of RK4 {rk4:.1g} rad", CHART),
+        Claim("1.6-3", "the best solution is found by comparing",
+              outcome(all(a >= b for a, b in zip(ours, theirs, strict=True))),
+              f"for errors of {_listed(ERRORS, '.0e')} RK4 takes {_listed(theirs)} right-hand "
+              f"sides, {OURS} {_listed(ours)}", CHART),
+    ]  # fmt: skip
+
+
 def _chapter_3(e: Evidence) -> list[Claim]:
     shorter = np.abs(e.motion(e.first)[:2, -1] - e.end[:2]).max()
     faster = np.abs(e.motion(e.second)[:2, -1] - e.motion(e.first)[:2, -1]).max()
     steps = [0.2, 0.1, 0.08, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 5e-4]
     errors = [e.error("RK4", h) for h in steps]
+    by_step = ", ".join(f"{x:.1g} (h = {h:g} s)" for h, x in zip(steps, errors, strict=True))
     crossings = [int(np.sum(np.diff(np.sign(e.stepped("RK4", h)[0])) != 0)) for h in (0.01, 0.005)]
     methods = [e.error(name, 0.01) for name in REPORT_METHODS]
     ratios = [e.speed_ratio(setting) for setting in (e.first, e.prose)]
     return [
         Claim("3.1a", "the figure of the Lagrangian belongs to m = 1 kg, l = 2 m, g = 9.81",
               outcome(shorter < 1e-3),
-              f"its program has other lengths; at 5 s its angles are {shorter:.2g} rad away"),
+              f"its program has other lengths; at 5 s its angles differ by {shorter:.2g} rad"),
         Claim("3.1b", "there is less movement as time goes on", "untestable",
-              "depends on what is meant: the angles' mean speed in the second half is "
-              f"{ratios[0]:.2f} of the first half's in program 1, {ratios[1]:.2f} in the prose"),
+              "the report does not define movement: the mean angular speed of the second half is "
+              f"{ratios[0]:.2f} of that of the first half in program 1, {ratios[1]:.2f} in the "
+              "scene of the prose"),
         Claim("3.1c", "the Mathematica solution is the exact curve", "untestable",
-              "Mathematica is not at hand, and no closed form is known; Taylor series and an "
+              "Mathematica is not available, and no closed form is known; Taylor series and an "
               f"extrapolated midpoint rule differ by {e.references_apart:.1g} rad at 5 s"),
         Claim("3.2a", "the Euler-Lagrange run has the same data as the Lagrangian one",
               outcome(e.first == e.second),
-              f"lengths and velocities differ; at 5 s the angles are {faster:.2g} rad apart"),
+              f"lengths and velocities differ; at 5 s the angles differ by {faster:.2g} rad"),
         Claim("3.2b", "the curve looks wavy because 5 s are short", "untestable",
-              "the figure is lost, and no number is tied to 'wavy'"),
+              "the figure is lost, and the report does not define 'wavy'"),
         Claim("3.3a", "the smaller the step, the smaller the error",
               outcome(all(a > b for a, b in pairwise(errors))),
-              "RK4, in rad at 5 s: "
-              + ", ".join(f"{x:.1g} (h = {h:g} s)" for h, x in zip(steps, errors, strict=True))
-              + "; true for small steps, until rounding turns it, not for large ones", STEPS),
+              f"errors of RK4 at 5 s, in rad: {by_step}; true for small steps until rounding "
+              "errors dominate, not for large ones", STEPS),
         Claim("3.3b", "with a smaller step the curves repeat more often",
               outcome(crossings[1] > crossings[0]),
-              f"upper rod through the vertical: {crossings[0]} times with h = 0.01 s, "
-              f"{crossings[1]} with 0.005 s"),
+              f"the upper rod passes the vertical {crossings[0]} times with h = 0.01 s and "
+              f"{crossings[1]} times with h = 0.005 s"),
         Claim("3.3c", "RK1 to RK4 give the same pattern, but oscillate differently", "untestable",
-              "the figures are lost and may be four plots of one run; with h = 0.01 s methods of "
-              f"orders 1 to 4 end {', '.join(f'{x:.1g}' for x in methods)} rad from the motion",
-              STEPS),
+              "the figures are lost and may show one run four times; with h = 0.01 s the errors of "
+              f"methods of orders 1 to 4 are {_listed(methods, '.1g')} rad at 5 s", STEPS),
         Claim("3.3d", "Runge-Kutta is the best tool to measure the error", "untestable",
-              "the rule (20) to (25) has no embedded weights and measures no error", TOLERANCES),
+              "the rule (20) to (25) has no embedded weights and estimates no error", TOLERANCES),
     ]  # fmt: skip
 
 
@@ -68,13 +115,14 @@ def _chapter_4(e: Evidence) -> list[Claim]:
     change = 100 * e.energy_change(e.stepped("RK1", 0.01), e.prose)
     return [
         Claim("4.1", "the pendulum moves extremely for the whole 5 s", "untestable",
-              f"'extremely' has no measure; the lower rod sweeps {turns:.2f} turns"),
+              f"the report does not define 'extremely'; the lower rod sweeps {turns:.2f} turns"),
         Claim("4.2", "Euler's method is unsuitable for as long as 5 s", outcome(euler > 0.1),
-              f"h = 0.01 s: energy off by {change:.0f} %, angles by {euler:.2g} rad; yet what 4.2 "
-              "shows are the Euler-Lagrange equations, which are no such method", STEPS),
+              f"with h = 0.01 s the error of the energy is {change:.0f} % and that of the angles "
+              f"{euler:.2g} rad; but section 4.2 shows the Euler-Lagrange equations, not Euler's "
+              "method", STEPS),
         Claim("4.3", "Runge-Kutta is the best, for its curves are smooth", outcome(rough < 1e-3),
-              f"RK4 with h = 0.1 s draws a smooth curve, too, and is {rough:.2g} rad off at 5 s",
-              CHART),
+              "the curve of RK4 with h = 0.1 s is smooth, too, and its error at 5 s is "
+              f"{rough:.2g} rad", CHART),
     ]  # fmt: skip
 
 
@@ -85,24 +133,55 @@ def _chapter_5(e: Evidence) -> list[Claim]:
     third_error = np.abs(third[:2, -1] - e.motion(e.third)[:2, -1]).max()
     return [
         Claim("5a", "the motion depends sensitively on its start", outcome(growth[1] > 1e3),
-              f"1e-9 rad has grown {growth[0]:.3g} times after 5 s, {growth[1]:.3g} after 20 s",
-              CHAOS),
+              f"a difference of 1e-9 rad grows by a factor of {growth[0]:.3g} in 5 s and of "
+              f"{growth[1]:.3g} in 20 s", CHAOS),
         Claim("5b", "Lagrange's and Hamilton's equations are related to each other",
               outcome(e.disagreement < 1e-8),
-              f"both forms give one motion: {e.disagreement:.1g} rad apart at 5 s", CHART),
+              f"both forms give the same motion: at 5 s they differ by {e.disagreement:.1g} rad",
+              CHART),
         Claim("5c", "with the same data, Runge-Kutta beats Lagrange's and Euler's method",
               "untestable",
-              "the data differ (3.2a), and Lagrange's equations are what Runge-Kutta solves",
+              "the data differ (3.2a), and Lagrange's equations are those that Runge-Kutta solves",
               CHART),
         Claim("5d", "Euler's method suits short steps only",
               outcome(euler[0] > 0.1 > euler[1]),
-              f"off by {euler[0]:.2g} rad with h = 0.05 s, by {euler[1]:.2g} with 0.0001 s", STEPS),
+              f"its error is {euler[0]:.2g} rad with h = 0.05 s and {euler[1]:.2g} rad with "
+              "h = 0.0001 s", STEPS),
         Claim("5e", "Runge-Kutta is better than Euler's method for long and for short steps",
               outcome(all(a < b for a, b in zip(rk4, euler, strict=True))),
-              f"h = 0.05 s: {rk4[0]:.2g} against {euler[0]:.2g} rad; h = 0.0001 s: {rk4[1]:.1g} "
-              f"against {euler[1]:.2g}; yet with h = 0.1 s it is off by {e.error('RK4', 0.1):.2g}",
-              STEPS),
+              f"errors of RK4 and Euler's method: {rk4[0]:.2g} and {euler[0]:.2g} rad with "
+              f"h = 0.05 s, {rk4[1]:.1g} and {euler[1]:.2g} rad with h = 0.0001 s; with h = 0.1 s "
+              f"that of RK4 is {e.error('RK4', 0.1):.2g} rad", STEPS),
         Claim("B3", "5000 steps of 0.01 s are enough for program 3", outcome(third_error < 1e-3),
-              f"its angles at 50 s are off by {third_error:.1g} rad, its energy by "
-              f"{e.energy_change(third, e.third):.1g} of what is in play"),
+              f"at 50 s the error of the angles is {third_error:.1g} rad, and that of the energy "
+              f"{e.energy_change(third, e.third):.1g}, relative to the energy above rest"),
     ]  # fmt: skip
+
+
+def recommendations(e: Evidence) -> list[Claim]:
+    """Verdicts on the recommendations of the report."""
+    steps = (0.01, 1e-3, 1e-4)
+    euler, rk4 = [e.error("RK1", h) for h in steps], e.error("RK4", 0.02)
+    equal, below, above = (e.exponent(**masses) for masses in ({}, {"m2": 3.0}, {"m1": 3.0}))
+    return [
+        Claim("5f", "Euler's method gives better results with short steps",
+              outcome(euler[-1] < euler[0]),
+              f"its errors are {_listed(euler, '.1g')} rad with h = {_listed(steps, 'g')} s; that "
+              f"of RK4 is {rk4:.1g} rad with h = 0.02 s", STEPS),
+        *(
+            Claim(name, f"other masses can be used: {relation}",
+                  outcome(abs(mean.value - equal.value) > 3 * (mean.error + equal.error)),
+                  f"with {masses} the largest Lyapunov exponent is {mean.value:.2f} ± "
+                  f"{mean.error:.2f} per s instead of {equal.value:.2f} ± {equal.error:.2f}: a "
+                  "different motion, also chaotic",
+                  f"holonomic chart {scene}: work_precision_{scene}.png")
+            for name, relation, masses, scene, mean in (
+                ("5g", "m1 < m2", "m2 = 3 kg", "light_above", below),
+                ("5h", "m1 > m2", "m1 = 3 kg", "heavy_above", above),
+            )
+        ),
+    ]  # fmt: skip
+
+
+def _listed(numbers: Iterable[float], spec: str = "") -> str:
+    return ", ".join(f"{number:{spec}}" for number in numbers)

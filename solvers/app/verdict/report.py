@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -10,37 +11,32 @@ import generated.double_pendulum as double_pendulum
 from derive.verification.report.contexts import NUMBERS
 from derive.verification.report.judgement import verdicts
 from derive.verification.report.programs import PROSE, programs
-from solvers.app.verdict.claims import claims
+from derive.verification.table import table_row, table_width, verdict_rows, wrapped
+from derive.verification.verdict import Verdict
+from solvers.app.verdict.claims import claims, objectives, recommendations
 from solvers.app.verdict.evidence import Evidence, Setting
-from solvers.app.verdict.objectives import objectives, recommendations
 from solvers.runge_kutta.order_conditions import order
+
+#: Column where the details of a program start.
+MARGIN = 20
 
 
 def report_verdicts() -> dict[str, Any]:
-    """Verify the report's equations, programs and claims.
+    """Verdicts on the report's equations, programs and claims, as in ``holonomic verify --json``.
 
-    Returns
-    -------
-    dict
-        ``state``, the values for which residuals are evaluated; ``equations``, ``programs`` and
-        ``claims``, as ``holonomic verify --json`` prints them.
-
-    Examples
-    --------
-    >>> verdicts = report_verdicts()
-    >>> len(verdicts["equations"]), len(verdicts["programs"])
-    (150, 3)
+    ``state`` holds the values for which residuals are evaluated.
     """
     printed = programs()
-    settings = [_setting(PROSE), *(_setting(program.scene) for program in printed)]
+    settings = [_setting(scene) for scene in (PROSE, *(program.scene for program in printed))]
     evidence = Evidence(double_pendulum, *settings)
     equations = verdicts(order)
     counts = Counter(str(verdict.verdict) for verdict in equations)
     tested = [*objectives(evidence, counts), *claims(evidence), *recommendations(evidence)]
+    rows = [asdict(program) for program in printed]
     return {
         "state": NUMBERS,
         "equations": [asdict(verdict) for verdict in equations],
-        "programs": [_without_scene(asdict(program)) for program in printed],
+        "programs": [{k: v for k, v in row.items() if k != "scene"} for row in rows],
         "claims": [asdict(claim) for claim in tested],
     }
 
@@ -51,5 +47,28 @@ def _setting(scene: Any) -> Setting:
     return Setting(tuple(map(float, values)), tuple(map(float, initial)), float(scene.duration))
 
 
-def _without_scene(program: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in program.items() if key != "scene"}
+def tables(verdicts: Mapping[str, Any]) -> str:
+    """Format the verdicts of ``holonomic verify --json`` for the width of the terminal."""
+    width = table_width()
+    state = ", ".join(f"{name} = {value}" for name, value in verdicts["state"].items())
+    lines = [*verdict_rows([Verdict(**row) for row in verdicts["equations"]], width), ""]
+    lines += [wrapped(f"Residuals are evaluated at {state}.", width, 0), ""]
+    for program in verdicts["programs"]:
+        details = [f"solves: {program['solves']}"]
+        details += [f"does not run: {reason}" for reason in program["stops"]]
+        details += [f"differs: {reason}" for reason in program["differs"]]
+        lines += [f"{program['id']:<{MARGIN}}{program['title']}"]
+        lines += [*(wrapped(detail, width, MARGIN) for detail in details), ""]
+    for claim in verdicts["claims"]:
+        details = [claim["number"], *([f"see {claim['figure']}"] if claim["figure"] else [])]
+        lines += table_row((claim["id"], claim["verdict"], claim["claim"]), details, width)
+    lines += ["", "Lines that end in ... are complete in: holonomic verify --json"]
+    lines += [f"equations: {counted(verdicts['equations'])}"]
+    lines += [f"claims:    {counted(verdicts['claims'])}"]
+    return "\n".join(lines) + "\n"
+
+
+def counted(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Count the verdicts: ``150 (119 verified, …)``."""
+    counts = Counter(row["verdict"] for row in rows).most_common()
+    return f"{len(rows)} ({', '.join(f'{n} {name}' for name, n in counts)})"
