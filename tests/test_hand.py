@@ -12,7 +12,7 @@ from mutation import Mutation
 
 from derive import Derivation, load, names
 from derive.system.catalogue import published
-from derive.verification.hand.reading import judge
+from derive.verification.hand import judge
 from derive.verification.model import Model
 from derive.verification.quantities import judge_formula
 from derive.verification.verdict import Verdict

@@ -11,7 +11,7 @@ import pytest
 
 import generated.double_pendulum as dp
 from derive.commands import systems
-from derive.verification.hand.reading import EQUATIONS, HEADER
+from derive.verification.hand import EQUATIONS, HEADER
 from derive.verification.verdict import Verdict, VerdictName
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
-from derive.verification.hand.reading import HandDerivation, judge
+from derive.verification.hand import HandDerivation, judge
 from derive.verification.table import table_width, verdict_rows, wrapped
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import RELATION, ExpressionError, Scope, Value, parse
+from derive.formulas.expression import RELATION, ExpressionError, Scope, parse
 from derive.formulas.zero import is_positive, vanishes
 
 State = Mapping[sp.Symbol, sp.Expr]
@@ -58,7 +58,7 @@ class Context:
     substitutions: tuple[State, ...] = ()
     index_count: int = 0  # an index takes the values 1 to index_count
 
-    def check(self, text: str, definitions: Mapping[str, Value] | None = None) -> Check:
+    def check(self, text: str, definitions: Scope | None = None) -> Check:
         """Check every part of `text`, with additional names from `definitions`."""
         for index, comparison in enumerate(self.comparisons(text, definitions)):
             residual = comparison.residual
@@ -69,9 +69,7 @@ class Context:
                 return Check(False, index, sp.sstr(_value(residual, self.states[0]).n(6)))
         return Check(holds=True)
 
-    def comparisons(
-        self, text: str, definitions: Mapping[str, Value] | None = None
-    ) -> list[Comparison]:
+    def comparisons(self, text: str, definitions: Scope | None = None) -> list[Comparison]:
         """Split `text` into comparisons of two numbers each."""
         scope = {**self.scope, **(definitions or {})}
         return [
@@ -86,7 +84,7 @@ class Context:
         if not all(is_small(expression, state) for state in self.states):
             return False
         for substitution in self.substitutions:
-            expression = expression.xreplace(dict(substitution))
+            expression = expression.xreplace(substitution)
         try:
             return vanishes(expression)
         except NotImplementedError:
@@ -114,21 +112,15 @@ def _compared(text: str, scope: Scope) -> Iterator[Comparison]:
         raise ExpressionError(f"{text.strip()[:80]!r} is not a statement: it has no =, < or >")
     sides = [parse(piece, scope) for piece in pieces[::2]]
     for left, relation, right in zip(sides, pieces[1::2], sides[1:], strict=False):
-        larger, smaller = (right, left) if "<" in relation else (left, right)
-        for residual in _differences(larger, smaller):
-            yield Comparison(relation, residual, _is_matrix(left) == _is_matrix(right))
-
-
-def _is_matrix(side: Value) -> bool:
-    return isinstance(side, sp.MatrixBase)
-
-
-def _differences(left: Value, right: Value) -> list[sp.Expr]:
-    """Left minus right, entry by entry; a number beside a matrix stands for each entry."""
-    if not _is_matrix(left) and not _is_matrix(right):
-        return [left - right]
-    ones = sp.ones(*(left if _is_matrix(left) else right).shape)
-    left, right = (side if _is_matrix(side) else side * ones for side in (left, right))
-    if left.shape != right.shape:
-        raise ExpressionError(f"cannot compare matrices of shapes {left.shape} and {right.shape}")
-    return list(left - right)
+        pair = (right, left) if "<" in relation else (left, right)
+        shapes = [side.shape for side in pair if isinstance(side, sp.MatrixBase)]
+        if len(set(shapes)) > 1:
+            raise ExpressionError(
+                f"cannot compare matrices of shapes {' and '.join(map(str, shapes))}"
+            )
+        if len(shapes) == 1:  # a number beside a matrix stands for each entry
+            ones = sp.ones(*shapes[0])
+            pair = tuple(s if isinstance(s, sp.MatrixBase) else s * ones for s in pair)
+        difference = pair[0] - pair[1]
+        for residual in difference if shapes else [difference]:
+            yield Comparison(relation, residual, comparable=len(shapes) != 1)

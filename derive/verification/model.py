@@ -36,12 +36,10 @@ class Model:
 
     def holds_along_motions(self, residual: sp.Expr) -> bool:
         """Whether an equation of motion holds with the derived accelerations, in numbers."""
-        accelerations = self.derivation.system.qddot
+        derivation, accelerations = self.derivation, self.derivation.system.qddot
         for state in self.context.states:
-            M, f = (
-                matrix.evalf(DIGITS, subs=state)
-                for matrix in (self.derivation.mass_matrix, self.derivation.forcing)
-            )
+            M = derivation.mass_matrix.evalf(DIGITS, subs=state)
+            f = derivation.forcing.evalf(DIGITS, subs=state)
             solved = {**state, **dict(zip(accelerations, M.LUsolve(f), strict=True))}
             derivatives = [residual.diff(a).evalf(DIGITS, subs=solved) for a in accelerations]
             # an identity, which holds with any accelerations, is not an equation of motion

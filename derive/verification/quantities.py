@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import partial
+from itertools import chain
 
 import sympy as sp
 
@@ -22,16 +23,10 @@ from derive.verification.terms import (
 from derive.verification.verdict import Verdict
 
 
-def _hamilton(derivation: Derivation, name: str) -> sp.Expr:
-    velocities, momentum_rates = derivation.hamilton_equations
+def _entry(derivation: Derivation, entries: Iterable[sp.Expr], name: str) -> sp.Expr:
+    """The entry for a coordinate, or for its momentum: these follow, and their names have p_."""
     names = [q.name for q in derivation.system.q]
-    if name in names:
-        return velocities[names.index(name)]
-    return momentum_rates[names.index(name.removeprefix("p_"))]
-
-
-def _entry(derivation: Derivation, column: sp.Matrix, name: str) -> sp.Expr:
-    return column[[q.name for q in derivation.system.q].index(name)]
+    return [*entries][[*names, *(f"p_{q}" for q in names)].index(name)]
 
 
 #: The derived formula of each quantity; the last three have one for each coordinate.
@@ -43,7 +38,7 @@ QUANTITIES: dict[str, Callable[[Derivation, str], sp.Expr]] = {
     "hamiltonian": lambda d, _: d.hamiltonian,
     "momenta": lambda d, name: _entry(d, d.momenta, name),
     "accelerations": lambda d, name: _entry(d, d.accelerations, name),
-    "hamilton": _hamilton,
+    "hamilton": lambda d, name: _entry(d, chain(*d.hamilton_equations), name),
 }
 #: Functions of momenta instead of velocities, and quantities with an arbitrary constant.
 CANONICAL = ("hamiltonian", "hamilton")
@@ -55,9 +50,8 @@ def judge_formula(label: str, text: str, model: Model, kind: str, coordinate: st
     try:
         if kind == "euler_lagrange":
             return _judge_equation_of_motion(label, text, model)
-        return _judge_quantity(
-            label, text, model, kind, QUANTITIES[kind](model.derivation, coordinate)
-        )
+        derived = QUANTITIES[kind](model.derivation, coordinate)
+        return _judge_quantity(label, text, model, kind, derived)
     except ExpressionError as error:
         return Verdict(label, "unreadable", text, note=str(error))
 
@@ -76,14 +70,15 @@ def _judge_quantity(label: str, text: str, model: Model, kind: str, derived: sp.
         return verdict(verdict="verified")
     if kind == "lagrangian" and _is_gauge_term(difference, model):
         return verdict(verdict="equivalent", note="it has the same equations of motion")
-    if kind == "energy" and is_zero(
-        value - derivation.kinetic_energy - derivation.potential_energy
-    ):
+    total = derivation.kinetic_energy + derivation.potential_energy
+    if kind == "energy" and is_zero(value - total):
         note = "it is T + V; Jacobi's integral, the value of H, is another quantity"
         return verdict(verdict="verified", note=note)
     if kind in UP_TO_A_CONSTANT and all(is_zero(difference.diff(s)) for s in model.variables):
         return verdict(verdict="equivalent", note="it differs by a constant")
-    return _wrong(label, text, model, value, derived, _wrong_term_of_quotient(text, model, derived))
+    wrong_term = _wrong_term_of_quotient(text, model, derived)
+    evidence = _evidence(model, value, derived, wrong_term)
+    return verdict(verdict="wrong", correction=str(derived), **evidence)
 
 
 def _is_gauge_term(difference: sp.Expr, model: Model) -> bool:
@@ -139,27 +134,16 @@ def _judge_equation_of_motion(label: str, text: str, model: Model) -> Verdict:
     if model.holds_along_motions(value):
         return verdict(verdict="verified", note="it is a combination of the equations of motion")
     wrong_term = first_wrong_term(terms, derived, model.variables)
-    return _wrong(label, text, model, value, derived, wrong_term, " = 0")
+    evidence = _evidence(model, value, derived, wrong_term)
+    return verdict(verdict="wrong", correction=f"{derived} = 0", **evidence)
 
 
-def _wrong(
-    label: str,
-    text: str,
-    model: Model,
-    value: sp.Expr,
-    derived: sp.Expr,
-    wrong_term: WrongTerm | None,
-    right_side: str = "",
-) -> Verdict:
-    """Build the verdict on a wrong formula; in unusual quotients no single term is identified."""
-    state = model.context.states[0]
-    numbers = [sp.sstr(expression.evalf(8, subs=state)) for expression in (value, derived)]
-    return Verdict(
-        label,
-        "wrong",
-        text,
-        correction=f"{derived}{right_side}",
-        wrong_term=wrong_term.text if wrong_term else "",
-        correct_term=str(wrong_term.correct) if wrong_term else "",
-        witness=" instead of ".join(numbers),
-    )
+def _evidence(
+    model: Model, value: sp.Expr, derived: sp.Expr, wrong_term: WrongTerm | None
+) -> dict[str, str]:
+    """Fields of the verdict on a wrong formula; in unusual quotients no term is identified."""
+    values = [x.evalf(8, subs=model.context.states[0]) for x in (value, derived)]
+    fields = {"witness": " instead of ".join(map(sp.sstr, values))}
+    if wrong_term:
+        fields |= {"wrong_term": wrong_term.text, "correct_term": str(wrong_term.correct)}
+    return fields

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from shutil import get_terminal_size
-from textwrap import fill, shorten
+from textwrap import TextWrapper, shorten
 
 from derive.verification.verdict import Verdict
 
@@ -21,9 +21,17 @@ def verdict_rows(verdicts: Sequence[Verdict], width: int) -> Iterator[str]:
     """Yield the lines of a table of verdicts; only correct equations are abbreviated."""
     id_width = max((len(one.id) for one in verdicts), default=0) + 2
     for one in verdicts:
-        details = [f"{title}: {text}" for title, text in _details(one) if text]
+        details = {
+            "wrong term": one.wrong_term,
+            "correct term" if one.wrong_term else "missing term": one.correct_term,
+            "correct form": one.correction,
+            "residual": one.residual and f"{one.residual} = {one.witness}",
+            "value": "" if one.residual else one.witness,
+            "note": one.note,
+        }
+        lines = [f"{title}: {text}" for title, text in details.items() if text]
         whole = one.verdict in ("misprint", "wrong", "unreadable")
-        yield from table_row((one.id, one.verdict, one.printed), details, width, id_width, whole)
+        yield from table_row((one.id, one.verdict, one.printed), lines, width, id_width, whole)
 
 
 def table_row(
@@ -41,29 +49,11 @@ def table_row(
         yield head + wrapped(text, width, margin).lstrip()
     else:
         yield head + shorten(text, width - margin, placeholder=" ...")
-    for detail in details:
-        yield wrapped(detail, width, margin)
+    yield from (wrapped(detail, width, margin) for detail in details)
 
 
 def wrapped(text: str, width: int, margin: int) -> str:
     """Wrap `text` with a left margin, and indent all lines but the first."""
-    return fill(
-        text,
-        width,
-        initial_indent=" " * margin,
-        subsequent_indent=" " * (margin + 2),
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-
-
-def _details(one: Verdict) -> Iterator[tuple[str, str]]:
-    if one.wrong_term:
-        yield "wrong term", one.wrong_term
-    yield "correct term" if one.wrong_term else "missing term", one.correct_term
-    yield "correct form", one.correction
-    if one.residual:
-        yield "residual", f"{one.residual} = {one.witness}"
-    else:
-        yield "value", one.witness
-    yield "note", one.note
+    wrapper = TextWrapper(width, break_long_words=False, break_on_hyphens=False)
+    wrapper.initial_indent, wrapper.subsequent_indent = " " * margin, " " * (margin + 2)
+    return wrapper.fill(text)

@@ -25,6 +25,9 @@ class Term:
     side: int = 1  # -1 on the right of an equation
 
 
+Terms = Collection[Term]
+
+
 @dataclass(frozen=True)
 class WrongTerm:
     """The first wrong term of a formula as printed, empty if one is missing, and its correction."""
@@ -36,14 +39,11 @@ class WrongTerm:
 def split_terms(text: str, scope: Scope, side: int = 1) -> list[Term]:
     """Split a formula into its terms, in printed order."""
     text = text.strip()
-    return [
-        Term(
-            f"{'' if sign > 0 else '-'}{ast.unparse(node)}",
-            side * sign * evaluate(node, text, scope),
-            side,
-        )
-        for sign, node in _summands(syntax_tree(text), 1)
-    ]
+    terms = []
+    for sign, node in _summands(syntax_tree(text), 1):
+        printed = f"{'' if sign > 0 else '-'}{ast.unparse(node)}"
+        terms.append(Term(printed, side * sign * evaluate(node, text, scope), side))
+    return terms
 
 
 def _summands(node: ast.expr, sign: int) -> Iterator[tuple[int, ast.expr]]:
@@ -63,24 +63,21 @@ def coefficients(expression: sp.Expr, state: Symbols) -> Coefficients:
     for term in sp.Add.make_args(sp.expand(harmonics(expression))):
         coefficient, function = term.as_independent(*state, as_Add=False)
         totals[function] = totals.get(function, sp.S.Zero) + coefficient
-    reduced = {function: sp.cancel(coefficient) for function, coefficient in totals.items()}
-    return {function: coefficient for function, coefficient in reduced.items() if coefficient}
+    return {f: reduced for f, coefficient in totals.items() if (reduced := sp.cancel(coefficient))}
 
 
-def _pair(
-    terms: Collection[Term], derived: sp.Expr, state: Symbols
-) -> tuple[Coefficients, Coefficients]:
+def _pair(terms: Terms, derived: sp.Expr, state: Symbols) -> tuple[Coefficients, Coefficients]:
     total = sp.Add(*(term.value for term in terms))
     return coefficients(total, state), coefficients(derived, state)
 
 
-def differing_functions(terms: Collection[Term], derived: sp.Expr, state: Symbols) -> list[sp.Expr]:
+def differing_functions(terms: Terms, derived: sp.Expr, state: Symbols) -> list[sp.Expr]:
     """Functions of the state that have different coefficients in the sum and in `derived`."""
     a, b = _pair(terms, derived, state)
     return [f for f in {**a, **b} if sp.cancel(a.get(f, 0) - b.get(f, 0))]
 
 
-def first_wrong_term(terms: Collection[Term], derived: sp.Expr, state: Symbols) -> WrongTerm | None:
+def first_wrong_term(terms: Terms, derived: sp.Expr, state: Symbols) -> WrongTerm | None:
     """Return the first term that differs from `derived`; None if no term differs."""
     differing = differing_functions(terms, derived, state)
     if not differing:
@@ -92,15 +89,14 @@ def first_wrong_term(terms: Collection[Term], derived: sp.Expr, state: Symbols) 
     for term, own in by_term:
         if wrong := [function for function in differing if function in own]:
             others = {f: sp.cancel(printed.get(f, 0) - own[f]) for f in wrong}
-            replacement = sp.Add(
-                *((correct.get(f, 0) - others.get(f, 0)) * f for f in [*wrong, *missing])
-            )
-            return WrongTerm(term.text, _collected(term.side * replacement, state))
+            functions = [*wrong, *missing]
+            total = sp.Add(*((correct.get(f, 0) - others.get(f, 0)) * f for f in functions))
+            return WrongTerm(term.text, _collected(term.side * total, state))
     return WrongTerm("", _collected(sp.Add(*(correct[f] * f for f in missing)), state))
 
 
 def common_factor(
-    terms: Collection[Term], derived: sp.Expr, state: Symbols, decisive: Symbols = ()
+    terms: Terms, derived: sp.Expr, state: Symbols, decisive: Symbols = ()
 ) -> sp.Expr:
     """Return the factor, made of parameters, by which most terms differ from those of `derived`."""
     printed, correct = _pair(terms, derived, state)

@@ -22,10 +22,8 @@ from solvers.io.toml_input import InputError
 #: Quantities with one formula for each coordinate.
 BY_COORDINATE = ("momenta", "accelerations", "hamilton")
 #: Keys of a file that describe the equations, and keys of equations.
-HEADER, EQUATIONS = (
-    ("system", "source", "note", "equal", "names"),
-    (*QUANTITIES, "euler_lagrange"),
-)
+HEADER = ("system", "source", "note", "equal", "names")
+EQUATIONS = (*QUANTITIES, "euler_lagrange")
 
 
 @dataclass(frozen=True)
@@ -39,46 +37,27 @@ class HandDerivation:
 
 
 def judge(source: str | Path) -> HandDerivation:
-    """Judge every equation in a file, or every published equation of a system.
+    """Judge every equation of a file that ends in ``.toml``, or of a system that ships.
 
-    Parameters
-    ----------
-    source : str or path
-        The path of a TOML file, which ends in ``.toml``, or the name of a system that ships.
-
-    Returns
-    -------
-    HandDerivation
-        With a verdict on each equation, unreadable equations included.
-
-    Raises
-    ------
-    InputError
-        When the file is invalid, or the system has no published equations.
-    ExpressionError
-        When the value of a parameter is not a formula.
-    UnknownSystemError
-        When no system has this name.
-    SystemDefinitionError
-        When the file of the system is invalid.
+    Unreadable equations have a verdict, too. An `InputError` describes an invalid file, or a
+    system without published equations; an `ExpressionError`, an invalid value of a parameter.
     """
-    path = Path(source)
+    path, label, folder = Path(source), str(source), Path()
     if path.suffix == ".toml":
-        return judge_tables(read(path), str(path), path.parent)
-    text = published(str(source))
-    if not text:
-        raise InputError(f"the file of system {str(source)!r} has no published equations")
-    return judge_tables(tomllib.loads(text), str(source))
-
-
-def judge_tables(values: Mapping[str, Any], label: str, folder: Path = Path()) -> HandDerivation:
-    """Judge the equations in parsed TOML; errors refer to it as `label`."""
+        values, label, folder = read(path), str(path), path.parent
+    elif text := published(label):
+        values = tomllib.loads(text)
+    else:
+        raise InputError(f"the file of system {label!r} has no published equations")
     table = Table(label, values, (*HEADER, *EQUATIONS))
     name = table.text("system")
     system = load(folder / name if name.endswith(".toml") else name)
     names = table.entries("names")
     model = Model(Derivation(_with_equal_parameters(table, system)), _meanings(names, system))
-    verdicts = [judge_formula(*row) for row in _formulas(table, system, names, model)]
+    verdicts = [
+        judge_formula(key, text, model, kind, coordinate)
+        for key, text, kind, coordinate in _formulas(table, system, names)
+    ]
     if not verdicts:
         raise InputError(f"{label} has no equations: give at least one of {', '.join(EQUATIONS)}")
     return HandDerivation(name, table.text("source", ""), table.text("note", ""), tuple(verdicts))
@@ -115,9 +94,9 @@ def _meanings(names: Mapping[str, str], system: System) -> dict[str, Any]:
 
 
 def _formulas(
-    table: Table, system: System, names: Mapping[str, str], model: Model
-) -> Iterator[tuple[str, str, Model, str, str]]:
-    """Arguments of `judge_formula` for each equation."""
+    table: Table, system: System, names: Mapping[str, str]
+) -> Iterator[tuple[str, str, str, str]]:
+    """Label, text, kind and coordinate of each equation."""
     coordinates = {q.name: q.name for q in system.q}
     coordinates |= {name: text for name, text in names.items() if text in coordinates}
     momenta = {f"p_{name}": f"p_{q}" for name, q in coordinates.items()}
@@ -126,9 +105,9 @@ def _formulas(
             keys = coordinates | momenta if kind == "hamilton" else coordinates
             row = Table(kind, table.values[kind], [*keys])
             for key in row.values:
-                yield f"{kind}.{key}", row.formula(key), model, kind, keys[key]
+                yield f"{kind}.{key}", row.formula(key), kind, keys[key]
         elif kind == "euler_lagrange":
             for number, text in enumerate(table.formulas(kind), 1):
-                yield f"{kind} {number}", text, model, kind, ""
+                yield f"{kind} {number}", text, kind, ""
         elif kind in QUANTITIES:
-            yield kind, table.formula(kind), model, kind, ""
+            yield kind, table.formula(kind), kind, ""

@@ -1,1 +1,0 @@
-"""Hand derivations in TOML files, judged equation by equation."""
