@@ -12,22 +12,7 @@ TEMPLATE = Path(__file__).with_name("document.html")
 
 
 def document(title: str, body: str, *, style: str, script: str) -> str:
-    """A page as text.
-
-    Parameters
-    ----------
-    title : str
-        Plain text.
-    body : str
-        HTML. Its style attributes and scripts are blocked.
-    style, script : str
-        The only ones that the browser applies and runs.
-
-    Returns
-    -------
-    str
-        HTML, a whole file.
-    """
+    """A page as text; the browser applies and runs no other style and script."""
     # Template substitutes once, so that nothing is substituted in the texts themselves
     values = {"title": escape(title), "style": style, "body": body, "script": script}
     template = Template(TEMPLATE.read_text(encoding="utf-8"))

@@ -70,23 +70,7 @@ class Page:
 
 
 def player(tracks: Sequence[Track]) -> str:
-    """The part of a page that plays `tracks`; it needs `style` and `script`.
-
-    Parameters
-    ----------
-    tracks : sequence of Track
-        The runs, one at least.
-
-    Returns
-    -------
-    str
-        HTML for the body of a page.
-
-    Raises
-    ------
-    ValueError
-        When there is no track, or one cannot be played; the message states the reason.
-    """
+    """The part of a page that plays `tracks`, as HTML; it needs `style` and `script`."""
     _check(tracks)
     motions = json.dumps([track.json_values() for track in tracks], separators=(",", ":"))
     return Template(_source("player.html")).substitute(motions=_escaped(motions))

@@ -24,25 +24,7 @@ class MassMatrixWarning(UserWarning):
 
 
 def check_masses(module: GeneratedModule, params: Sequence[float], y0: Sequence[float]) -> None:
-    """Refuse coordinates with hardly any inertia of their own; those without any are permitted.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    params, y0 : sequence of float
-        In the order of ``module.PARAMETERS`` and ``module.STATE``.
-
-    Raises
-    ------
-    ValueError
-        When the mass matrix is singular to rounding.
-
-    Warns
-    -----
-    MassMatrixWarning
-        When it nearly is.
-    """
+    """Refuse a nearly singular mass matrix, or warn; coordinates without inertia are permitted."""
     n = len(module.COORDINATES)
     worst, weakest = 0.0, ""
     for state in (y0, [y0[0]] * n + [0.0] * n):  # the initial state, and all coordinates equal

@@ -22,18 +22,7 @@ def mass_positions(result: SceneResult) -> np.ndarray:
 
 
 def projected(positions: np.ndarray) -> np.ndarray:
-    """Positions on the plane of view: unchanged in the plane, an oblique view in space.
-
-    Parameters
-    ----------
-    positions : ndarray of shape (masses, axes, samples)
-        In m, with 2 or 3 axes.
-
-    Returns
-    -------
-    ndarray of shape (masses, 2, samples)
-        In m, to the right and up, without perspective.
-    """
+    """Positions on the plane of view, shape (masses, 2, samples): unchanged in the plane."""
     if positions.shape[1] == 2:
         return positions
     x, y, z = np.moveaxis(positions, 1, 0)
@@ -43,23 +32,8 @@ def projected(positions: np.ndarray) -> np.ndarray:
 
 
 def links(result: SceneResult, positions: np.ndarray) -> list[tuple[int, int]]:
-    """Pairs of masses that are joined, by their indices; -1 is the origin.
-
-    Neighbours at a constant distance are joined, and a single mass whose distance from the origin
-    is a coordinate.
-
-    Parameters
-    ----------
-    result : SceneResult
-        The motion, with its coordinates.
-    positions : ndarray of shape (masses, axes, samples)
-        Its `mass_positions` in m.
-
-    Returns
-    -------
-    list of pairs of int
-        In the order of the masses, the previous mass first.
-    """
+    """Pairs of indices of joined masses, the previous mass first; -1 is the origin."""
+    # neighbours at a constant distance, or a single mass whose distance is a coordinate
     pairs = []
     previous = np.zeros(positions.shape[1:])
     for k, position in enumerate(positions):

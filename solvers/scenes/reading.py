@@ -31,27 +31,7 @@ KEYS = (*REQUIRED, "accuracy", "step", *LISTS, *TEXTS, "samples", "parameters", 
 
 
 def read(path: Path, load: Callable[[str], GeneratedModule]) -> Scene:
-    """The scene in a file.
-
-    Parameters
-    ----------
-    path : Path
-        A TOML file.
-    load : callable
-        Returns the generated module of a name; raises `LookupError` for an unknown one.
-
-    Returns
-    -------
-    Scene
-        Its name is that of the file without ``.toml``.
-
-    Raises
-    ------
-    InputError
-        When it is not valid.
-    OSError
-        When the file cannot be read.
-    """
+    """The scene in a TOML file; `InputError` where the file or a value is not valid."""
 
     def load_beside(name: str) -> GeneratedModule:
         # the path of a system file is relative to the folder of the scene
@@ -61,29 +41,7 @@ def read(path: Path, load: Callable[[str], GeneratedModule]) -> Scene:
 
 
 def scene(name: str, table: Mapping[str, Any], load: Callable[[str], GeneratedModule]) -> Scene:
-    """The scene of a parsed file.
-
-    Parameters
-    ----------
-    name : str
-        Name of the scene.
-    table : mapping
-        A scene's file, parsed.
-    load : callable
-        Returns the generated module of a name; raises `LookupError` for an unknown one.
-
-    Returns
-    -------
-    Scene
-        With the scenes beside it.
-
-    Raises
-    ------
-    InputError
-        When a key or its value is not valid.
-    ValueError
-        When values exclude each other.
-    """
+    """The scene of a parsed file; `InputError` or `ValueError` where it is not valid."""
     toml_input.check_keys("a scene", table, KEYS)
     missing = [key for key in REQUIRED if key not in table]
     if missing:

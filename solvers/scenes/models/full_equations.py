@@ -80,31 +80,8 @@ class FullEquations(Model):
 def integrated(
     motion: Motion, choice: MethodChoice, accuracy: float, checked: Motion
 ) -> FullEquations:
-    """The full equations at the largest tolerance or step that is sufficient.
-
-    Parameters
-    ----------
-    motion : Motion
-        The motion; its module may be a specialised one.
-    choice : MethodChoice
-        Method and form; and maybe a step size, which is then taken whatever its error.
-    accuracy : float
-        Largest permitted error.
-    checked : Motion
-        The same motion for the check, with general code.
-
-    Returns
-    -------
-    FullEquations
-        With the estimate of its error.
-
-    Raises
-    ------
-    NotAccurateError
-        When no run is sufficiently accurate, or none reaches its end.
-    TooLongError
-        When a run takes more steps than the limit.
-    """
+    """The full equations at the largest tolerance or step that is sufficient; else an error."""
+    # `checked` is the same motion with general code
     _check_length(checked, MAX_STEPS)
     if choice.step is not None:
         run = IntegrationRun(motion, choice, choice.step)
@@ -156,33 +133,7 @@ def _difference(motion: Motion, one: Array, other: Array) -> float:
 
 
 def by_series(motion: Motion, choice: MethodChoice, accuracy: float, times: Array) -> FullEquations:
-    """Taylor series with as many digits as are necessary.
-
-    Parameters
-    ----------
-    motion : Motion
-        The motion.
-    choice : MethodChoice
-        The series, and the form of the equations.
-    accuracy : float
-        Largest permitted error.
-    times : ndarray of shape (n,)
-        In s, increasing.
-
-    Returns
-    -------
-    FullEquations
-        With the states at `times`, and the seconds of their computation.
-
-    Raises
-    ------
-    NotAccurateError
-        When even the most digits are not sufficient.
-    TooLongError
-        When the motion has too many turns.
-    solvers.references.taylor.NoSeriesError
-        When the equations have no Taylor series, as in `taylor`.
-    """
+    """Taylor series with as many digits as are necessary; an error where even the most are not."""
     _check_length(motion, MOST_TURNS)
     if max(map(abs, motion.y0)) > LARGEST_ANGLE:
         raise TooLongError(f"angles above {LARGEST_ANGLE:g} rad: reduce them by whole turns")

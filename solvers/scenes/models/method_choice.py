@@ -79,21 +79,12 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
 
     Scenes of the same system are similar, and of these those with a similar spread of modes: a
     method that pays where the fastest mode is hundreds of times as fast as the slowest does not
-    where both are alike. Of equally similar scenes the first in the record counts.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    params : sequence of float
-        In the order of ``module.PARAMETERS``.
-    accuracy : float
-        Largest permitted error.
+    where both are alike. Of equally similar scenes the first in the record counts. Where nothing
+    recorded is as accurate, the choice with the smallest recorded error is returned.
 
     Returns
     -------
     MethodChoice
-        Where nothing recorded is as accurate, the choice with the smallest recorded error.
     """
     spread = mode_spread(module, params)
     scenes = [scene for scene in _record() if scene["system"] == module.SYSTEM] or _record()

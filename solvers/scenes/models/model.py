@@ -93,16 +93,9 @@ class ClosedForm(Model):
 def rounding_error(
     states: Callable[[Array], Array], y0: Sequence[float], sizes: Sequence[float]
 ) -> Array:
-    """Rounding error of a closed form, as the effect of rounding its initial state.
+    """Rounding error of a closed form at some times, as the effect of rounding its initial state.
 
-    Parameters
-    ----------
-    states : callable
-        Takes an initial state, returns states at some times, shape (n, state).
-    y0 : sequence of float
-        The initial state.
-    sizes : sequence of float
-        For each component the magnitude that is rounded.
+    `states` takes an initial state; `sizes` are the magnitudes that are rounded.
 
     Returns
     -------

@@ -21,20 +21,10 @@ SAME, STATES = 1e-12, 8
 
 @dataclass(frozen=True)
 class ReducedMotion:
-    """A motion reduced to its shape u.
+    """A motion reduced to its shape u: q = u shape + s rotation.
 
-    Attributes
-    ----------
-    motion : Motion
-        The motion.
-    shape, rotation : ndarray of shape (coordinates,)
-        q = u shape + s rotation; the latter is zero where no rotation is separated.
-    is_angle : bool
-        Whether u is periodic with 2π.
-    start : tuple of float
-        u, u', s at the start.
-    momentum, energy : float
-        L and E.
+    `rotation` is zero where none is separated; `start` holds u, u' and s; `momentum` and `energy`
+    are L and E.
     """
 
     motion: Motion
@@ -103,7 +93,7 @@ def _directions(motion: Motion) -> tuple[Array, Array]:
     angles = [k for k in inertial if module.UNITS[module.COORDINATES[k]] == "rad"]
     rotation = unit[angles].sum(axis=0)
     if len(inertial) != 2 or not angles:
-        raise OutsideDomainError(f"{len(inertial)} coordinates move")
+        raise OutsideDomainError(f"{len(inertial)} coordinates have inertia")
     if not _conserves_energy(motion, rotation):
         raise OutsideDomainError("rotating the whole system changes its energy")
     shapes = [k for k in inertial if k not in angles] or [inertial[-1]]

@@ -21,17 +21,7 @@ QUARTER = 40.0
 
 @dataclass(frozen=True)
 class Pendulum(ClosedForm):
-    """One angle obeys θ̈ = -ω² sin(θ - bottom); other coordinates have no inertia.
-
-    Attributes
-    ----------
-    coordinate, n_coordinates : int
-        Index of the angle, and number of coordinates.
-    start : pair of float
-        Initial angle and velocity.
-    omega_squared, bottom : float
-        ω² in 1/s², and the stable equilibrium.
-    """
+    """One angle obeys θ̈ = -ω² sin(θ - bottom); other coordinates have no inertia."""
 
     name: ClassVar[str] = "pendulum"
     complexity: ClassVar[int] = 30
@@ -48,7 +38,7 @@ class Pendulum(ClosedForm):
     def of(cls, motion: Motion) -> Self:
         """The closed form, with its rounding error."""
         if len(motion.inertial) != 1:
-            raise OutsideDomainError(f"{len(motion.inertial)} coordinates move")
+            raise OutsideDomainError(f"{len(motion.inertial)} coordinates have inertia")
         reduced, k = ReducedMotion.of(motion), motion.inertial[0]
         u = 2 * np.pi * np.arange(ANGLES) / ANGLES
         mu, W, _, _ = reduced.parts(u)

@@ -68,15 +68,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Path:
-    """The path of u as a function of the phase: u = centre - amplitude cos φ, or ±φ.
-
-    Attributes
-    ----------
-    centre, amplitude : float
-        An amplitude of 0 denotes u = direction φ.
-    direction : float
-        Sign of the initial velocity.
-    """
+    """u = centre - amplitude cos φ; with amplitude 0, u = direction φ."""
 
     centre: float
     amplitude: float
@@ -97,22 +89,9 @@ class Path:
 
 @dataclass(frozen=True)
 class Orbit:
-    """A motion of one degree of freedom by its phase.
+    """A motion of one degree of freedom: `time` and `rotation` are the series of G and S.
 
-    Attributes
-    ----------
-    reduced : ReducedMotion
-        The motion.
-    path : Path
-        u as a function of φ.
-    time, rotation : Series
-        G and S.
-    phase : float
-        φ at the start.
-    period_error : float
-        Relative error of the period.
-    turning_point_error, rate_error : float
-        Errors of turning points and of velocities.
+    `phase` is φ at the start; the error of the period is relative.
     """
 
     reduced: ReducedMotion

@@ -42,29 +42,13 @@ def select_model(
 ) -> ModelSelection:
     """The simplest model whose error stays below the requested accuracy.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    specialise : callable
-        Takes a motion and a method choice; returns the motion with the module to integrate.
-    report : callable
-        Called with the progress.
+    A closed form that the scene names is selected whatever its error. `specialise` takes a motion
+    and a method choice, and returns the motion with the module to integrate; `report` is called
+    with the progress. The errors are those of `solvers.scenes.run.run_scene`.
 
     Returns
     -------
     ModelSelection
-        A closed form that the scene names is selected whatever its error.
-
-    Raises
-    ------
-    solvers.scenes.models.integration_run.NotAccurateError
-        When even the full equations do not reach the requested accuracy.
-    solvers.scenes.models.integration_run.TooLongError
-        When they take more steps than the limit.
-    solvers.scenes.models.motion.OutsideDomainError
-        When the model that the scene names does not apply, when no requested component has
-        inertia, or when a coordinate of the full equations has none.
     """
     motion, models = motion_of(scene), closed_forms()
     if scene.model in models:
@@ -125,4 +109,4 @@ def _method_choice(scene: Scene) -> MethodChoice:
         return choice
     method = scene.method or choice.method
     form = scene.form or usual_form(scene.module, method)
-    return MethodChoice(method, form, "named in the scene", step=scene.step)
+    return MethodChoice(method, form, "method or form named in the scene", step=scene.step)
