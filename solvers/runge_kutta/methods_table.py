@@ -20,16 +20,10 @@ def methods_table() -> str:
 def _row(name: str, tableau: Tableau) -> str:
     stability = StabilityFunction.of(tableau)
     real, imaginary = stability.real_stability_interval, stability.imaginary_stability_interval
-    cells = (
-        f"`{name}`",
-        tableau.title,
-        "explicit" if tableau.is_explicit else "implicit",
-        tableau.order,
-        tableau.embedded_order or "",
-        tableau.stages,
-        *("∞" if x == inf else f"{x:.2f}" for x in (real, imaginary)),
-    )
-    return f"| {' | '.join(map(str, cells))} |"
+    kind = "explicit" if tableau.is_explicit else "implicit"
+    numbers = tableau.order, tableau.embedded_order or "", tableau.stages
+    limits = ("∞" if x == inf else f"{x:.2f}" for x in (real, imaginary))
+    return f"| {' | '.join(map(str, (f'`{name}`', tableau.title, kind, *numbers, *limits)))} |"
 
 
 if __name__ == "__main__":

@@ -1,10 +1,9 @@
 """The order of a Runge–Kutta method, by rooted trees.
 
-A method has order p when Σ b Φ(τ) = 1/γ(τ) for every rooted tree τ with at most
-p nodes (J. C. Butcher, Numerical Methods for Ordinary Differential Equations,
-section 315; E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential
-Equations I, theorem II.2.13). Exact coefficients must fulfil them exactly;
-published decimals within the rounding of their last digits.
+A method has order p when Σ b Φ(τ) = 1/γ(τ) for every rooted tree τ with at most p nodes (J. C.
+Butcher, Numerical Methods for Ordinary Differential Equations, section 315; E. Hairer,
+S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, theorem II.2.13): exactly for
+exact coefficients, within the rounding of their last digits for published decimals.
 """
 
 from __future__ import annotations
@@ -52,8 +51,7 @@ def order(A: Sequence[Sequence[Number]], b: Sequence[Number], most: int = 12) ->
     TypeError
         When fractions and decimals stand beside each other.
     """
-    with localcontext() as context:
-        context.prec = WORKING_DIGITS
+    with localcontext(prec=WORKING_DIGITS):
         conditions = _Conditions(A, b)
         for p in range(1, most + 1):
             if not all(map(conditions.hold, trees(p))):
@@ -98,11 +96,9 @@ class _Conditions:
         self._stage_weights: dict[Tree, list[Number]] = {}
         decimals = [x for x in (*(x for row in A for x in row), *b) if isinstance(x, Decimal)]
         self._digits = max((_digits(x) for x in decimals), default=0)
-        self._magnitudes = (
-            _Conditions([[abs(x) for x in row] for row in A], [abs(x) for x in b])
-            if any(x < 0 for x in decimals)
-            else self
-        )
+        self._magnitudes = self
+        if any(x < 0 for x in decimals):
+            self._magnitudes = _Conditions([[*map(abs, row)] for row in A], [*map(abs, b)])
 
     def weight(self, tree: Tree) -> Number:
         """Σ b Φ(tree)."""

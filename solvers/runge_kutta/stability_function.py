@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -11,6 +11,7 @@ from math import factorial, sqrt
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polymul, polysub
 from numpy.typing import ArrayLike
 
 from solvers.runge_kutta.sturm import nonnegative_interval
@@ -44,20 +45,10 @@ class StabilityFunction:
 
     @classmethod
     def of(cls, tableau: Tableau) -> StabilityFunction:
-        """The stability function of a method.
+        """The stability function of a method; the denominator of explicit methods is 1.
 
         Where coefficients are published as rounded decimals, those of R up to the
         method's order are 1/k! nevertheless, since its order is proved.
-
-        Parameters
-        ----------
-        tableau : Tableau
-            The method's coefficients.
-
-        Returns
-        -------
-        StabilityFunction
-            With a constant denominator 1 for explicit methods.
         """
         numerator, denominator = (list(map(_fraction, p)) for p in tableau.stability_function)
         if isinstance(tableau.b[0], Decimal):
@@ -67,24 +58,21 @@ class StabilityFunction:
 
     def __call__(self, z: ArrayLike) -> Any:
         """R(z) for complex z, in floating-point numbers."""
-        numerator, denominator = (
-            np.polyval([float(c) for c in reversed(part)], np.asarray(z))
-            for part in (self.numerator, self.denominator)
-        )
-        return numerator / denominator
+        P, Q = ([*map(float, reversed(part))] for part in (self.numerator, self.denominator))
+        return np.polyval(P, np.asarray(z)) / np.polyval(Q, np.asarray(z))
 
     @cached_property
     def real_stability_interval(self) -> float:
         """The largest x with |R| ≤ 1 on [-x, 0]; infinity if there is no largest."""
-        P, Q = (_reflected(part) for part in (self.numerator, self.denominator))
-        return nonnegative_interval(_difference(_product(Q, Q), _product(P, P)))
+        P, Q = _reflected(self.numerator), _reflected(self.denominator)
+        return nonnegative_interval(polysub(polymul(Q, Q), polymul(P, P)))
 
     @cached_property
     def imaginary_stability_interval(self) -> float:
         """The largest y with |R| ≤ 1 on [-iy, iy]; infinity if there is no largest."""
         # |Q(iy)|² - |P(iy)|² is a polynomial in y²
-        P, Q = (_square_on_imaginary_axis(part) for part in (self.numerator, self.denominator))
-        return sqrt(nonnegative_interval(_difference(Q, P)))
+        P, Q = map(_square_on_imaginary_axis, (self.numerator, self.denominator))
+        return sqrt(nonnegative_interval(polysub(Q, P)))
 
 
 def _fraction(number: Fraction | Surd | Decimal) -> Fraction:
@@ -97,25 +85,10 @@ def _fraction(number: Fraction | Surd | Decimal) -> Fraction:
     return Fraction(number)
 
 
-def _reflected(p: Polynomial) -> Polynomial:
+def _reflected(p: Iterable[Fraction]) -> Polynomial:
     return tuple(c if k % 2 == 0 else -c for k, c in enumerate(p))
-
-
-def _product(p: Sequence[Fraction], q: Sequence[Fraction]) -> Polynomial:
-    result = [Fraction(0)] * (len(p) + len(q) - 1)
-    for i, a in enumerate(p):
-        for j, b in enumerate(q):
-            result[i + j] += a * b
-    return tuple(result)
-
-
-def _difference(p: Polynomial, q: Polynomial) -> Polynomial:
-    size = max(len(p), len(q))
-    padded = ([*part, *[Fraction(0)] * (size - len(part))] for part in (p, q))
-    return tuple(a - b for a, b in zip(*padded, strict=True))
 
 
 def _square_on_imaginary_axis(p: Polynomial) -> Polynomial:
     """|p(iy)|² = p(z) p(-z) at z = iy, as a polynomial in y²."""
-    even = _product(p, _reflected(p))[::2]  # in z², and z² = -y²
-    return _reflected(even)
+    return _reflected(polymul(p, _reflected(p))[::2])  # only even powers, and z² = -y²

@@ -19,17 +19,9 @@ SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 
 @dataclass
 class Controller:
-    """Step sizes from error norms, of which 1 is the limit of acceptance.
+    """Step sizes from error norms; the error of a component may be atol + rtol * abs(y)."""
 
-    Parameters
-    ----------
-    order : int
-        Order of the error estimate.
-    rtol, atol : float or ndarray
-        The error of a component may be atol + rtol * abs(y).
-    """
-
-    order: int
+    order: int  # of the error estimate
     rtol: float
     atol: float | Array
     _previous: float = 1.0
@@ -63,8 +55,7 @@ class Controller:
     ) -> float:
         """The first step size, positive, from the change of the derivative over a very short step.
 
-        E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
-        section II.4.
+        As in the book above, section II.4.
         """
         allowed = self.atol + self.rtol * np.abs(y)
         d0, d1 = _rms(y, allowed), _rms(derivative, allowed)

@@ -1,8 +1,7 @@
 """One step of any Runge–Kutta method, explicit or implicit.
 
-A step can be repeated from the same start with a shorter h at the cost of its
-stages. States between steps are computed in this way, to the method's own order
-and without further coefficients.
+States between steps are those of a shorter step from the same start: they have the method's own
+order and need no further coefficients.
 """
 
 from __future__ import annotations
@@ -32,27 +31,15 @@ class NoConvergenceError(ArithmeticError):
 
 
 class Stepper:
-    """Steps of one method for one right-hand side.
+    """Steps of one method for one right-hand side; `nfev` and `njev` count the evaluations.
 
-    Parameters
-    ----------
-    tableau : Tableau
-        The method.
-    rhs : callable
-        ``rhs(t, y)``, an array of the state's shape.
-    jacobian : callable, optional
-        ``jacobian(t, y)``, state × state; implicit methods need it.
-
-    Attributes
-    ----------
-    nfev, njev : int
-        Evaluations so far.
+    Implicit methods need ``jacobian(t, y)``, state × state.
     """
 
     def __init__(self, tableau: Tableau, rhs: Rhs, jacobian: Rhs | None = None) -> None:
-        self._A = np.array([[float(a) for a in row] for row in tableau.A])
-        self._b, self._c = (np.array([float(x) for x in xs]) for xs in (tableau.b, tableau.c))
-        self._error_weights = np.array([[float(w) for w in row] for row in tableau.error_weights])
+        self._A = np.array(tableau.A, dtype=float)
+        self._b, self._c = np.array(tableau.b, dtype=float), np.array(tableau.c, dtype=float)
+        self._error_weights = np.array(tableau.error_weights, dtype=float)
         self._tableau, self._rhs, self._jacobian = tableau, rhs, jacobian
         self.nfev = self.njev = 0
 
@@ -72,30 +59,10 @@ class Stepper:
     def step(self, t: float, y: Array, h: float, first: Array) -> tuple[Array, Array, Array | None]:
         """The state after `h`, estimates of its local error, and the derivative there if known.
 
-        Parameters
-        ----------
-        t, y : float and ndarray
-            Time in s and state at the start of the step.
-        h : float
-            Length of the step in s, negative backwards.
-        first : ndarray
-            The derivative at the start.
-
-        Returns
-        -------
-        end : ndarray of shape (state,)
-            The state.
-        error : ndarray of shape (estimates, state)
-            One row of zeros for a method without an error estimate.
-        derivative : ndarray of shape (state,) or None
-            For methods whose last stage is the first of the next step.
-
-        Raises
-        ------
-        NotFiniteError
-            When a stage of an explicit method is not finite.
-        NoConvergenceError
-            When the stage equations of an implicit method are not solved.
+        `first` is the derivative at the start; that at the end is known if the last stage is the
+        first of the next step. Estimates are of shape (estimates, state): one row of zeros for a
+        method without any. An explicit stage raises `NotFiniteError`, implicit ones
+        `NoConvergenceError`.
         """
         stages = self._explicit if self._tableau.is_explicit else self._implicit
         k = stages(t, y, h, first)

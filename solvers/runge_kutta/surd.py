@@ -9,17 +9,7 @@ from math import sqrt
 
 @dataclass(frozen=True)
 class Surd:
-    """The number a + b√d, with a and b rational and d fixed in one computation.
-
-    Equal to a rational number only if b is 0; converts to the nearest float.
-
-    Parameters
-    ----------
-    a, b : Fraction
-        The rational part, and the factor of the root.
-    d : int
-        The number under the root, positive and no square.
-    """
+    """The number a + b√d, with a and b rational; d is fixed in one computation, and no square."""
 
     a: Fraction
     b: Fraction
@@ -39,11 +29,8 @@ class Surd:
 
     def __mul__(self, other: Surd | Fraction | int) -> Surd:
         other = self._surd(other)
-        return Surd(
-            self.a * other.a + self.d * self.b * other.b,
-            self.a * other.b + self.b * other.a,
-            self.d,
-        )
+        product = self.a * other.a + self.d * self.b * other.b
+        return Surd(product, self.a * other.b + self.b * other.a, self.d)
 
     __radd__ = __add__
     __rmul__ = __mul__
@@ -63,8 +50,7 @@ class Surd:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Surd | Fraction | int):
             return NotImplemented
-        difference = self - other
-        return difference.a == difference.b == 0
+        return (self - other).a == (self - other).b == 0
 
     def __hash__(self) -> int:
         return hash(self.a) if self.b == 0 else hash((self.a, self.b, self.d))

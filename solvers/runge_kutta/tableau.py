@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cached_property
+from operator import sub
+
+import numpy as np
 
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS, Number, order
 
@@ -22,25 +25,9 @@ class Tableau:
 
     Coefficients are not checked; `order` and the other properties follow from them.
 
-    Parameters
-    ----------
-    title : str
-        Usual name of the method.
-    A : tuple of tuples
-        Stage matrix, stages × stages.
-    b : tuple
-        Weights of the solution, one a stage.
-    b_hat : tuple, optional
-        Weights of the embedded solution.
-    b_low : tuple, optional
-        Weights of a second embedded solution of lower order, for methods that combine
-        two estimates of their error.
-
-    Notes
-    -----
-    Coefficients are exact (`fractions.Fraction`, `solvers.runge_kutta.surd.Surd`) or, where a
-    method is published in decimals only, `decimal.Decimal` with all their digits.
-    The nodes c are the row sums of A.
+    They are exact (`fractions.Fraction`, `solvers.runge_kutta.surd.Surd`) or, where a method is
+    published in decimals only, `decimal.Decimal` with all their digits. The nodes c are the row
+    sums of A.
 
     Examples
     --------
@@ -49,44 +36,26 @@ class Tableau:
     (2, 2)
     """
 
-    title: str
+    title: str  # usual name of the method
     A: tuple[tuple[Number, ...], ...]
     b: tuple[Number, ...]
-    b_hat: tuple[Number, ...] = ()
-    b_low: tuple[Number, ...] = ()
+    b_hat: tuple[Number, ...] = ()  # weights of an embedded solution
+    b_low: tuple[Number, ...] = ()  # of another one, of lower order, for a combined error estimate
 
     @classmethod
-    def explicit(cls, title: str, rows: str, b: str, b_hat: str = "", b_low: str = "") -> Tableau:
-        """A tableau from text: numbers between spaces, rows of later stages between semicolons.
+    def explicit(
+        cls, title: str, rows: str, b: str = "", b_hat: str = "", b_low: str = ""
+    ) -> Tableau:
+        """A tableau from text: numbers between spaces, rows between semicolons.
 
-        Numbers are fractions such as ``1/6`` or decimals, and are exact; if a decimal among
-        those of A and b has more than `LONG` characters, all become `decimal.Decimal`.
-
-        Parameters
-        ----------
-        title : str
-            Usual name of the method.
-        rows : str
-            Rows of A from the second stage on, each left of its diagonal; empty for one stage.
-        b : str
-            Weights of the solution, one a stage.
-        b_hat, b_low : str, optional
-            Weights of embedded solutions.
-
-        Returns
-        -------
-        Tableau
-            With zeros from the diagonal on.
-
-        Raises
-        ------
-        ValueError
-            When a text is not a number.
-        ArithmeticError
-            When a number is divided by zero, or a text is not a decimal number.
+        The rows are those of A from the second stage on, each left of its diagonal. Numbers are
+        fractions such as ``1/6`` or decimals, and are exact; if a decimal of A or b has more than
+        `LONG` characters, all become `decimal.Decimal`. Without `b`, weights are the last row, so
+        that the last stage is the first of the next step.
         """
+        b = b or f"{rows.rpartition(';')[2]} 0"
         lines = [[], *(row.split() for row in rows.split(";") if row.strip())]
-        numbers = [*(number for line in lines for number in line), *b.split()]
+        numbers = f"{rows} {b}".replace(";", " ").split()
         rounded = any(len(number) > LONG and "/" not in number for number in numbers)
         read = _decimal if rounded else Fraction
         A = [[read(n) for n in line] + [read("0")] * (len(lines) - len(line)) for line in lines]
@@ -101,8 +70,7 @@ class Tableau:
     @cached_property
     def c(self) -> tuple[Number, ...]:
         """Nodes: the row sums of A."""
-        with localcontext() as context:
-            context.prec = WORKING_DIGITS
+        with localcontext(prec=WORKING_DIGITS):
             return tuple(sum(row[1:], row[0]) for row in self.A)
 
     @cached_property
@@ -125,13 +93,9 @@ class Tableau:
     @cached_property
     def error_weights(self) -> tuple[tuple[Number, ...], ...]:
         """The weights b - b_hat of the error estimate, and b - b_low of a second one."""
-        with localcontext() as context:
-            context.prec = WORKING_DIGITS
-            return tuple(
-                tuple(b - e for b, e in zip(self.b, embedded, strict=True))
-                for embedded in (self.b_hat, self.b_low)
-                if embedded
-            )
+        embedded = [weights for weights in (self.b_hat, self.b_low) if weights]
+        with localcontext(prec=WORKING_DIGITS):
+            return tuple(tuple(map(sub, self.b, weights)) for weights in embedded)
 
     @property
     def is_explicit(self) -> bool:
@@ -151,9 +115,8 @@ class Tableau:
         with z = hλ (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
         proposition IV.3.2).
         """
-        shifted = [[a - b for a, b in zip(row, self.b, strict=True)] for row in self.A]
-        with localcontext() as context:
-            context.prec = WORKING_DIGITS
+        shifted = [[*map(sub, row, self.b)] for row in self.A]
+        with localcontext(prec=WORKING_DIGITS):
             numerator, denominator = map(_determinant_of_identity_minus, (shifted, self.A))
         # a stage with zero weight adds no power of z
         degree = max((k for k, x in enumerate(numerator) if abs(float(x)) > ROUNDING), default=0)
@@ -162,25 +125,17 @@ class Tableau:
 
 def _decimal(text: str) -> Decimal:
     numerator, _, denominator = text.partition("/")
-    with localcontext() as context:
-        context.prec = WORKING_DIGITS
+    with localcontext(prec=WORKING_DIGITS):
         return Decimal(numerator) / Decimal(denominator or 1)
 
 
 def _determinant_of_identity_minus(matrix: Sequence[Sequence[Number]]) -> tuple[Number, ...]:
     """Coefficients of det(I - z B) in z, by Faddeev and LeVerrier's recursion."""
-    n = len(matrix)
-    zero = matrix[0][0] - matrix[0][0]
-    coefficients = [zero + 1]
-    power = [[zero] * n for _ in range(n)]
-    for k in range(1, n + 1):
-        for i in range(n):
-            power[i][i] = power[i][i] + coefficients[-1]
-        power = [
-            [sum((row[m] * power[m][j] for m in range(n)), zero) for j in range(n)]
-            for row in matrix
-        ]
-        coefficients.append(-sum((power[i][i] for i in range(n)), zero) / k)
+    B = np.array(matrix, dtype=object)  # exact numbers stay exact
+    power, coefficients = 0 * B, [0 * B[0, 0] + 1]
+    for k in range(1, len(B) + 1):
+        power = B @ (power + np.diag([coefficients[-1]] * len(B)))
+        coefficients.append(-np.trace(power) / k)
     while len(coefficients) > 1 and coefficients[-1] == 0:
         coefficients.pop()
     return tuple(coefficients)

@@ -9,6 +9,5 @@ from solvers.runge_kutta.tableau import Tableau
 tableau = Tableau.explicit(
     "Bogacki-Shampine 3(2)",
     rows="1/2; 0 3/4; 2/9 1/3 4/9",
-    b="2/9 1/3 4/9 0",
     b_hat="7/24 1/4 1/3 1/8",
 )
