@@ -20,8 +20,8 @@ from solvers.scenes.models import catalogue
 from solvers.scenes.run import run_scene
 from solvers.scenes.shipped import find as find_scene
 from solvers.sweeps import map_kinds, reading
-from solvers.sweeps.job import status_table
 from solvers.sweeps.run import sweep
+from solvers.sweeps.status import STATUSES
 
 ROOT = Path(__file__).parent.parent
 READMES = [p for package in ("derive", "solvers") for p in sorted((ROOT / package).rglob("*.md"))]
@@ -65,6 +65,11 @@ DERIVE = ROOT / "derive" / "README.md"
 VERIFICATION = ROOT / "derive" / "verification" / "README.md"
 SCENES = ROOT / "solvers" / "scenes" / "README.md"
 SWEEPS = ROOT / "solvers" / "sweeps" / "README.md"
+
+
+def status_table() -> str:
+    rows = [f"| {code} | {status} |\n" for code, status in enumerate(STATUSES)]
+    return "| number | status |\n|---|---|\n" + "".join(rows)
 
 
 @pytest.mark.parametrize(

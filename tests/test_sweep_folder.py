@@ -27,7 +27,6 @@ from solvers.integration.ensemble_run import StopFlag
 from solvers.sweeps import chunk_length, pool
 from solvers.sweeps.axes import Grid, Random
 from solvers.sweeps.folder import Folder, FolderError
-from solvers.sweeps.job import Job
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
 from solvers.sweeps.pool import Pool
@@ -288,13 +287,12 @@ def test_maps_that_do_not_fit_the_disk_are_refused_at_the_start(
 
 
 def test_two_processes_in_one_folder_are_refused(tmp_path: Path) -> None:
-    job = Job.of(DEFINITION)
-    with Folder(tmp_path, DEFINITION, job):
+    with Folder(tmp_path, DEFINITION).locked():
         with pytest.raises(FolderError, match="another process works in"):
             sweep(DEFINITION, tmp_path)
         with (
             pytest.raises(FolderError, match="another process works in"),
-            Folder(tmp_path, DEFINITION, job),
+            Folder(tmp_path, DEFINITION).locked(),
         ):
             pass
 
@@ -379,11 +377,12 @@ def test_an_interrupted_sweep_stops_at_once_and_resumes(tmp_path: Path) -> None:
 
 
 def test_a_stop_flag_stops_only_its_own_motions() -> None:
-    job, columns, flag = Job.of(DEFINITION), DEFINITION.axes.columns(0, 50), StopFlag()
+    columns, flag = DEFINITION.axes.columns(0, 50), StopFlag()
     flag.set()
     with pytest.raises(InterruptedError, match="the sweep was stopped"):
-        run_chunk(job, columns, flag)
-    assert run_chunk(job, columns, StopFlag()).tobytes() == run_chunk(job, columns).tobytes()
+        run_chunk(DEFINITION, columns, flag)
+    chunk = run_chunk(DEFINITION, columns, StopFlag())
+    assert chunk.tobytes() == run_chunk(DEFINITION, columns).tobytes()
 
 
 def test_partial_results_can_be_plotted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import pickle
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -22,7 +23,6 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.sweeps.axes import BLOCK, Grid, Random, Table
-from solvers.sweeps.job import STATUSES
 from solvers.sweeps.maps.energy_error import EnergyError
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
@@ -34,6 +34,7 @@ from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import Results
 from solvers.sweeps.run import sweep
+from solvers.sweeps.status import STATUSES
 from solvers.sweeps.sweep import Sweep
 
 PI = np.pi
@@ -276,7 +277,9 @@ def test_a_module_that_does_not_ship_travels_as_text(tmp_path: Path) -> None:
     module = load_module("chain_4")
     names = [f"theta{k}" for k in range(1, 5)]
     axes = Random(dict.fromkeys(names, (-1, 1)), 5, seed=0)
-    results = run(tmp_path, module, axes, 1.0, {"end": Final(("theta4",))})
+    definition = pickle.loads(pickle.dumps(Sweep(module, axes, {"end": Final(("theta4",))}, 1.0)))
+    assert definition.module is not module
+    results = sweep(definition, tmp_path)
     for k in range(5):
         start = [*(results.axes[name][k] for name in names), 0, 0, 0, 0]
         one = integrate(module, (0, 1), start, module.DEFAULTS, backend="python", rtol=1e-10)

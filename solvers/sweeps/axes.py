@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,36 +20,72 @@ Array: TypeAlias = NDArray[np.float64]
 BLOCK = 4096
 
 
+class Axes(ABC):
+    """Quantities that vary, by name."""
+
+    is_grid: ClassVar[bool] = False
+
+    @property
+    @abstractmethod
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of each axis of a grid, else number of motions."""
+
+    @property
+    @abstractmethod
+    def smallest(self) -> dict[str, float]:
+        """The smallest value of each quantity."""
+
+    @property
+    @abstractmethod
+    def as_json(self) -> dict[str, Any]:
+        """The axes as JSON values, for a manifest."""
+
+    @property
+    def outline(self) -> Self:
+        """Axes of the same kind and names that take little memory."""
+        return self
+
+    @abstractmethod
+    def columns(self, start: int, stop: int) -> dict[str, Array]:
+        """Values of the motions from `start` on, before `stop`, by name."""
+
+    def coordinates(self) -> dict[str, Array]:
+        """Values along each axis of a grid, else of each motion."""
+        return self.columns(0, prod(self.shape))
+
+    def subset(self, count: int) -> dict[str, Array]:
+        """Values of about `count` motions from all over a sweep, always the same."""
+        chosen = np.unique(np.random.default_rng(0).integers(0, prod(self.shape), count))
+        rows = [self.columns(index, index + 1) for index in chosen]
+        return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
+
+
 @dataclass(frozen=True)
-class _Listed:
+class _Listed(Axes):
     """Axes with listed values."""
 
     values: Mapping[str, Array]
-
-    is_grid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _columns(self.values))
 
     @property
     def smallest(self) -> dict[str, float]:
-        """The smallest value of each quantity."""
         return {name: float(values.min()) for name, values in self.values.items()}
 
     @property
     def as_json(self) -> dict[str, Any]:
-        """The axes as JSON values, for a manifest."""
-        axes = [
-            {
-                "name": name,
-                "count": len(values),
-                "first": float(values[0]),
-                "last": float(values[-1]),
-                "sha256": hashlib.sha256(np.ascontiguousarray(values, "<f8").tobytes()).hexdigest(),
-            }
-            for name, values in self.values.items()
-        ]
+        axes = []
+        for name, values in self.values.items():
+            digest = hashlib.sha256(np.ascontiguousarray(values, "<f8").tobytes()).hexdigest()
+            first, last = float(values[0]), float(values[-1])
+            counts = {"name": name, "count": len(values)}
+            axes.append({**counts, "first": first, "last": last, "sha256": digest})
         return {"kind": type(self).__name__.lower(), "axes": axes}
+
+    @property
+    def outline(self) -> Self:
+        return type(self)({name: values[:1] for name, values in self.values.items()})
 
 
 @dataclass(frozen=True)
@@ -82,15 +119,15 @@ class Grid(_Listed):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Number of values of each axis."""
         return tuple(map(len, self.values.values()))
 
     def columns(self, start: int, stop: int) -> dict[str, Array]:
-        """Values of the motions from `start` on, before `stop`, by name."""
         indices = np.unravel_index(np.arange(start, stop), self.shape)
-        return {
-            name: values[k] for (name, values), k in zip(self.values.items(), indices, strict=True)
-        }
+        axes = zip(self.values.items(), indices, strict=True)
+        return {name: values[index] for (name, values), index in axes}
+
+    def coordinates(self) -> dict[str, Array]:
+        return dict(self.values)
 
 
 @dataclass(frozen=True)
@@ -121,16 +158,14 @@ class Table(_Listed):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Number of rows."""
         return (len(next(iter(self.values.values()))),)
 
     def columns(self, start: int, stop: int) -> dict[str, Array]:
-        """Values of the motions from `start` on, before `stop`, by name."""
         return {name: column[start:stop] for name, column in self.values.items()}
 
 
 @dataclass(frozen=True)
-class Random:
+class Random(Axes):
     """Uniformly distributed random values between two limits each.
 
     Parameters
@@ -155,8 +190,6 @@ class Random:
     count: int
     seed: int
 
-    is_grid: ClassVar[bool] = False
-
     def __post_init__(self) -> None:
         validation.count("count", self.count, 1)
         validation.count("seed", self.seed, 0)
@@ -166,49 +199,26 @@ class Random:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Number of motions."""
         return (self.count,)
 
     def columns(self, start: int, stop: int) -> dict[str, Array]:
-        """Values of the motions from `start` on, before `stop`, by name."""
         first, last = start // BLOCK, max(stop - 1, start) // BLOCK
         blocks = [
             np.random.default_rng([self.seed, block]).random((BLOCK, len(self.limits)))
             for block in range(first, last + 1)
         ]
         numbers = np.concatenate(blocks)[start - first * BLOCK : stop - first * BLOCK]
-        return {
-            name: low + (high - low) * column
-            for (name, (low, high)), column in zip(self.limits.items(), numbers.T, strict=True)
-        }
+        axes = zip(self.limits.items(), numbers.T, strict=True)
+        return {name: low + (high - low) * column for (name, (low, high)), column in axes}
 
     @property
     def smallest(self) -> dict[str, float]:
-        """The smallest value of each quantity."""
         return {name: min(ends) for name, ends in self.limits.items()}
 
     @property
     def as_json(self) -> dict[str, Any]:
-        """The axes as JSON values, for a manifest."""
         axes = [{"name": name, "from": low, "to": up} for name, (low, up) in self.limits.items()]
         return {"kind": "random", "axes": axes, "count": self.count, "seed": self.seed}
-
-
-Axes: TypeAlias = Grid | Table | Random
-
-
-def coordinates(axes: Axes) -> dict[str, Array]:
-    """Values along each axis of a grid, else of each motion."""
-    if isinstance(axes, Grid):
-        return dict(axes.values)
-    return axes.columns(0, prod(axes.shape))
-
-
-def subset(axes: Axes, count: int) -> dict[str, Array]:
-    """Values of about `count` motions from all over a sweep, always the same."""
-    chosen = np.unique(np.random.default_rng(0).integers(0, prod(axes.shape), count))
-    rows = [axes.columns(index, index + 1) for index in chosen]
-    return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
 
 
 def _columns(values: Mapping[str, Any]) -> dict[str, Array]:

@@ -1,7 +1,5 @@
 """Energy barriers: a motion with less energy than a barrier cannot cross it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
@@ -10,8 +8,8 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from solvers.equations.module import GeneratedModule
+from solvers.sweeps.axes import Array
 
-Array: TypeAlias = NDArray[np.float64]
 Positions: TypeAlias = Sequence[Mapping[str, float]]
 
 #: Energies are equal if their relative difference is smaller.

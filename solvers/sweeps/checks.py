@@ -1,7 +1,5 @@
 """Consistency of the parts of a sweep."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from math import isfinite
 
@@ -20,6 +18,11 @@ STATUS = "status"
 MAX_LENGTH = 50
 
 Values = Mapping[str, float | str]
+
+
+def unit(module: GeneratedModule, name: str) -> str:
+    """The unit of a quantity."""
+    return "J" if name == ENERGY else module.UNITS[name]
 
 
 def check_names(module: GeneratedModule, axes: Axes, values: Values) -> None:

@@ -1,10 +1,6 @@
 """Number of motions in a chunk."""
 
-from __future__ import annotations
-
-from solvers.sweeps.axes import subset
 from solvers.sweeps.initial_states import initial_states
-from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import integrated
 
@@ -18,19 +14,18 @@ EVALUATION = 0.25e-9
 MAX_BYTES = 8e6
 
 
-def chunk_length(sweep: Sweep, job: Job) -> int:
+def chunk_length(sweep: Sweep) -> int:
     """Number of motions in a chunk: about a second of work, less in short sweeps."""
     # in short sweeps chunks cost as much as waiting for the last of them; time follows from the
     # number of evaluations, not from the clock, so that a sweep is always divided in the same way
-    starts, params, status = initial_states(job, sweep.module, subset(sweep.axes, TRIALS))
+    starts, params, status = initial_states(sweep, sweep.axes.subset(TRIALS))
     runs = status == 0
     evaluations = 1
     if runs.any():
-        trials = integrated(job, sweep.module, starts[runs], [p[runs] for p in params])
-        evaluations += int(trials.nfev.sum())
+        evaluations += int(integrated(sweep, starts[runs], [p[runs] for p in params]).nfev.sum())
     size = len(sweep.state)
     each = evaluations / len(status) * EVALUATION * size**1.5
     events = sum(one.occurrences * len(one.events(sweep.module)) for one in sweep.maps.values())
-    most = MAX_BYTES / (8 * size * (1 + job.samples + events))
+    most = MAX_BYTES / (8 * size * (1 + sweep.samples + events))
     seconds = min(CHUNK, (COST * each * sweep.motions) ** 0.5)
     return max(1, int(min(seconds / each, most)))

@@ -1,13 +1,9 @@
 """Convergence of a sweep: changes of the maps with tighter tolerances."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.sweeps.axes import subset
-from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import run_chunk
 
@@ -21,13 +17,10 @@ MIN_RTOL = 1e-14
 class Convergence:
     """Changes of a map's numbers with tighter tolerances."""
 
-    #: Number of motions that were compared.
-    motions: int
-    #: Changes that half of the numbers, and nine tenths of them, do not exceed.
-    median: float
-    most: float
-    #: Share of the numbers that exist with one tolerance only.
-    lost: float
+    motions: int  # that were compared
+    median: float  # a change that half of the numbers do not exceed
+    most: float  # a change that nine tenths do not exceed
+    lost: float  # share of the numbers that exist with one tolerance only
 
 
 def tighter_rtol(sweep: Sweep) -> float:
@@ -37,11 +30,9 @@ def tighter_rtol(sweep: Sweep) -> float:
 
 def convergence(sweep: Sweep) -> dict[str, Convergence]:
     """Changes of each map, from motions all over the sweep."""
-    job = Job.of(sweep)
-    tolerances = {"rtol": tighter_rtol(sweep), "atol": sweep.atol / RATIO}
-    tight = replace(job, options=job.options | tolerances)
-    columns = subset(sweep.axes, REPEATED)
-    original, repeated = run_chunk(job, columns), run_chunk(tight, columns)
+    tight = sweep.unchecked(rtol=tighter_rtol(sweep), atol=sweep.atol / RATIO)
+    columns = sweep.axes.subset(REPEATED)
+    original, repeated = run_chunk(sweep, columns), run_chunk(tight, columns)
     changes = {}
     for name in sweep.maps:
         known = np.isfinite(original[name]), np.isfinite(repeated[name])

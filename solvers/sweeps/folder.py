@@ -6,29 +6,25 @@ into place, so that a file of that name is complete, or recognised as damaged an
 all chunks one NumPy file for each map is written.
 """
 
-from __future__ import annotations
-
 import fcntl
 import hashlib
 import json
 import re
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from errno import ENOSPC
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
 from shutil import disk_usage
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.lib.format import dtype_to_descr, write_array_header_1_0
 from numpy.typing import NDArray
 
 from solvers.io.atomic_write import replacing, write_text
-from solvers.sweeps.axes import coordinates
 from solvers.sweeps.chunk_length import chunk_length
-from solvers.sweeps.job import Job
 from solvers.sweeps.sweep import Sweep
 
 MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 2
@@ -44,34 +40,27 @@ class FolderError(ValueError):
 
 
 class Folder:
-    """The folder of a sweep; as a context it locks the folder for one process."""
+    """The folder of a sweep."""
 
-    def __init__(self, path: Path, sweep: Sweep, job: Job) -> None:
-        self.path, self._sweep, self._job = path, sweep, job
-        self._motions, self._dtype, self._length = sweep.motions, job.dtype, 0
-        self._definition = json.loads(json.dumps(sweep.as_json))
-        self._lock: IO[bytes] | None = None
+    def __init__(self, path: Path, sweep: Sweep) -> None:
+        self.path, self._sweep = path, sweep
+        self._motions, self._dtype, self._length = sweep.motions, sweep.dtype, 0
+        self._own = {"motions": sweep.motions, "definition": json.loads(json.dumps(sweep.as_json))}
 
-    def __enter__(self) -> Folder:
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Lock the folder for one process, which may write to it."""
         self._check_new()
         (self.path / CHUNKS).mkdir(parents=True, exist_ok=True)
-        self._lock = open(self.path / CHUNKS / "lock", "wb")
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        with open(self.path / CHUNKS / "lock", "wb") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError as error:
+                raise FolderError(
+                    f"another process works in {self.path}: wait for it, or give another --output"
+                ) from error
             self._claim()
-        except BlockingIOError as error:
-            self._lock.close()
-            raise FolderError(
-                f"another process works in {self.path}: wait for it, or give another --output"
-            ) from error
-        except BaseException:
-            self._lock.close()
-            raise
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        assert self._lock is not None
-        self._lock.close()
+            yield
 
     def _claim(self) -> None:
         """Write the manifest or compare it; remove what killed processes have left."""
@@ -79,9 +68,8 @@ class Folder:
         if manifest.exists():
             self.check()
         else:
-            self._length = chunk_length(self._sweep, self._job)
-            counts = {"format": FORMAT, "chunk": self._length, "motions": self._motions}
-            record = {**counts, "definition": self._definition}
+            self._length = chunk_length(self._sweep)
+            record = {"format": FORMAT, "chunk": self._length, **self._own}
             write_text(manifest, json.dumps(record, indent=2, ensure_ascii=False) + "\n")
         for file in [*self.path.iterdir(), *(self.path / CHUNKS).iterdir()]:
             is_damaged = CHUNK.fullmatch(file.name) and file not in self.completed.values()
@@ -106,9 +94,10 @@ class Folder:
     def check(self) -> None:
         """Compare the manifest, and change nothing."""
         manifest = _manifest(self.path / MANIFEST)
-        own = {"motions": self._motions, **self._definition}
-        other = {"motions": manifest["motions"], **manifest["definition"]}
-        if different := difference(other, own):
+        there, here = (
+            {"motions": one["motions"], **one["definition"]} for one in (manifest, self._own)
+        )
+        if different := _difference(there, here):
             raise FolderError(
                 f"{self.path} holds another sweep: {different}; give another --output, or remove it"
             )
@@ -128,11 +117,11 @@ class Folder:
         """The chunks that are there and undamaged."""
         chunks = {}
         for file in sorted((self.path / CHUNKS).glob("*.npy")):
-            if CHUNK.fullmatch(file.name) and is_undamaged(file):
-                chunk = int(file.stem.partition("-")[0])
-                start, stop = self.span(chunk)
+            chunk, _, digest = file.stem.partition("-")
+            if CHUNK.fullmatch(file.name) and _digest(file.read_bytes()) == digest:
+                start, stop = self.span(int(chunk))
                 if np.load(file, mmap_mode="r").shape == (stop - start,):
-                    chunks[chunk] = file
+                    chunks[int(chunk)] = file
         return chunks
 
     def store(self, chunk: int, motions: NDArray[np.void]) -> None:
@@ -141,22 +130,22 @@ class Folder:
         if motions.shape != (stop - start,) or motions.dtype != self._dtype:
             raise AssertionError(f"chunk {chunk} has shape {motions.shape}, {motions.dtype}")
         content = _npy(motions)
-        digest = hashlib.sha256(content).hexdigest()[:DIGITS]
-        name = f"{chunk:0{len(str(self.chunks))}}-{digest}.npy"
+        name = f"{chunk:0{len(str(self.chunks))}}-{_digest(content)}.npy"
         self.completed[chunk] = write_text(self.path / CHUNKS / name, content)
 
     def gather(self) -> None:
         """Write a file for each field of the records, and for each axis of a grid."""
+        axes = self._sweep.axes
         for name in self._dtype.names or ():
             field = self._dtype[name]
-            shape = (*self._sweep.axes.shape, *field.shape)
+            shape = (*axes.shape, *field.shape)
             header = {"descr": dtype_to_descr(field.base), "fortran_order": False, "shape": shape}
             with replacing(self.path / f"{name}.npy") as file:
                 write_array_header_1_0(file, header)
                 for rows in self.rows(name):
                     file.write(np.ascontiguousarray(rows).tobytes())
-        if self._sweep.axes.is_grid:
-            for name, values in coordinates(self._sweep.axes).items():
+        if axes.is_grid:
+            for name, values in axes.coordinates().items():
                 write_text(self.path / f"{name}.npy", _npy(values))
 
     def array(self, name: str) -> NDArray[Any]:
@@ -201,13 +190,12 @@ def _manifest(path: Path) -> dict[str, Any]:
     raise FolderError(f"{path} {problem}: give the --output of a sweep, or a new folder")
 
 
-def is_undamaged(file: Path) -> bool:
-    """Whether a chunk has the digest in its name."""
-    digest = file.stem.partition("-")[2]
-    return hashlib.sha256(file.read_bytes()).hexdigest()[:DIGITS] == digest
+def _digest(content: bytes) -> str:
+    """The first digits of the digest of a chunk."""
+    return hashlib.sha256(content).hexdigest()[:DIGITS]
 
 
-def difference(other: Any, own: Any, path: str = "") -> str:
+def _difference(other: Any, own: Any, path: str = "") -> str:
     """The first difference of two manifests, as key and values; empty if they are equal."""
     if isinstance(other, list) and isinstance(own, list) and len(other) == len(own):
         other, own = dict(enumerate(other)), dict(enumerate(own))
@@ -216,7 +204,7 @@ def difference(other: Any, own: Any, path: str = "") -> str:
             if key not in other or key not in own:
                 side = "in the folder" if key in other else "in the definition"
                 return f"{path}{key} is {side} only"
-            if inner := difference(other[key], own[key], f"{path}{key}."):
+            if inner := _difference(other[key], own[key], f"{path}{key}."):
                 return inner
         return ""
     return "" if other == own else f"{path.rstrip('.')} is {other!r} there and {own!r} here"

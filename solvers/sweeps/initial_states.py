@@ -1,51 +1,46 @@
 """Initial states, and motions that need no integration."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
+from solvers.sweeps.axes import Array
 from solvers.sweeps.barrier import energies, is_below
 from solvers.sweeps.checks import ENERGY, FROM_ENERGY
-from solvers.sweeps.job import NO_SUCH_ENERGY, PROVED, Job
-
-Array: TypeAlias = NDArray[np.float64]
+from solvers.sweeps.status import NO_SUCH_ENERGY, PROVED
+from solvers.sweeps.sweep import Sweep
 
 
 def initial_states(
-    job: Job, module: GeneratedModule, columns: Mapping[str, Array]
+    sweep: Sweep, columns: Mapping[str, Array]
 ) -> tuple[Array, list[Array], NDArray[np.int8]]:
     """States in rows, parameters, and the status of motions that are not integrated, else 0."""
-    n = len(next(iter(columns.values())))
-    given = {**job.values, **columns}
-    free = next((name for name, value in job.values.items() if value == FROM_ENERGY), None)
+    module, n = sweep.module, len(next(iter(columns.values())))
+    free = [name for name, value in sweep.values.items() if value == FROM_ENERGY]  # one at most
     defaults = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
+    given = {**defaults, **sweep.values, **columns, **dict.fromkeys(free, 0.0)}
 
-    def column(name: str, default: float) -> Array:
-        value = 0.0 if name == free else given.get(name, default)
-        return np.broadcast_to(np.asarray(value, float), n).copy()
+    def column(name: str) -> Array:
+        return np.broadcast_to(np.asarray(given.get(name, 0.0), float), n).copy()
 
-    params = [column(name, defaults[name]) for name in module.PARAMETERS]
-    state = np.stack([column(name, 0.0) for name in module.STATE], axis=1)
+    params = [column(name) for name in module.PARAMETERS]
+    state = np.stack([column(name) for name in module.STATE], axis=1)
     status = np.zeros(n, np.int8)
-    if free is not None:
-        index = module.STATE.index(free)
-        state[:, index] = velocity(module, state, params, index, column(ENERGY, 0.0))
+    for index in map(module.STATE.index, free):
+        state[:, index] = _velocity(module, state, params, index, column(ENERGY))
         status[np.isnan(state[:, index])] = NO_SUCH_ENERGY
         state[status != 0, index] = 0.0
-    if job.barrier:
-        status[(status == 0) & is_below(module, job.barrier, state, params)] = PROVED
-    if job.options["form"] == "variational":
+    if sweep.barrier:
+        status[(status == 0) & is_below(module, sweep.barrier, state, params)] = PROVED
+    if sweep.form == "variational":
         size = len(module.STATE)
         state = np.hstack([state, np.full((n, size), size**-0.5)])
     return state, params, status
 
 
-def velocity(
+def _velocity(
     module: GeneratedModule, state: Array, params: list[Array], index: int, energy: Array
 ) -> Array:
     """The velocity of 0 or more that gives states an energy; NaN where there is none."""

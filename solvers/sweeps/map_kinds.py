@@ -1,7 +1,5 @@
 """The map kinds that exist; each is a file in the package `maps`."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from collections.abc import Mapping
@@ -51,10 +49,7 @@ def read(path: str, module: GeneratedModule, table: Mapping[str, Any]) -> Map:
 
 def markdown_table() -> str:
     """A Markdown table of all kinds, from their classes."""
-    rows = [
-        "| kind | result for each motion | keys, for example | shape |",
-        "|---|---|---|---|",
-    ]
+    rows = ["| kind | result for each motion | keys, for example | shape |\n|---|---|---|---|"]
     for name in names():
         kind = load(name)
         summary = re.split(r"\n\n\w+\n-+\n", inspect.getdoc(kind) or "")[0]

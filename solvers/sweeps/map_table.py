@@ -1,7 +1,5 @@
 """The table of a map in a sweep file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -17,22 +15,9 @@ MAX_COUNT = 10**6
 
 @dataclass(frozen=True)
 class MapTable:
-    """Values of a map's table, checked one by one.
+    """Values of a map's table by key; methods raise `InputError` for invalid ones."""
 
-    Every method takes a key of the table and raises `solvers.io.toml_input.InputError` where
-    its value is not possible.
-
-    Parameters
-    ----------
-    path : str
-        The table's name in the file, such as ``maps.flip``.
-    module : module
-        A generated module.
-    table : mapping
-        The table.
-    """
-
-    path: str
+    path: str  # name of the table in the file, such as maps.flip
     module: GeneratedModule
     table: Mapping[str, Any]
 
@@ -44,11 +29,8 @@ class MapTable:
             raise InputError(f"{self.path}.{key} = {list(names)} must list different components")
         for name in names:
             if name not in state:
-                hint = did_you_mean(name, state)
-                raise InputError(
-                    f"{self.path}.{key}: unknown component {name[:50]!r}{hint}; known are "
-                    f"{', '.join(state)}"
-                )
+                word, known = f"{name[:50]!r}{did_you_mean(name, state)}", ", ".join(state)
+                raise InputError(f"{self.path}.{key}: unknown component {word}; known are {known}")
         return names
 
     def count(self, key: str) -> int:
@@ -63,9 +45,8 @@ class MapTable:
         """One of some words."""
         word = self.table.get(key, default)
         if not isinstance(word, str) or word not in options:
-            raise InputError(
-                f"{self.path}.{key} = {shortened(word)} must be one of {', '.join(options)}"
-            )
+            known = ", ".join(options)
+            raise InputError(f"{self.path}.{key} = {shortened(word)} must be one of {known}")
         return word
 
     def values_by_component(self, key: str) -> dict[str, tuple[float, ...]]:

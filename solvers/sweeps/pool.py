@@ -1,12 +1,11 @@
 """Execution of chunks: threads of this process, or another executor."""
 
-from __future__ import annotations
-
 import os
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import nullcontext
 from dataclasses import dataclass
+from itertools import islice
 from typing import TypeAlias
 
 import numpy as np
@@ -14,8 +13,7 @@ from numpy.typing import NDArray
 
 from solvers.integration import validation
 from solvers.integration.ensemble_run import StopFlag
-from solvers.sweeps.axes import Axes
-from solvers.sweeps.job import Job
+from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import run_chunk
 
 #: Index of the first motion of a chunk, and of the one after its last.
@@ -61,20 +59,19 @@ class Pool:
         return self.workers or len(os.sched_getaffinity(0))
 
     def completed(
-        self, job: Job, axes: Axes, spans: Sequence[Span]
+        self, sweep: Sweep, spans: Iterable[Span]
     ) -> Generator[tuple[Span, NDArray[np.void]]]:
         """Spans and their chunks in the order of completion; each worker gets two at a time."""
+        outline = sweep.unchecked(axes=sweep.axes.outline)
         waiting, stop = iter(spans), StopFlag()
         submitted: dict[Future[NDArray[np.void]], Span] = {}
         own = self.executor or ThreadPoolExecutor(self.size)
         with nullcontext(own) if self.executor else own as executor:
             try:
                 while True:
-                    for span in waiting:
-                        columns = axes.columns(*span)
-                        submitted[executor.submit(run_chunk, job, columns, stop)] = span
-                        if len(submitted) == 2 * self.size:
-                            break
+                    for span in islice(waiting, 2 * self.size - len(submitted)):
+                        columns = sweep.axes.columns(*span)
+                        submitted[executor.submit(run_chunk, outline, columns, stop)] = span
                     if not submitted:
                         return
                     finished, _ = wait(submitted, return_when=FIRST_COMPLETED)

@@ -1,7 +1,5 @@
 """Sweeps from TOML files; every mistake is reported when the file is read."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable, Mapping
 from math import prod
@@ -16,7 +14,7 @@ from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import InputError
 from solvers.sweeps import map_kinds
 from solvers.sweeps.axes import Axes, Grid, Random, Table
-from solvers.sweeps.checks import ENERGY, FROM_ENERGY
+from solvers.sweeps.checks import ENERGY, FROM_ENERGY, unit
 from solvers.sweeps.sweep import Sweep
 
 FILES = Path(__file__).parent / "files"
@@ -33,26 +31,9 @@ def names() -> tuple[str, ...]:
 
 
 def find(name: str, module: Callable[[str], GeneratedModule]) -> Sweep:
-    """The sweep of this name, or in this file.
+    """The sweep of this name, or in this file, as `solvers.load_sweep` gives it.
 
-    Parameters
-    ----------
-    name : str
-        Name of a sweep that ships, or path of a file that ends in ``.toml``.
-    module : callable
-        Gives a generated module by its name; raises `LookupError` for an unknown one.
-
-    Returns
-    -------
-    Sweep
-        Its name is that of the file, without ``.toml``.
-
-    Raises
-    ------
-    solvers.io.toml_input.InputError
-        When there is none, or its file has a mistake.
-    OSError
-        When the file, or the table that it names, cannot be read.
+    `module` loads a generated module by its name; it raises `LookupError` for an unknown one.
     """
     path = toml_input.path("sweep", name, FILES)
     return toml_input.read(path, lambda table: _sweep(path, table, module))
@@ -60,14 +41,14 @@ def find(name: str, module: Callable[[str], GeneratedModule]) -> Sweep:
 
 def _sweep(path: Path, table: Mapping[str, Any], module: Callable[[str], GeneratedModule]) -> Sweep:
     toml_input.check_keys("a sweep", table, KEYS)
-    missing = [key for key in REQUIRED if key not in table]
-    if missing:
+    if missing := [key for key in REQUIRED if key not in table]:
         raise InputError(f"{missing[0]!r} is missing: a sweep needs {', '.join(REQUIRED)}")
     name = toml_input.text("system", table["system"])
     try:
         equations = module(str(path.parent / name) if name.endswith(".toml") else name)
     except LookupError as error:
         raise InputError(f"system = {name[:50]!r}: {error.args[0]}") from error
+    title = str(equations.__doc__).partition(":")[0].partition(".")[0]
     options: dict[str, Any] = {
         key: toml_input.number(key, table[key], "1") for key in ("rtol", "atol") if key in table
     }
@@ -75,21 +56,14 @@ def _sweep(path: Path, table: Mapping[str, Any], module: Callable[[str], Generat
         options["method"] = toml_input.text("method", table["method"])
     if "max_steps" in table:
         options["max_steps"] = toml_input.whole("max_steps", table["max_steps"], 1, MAX_COUNT)
-    title = str(equations.__doc__).partition(":")[0].partition(".")[0]
     maps = {
         key: map_kinds.read(f"maps.{key}", equations, toml_input.table(f"maps.{key}", one))
         for key, one in toml_input.table("maps", table["maps"]).items()
     }
-    return Sweep(
-        equations,
-        _axes(path, equations, table),
-        maps,
-        toml_input.number("duration", table["duration"], "s"),
-        _values(equations, table),
-        name=path.stem,
-        title=toml_input.text("title", table.get("title", title)),
-        **options,
-    )
+    axes, values = _axes(path, equations, table), _values(equations, table)
+    duration = toml_input.number("duration", table["duration"], "s")
+    title = toml_input.text("title", table.get("title", title))
+    return Sweep(equations, axes, maps, duration, values, name=path.stem, title=title, **options)
 
 
 def _values(module: GeneratedModule, table: Mapping[str, Any]) -> dict[str, float | str]:
@@ -100,10 +74,9 @@ def _values(module: GeneratedModule, table: Mapping[str, Any]) -> dict[str, floa
         given = toml_input.table(part, table.get(part, {}))
         toml_input.check_keys(f"[{part}]", given, names, KEYS)
         for key, value in given.items():
-            if value == FROM_ENERGY and key in module.STATE:
-                values[key] = FROM_ENERGY
-            else:
-                values[key] = toml_input.number(f"{part}.{key}", value, unit(module, key))
+            is_free = value == FROM_ENERGY and key in module.STATE
+            own = unit(module, key)
+            values[key] = value if is_free else toml_input.number(f"{part}.{key}", value, own)
     return values
 
 
@@ -121,13 +94,10 @@ def _axes(path: Path, module: GeneratedModule, table: Mapping[str, Any]) -> Axes
         seed = toml_input.whole("random.seed", random.get("seed", 0), 0, 2**63)
         limits = {name: _limits(module, name, one, ("from", "to")) for name, one in axes.items()}
         return Random(limits, count, seed)
-    limits = {
-        name: _limits(module, name, one, ("from", "to", "count")) for name, one in axes.items()
-    }
-    counts = {
-        name: toml_input.whole(f"axes.{name}.count", one["count"], 1, MAX_VALUES)
-        for name, one in axes.items()
-    }
+    keys, counts = ("from", "to", "count"), {}
+    limits = {name: _limits(module, name, one, keys) for name, one in axes.items()}
+    for name, one in axes.items():
+        counts[name] = toml_input.whole(f"axes.{name}.count", one["count"], 1, MAX_VALUES)
     if (motions := prod(counts.values())) > MAX_COUNT:
         raise InputError(f"[axes] have {motions:,} motions: up to {MAX_COUNT:,} are possible")
     return Grid({name: np.linspace(*limits[name], counts[name]) for name in axes})
@@ -167,20 +137,11 @@ def _from_file(path: Path, module: GeneratedModule) -> Table:
     names = [name.strip() for name in rows[0]]
     if len({*names}) < len(names):
         raise InputError(f"{path.name} has a duplicate name: {', '.join(names)}")
-    columns = {}
+    columns, known = {}, (*module.STATE, *module.PARAMETERS, ENERGY)
     for name, *texts in zip(names, *rows[1:], strict=True):
+        if name not in known:
+            hint = did_you_mean(name, known)
+            raise InputError(f"{name[:50]!r}{hint} is not one of {', '.join(known)}")
         key, own = f"{path.name}: {name}", unit(module, name)
         columns[name] = np.array([toml_input.number(key, text, own) for text in texts])
     return Table(columns)
-
-
-def unit(module: GeneratedModule, name: str) -> str:
-    """The unit of a quantity that may vary or have a value."""
-    if name == ENERGY:
-        return "J"
-    known = (*module.STATE, *module.PARAMETERS)
-    if name not in known:
-        raise InputError(
-            f"{name[:50]!r}{did_you_mean(name, known)} is not one of {', '.join((*known, ENERGY))}"
-        )
-    return str(module.UNITS[name])

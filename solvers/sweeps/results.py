@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.io.xarray_dataset import dataset
-from solvers.sweeps.checks import ENERGY
-from solvers.sweeps.job import STATUSES
+from solvers.sweeps.checks import unit
+from solvers.sweeps.status import STATUSES
 from solvers.sweeps.sweep import Sweep
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Results:
     """Maps of a sweep, complete or so far.
 
@@ -32,15 +32,15 @@ class Results:
     axes : dict of str to ndarray
         Quantities that vary: the values along each axis of a grid, else of each motion.
     status : ndarray of int
-        Status of each motion, as an index of `solvers.sweeps.job.STATUSES`.
+        Status of each motion, as an index of `solvers.sweeps.status.STATUSES`.
 
     Examples
     --------
     >>> import generated.single_pendulum as sp
     >>> from solvers import Final, Grid, Sweep, sweep
     >>> definition = Sweep(sp, Grid({"theta": [0.1, 0.2]}), {"end": Final(("theta",))}, duration=5)
-    >>> sweep(definition, "ends").count
-    {'finished': 2}
+    >>> sweep(definition, "ends")
+    Results of 'sweep' in ends: 2 motions, finished 2; maps: end (2, 1)
     """
 
     definition: Sweep
@@ -52,13 +52,19 @@ class Results:
     @classmethod
     def of(cls, definition: Sweep, folder: Path) -> Results:
         """Open the maps in a folder."""
+        names = ("status", *definition.maps, *definition.axes.smallest)
+        files = {name: np.load(folder / f"{name}.npy", mmap_mode="r") for name in names}
+        maps = {name: files[name] for name in definition.maps}
+        axes = {name: files[name] for name in definition.axes.smallest}
+        return cls(definition, folder, maps, axes, files["status"])
 
-        def opened(name: str) -> NDArray[Any]:
-            return np.load(folder / f"{name}.npy", mmap_mode="r")
-
-        maps = {name: opened(name) for name in definition.maps}
-        axes = {name: opened(name) for name in definition.axes.smallest}
-        return cls(definition, folder, maps, axes, opened("status"))
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{name} {n:,}" for name, n in self.count.items())
+        maps = ", ".join(f"{name} {numbers.shape}" for name, numbers in self.maps.items())
+        return (
+            f"Results of {self.definition.name!r} in {self.folder}: "
+            f"{self.definition.motions:,} motions, {counts}; maps: {maps}"
+        )
 
     @property
     def count(self) -> dict[str, int]:
@@ -68,20 +74,13 @@ class Results:
 
     def unit(self, name: str) -> str:
         """Unit of a quantity that varies."""
-        return "J" if name == ENERGY else str(self.definition.module.UNITS[name])
+        return unit(self.definition.module, name)
 
     def dataset(self) -> Any:
         """All maps in one ``xarray.Dataset``, with named axes and units; ``to_zarr`` writes it.
 
-        Returns
-        -------
-        xarray.Dataset
-            Its dimensions are the axes of a grid, else ``motion``; it contains ``status``.
-
-        Raises
-        ------
-        ImportError
-            When xarray is not installed: it comes with the extra ``xarray``.
+        Its dimensions are the axes of a grid, else ``motion``; it contains ``status``. The package
+        xarray comes with the extra ``xarray``.
         """
         is_grid = self.definition.axes.is_grid
         names = tuple(self.axes) if is_grid else ("motion",)

@@ -1,15 +1,11 @@
 """Run a sweep: compute its chunks and store them in its folder."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
 from solvers.io.progress import Rate
-from solvers.sweeps.axes import coordinates
 from solvers.sweeps.folder import Folder
-from solvers.sweeps.job import Job
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.results import Results
 from solvers.sweeps.sweep import Sweep
@@ -24,50 +20,13 @@ def sweep(
     pool: Pool = THREADS,
     report: Callable[[str], None] = lambda _: None,
 ) -> Results:
-    """Compute the maps of a sweep in a folder; chunks that are there already are not repeated.
-
-    Parameters
-    ----------
-    definition : Sweep
-        The motions and maps.
-    folder : str or Path
-        The folder for all files; it is created. It may hold chunks of the same sweep.
-    pool : Pool, optional
-        Executor of the chunks; by default threads, one for each processor.
-    report : callable, optional
-        ``report(text)`` is called with the progress.
-
-    Returns
-    -------
-    Results
-        The maps. They are the same bit for bit for every pool, on processors of one kind.
-
-    Raises
-    ------
-    solvers.sweeps.folder.FolderError
-        When another sweep is in the folder, or another process works there.
-    OSError
-        When a file cannot be written, or the disk is too small.
-    KeyboardInterrupt
-        When the user interrupts; completed chunks are stored, and the same call resumes.
-
-    Examples
-    --------
-    >>> import generated.double_pendulum as dp
-    >>> from solvers import Extremes, Grid, Sweep, sweep
-    >>> axes = Grid({"theta1": [0.1, 0.2, 0.3], "theta2": [0.0, 0.1]})
-    >>> results = sweep(Sweep(dp, axes, {"reach": Extremes(("theta2",))}, duration=5), "reach")
-    >>> results.maps["reach"].shape
-    (3, 2, 1, 2)
-    >>> results.count
-    {'finished': 6}
-    """
-    job = Job.of(definition)
-    with Folder(Path(folder), definition, job) as stored:
+    """Compute the maps of a sweep in a folder, as `solvers.sweep` does."""
+    stored = Folder(Path(folder), definition)
+    with stored.locked():
         chunks = {*range(stored.chunks)} - {*stored.completed}
         missing = {stored.span(chunk): chunk for chunk in sorted(chunks)}
         rate = Rate(definition.motions, sum(stop - start for start, stop in missing))
-        with closing(pool.completed(job, definition.axes, [*missing])) as completed:
+        with closing(pool.completed(definition, [*missing])) as completed:
             for span, chunk in completed:
                 stored.store(missing[span], chunk)
                 report(rate(len(chunk)))
@@ -105,10 +64,7 @@ def partial_results(definition: Sweep, folder: str | Path) -> Results:
     >>> partial_results(definition, "end").count
     {'finished': 1}
     """
-    stored = Folder(Path(folder), definition, Job.of(definition))
+    stored = Folder(Path(folder), definition)
     stored.check()
-    maps, axes = (
-        {name: stored.array(name) for name in definition.maps},
-        coordinates(definition.axes),
-    )
-    return Results(definition, Path(folder), maps, axes, stored.array("status"))
+    maps, axes = {name: stored.array(name) for name in definition.maps}, definition.axes
+    return Results(definition, Path(folder), maps, axes.coordinates(), stored.array("status"))

@@ -1,7 +1,5 @@
 """Text and figures that describe the results of a sweep."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -11,8 +9,6 @@ from solvers.runge_kutta.catalogue import load
 from solvers.sweeps.convergence import Convergence, tighter_rtol
 from solvers.sweeps.results import Results
 
-#: Status of motions that have values in the maps.
-GOOD = ("finished", "event", "proved")
 #: Advice on other motions.
 HINTS = {
     "step limit": "raise max_steps",
@@ -47,8 +43,8 @@ def summary(
             f"{values['known']:.1%} of the map has values"
         )
     for name, change in changes.items():
-        own = definition.maps[name].unit(definition.module)
-        unit = own and f" {own}"
+        unit = definition.maps[name].unit(definition.module)
+        unit = unit and f" {unit}"
         lost = f"; {change.lost:.0%} exist with one tolerance only" if change.lost else ""
         yield (
             f"{name}: of {change.motions} motions repeated with rtol = "

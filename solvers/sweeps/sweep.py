@@ -5,12 +5,17 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+from importlib import import_module
 from math import prod
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, header, state_names
+from solvers.equations.module_cache import cached_module
 from solvers.integration import validation
 from solvers.integration.problem import Options
 from solvers.runge_kutta.catalogue import load, names
@@ -84,9 +89,20 @@ class Sweep:
         checks.check_names(self.module, self.axes, self.values)
         checks.check_energy(self.module, (*self.axes.smallest, *self.values), self.values)
         checks.check_maps(self.module, self.axes, self.maps, self.values)
-        limit, (rtol, atol) = self.max_steps, (self.rtol, self.atol)
-        options = Options(self.method, self.form, rtol, atol, max_steps=limit)
-        validation.problem_at_rest(self.module, (0.0, self.duration), options)
+        validation.problem_at_rest(self.module, (0.0, self.duration), Options(**self.options))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """A module cannot be pickled: its source takes its place."""
+        return {**vars(self), "module": Source.of(self.module)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state, module=_load(state["module"]))
+
+    def unchecked(self, **changes: Any) -> Sweep:
+        """A copy with other values of some fields, which are not checked."""
+        copy = object.__new__(Sweep)
+        vars(copy).update(vars(self), **changes)
+        return copy
 
     @property
     def form(self) -> str:
@@ -120,9 +136,31 @@ class Sweep:
         return prod(self.axes.shape)
 
     @property
+    def ends_at_event(self) -> bool:
+        """Whether motions end at their first event: nothing after it matters to the only map."""
+        return len(self.maps) == 1 and all(one.ends_motion for one in self.maps.values())
+
+    @property
+    def barrier(self) -> tuple[Mapping[str, float], ...]:
+        """Positions at rest; motions with less energy than the lowest are not integrated."""
+        (one, *_) = self.maps.values()
+        return one.barrier if self.ends_at_event else ()
+
+    @property
+    def dtype(self) -> np.dtype[np.void]:
+        """The record that is stored for each motion; with what varies, unless on a grid."""
+        columns = () if self.axes.is_grid else self.axes.smallest
+        fields = [(name, "<f8", one.shape) for name, one in self.maps.items()]
+        return np.dtype([("status", "i1"), *((name, "<f8") for name in columns), *fields])
+
+    @property
     def as_json(self) -> dict[str, Any]:
         """All that determines the results, as JSON values."""
         generated = header(self.module) or Path(str(self.module.__file__))
+        maps = {
+            name: {"kind": type(one).__name__} | asdict(one)  # type: ignore[call-overload]
+            for name, one in self.maps.items()
+        }
         return {
             "system": self.module.SYSTEM,
             "equations": hashlib.sha256(generated.read_bytes()).hexdigest(),
@@ -131,8 +169,30 @@ class Sweep:
             "method": self.method,
             **self._limits,
             "axes": self.axes.as_json,
-            "maps": {
-                name: {"kind": type(one).__name__} | asdict(one)  # type: ignore[call-overload]
-                for name, one in self.maps.items()
-            },
+            "maps": maps,
         }
+
+
+@dataclass(frozen=True)
+class Source:
+    """A generated module for workers: its name, or its files as pairs of name and text."""
+
+    name: str
+    texts: tuple[tuple[str, str], ...] = ()
+
+    @classmethod
+    def of(cls, module: GeneratedModule) -> Source:
+        """The source of a module that is loaded here."""
+        if module.__name__.startswith("generated."):
+            return cls(module.__name__)
+        files = filter(None, (Path(str(module.__file__)), header(module)))
+        texts = tuple((path.name, path.read_text(encoding="utf-8")) for path in files)
+        return cls(module.SYSTEM, texts)
+
+
+@lru_cache
+def _load(source: Source) -> GeneratedModule:
+    """The module; each process loads it once."""
+    if not source.texts:
+        return import_module(source.name)
+    return cached_module(source.name, repr(source.texts), lambda: dict(source.texts))

@@ -50,7 +50,8 @@ def run(arguments: Namespace) -> int:
     from solvers.sweeps.plots.figure import figure
     from solvers.sweeps.reading import find
     from solvers.sweeps.run import partial_results, sweep
-    from solvers.sweeps.summary import GOOD, as_json, summary
+    from solvers.sweeps.status import GOOD
+    from solvers.sweeps.summary import as_json, summary
 
     definition = find(arguments.sweep, load)
     folder = arguments.output or Path("out") / definition.name

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Self, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event
 from solvers.io.suggestion import did_you_mean
-from solvers.sweeps.axes import Axes
+from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.map_table import MapTable
 
 if TYPE_CHECKING:  # workers do not load matplotlib
@@ -21,7 +20,6 @@ if TYPE_CHECKING:  # workers do not load matplotlib
 
     from solvers.sweeps.results import Results
 
-Array: TypeAlias = NDArray[np.float64]
 #: Title of a panel, and the function that draws it.
 Panels: TypeAlias = "Iterator[tuple[str, Callable[[Panel], None]]]"
 
@@ -50,38 +48,30 @@ class Map:
 
     A kind is a frozen dataclass in a module of this package. Its word in a sweep file is the
     module's name, with spaces for underscores; the keys of its table are the class's fields.
-
-    Attributes
-    ----------
-    example : str
-        Keys of a table of this kind, as a sweep file of the double pendulum has them.
-    quantity : str
-        Name of the quantity, for labels; by default that of the component, or of the map.
-    dimensions : tuple of str
-        Names of the dimensions of the numbers of one motion.
-    colour_map : str
-        A colour map of matplotlib's whose range includes 0; by default the signs of the values
-        decide: diverging about 0 where both occur, else sequential.
-    is_logarithmic : bool
-        Whether images show absolute values on a logarithmic scale.
-    wraps_angles : bool
-        Whether plots show angles modulo 2π.
-    is_variational : bool
-        Whether a small change of the state is integrated, too.
-    ends_motion : bool
-        Whether the first event of the map may end the motion.
-    barrier : tuple of mapping of str to float
-        Positions at rest: motions with less energy than the lowest have no event.
     """
 
+    #: Keys of a table of this kind, as a sweep file of the double pendulum has them.
     example: ClassVar[str] = ""
+    #: Name of the quantity, for labels; by default that of the component, or of the map.
     quantity: ClassVar[str] = ""
+    #: Unit of the numbers; by default that of the components.
+    own_unit: ClassVar[str] = ""
+    #: Names of the dimensions of the numbers of one motion.
     dimensions: ClassVar[tuple[str, ...]] = ()
+    #: A colour map of matplotlib's whose range includes 0; by default the signs of the values
+    #: decide: diverging about 0 where both occur, else sequential.
     colour_map: ClassVar[str] = ""
+    #: Kind of panels: ``numbers``, ``curves`` over time, or a ``section``.
+    plot: ClassVar[str] = "numbers"
+    #: Whether images show absolute values on a logarithmic scale.
     is_logarithmic: ClassVar[bool] = False
+    #: Whether plots show angles modulo 2π.
     wraps_angles: ClassVar[bool] = False
+    #: Whether a small change of the state is integrated, too.
     is_variational: ClassVar[bool] = False
+    #: Whether the first event of the map may end the motion.
     ends_motion: ClassVar[bool] = False
+    #: Positions at rest: motions with less energy than the lowest have no event.
     barrier: tuple[Mapping[str, float], ...] = ()
 
     @classmethod
@@ -121,6 +111,8 @@ class Map:
 
     def unit(self, module: GeneratedModule, component: str = "") -> str:
         """Unit of the numbers, or of those of one component; empty if they have different units."""
+        if self.own_unit:
+            return self.own_unit
         units = {module.UNITS[name] for name in ([component] if component else self.components)}
         return units.pop() if len(units) == 1 else ""
 
@@ -132,10 +124,8 @@ class Map:
         """Check the map against its sweep."""
         for name in self.components:
             if name not in module.STATE:
-                raise ValueError(
-                    f"unknown component {name[:50]!r}{did_you_mean(name, module.STATE)}; known are "
-                    f"{', '.join(module.STATE)}"
-                )
+                hint, known = did_you_mean(name, module.STATE), ", ".join(module.STATE)
+                raise ValueError(f"unknown component {name[:50]!r}{hint}; known are {known}")
         self.events(module)
         if self.uses_energy and has_function(module, "power"):
             raise ValueError(f"{module.SYSTEM} does not conserve its energy")
@@ -146,9 +136,9 @@ class Map:
 
     def panels(self, name: str, results: Results) -> Panels:
         """Panels of a figure, as pairs of a title and a function that draws on axes."""
-        from solvers.sweeps.plots.panels import number_panels
+        from solvers.sweeps.plots.figure import PANELS
 
-        return number_panels(name, results)
+        return PANELS[self.plot](name, results)
 
 
 @dataclass(frozen=True)
@@ -161,21 +151,17 @@ class ComponentMap(Map):
 
     @classmethod
     def read(cls, table: MapTable) -> Self:
-        """The map that a table of a sweep file specifies."""
         return cls(table.components("of"))
 
     @property
     def labels(self) -> tuple[tuple[str, ...], ...]:
-        """The components."""
         return (self.of,)
 
     @property
     def components(self) -> tuple[str, ...]:
-        """The components that are stored."""
         return self.of
 
     def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
-        """Check the map against its sweep, as in `Map.check`."""
         if not self.of:
             raise ValueError(f"`of` is empty; name some of {', '.join(module.STATE)}")
         super().check(module, axes, values)
@@ -189,7 +175,10 @@ class CountedMap(ComponentMap):
 
     dimensions: ClassVar[tuple[str, ...]] = ("component", "number")
 
+    @classmethod
+    def read(cls, table: MapTable) -> Self:
+        return cls(table.components("of"), table.count("count"))
+
     @property
     def shape(self) -> tuple[int, ...]:
-        """Values of each component."""
         return (len(self.of), self.count)

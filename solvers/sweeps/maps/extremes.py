@@ -1,14 +1,13 @@
 """Extreme values."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event, Extremum
-from solvers.sweeps.maps import Array, ComponentMap, Motions
+from solvers.sweeps.axes import Array
+from solvers.sweeps.maps import ComponentMap, Motions
 
 
 @dataclass(frozen=True)
@@ -32,15 +31,12 @@ class Extremes(ComponentMap):
 
     @property
     def labels(self) -> tuple[tuple[str, ...], ...]:
-        """The coordinates, and the two extremes."""
         return (self.of, ("smallest", "largest"))
 
     def events(self, module: GeneratedModule) -> list[Event]:
-        """Zeros of the velocities."""
         return [Extremum(module, f"{name}_dot") for name in self.of]
 
     def values(self, motions: Motions) -> Array:
-        """The extremes, among turning points, start and end."""
         indices, ensemble = motions.indices(self.of), motions.ensemble
         inner = ensemble.y_events[:, :, motions.events, :2]
         between = np.stack([inner[index, :, k] for k, index in enumerate(indices)], axis=1)

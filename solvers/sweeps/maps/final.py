@@ -1,10 +1,9 @@
 """Final states."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
-from solvers.sweeps.maps import Array, ComponentMap, Motions
+from solvers.sweeps.axes import Array
+from solvers.sweeps.maps import ComponentMap, Motions
 
 
 @dataclass(frozen=True)
@@ -26,5 +25,4 @@ class Final(ComponentMap):
     wraps_angles = True
 
     def values(self, motions: Motions) -> Array:
-        """Components of the final states."""
         return motions.ensemble.y[motions.indices(self.of)].T

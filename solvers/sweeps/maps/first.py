@@ -1,18 +1,17 @@
 """Times of first events."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event
-from solvers.sweeps.axes import Axes
+from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.barrier import lower_position
 from solvers.sweeps.map_table import MapTable
-from solvers.sweeps.maps import Array, Map, Motions
+from solvers.sweeps.maps import Map, Motions
 
 
 @dataclass(frozen=True)
@@ -41,30 +40,23 @@ class First(Map):
 
     example = 'of = { theta1 = ["-180 deg", "180 deg"] }, barrier = [{ theta1 = "180 deg" }]'
     quantity = "time"
+    own_unit = "s"
     colour_map = "viridis_r"
     is_logarithmic = True
     ends_motion = True
 
     @classmethod
-    def read(cls, table: MapTable) -> First:
-        """The map that a table of a sweep file specifies."""
+    def read(cls, table: MapTable) -> Self:
         return cls(table.values_by_component("of"), table.positions("barrier"))
 
     @property
     def components(self) -> tuple[str, ...]:
-        """Components that are watched, and coordinates of the barrier."""
         return (*self.of, *(name for position in self.barrier for name in position))
 
-    def unit(self, module: GeneratedModule, component: str = "") -> str:
-        """Unit of a time."""
-        return "s"
-
     def events(self, module: GeneratedModule) -> list[Event]:
-        """A crossing for each value."""
         return [Event(module, name, value) for name, values in self.of.items() for value in values]
 
     def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
-        """Check the map against its sweep, as in `Map.check`; prove the barrier."""
         super().check(module, axes, values)
         if not any(self.of.values()):
             raise ValueError("`of` is empty; give values by component")
@@ -88,7 +80,6 @@ class First(Map):
             )
 
     def values(self, motions: Motions) -> Array:
-        """Time of the first event; NaN where none occurred."""
         times = motions.ensemble.t_events[:, motions.events, 0]
         first = np.where(np.isnan(times), np.inf, times).min(axis=1, initial=np.inf)
         return np.where(np.isinf(first), np.nan, first)

@@ -1,11 +1,9 @@
 """Lyapunov exponents."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
-from solvers.equations.module import GeneratedModule
-from solvers.sweeps.maps import Array, Map, Motions
+from solvers.sweeps.axes import Array
+from solvers.sweeps.maps import Map, Motions
 
 
 @dataclass(frozen=True)
@@ -28,13 +26,9 @@ class Lyapunov(Map):
     """
 
     quantity = "Lyapunov exponent"
+    own_unit = "1/s"
     colour_map = "magma"
     is_variational = True
 
-    def unit(self, module: GeneratedModule, component: str = "") -> str:
-        """Unit of a rate."""
-        return "1/s"
-
     def values(self, motions: Motions) -> Array:
-        """The exponents."""
         return motions.ensemble.growth / motions.ensemble.t

@@ -1,17 +1,11 @@
 """States at evenly spaced times."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solvers.sweeps.map_table import MapTable
-from solvers.sweeps.maps import Array, CountedMap, Motions, Panels
-
-if TYPE_CHECKING:
-    from solvers.sweeps.results import Results
+from solvers.sweeps.axes import Array
+from solvers.sweeps.maps import CountedMap, Motions
 
 
 @dataclass(frozen=True)
@@ -32,23 +26,11 @@ class Samples(CountedMap):
     """
 
     example = 'of = ["theta1"], count = 100'
-
-    @classmethod
-    def read(cls, table: MapTable) -> Samples:
-        """The map that a table of a sweep file specifies."""
-        return cls(table.components("of"), table.count("count"))
+    plot = "curves"
 
     @property
     def sample_count(self) -> int:
-        """Number of times."""
         return self.count
 
     def values(self, motions: Motions) -> Array:
-        """The samples."""
         return np.swapaxes(motions.ensemble.samples[motions.indices(self.of)], 0, 1)
-
-    def panels(self, name: str, results: Results) -> Panels:
-        """A panel of curves over time for each component."""
-        from solvers.sweeps.plots.panels import curve_panels
-
-        return curve_panels(name, results)

@@ -1,19 +1,15 @@
 """Poincaré sections."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Self
 
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event
+from solvers.sweeps.axes import Array
 from solvers.sweeps.map_table import MapTable
-from solvers.sweeps.maps import Array, CountedMap, Motions, Panels
-
-if TYPE_CHECKING:
-    from solvers.sweeps.results import Results
+from solvers.sweeps.maps import CountedMap, Motions
 
 #: Directions of a crossing in a sweep file.
 DIRECTIONS = {"both": 0, "up": 1, "down": -1}
@@ -49,11 +45,11 @@ class Section(CountedMap):
     direction: int = 0
 
     example = 'of = ["theta2"], count = 50, where = "theta1", value = 0, direction = "up"'
+    plot = "section"
     wraps_angles = True
 
     @classmethod
-    def read(cls, table: MapTable) -> Section:
-        """The map that a table of a sweep file specifies."""
+    def read(cls, table: MapTable) -> Self:
         where = table.choice("where", table.module.STATE)
         direction = DIRECTIONS[table.choice("direction", tuple(DIRECTIONS), "both")]
         value = table.number("value", table.module.UNITS[where], 0.0)
@@ -61,20 +57,11 @@ class Section(CountedMap):
 
     @property
     def occurrences(self) -> int:
-        """Number of crossings."""
         return self.count
 
     def events(self, module: GeneratedModule) -> list[Event]:
-        """The crossing."""
         return [Event(module, self.where, self.value, self.direction)]
 
     def values(self, motions: Motions) -> Array:
-        """The states at the crossings."""
         states = motions.ensemble.y_events[:, :, motions.events.start, : self.count]
         return np.swapaxes(states[motions.indices(self.of)], 0, 1)
-
-    def panels(self, name: str, results: Results) -> Panels:
-        """A panel for each energy and set of parameters."""
-        from solvers.sweeps.plots.panels import section_panels
-
-        return section_panels(name, results)

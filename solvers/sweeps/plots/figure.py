@@ -1,15 +1,24 @@
 """Figures of sweeps: one or more panels for each map."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
+from functools import partial
+from itertools import product
 from math import ceil
+from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
-from solvers.io.figures import panels
-from solvers.sweeps.plots.lines import CURVES
+from solvers.io import figures
+from solvers.io.notation import symbol
+from solvers.sweeps.checks import ENERGY
+from solvers.sweeps.maps import Panels
+from solvers.sweeps.plots.image import image
+from solvers.sweeps.plots.labels import letter
+from solvers.sweeps.plots.lines import CURVES, curves, line, section
+from solvers.sweeps.plots.quantity import Quantity
 from solvers.sweeps.results import Results
+from solvers.sweeps.status import GOOD
 
 #: Largest number of panels.
 MAX_PANELS = 12
@@ -42,7 +51,7 @@ def figure(results: Results) -> Figure:
     columns = min(3, len(shown))
     rows = ceil(len(shown) / columns)
     title, size = definition.title.replace("$", r"\$"), (max(6.4, 5.4 * columns), 4.9 * rows + 0.5)
-    figure, axes = panels(title, rows=rows, columns=columns, size=size)
+    figure, axes = figures.panels(title, rows=rows, columns=columns, size=size)
     for panel, (subtitle, draw) in zip(axes, shown, strict=False):
         draw(panel)
         if len(shown) > 1:
@@ -59,12 +68,45 @@ def figure(results: Results) -> Figure:
 def _remarks(results: Results) -> Iterator[str]:
     """Meaning of colours, number of curves, and motions with an unusual status."""
     definition, count = results.definition, results.count
-    kinds = definition.maps.values()
     if "proved" in count:
         yield "white, inside the line: not enough energy"
-    if "finished" in count and any(one.ends_motion for one in kinds):
+    if "finished" in count and any(one.ends_motion for one in definition.maps.values()):
         yield f"grey or empty: no event within {definition.duration:g} s"
     if definition.samples and definition.motions > CURVES:
         yield f"about {CURVES} of {definition.motions:,} motions over time"
-    usual = ("finished", "event", "proved")
-    yield from (f"{name}: {n:,} motions" for name, n in count.items() if name not in usual)
+    yield from (f"{name}: {n:,} motions" for name, n in count.items() if name not in GOOD)
+
+
+def _numbers(name: str, results: Results) -> Panels:
+    """A panel for each number of a map: an image over a grid, else a line or points."""
+    one = results.definition.maps[name]
+    is_image = results.definition.axes.is_grid and len(results.axes) > 1
+    draw = image if is_image else line
+    for index in np.ndindex(one.shape):
+        parts = [labels[k] for labels, k in zip(one.labels, index, strict=False)]
+        title = " ".join([name, *map(symbol, parts[:1]), *parts[1:]])
+        yield title, partial(draw, quantity=Quantity(results, name, index))
+
+
+def _curves(name: str, results: Results) -> Panels:
+    """A panel for each component, with some of the motions over time."""
+    for k, component in enumerate(results.definition.maps[name].labels[0]):
+        quantity = Quantity(results, name, (k,))
+        yield f"{name}: {symbol(component)}", partial(curves, quantity=quantity)
+
+
+def _section(name: str, results: Results) -> Panels:
+    """A panel of crossings for each energy and each set of parameters."""
+    axes, definition = results.axes, results.definition
+    fixed = (ENERGY, *definition.module.PARAMETERS) if definition.axes.is_grid else ()
+    names = [quantity for quantity in axes if quantity in fixed]
+    for indices in product(*(range(len(axes[quantity])) for quantity in names)):
+        group = dict(zip(names, indices, strict=True))
+        words = (f"{letter(q)} = {axes[q][k]:.4g} {results.unit(q)}" for q, k in group.items())
+        selection: Any = tuple(group.get(quantity, slice(None)) for quantity in axes)
+        draw = partial(section, results=results, name=name)
+        yield ", ".join(words), partial(draw, selection=selection if fixed else ...)
+
+
+#: Panels of each kind of plot.
+PANELS = {"numbers": _numbers, "curves": _curves, "section": _section}

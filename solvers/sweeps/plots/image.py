@@ -1,24 +1,18 @@
 """A map over two axes, as an image."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
-from numpy.typing import NDArray
 
-from solvers.sweeps.axes import Grid
+from solvers.sweeps.axes import Array, Grid
 from solvers.sweeps.barrier import barrier, energies
 from solvers.sweeps.initial_states import initial_states
-from solvers.sweeps.job import PROVED, Job
 from solvers.sweeps.plots.labels import add_colour_bar, label_axis, letter
 from solvers.sweeps.plots.quantity import NEVER, NOTHING, Quantity
-from solvers.sweeps.results import Results
-
-Array: TypeAlias = NDArray[np.float64]
+from solvers.sweeps.status import PROVED
 
 #: Largest number of pixels along each side of an image, and points along those of a boundary.
 PIXELS, BOUNDARY = 2048, 400
@@ -35,16 +29,15 @@ def image(panel: Axes, *, quantity: Quantity) -> None:
     )
     values = quantity.values(cut)
     palette, norm = quantity.colours(values)
-    extent = [*_edges(xs), *_edges(ys)]
-    options: Any = {"origin": "lower", "extent": extent, "aspect": "auto"}
-    options["interpolation"] = "nearest"
+    options: Any = {"origin": "lower", "aspect": "auto", "interpolation": "nearest"}
+    options["extent"] = [*_edges(xs), *_edges(ys)]
     panel.set_facecolor(NOTHING)
     mappable = panel.imshow(np.ma.masked_invalid(values.T), cmap=palette, norm=norm, **options)
     never = np.ma.masked_equal(results.status[cut].T == PROVED, False)
     panel.imshow(never, cmap=ListedColormap([NEVER]), **options)
     fixed = {q: float(axis[len(axis) // 2]) for q, axis in results.axes.items() if q not in (x, y)}
     if quantity.map.barrier:
-        _draw_boundary(panel, results, quantity.map.barrier, {x: xs, y: ys}, fixed)
+        _draw_boundary(panel, quantity, (x, y), fixed)
     add_colour_bar(panel, mappable, quantity.label)
     label_axis(panel, "x", results, x)
     label_axis(panel, "y", results, y)
@@ -61,21 +54,17 @@ def longest(axes: Mapping[str, Array]) -> tuple[str, str]:
 
 
 def _draw_boundary(
-    panel: Axes,
-    results: Results,
-    positions: tuple[Mapping[str, float], ...],
-    axes: Mapping[str, Array],
-    fixed: Mapping[str, float],
+    panel: Axes, quantity: Quantity, names: tuple[str, str], fixed: Mapping[str, float]
 ) -> None:
     """Draw the line on which motions start with the energy of a barrier."""
-    definition = results.definition
-    fine = {name: np.linspace(*_edges(values), BOUNDARY) for name, values in axes.items()}
+    definition, axes = quantity.results.definition, quantity.results.axes
+    fine = {name: np.linspace(*_edges(axes[name]), BOUNDARY) for name in names}
     columns = Grid(fine).columns(0, BOUNDARY**2)
     columns |= {name: np.full(BOUNDARY**2, value) for name, value in fixed.items()}
     module = definition.module
-    state, params, _ = initial_states(Job.of(definition), module, columns)
+    state, params, _ = initial_states(definition, columns)
     margin = energies(module, state[:, : len(module.STATE)], params)
-    margin -= barrier(module, positions, params, len(state))
+    margin -= barrier(module, quantity.map.barrier, params, len(state))
     levels = margin.reshape(BOUNDARY, BOUNDARY).T
     panel.contour(*fine.values(), levels, [0.0], colors="#D55E00", linewidths=1.2)
 

@@ -1,7 +1,5 @@
 """Axes and colour bars: symbols, units, and angles as multiples of π."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable

@@ -1,7 +1,5 @@
 """Lines and points: maps over one axis, motions over time, Poincaré sections."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl

@@ -1,19 +1,15 @@
 """One number of a map's: values, label and colours."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize
-from numpy.typing import NDArray
 
 from solvers.io.notation import axis_label, symbol
+from solvers.sweeps.axes import Array
 from solvers.sweeps.maps import Map
 from solvers.sweeps.results import Results
-
-Array: TypeAlias = NDArray[np.float64]
 
 #: Where nothing happened or nothing is known, and where it is proved that nothing can happen.
 NOTHING, NEVER = "#c8c8c8", "#ffffff"
@@ -49,8 +45,7 @@ class Quantity:
     def label(self) -> str:
         """Label of an axis or a colour bar."""
         component = symbol(self.component) if self.component else self.name
-        quantity = self.map.quantity
-        return axis_label(quantity or component, self.unit)
+        return axis_label(self.map.quantity or component, self.unit)
 
     @property
     def is_direction(self) -> bool:
