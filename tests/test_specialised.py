@@ -13,9 +13,9 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from derive import Derivation, load
+from derive.codegen.assignments import Notation
 from derive.codegen.functions import contents
 from derive.codegen.lagrangian_form import LagrangianForm
-from derive.codegen.notation import Notation
 from derive.codegen.writing import texts
 from derive.mechanics.specialisation import specialised as folded
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError

@@ -14,13 +14,37 @@ from itertools import count
 
 from derive.codegen import operation as op
 from derive.codegen.lowering import Lowering
-from derive.codegen.notation import Notation
 from derive.codegen.operation import Operation, triangle_rows
 
 #: Longest expression that is written in place instead of named.
 IN_PLACE = 48
 
 SUM, PRODUCT, ATOM = 1, 2, 3
+
+
+class Notation:
+    """How a target language writes names, numbers and calls; by default as Python and C do."""
+
+    def name(self, name: str) -> str:
+        """An input."""
+        return name
+
+    def literal(self, value: Fraction) -> str:
+        """A number, exact where the floating-point numbers are."""
+        numerator, denominator = float(value.numerator), float(value.denominator)
+        is_exact = (numerator, denominator) == (value.numerator, value.denominator)
+        # a quotient of exact numbers is rounded once, in any type
+        if value == float(value) or not is_exact:
+            return repr(float(value))
+        return f"({numerator!r}/{denominator!r})"
+
+    def call(self, function: str, argument: str) -> str:
+        """A call of a mathematical function, by its name in C99."""
+        return f"{function}({argument})"
+
+    def component(self, vector: str, index: int) -> str:
+        """The component of a vector, from 0 on."""
+        return f"{vector}[{index}]"
 
 
 @dataclass(frozen=True)
@@ -36,12 +60,8 @@ class Factorisation:
     """The factorisation of a symmetric matrix, given by its upper triangle row by row."""
 
     name: str
+    size: int  # number of rows
     entries: tuple[str, ...]
-
-    @property
-    def size(self) -> int:
-        """Number of rows of the matrix."""
-        return triangle_rows(len(self.entries))
 
 
 @dataclass(frozen=True)
@@ -50,47 +70,19 @@ class Solution:
 
     name: str
     matrix: str
-    entries: tuple[str, ...]
-
-    @property
-    def size(self) -> int:
-        """Number of equations."""
-        return len(self.entries)
+    right: tuple[str, ...]
 
 
 Statement = Value | Factorisation | Solution
 
 
-@dataclass(frozen=True)
 class Assignments:
     """The body of a function, in the notation of a target language.
 
-    Attributes
-    ----------
-    constants, terms : tuple of Statement
-        Named values of the parameters alone, and the other named values.
-    outputs : tuple of str
-        Expressions of the results.
+    `constants` are named values of the parameters alone, `terms` the others; `outputs` are
+    expressions of the results. New names are none of those `reserved`.
     """
 
-    constants: tuple[Statement, ...]
-    terms: tuple[Statement, ...]
-    outputs: tuple[str, ...]
-
-    @property
-    def statements(self) -> tuple[Statement, ...]:
-        """All named values."""
-        return self.constants + self.terms
-
-
-def assignments(lowering: Lowering, reserved: Collection[str], notation: Notation) -> Assignments:
-    """The assignments of `lowering`, without new names among those `reserved`."""
-    writer = _Writer(lowering, reserved, notation)
-    outputs = tuple(writer.text(output, 0) for output in lowering.outputs)
-    return Assignments(tuple(writer.constants), tuple(writer.terms), outputs)
-
-
-class _Writer:
     def __init__(self, lowering: Lowering, reserved: Collection[str], notation: Notation) -> None:
         self._operations, self._notation = lowering.operations, notation
         self._reserved = set(reserved)
@@ -102,6 +94,7 @@ class _Writer:
         self._hoisted: set[int] = set()
         for output in lowering.outputs:
             self._count(output)
+        self.outputs = [self._text(output) for output in lowering.outputs]
 
     def _count(self, n: int) -> None:
         self._uses[n] = self._uses.get(n, 0) + 1
@@ -111,7 +104,7 @@ class _Writer:
                 if self._operations[operand].constant and not self._operations[n].constant:
                     self._hoisted.add(operand)
 
-    def text(self, n: int, context: int) -> str:
+    def _text(self, n: int, context: int = 0) -> str:
         """The operation's name or expression, in brackets if it binds weaker than `context`."""
         if n not in self._texts:
             self._texts[n] = self._written(n)
@@ -122,29 +115,24 @@ class _Writer:
         operation = self._operations[n]
         match operation:
             case op.Factorised(operands):
-                entries = self._entries(operands)
-                statement = Factorisation(self._numbered("factors"), entries)
-                return self._named(operation, statement), ATOM
+                entries, name = tuple(map(self._text, operands)), self._numbered("factors")
+                return self._named(n, Factorisation(name, triangle_rows(len(entries)), entries))
             case op.Solution(operands):
-                matrix, *right = self._entries(operands)
-                solution = Solution(self._numbered("solved"), matrix, tuple(right))
-                return self._named(operation, solution), ATOM
+                matrix, *right = map(self._text, operands)
+                return self._named(n, Solution(self._numbered("solved"), matrix, tuple(right)))
         text, precedence = self._expression(operation)
         in_place = self._uses[n] == 1 and n not in self._hoisted and len(text) <= IN_PLACE
         if in_place or isinstance(operation, op.Leaf | op.Constant | op.Component):
             return text, precedence
-        return self._named(operation, Value(self._name(operation), text)), ATOM
+        return self._named(n, Value(self._name(operation), text))
 
-    def _named(self, operation: Operation, statement: Statement) -> str:
-        (self.constants if operation.constant else self.terms).append(statement)
-        return statement.name
-
-    def _entries(self, operands: Collection[int]) -> tuple[str, ...]:
-        return tuple(self.text(operand, 0) for operand in operands)
+    def _named(self, n: int, statement: Statement) -> tuple[str, int]:
+        (self.constants if self._operations[n].constant else self.terms).append(statement)
+        return statement.name, ATOM
 
     def _name(self, operation: Operation) -> str:
         if isinstance(operation, op.Call):
-            argument = self.text(operation.operands[0], 0)
+            argument = self._text(operation.operands[0])
             name = f"{operation.function}_{argument}"
             if argument.isidentifier() and name not in self._reserved:
                 self._reserved.add(name)
@@ -163,15 +151,15 @@ class _Writer:
             case op.Constant(value=value):
                 return notation.literal(value), ATOM
             case op.Call((argument,), function=function):
-                return notation.call(function, self.text(argument, 0)), ATOM
+                return notation.call(function, self._text(argument)), ATOM
             case op.Component((solution,), index=index):
-                return notation.component(self.text(solution, 0), index), ATOM
+                return notation.component(self._text(solution), index), ATOM
             case op.Quotient((*above, below)):
-                top = self.text(above[0], PRODUCT) if above else notation.literal(Fraction(1))
-                return f"{top}/{self.text(below, ATOM)}", PRODUCT
+                top = self._text(above[0], PRODUCT) if above else notation.literal(Fraction(1))
+                return f"{top}/{self._text(below, ATOM)}", PRODUCT
             case op.Product(operands):
                 first, *rest = self._constants_first(operands)
-                factors = [self.text(first, PRODUCT), *(self.text(n, ATOM) for n in rest)]
+                factors = [self._text(first, PRODUCT), *(self._text(n, ATOM) for n in rest)]
                 return "*".join(factors), PRODUCT
             case op.Sum(operands, coefficients=coefficients):
                 return self._sum(dict(zip(operands, coefficients, strict=True))), SUM
@@ -186,12 +174,12 @@ class _Writer:
         positive = [n for n in ordered if coefficients[n] > 0]
         negative = [n for n in ordered if coefficients[n] < 0]
         if not positive and all(c == -1 for c in coefficients.values()) and len(negative) > 1:
-            return f"-({' + '.join(self.text(n, SUM) for n in negative)})"
+            return f"-({' + '.join(self._text(n, SUM) for n in negative)})"
         text = ""
         for n in positive + negative:
             sign = "-" if n in negative else "+"
             scale, context = abs(coefficients[n]), PRODUCT if text or n in negative else SUM
-            term = self.text(n, context if scale == 1 else PRODUCT)
+            term = self._text(n, context if scale == 1 else PRODUCT)
             if scale != 1:
                 term = f"{self._notation.literal(scale)}*{term}"
             text += f" {sign} {term}" if text else f"{sign.strip('+')}{term}"

@@ -9,9 +9,8 @@ from pkgutil import iter_modules
 from typing import ClassVar
 
 from derive.codegen import backends
-from derive.codegen.assignments import Assignments, Statement, assignments
+from derive.codegen.assignments import Assignments, Notation, Statement
 from derive.codegen.functions import Contents, Function
-from derive.codegen.notation import Notation
 
 #: Names that generated functions use themselves.
 RESERVED = ("t", "y", "state", "params", "result")
@@ -41,9 +40,8 @@ class Backend(Notation, ABC):
 
     def assignments(self, function: Function) -> Assignments:
         """The assignments of a function, in the notation of this language."""
-        parameters = (symbol.name for symbol in function.system.params)
-        reserved = {*RESERVED, *function.state, *parameters}
-        return assignments(function.lowering, reserved, self)
+        reserved = {*RESERVED, *function.state, *function.parameters}
+        return Assignments(function.lowering, reserved, self)
 
     def body(self, function: Function, inputs: Iterable[str], assigned: Assignments) -> list[str]:
         """The lines of a function's body, from the given lines of its inputs to the outputs."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from derive.codegen.graph import Graph
-from derive.codegen.node import Call, Leaf, Let, Node, Powers, Product, Sum
+from derive.codegen.node import Call, Leaf, Let, Node, Powers, Product, Sum, operands
 
 #: The derivative of each function by its argument, from the node of the call and the argument.
 OUTER: dict[str, Callable[[Node, Node], Node]] = {
@@ -31,7 +31,7 @@ class Differentiation:
         """Names of the leaves that `node` depends on."""
         if node not in self._leaves:
             own = {node.name} if isinstance(node, Leaf) else set()
-            self._leaves[node] = frozenset(own).union(*map(self.leaves, node.operands()))
+            self._leaves[node] = frozenset(own).union(*map(self.leaves, operands(node)))
         return self._leaves[node]
 
     def __call__(self, node: Node, leaf: str) -> Node:

@@ -19,14 +19,6 @@ from derive.system.system import System
 Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "parameters"]
 
 
-def _always(derivation: Derivation) -> bool:
-    return True
-
-
-def _no_detail(derivation: Derivation) -> str:
-    return ""
-
-
 def _energy(derivation: Derivation) -> str:
     if TIME in derivation.variables:
         return "Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time"
@@ -43,31 +35,15 @@ def _reactions(derivation: Derivation) -> str:
 
 @dataclass(frozen=True)
 class FunctionSpec:
-    """A function that a generated module may have.
+    """A function that a generated module may have; a property of a form gives its outputs."""
 
-    Attributes
-    ----------
-    name : str
-        Its name, and that of the property of the equations of motion that gives its outputs.
-    form : {"lagrangian", "hamiltonian", "rational", "variational", "parameters"}
-        The form of the state ``y`` that it takes; ``parameters`` means none.
-    shape : str
-        Names of the lengths of the result's axes; empty for a number.
-    summary, returns : str
-        First line of its docstring, and what it returns; ``{}`` stands for `detail`.
-    detail : callable
-        The part of these texts that depends on the system.
-    exists : callable
-        Whether a system has it. One whose shape is ``rational`` also needs an angle.
-    """
-
-    name: str
-    form: Form
-    shape: str
-    summary: str
+    name: str  # also that of the property
+    form: Form  # of the state that it takes; of none if it takes parameters alone
+    shape: str  # names of the lengths of the result's axes; empty for a number
+    summary: str  # of its docstring; {} stands for the detail
     returns: str
-    detail: Callable[[Derivation], str] = _no_detail
-    exists: Callable[[Derivation], bool] = _always
+    detail: Callable[[Derivation], str] = lambda derivation: ""
+    exists: Callable[[Derivation], bool] = lambda derivation: True  # a rational one needs an angle
 
 
 SPECS = (
@@ -131,32 +107,25 @@ SPECS = (
 
 @dataclass(frozen=True)
 class Function:
-    """A function of the generated module of a system.
-
-    Attributes
-    ----------
-    system : System
-        The system.
-    name, summary, returns : str
-        Its name, the first line of its docstring, and what it returns.
-    form : {"lagrangian", "hamiltonian", "rational", "variational", "parameters"}
-        The form of the state ``y`` that it takes.
-    state : tuple of str
-        Names of the components of ``y``, in order; empty if it takes parameters alone.
-    shape : tuple of int
-        Shape of the result; ``()`` is a single number.
-    lowering : Lowering
-        The operations; its outputs are the result, flat in C order.
-    """
+    """A function of the generated module of a system."""
 
     system: System
     name: str
-    summary: str
+    summary: str  # first line of its docstring
     returns: str
     form: Form
-    state: tuple[str, ...]
-    shape: tuple[int, ...]
-    lowering: Lowering
+    state: tuple[str, ...]  # components of the state that it takes, in order
+    shape: tuple[int, ...]  # of the result; () is a single number
+    lowering: Lowering  # its outputs are the result, flat in C order
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the parameters, in order."""
+        return tuple(symbol.name for symbol in self.system.params)
+
+    def arguments(self, state: str) -> dict[str, tuple[str, ...]]:
+        """Names of the components of the arguments, of which the state is called `state`."""
+        return {state: self.state, "params": self.parameters}
 
     @property
     def depends_on_time(self) -> bool:
@@ -172,20 +141,10 @@ class Function:
 
 @dataclass(frozen=True)
 class Contents:
-    """The contents of the generated files of a system, in any language.
-
-    Attributes
-    ----------
-    derivation : Derivation
-        The derivation of the system.
-    states : dict of form to tuple of str
-        Names of the components of ``y`` in each form that exists.
-    functions : tuple of Function
-        The functions that exist.
-    """
+    """The contents of the generated files of a system, in any language."""
 
     derivation: Derivation
-    states: dict[Form, tuple[str, ...]]
+    states: dict[Form, tuple[str, ...]]  # components of the state in each form that exists
     functions: tuple[Function, ...]
 
     @property
@@ -197,17 +156,9 @@ class Contents:
 def contents(derivation: Derivation, only: Collection[str] | None = None) -> Contents:
     """Everything that is generated for a derivation, or `only` the functions of these names."""
     system, states = derivation.system, _states(derivation)
-    sizes = {
-        "q": len(system.q),
-        "state": 2 * len(system.q),
-        "masses": len(system.masses),
-        "axes": system.dimension,
-        "reactions": len(system.reactions),
-        "2": 2,
-    }
-    sizes |= {
-        form: len(state) for form, state in states.items() if form in ("rational", "variational")
-    }
+    sizes = {"q": len(system.q), "masses": len(system.masses), "axes": system.dimension}
+    sizes |= {"state": 2 * len(system.q), "reactions": len(system.reactions), "2": 2}
+    sizes |= {form: len(states[form]) for form in ("rational", "variational") if form in states}
     functions = []
     for spec in SPECS:
         shape = spec.shape.split()
@@ -215,7 +166,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
         if is_requested and {*shape} <= {*sizes} and spec.exists(derivation):
             detail, lowering = spec.detail(derivation), _lowering(spec, derivation)
             texts = spec.summary.format(detail), spec.returns.format(detail)
-            state, lengths = states.get(spec.form, ()), tuple(sizes[word] for word in shape)
+            state, lengths = states.get(spec.form, ()), tuple(sizes[axis] for axis in shape)
             functions.append(
                 Function(system, spec.name, *texts, spec.form, state, lengths, lowering)
             )
@@ -237,11 +188,11 @@ def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
     positions: list[str] = []
     for q in system.q:
         positions += [f"sin_{q.name}", f"cos_{q.name}"] if q in angles else [q.name]
+    rational = (*positions, *(s.name for s in system.qdot))
     states: dict[Form, tuple[str, ...]] = {
         "lagrangian": tuple(s.name for s in system.q + system.qdot),
         "hamiltonian": tuple(s.name for s in system.q + system.p),
     }
-    rational = (*positions, *(s.name for s in system.qdot))
     if angles:
         states["rational"] = rational
     states["variational"] = (*rational, *(s.name for s in system.variations))

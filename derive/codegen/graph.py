@@ -32,6 +32,7 @@ from derive.codegen.node import (
     Product,
     Solution,
     Sum,
+    operands,
 )
 
 Kind = TypeVar("Kind", bound=Node)
@@ -194,7 +195,7 @@ class Graph:
         if term in terms:
             return dict(terms)
         for node, coefficient in terms.items():
-            if isinstance(node, Sum) and term in node.operands():
+            if isinstance(node, Sum) and term in operands(node):
                 expanded = {n: c for n, c in terms.items() if n is not node}
                 for inner, c in node.terms:
                     expanded[inner] = expanded.get(inner, Fraction(0)) + c * coefficient

@@ -25,6 +25,7 @@ from derive.codegen.node import (
     Product,
     Solution,
     Sum,
+    operands,
 )
 from derive.codegen.sharing import share_pairs
 
@@ -34,18 +35,10 @@ Term = tuple[int, Fraction]
 
 
 class Lowering:
-    """The operations that compute `outputs` from the leaves.
-
-    Attributes
-    ----------
-    operations : dict of int to Operation
-        By number, in no particular order.
-    outputs : tuple of int
-        The number of the operation that computes each of the given nodes.
-    """
+    """The operations that compute `outputs`, by number; of `parameters` alone they are constant."""
 
     def __init__(self, outputs: Sequence[Node], parameters: Collection[str]) -> None:
-        self.operations: dict[int, op.Operation] = {}
+        self.operations: dict[int, op.Operation] = {}  # in no particular order
         self._parameters = parameters
         self._numbers: dict[op.Operation, int] = {}
         self._lowered: dict[Node, int] = {}
@@ -75,7 +68,7 @@ class Lowering:
     @property
     def cost(self) -> tuple[int, int]:
         """Arithmetic operations and calls: their number, and how many are of parameters alone."""
-        costs = [(o.cost(), o.constant) for o in self.used]
+        costs = [(op.cost(o), o.constant) for o in self.used]
         return sum(cost for cost, _ in costs), sum(cost for cost, constant in costs if constant)
 
     def _add(self, kind: type[op.Operation], operands: Iterable[int], *content: Any) -> int:
@@ -106,7 +99,7 @@ class Lowering:
             case Factorised(upper):
                 return self._add(op.Factorised, map(self._lower, upper))
             case Solution():
-                return self._add(op.Solution, map(self._lower, node.operands()))
+                return self._add(op.Solution, map(self._lower, operands(node)))
             case Component(solution, index):
                 return self._add(op.Component, [self._lower(solution)], index)
             case Sum(terms):

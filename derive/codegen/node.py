@@ -17,18 +17,10 @@ ONE = Fraction(1)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Node:
-    """One value of a computation. Compare nodes by identity; combine them with ``+ - * /``.
-
-    Attributes
-    ----------
-    graph : Graph
-        The graph that interns the node.
-    rank : int
-        Order of creation: operands have a lower rank than the nodes that use them.
-    """
+    """One value of a computation. Compare nodes by identity; combine them with ``+ - * /``."""
 
     graph: Graph = field(kw_only=True, repr=False)
-    rank: int = field(kw_only=True)
+    rank: int = field(kw_only=True)  # order of creation: operands have a lower one
 
     def __add__(self, other: Operand) -> Node:
         return self.graph.sum([(self, 1), (self.graph.node(other), 1)])
@@ -61,10 +53,6 @@ class Node:
         """Exponents of the factors, without the numeric factor."""
         rest = self.scaled()[1]
         return {} if rest is None else dict(rest.factors())
-
-    def operands(self) -> tuple[Node, ...]:
-        """The nodes that this one is computed from."""
-        return ()
 
 
 Operand = Node | Number
@@ -99,9 +87,6 @@ class Sum(Node):
         ((node, coefficient),) = self.terms
         return coefficient, node
 
-    def operands(self) -> tuple[Node, ...]:
-        return tuple(node for node, _ in self.terms)
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Product(Node):
@@ -112,9 +97,6 @@ class Product(Node):
     def factors(self) -> Powers:
         return self.powers
 
-    def operands(self) -> tuple[Node, ...]:
-        return tuple(node for node, _ in self.powers)
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Call(Node):
@@ -123,9 +105,6 @@ class Call(Node):
     function: str
     argument: Node
 
-    def operands(self) -> tuple[Node, ...]:
-        return (self.argument,)
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Let(Node):
@@ -133,18 +112,12 @@ class Let(Node):
 
     value: Node
 
-    def operands(self) -> tuple[Node, ...]:
-        return (self.value,)
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Factorised(Node):
     """The L D Lᵀ factorisation, by a loop, of a symmetric matrix."""
 
     upper: tuple[Node, ...]  # its upper triangle, row by row
-
-    def operands(self) -> tuple[Node, ...]:
-        return self.upper
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -154,9 +127,6 @@ class Solution(Node):
     matrix: Node
     right: tuple[Node, ...]
 
-    def operands(self) -> tuple[Node, ...]:
-        return (self.matrix, *self.right)
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Component(Node):
@@ -165,5 +135,20 @@ class Component(Node):
     solution: Solution
     index: int
 
-    def operands(self) -> tuple[Node, ...]:
-        return (self.solution,)
+
+def operands(node: Node) -> tuple[Node, ...]:
+    """The nodes that a node is computed from."""
+    match node:
+        case Sum(pairs) | Product(pairs):
+            return tuple(part for part, _ in pairs)
+        case Call(_, argument):
+            return (argument,)
+        case Let(value):
+            return (value,)
+        case Factorised(upper):
+            return upper
+        case Solution(matrix, right):
+            return (matrix, *right)
+        case Component(solution):
+            return (solution,)
+    return ()

@@ -9,22 +9,10 @@ from math import isqrt
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """One value, computed from earlier ones.
+    """One value, computed from earlier ones."""
 
-    Attributes
-    ----------
-    operands : tuple of int
-        Numbers of the operations it uses; a repeated factor occurs twice.
-    constant : bool
-        Whether it depends on parameters alone.
-    """
-
-    operands: tuple[int, ...]
-    constant: bool
-
-    def cost(self) -> int:
-        """Number of arithmetic operations and function calls."""
-        return 0
+    operands: tuple[int, ...]  # numbers of operations; a repeated factor occurs twice
+    constant: bool  # whether it depends on parameters alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,26 +35,13 @@ class Sum(Operation):
 
     coefficients: tuple[Fraction, ...]
 
-    def cost(self) -> int:
-        scalings = sum(abs(c) != 1 for c in self.coefficients)
-        negation = all(c == -1 for c in self.coefficients)
-        return len(self.operands) - 1 + scalings + negation
 
-
-@dataclass(frozen=True, slots=True)
 class Product(Operation):
     """The product of the operands."""
 
-    def cost(self) -> int:
-        return len(self.operands) - 1
 
-
-@dataclass(frozen=True, slots=True)
 class Quotient(Operation):
     """The quotient of two operands, or the reciprocal of one."""
-
-    def cost(self) -> int:
-        return 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,26 +50,13 @@ class Call(Operation):
 
     function: str
 
-    def cost(self) -> int:
-        return 1
 
-
-@dataclass(frozen=True, slots=True)
 class Factorised(Operation):
     """A factorised symmetric matrix; the operands are its upper triangle, row by row."""
 
-    def cost(self) -> int:
-        # the reciprocal of every pivot, and for every row below it a multiple of its row
-        return sum(1 + k + k * (k + 1) for k in range(triangle_rows(len(self.operands))))
 
-
-@dataclass(frozen=True, slots=True)
 class Solution(Operation):
     """The solution of M x = b; the operands are the factorised matrix M and the entries of b."""
-
-    def cost(self) -> int:
-        n = len(self.operands) - 1
-        return n + 2 * n * (n - 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +64,25 @@ class Component(Operation):
     """One component of a solution."""
 
     index: int
+
+
+def cost(operation: Operation) -> int:
+    """Number of arithmetic operations and function calls."""
+    n = len(operation.operands)
+    match operation:
+        case Sum(coefficients=coefficients):
+            scalings = sum(abs(c) != 1 for c in coefficients)
+            return n - 1 + scalings + all(c == -1 for c in coefficients)
+        case Product():
+            return n - 1
+        case Quotient() | Call():
+            return 1
+        case Factorised():
+            # the reciprocal of every pivot, and for every row below it a multiple of its row
+            return sum(1 + k + k * (k + 1) for k in range(triangle_rows(n)))
+        case Solution():
+            return n - 1 + 2 * (n - 1) * (n - 2)
+    return 0
 
 
 def triangle_rows(count: int) -> int:

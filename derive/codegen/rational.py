@@ -20,6 +20,7 @@ from derive.codegen.node import (
     Node,
     Product,
     Sum,
+    operands,
 )
 
 Pair = tuple[Node, Node]
@@ -58,7 +59,7 @@ def _calls(nodes: Sequence[Node]) -> int:
         node = waiting.pop()
         if node not in visited:
             visited.add(node)
-            waiting += node.operands()
+            waiting += operands(node)
     return sum(isinstance(node, Call) for node in visited)
 
 
@@ -70,7 +71,7 @@ def _other_leaves(node: Node, names: frozenset[str], visited: set[Node]) -> Iter
     if isinstance(node, Leaf):
         yield node.name
     elif _multiples(node, names) is None:
-        for operand in node.operands():
+        for operand in operands(node):
             yield from _other_leaves(operand, names, visited)
 
 
@@ -122,7 +123,7 @@ class _Rewriting:
             case Factorised(upper):
                 return graph.factorised([self(entry) for entry in upper])
             case Component(solution, index):
-                matrix, *right = (self(operand) for operand in solution.operands())
+                matrix, *right = (self(operand) for operand in operands(solution))
                 return graph.solution(matrix, right)[index]
             case _:
                 raise NotImplementedError(f"no rational form of a {type(node).__name__} node")
