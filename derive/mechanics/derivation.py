@@ -139,10 +139,8 @@ class Derivation:
     def _quadratic(self, n: int) -> sp.Expr:
         """½ vᵀ M̄ v of the first n variables."""
         v, M = self.rates, self.inertia
-        return sp.Add(
-            *(M[i, i] * v[i] ** 2 / 2 for i in range(n)),
-            *(M[i, j] * v[i] * v[j] for i in range(n) for j in range(i + 1, n)),
-        )
+        squares = [M[i, i] * v[i] ** 2 / 2 for i in range(n)]
+        return sp.Add(*squares, *(M[i, j] * v[i] * v[j] for j in range(n) for i in range(j)))
 
     @cached_property
     def potential_energy(self) -> sp.Expr:
@@ -189,23 +187,18 @@ class Derivation:
         f_i = -Σ_jk Γ_ijk v_j v_k - ∂V/∂q_i + Q_i, with v the rates of all variables and
         Γ_ijk Christoffel's symbols of the first kind of M̄.
         """
-        state, applied = self.system.q + self.system.qdot, self.system.applied
-        forces = (
-            collected(applied[i] - self._inertial(i) - self.potential_energy.diff(q), *state)
-            for i, q in enumerate(self.system.q)
-        )
-        return Matrix(list(forces))
+        state, forces = self.system.q + self.system.qdot, []
+        for i, (q, applied) in enumerate(zip(self.system.q, self.system.applied, strict=True)):
+            force = applied - self._inertial(i) - self.potential_energy.diff(q)
+            forces.append(collected(force, *state))
+        return Matrix(forces)
 
     def _inertial(self, i: int) -> sp.Expr:
         """Σ Γ_ijk v_j v_k for the variable i."""
-        v, n = self.rates, len(self.variables)
-        return sp.Add(
-            *(
-                self._christoffel(i, j, k) * v[j] * v[k] * (1 if j == k else 2)
-                for j in range(n)
-                for k in range(j, n)
-            )
-        )
+        v, n = self.rates, range(len(self.variables))
+        pairs = ((j, k, 1 if j == k else 2) for j in n for k in n[j:])
+        terms = (self._christoffel(i, j, k) * v[j] * v[k] * count for j, k, count in pairs)
+        return sp.Add(*terms)
 
     def _christoffel(self, i: int, j: int, k: int) -> sp.Expr:
         """½ (∂M̄_ij/∂q_k + ∂M̄_ik/∂q_j - ∂M̄_jk/∂q_i)."""
@@ -226,16 +219,12 @@ class Derivation:
         The multiplier of the constraint that a length l is constant is the force that is
         required if l is free: -(d/dt ∂L/∂l̇ - ∂L/∂l) at l̇ = l̈ = 0, a function of q, q̇ and q̈.
         """
-        first = len(self.variables) - len(self.system.reactions)
-        qddot = Matrix(self.system.qddot)
-        return Matrix(
-            [
-                -(self.inertia[i, : len(qddot)] * qddot)[0]
-                - self._inertial(i)
-                - self.potential_energy.diff(self.variables[i])
-                for i in range(first, len(self.variables))
-            ]
-        )
+        first, qddot = len(self.variables) - len(self.system.reactions), Matrix(self.system.qddot)
+        forces = []
+        for i, length in enumerate(self.variables[first:], first):
+            inertial = -(self.inertia[i, : len(qddot)] * qddot)[0] - self._inertial(i)
+            forces.append(inertial - self.potential_energy.diff(length))
+        return Matrix(forces)
 
     @cached_property
     def _adjugate_and_determinant(self) -> tuple[Matrix, sp.Expr]:
@@ -267,34 +256,18 @@ class Derivation:
         """(q̇, ṗ) = (∂H/∂p, -∂H/∂q + Q), two columns; canonical without applied forces."""
         velocities = self._divided_by_mass(Matrix(self.system.p) - self.drift)
         known = dict(zip(self.system.qdot, velocities, strict=True))
-        forces = (
-            force.subs(known) - self.hamiltonian.diff(q)
-            for q, force in zip(self.system.q, self.system.applied, strict=True)
-        )
-        return velocities, Matrix(list(forces))
+        pairs = zip(self.system.q, self.system.applied, strict=True)
+        rates = [force.subs(known) - self.hamiltonian.diff(q) for q, force in pairs]
+        return velocities, Matrix(rates)
 
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
-        """Small oscillations about an equilibrium.
+        """Small oscillations about an equilibrium, by default the system's own, or zeros.
 
-        Parameters
-        ----------
-        equilibrium : sequence of sympy.Expr, optional
-            Coordinates; by default those of the system's equilibrium, or zeros.
-
-        Returns
-        -------
-        Linearisation
-            M₀ and K, n × n.
-
-        Raises
-        ------
-        SystemDefinitionError
-            When a force is not 0 there, or the number of coordinates is wrong; when small
-            motions depend on time, or have applied or gyroscopic forces.
+        A `SystemDefinitionError` states that a force is not 0 there, or that small motions depend
+        on time, or have applied or gyroscopic forces.
         """
-        if equilibrium is None:
-            return self._energies.linearised(self._default_equilibrium)
-        return self._energies.linearised(tuple(map(formula, equilibrium)))
+        given = self._default_equilibrium if equilibrium is None else map(formula, equilibrium)
+        return self._energies.linearised(tuple(given))
 
     @cached_property
     def is_linearisable(self) -> bool:
@@ -303,13 +276,7 @@ class Derivation:
 
     @cached_property
     def equilibrium(self) -> tuple[sp.Expr, ...] | None:
-        """The system's equilibrium, or zeros if they are one; None if none is known.
-
-        Raises
-        ------
-        SystemDefinitionError
-            When a force is not 0 at the system's equilibrium.
-        """
+        """The system's equilibrium, or zeros if they are one; None if none is known."""
         try:
             self._energies.check_equilibrium(self._default_equilibrium)
         except SystemDefinitionError:

@@ -40,24 +40,12 @@ class Linearisation:
 
 @dataclass(frozen=True)
 class Energies:
-    """The mass matrix, potential and momenta that determine small oscillations.
-
-    Attributes
-    ----------
-    system : System
-        The system, with n coordinates.
-    mass_matrix : sympy.Matrix
-        M(q, t), n × n.
-    potential : sympy.Expr
-        The effective potential U(q, t).
-    drift : sympy.Matrix
-        Momenta b at q̇ = 0, a column.
-    """
+    """The mass matrix, potential and momenta that determine small oscillations."""
 
     system: System
-    mass_matrix: Matrix
-    potential: sp.Expr
-    drift: Matrix
+    mass_matrix: Matrix  # M(q, t)
+    potential: sp.Expr  # the effective one, U(q, t)
+    drift: Matrix  # momenta b at q̇ = 0, a column
 
     def linearised(self, equilibrium: tuple[sp.Expr, ...]) -> Linearisation:
         """M₀ and K at `equilibrium`; an error if it is none, or if these are not sufficient."""

@@ -14,12 +14,11 @@ from derive.system.system import System
 def specialised(system: System, values: Mapping[str, float]) -> System:
     """The system of the same name with the named parameters replaced by their exact values."""
     symbols = {symbol.name: symbol for symbol in system.params}
-    for name in values:
-        if name not in symbols:
-            raise SystemDefinitionError(
-                f"system {system.name!r} has no parameter {name[:50]!r}; known are "
-                f"{', '.join(symbols)}"
-            )
+    for name in sorted(values.keys() - symbols):
+        known = ", ".join(symbols)
+        raise SystemDefinitionError(
+            f"system {system.name!r} has no parameter {name[:50]!r}; known are {known}"
+        )
     return substituted(system, {symbols[name]: formula(value) for name, value in values.items()})
 
 
@@ -37,8 +36,6 @@ def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
         gravity=(sp.S.Zero,) * system.dimension,  # included in the potential
         dissipation=substitute(system.dissipation),
         forces=tuple(map(substitute, system.forces)),
-        equilibrium=None
-        if system.equilibrium is None
-        else tuple(map(substitute, system.equilibrium)),
+        equilibrium=system.equilibrium and tuple(map(substitute, system.equilibrium)),
         reactions=[length for length in system.reactions if length not in values],
     )

@@ -10,18 +10,23 @@ import sympy as sp
 from derive.formulas.typesetting import Formula
 from derive.mechanics.derivation import Derivation
 
+WORDS = {
+    "Positions": "The positions of the masses; with the forces, they define the system.",
+    "Velocities": "Time derivatives of the positions, by the chain rule.",
+    "Energies": "Kinetic energy of the masses, and potential energy of gravity and springs.",
+    "Lagrangian": "Kinetic minus potential energy.",
+    "Euler–Lagrange equations": "One for each coordinate.",
+    "Mass matrix": "The equations are linear in the accelerations.",
+    "Momenta": "Derivatives of the Lagrangian with respect to the velocities.",
+    "Hamiltonian": "The energy as a function of coordinates and momenta.",
+    "Hamilton's equations": "Rates of coordinates and momenta, from the derivatives of the "
+    "Hamiltonian.",
+}
+
 
 @dataclass(frozen=True)
 class Step:
-    """A step of a derivation.
-
-    Attributes
-    ----------
-    title, words : str
-        The name of the result, and its origin.
-    formulas : tuple of Formula
-        The result.
-    """
+    """A step of a derivation: the name of a result, its origin, and the result."""
 
     title: str
     words: str
@@ -52,60 +57,31 @@ def steps(derivation: Derivation) -> Iterator[Step]:
     system, d = derivation.system, derivation
     names = [f"r{k}" for k in range(1, len(system.masses) + 1)]
     positions = [sp.Matrix(mass.position) for mass in system.masses]
-    velocities = [f"{name}_dot" for name in names]
+    residuals = [Formula(f"{sp.sstr(left, order='lex')} = 0") for left in d.euler_lagrange]
+    accelerations = ", ".join(f"[{name}]" for name in _names(system.qddot))
     rates, forces = d.hamilton_equations
     pdot = [symbol.name.replace("p_", "pdot_", 1) for symbol in system.p]
-    yield Step(
-        "Positions",
-        "The positions of the masses; with the forces, they define the system.",
-        _each(names, positions),
-    )
-    yield Step(
-        "Velocities",
-        "Time derivatives of the positions, by the chain rule.",
-        _each(velocities, d.velocities),
-    )
-    yield Step(
-        "Energies",
-        "Kinetic energy of the masses, and potential energy of gravity and springs.",
-        _each("KP", (d.kinetic_energy, d.potential_energy)),
-    )
-    lagrangian = _each("L", (d.lagrangian,))
-    yield Step("Lagrangian", "Kinetic minus potential energy.", lagrangian)
-    yield Step(
-        "Euler–Lagrange equations",
-        "One for each coordinate.",
-        tuple(Formula(f"{sp.sstr(left, order='lex')} = 0") for left in d.euler_lagrange),
-    )
-    yield Step(
-        "Mass matrix",
-        "The equations are linear in the accelerations.",
-        (
-            Formula(f"M*[{', '.join(f'[{name}]' for name in _names(system.qddot))}] = f"),
+    formulas = {
+        "Positions": _each(names, positions),
+        "Velocities": _each([f"{name}_dot" for name in names], d.velocities),
+        "Energies": _each("KP", (d.kinetic_energy, d.potential_energy)),
+        "Lagrangian": _each("L", (d.lagrangian,)),
+        "Euler–Lagrange equations": residuals,
+        "Mass matrix": [
+            Formula(f"M*[{accelerations}] = f"),
             *_each("Mf", (d.mass_matrix, d.forcing)),
-        ),
-    )
-    yield Step(
-        "Momenta",
-        "Derivatives of the Lagrangian with respect to the velocities.",
-        _each(_names(system.p), d.momenta),
-    )
-    yield Step(
-        "Hamiltonian",
-        "The energy as a function of coordinates and momenta.",
-        _each("H", (d.hamiltonian,)),
-    )
-    yield Step(
-        "Hamilton's equations",
-        "Rates of coordinates and momenta, from the derivatives of the Hamiltonian.",
-        _each((*_names(system.qdot), *pdot), (*rates, *forces)),
-    )
+        ],
+        "Momenta": _each(_names(system.p), d.momenta),
+        "Hamiltonian": _each("H", (d.hamiltonian,)),
+        "Hamilton's equations": _each((*_names(system.qdot), *pdot), (*rates, *forces)),
+    }
+    for title, results in formulas.items():
+        yield Step(title, WORDS[title], tuple(results))
 
 
-def _names(symbols: Iterable[sp.Symbol]) -> tuple[str, ...]:
-    return tuple(symbol.name for symbol in symbols)
+def _names(symbols: Iterable[sp.Symbol]) -> list[str]:
+    return [symbol.name for symbol in symbols]
 
 
-def _each(names: Iterable[str], values: Iterable[sp.Expr | sp.MatrixBase]) -> tuple[Formula, ...]:
-    pairs = zip(names, values, strict=True)
-    return tuple(Formula.of(name, value) for name, value in pairs)
+def _each(names: Iterable[str], values: Iterable[sp.Expr | sp.MatrixBase]) -> list[Formula]:
+    return [Formula.of(name, value) for name, value in zip(names, values, strict=True)]

@@ -6,13 +6,17 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 
-class Rate(sp.Symbol):
-    """Time derivative of a coordinate, ``theta1_dot``; LaTeX sets the dots above."""
+class Derived(sp.Symbol):
+    """A symbol that belongs to a coordinate."""
 
     @classmethod
     def class_key(cls) -> tuple[int, int, str]:
         """Sort among the other symbols, by name."""
         return sp.Symbol.class_key()
+
+
+class Rate(Derived):
+    """Time derivative of a coordinate, ``theta1_dot``; LaTeX sets the dots above."""
 
     def _latex(self, printer: LatexPrinter) -> str:
         base, _, dots = self.name.rpartition("_")
@@ -20,13 +24,8 @@ class Rate(sp.Symbol):
         return rf"\{dots}{{{letter}}}{subscript}{index}"
 
 
-class Momentum(sp.Symbol):
+class Momentum(Derived):
     """Momentum conjugate to a coordinate, ``p_theta1``; LaTeX sets the coordinate below."""
-
-    @classmethod
-    def class_key(cls) -> tuple[int, int, str]:
-        """Sort among the other symbols, by name."""
-        return sp.Symbol.class_key()
 
     def _latex(self, printer: LatexPrinter) -> str:
         return f"p_{{{printer.doprint(sp.Symbol(self.name.removeprefix('p_')))}}}"

@@ -163,19 +163,17 @@ class System:
     def applied(self) -> tuple[sp.Expr, ...]:
         """Generalized forces without a potential: Q - ∂R/∂q̇, one for each coordinate."""
         forces = self.forces or (sp.S.Zero,) * len(self.q)
-        return tuple(
-            force - self.dissipation.diff(qdot)
-            for force, qdot in zip(forces, self.qdot, strict=True)
-        )
+        pairs = zip(forces, self.qdot, strict=True)
+        return tuple(force - self.dissipation.diff(qdot) for force, qdot in pairs)
 
     def _named_gravity(self) -> sp.Symbol:
-        g = next((s for s in self.params if s.name == "g"), None)
-        if g is None:
-            raise SystemDefinitionError(
-                f"system {self.name!r} has no parameter named 'g' for its weight: add one, or give "
-                "the potential (potential=0 for none)"
-            )
-        return g
+        for symbol in self.params:
+            if symbol.name == "g":
+                return symbol
+        raise SystemDefinitionError(
+            f"system {self.name!r} has no parameter named 'g' for its weight: add one, or give "
+            "the potential (potential=0 for none)"
+        )
 
     def _check_names(self) -> None:
         declared = [s.name for s in (*self.q, *self.params)]

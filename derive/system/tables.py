@@ -23,22 +23,7 @@ def read(path: Path) -> dict[str, Any]:
 
 
 class Table:
-    """A table with a name, whose keys are among those that are `known`.
-
-    Parameters
-    ----------
-    name : str
-        Its name in messages.
-    values : object
-        Values as read; a mapping if the file is valid.
-    known : collection of str
-        Keys that it may have.
-
-    Raises
-    ------
-    InputError
-        When it is no table, or has another key.
-    """
+    """A table with a name for messages, whose keys are among those that are `known`."""
 
     def __init__(self, name: str, values: object, known: Collection[str]) -> None:
         if not isinstance(values, Mapping):
