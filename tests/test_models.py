@@ -212,11 +212,11 @@ def test_a_light_bob_has_no_effect_and_a_heavy_one_has() -> None:
 
 
 @pytest.mark.parametrize(("module", "params", "y0"), [
-    (dp, (1, 1, 2, 2, 0), (0, 1.5, 2, -3)),  # the shape turns over
+    (dp, (1, 1, 2, 2, 0), (0, 1.5, 2, -3)),  # the shape rotates
     (dp, (1, 0.3, 2, 1, 0), (0, 0.5, 2, 2.5)),  # it swings
     (dp, (1, 0.3, 2, 1, 0), (0.4, 0.5, 0, 2.5)),
     (ep, (1, 40, 0.75, 0), (1.0, 0.3, 0.5, 2.0)),
-    (ep, (1, 40, 0.75, 0), (1.0, 0.3, 0.0, 2.0)),  # begins at a turning point
+    (ep, (1, 40, 0.75, 0), (1.0, 0.3, 0.0, 2.0)),  # starts at a turning point
     (sp, (1, 2, 9.81), (1.0, 2.0)),
 ])  # fmt: skip
 def test_one_degree_of_freedom_is_a_quadrature(module, params, y0) -> None:
@@ -332,7 +332,7 @@ def test_a_step_fixes_the_steps_of_methods_that_could_control_them() -> None:
 
 @pytest.mark.parametrize(("offset", "periods", "requested"), [
     # a spring that bounces for whole periods, as many as there are samples or half as many; and
-    # one whose bouncing makes it swing, of which the swing alone is requested
+    # one whose oscillation excites the angle, which alone is requested
     (0.3, 64, (0, 1, 2, 3)), (0.3, 128, (0, 1, 2, 3)), (0.1, 40, (1,)),
 ])  # fmt: skip
 def test_an_equilibrium_is_not_mistaken_at_whole_periods(

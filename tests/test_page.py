@@ -138,11 +138,11 @@ def test_it_plays_at_once_and_can_be_paused(player: Player, slow_tracks: list[Tr
     player.settle()
     assert not player.playing
     assert player.find("#play").text == "Play"
-    held, seen = player.time, player.pixels(PANELS)
+    held, image = player.time, player.pixels(PANELS)
     assert player.find("#time").text == f"{held:.3f} s of 100 s"
     player.driver.execute_async_script("setTimeout(arguments[0], 200)")
     assert player.time == held
-    assert (player.pixels(PANELS) == seen).all()
+    assert (player.pixels(PANELS) == image).all()
 
 
 def test_it_is_paused_for_readers_who_prefer_reduced_motion(
@@ -230,12 +230,12 @@ def test_traces_fade_over_two_seconds(player: Player) -> None:
     player.open([across])
     player.find("#time-slider").send_keys("\ue010")  # the key End
     player.settle()
-    seen = player.pixels(PANELS)
-    row, column = (np.median(found) for found in np.nonzero((seen == BOBS[0]).all(-1)))
-    pivot = np.median(np.nonzero((seen == ROD).all(-1))[1])
+    image = player.pixels(PANELS)
+    row, column = (np.median(axis) for axis in np.nonzero((image == BOBS[0]).all(-1)))
+    pivot = np.median(np.nonzero((image == ROD).all(-1))[1])
     metre = (column - pivot) / 5  # and a second
     # red, of which a blue trace takes away; beside the grid's lines
-    reds = [seen[round(row), round(pivot + metre * x), 0] for x in (2.6, 3.2, 3.6, 4.2, 4.7)]
+    reds = [image[round(row), round(pivot + metre * x), 0] for x in (2.6, 3.2, 3.6, 4.2, 4.7)]
     assert reds[0] == 255
     assert sorted(set(reds), reverse=True) == reds
 
@@ -253,11 +253,11 @@ def test_it_shows_the_distance_of_the_last_masses(
     assert player.find("#distance").text == "a run has ended"
     player.open(tracks)
     player.drag("#time-slider", 10, 300)
-    places = [[np.interp(player.time, track.t, axis) for axis in track.positions[-1]]
+    positions = [[np.interp(player.time, track.t, axis) for axis in track.positions[-1]]
               for track in tracks]  # fmt: skip
     shown = re.fullmatch(r"last masses (\d\.\d{4}) m apart", player.find("#distance").text)
     assert shown
-    assert float(shown[1]) == pytest.approx(np.hypot(*np.subtract(*places)), abs=2e-4)
+    assert float(shown[1]) == pytest.approx(np.hypot(*np.subtract(*positions)), abs=2e-4)
     player.open(tracks[:1])
     assert not player.find("#distance").is_displayed()
 
@@ -280,16 +280,16 @@ def test_a_phone_shows_runs_in_a_column_with_visible_controls(
 
 
 def test_springs_and_the_dark_scheme_are_drawn(player: Player) -> None:
-    drawn = {}
+    images = {}
     for scheme in ("light", "dark"):
         player.open([at_rest((0, -1))], scheme=scheme)
-        drawn[scheme] = player.pixels(PANELS)
-    assert (drawn["light"][2, -2] == 255).all()
-    assert drawn["dark"][2, -2].max() < 50
+        images[scheme] = player.pixels(PANELS)
+    assert (images["light"][2, -2] == 255).all()
+    assert images["dark"][2, -2].max() < 50
     player.open([replace(at_rest((0, -1)), springs=(), links=((-1, 0),))])
     rod = player.pixels(PANELS)
     # a zigzag reaches further to the sides than a rod
-    across = [np.ptp(np.nonzero((found == ROD).all(-1))[1]) for found in (drawn["light"], rod)]
+    across = [np.ptp(np.nonzero((view == ROD).all(-1))[1]) for view in (images["light"], rod)]
     assert across[0] > across[1] + 6
 
 

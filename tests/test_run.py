@@ -37,21 +37,21 @@ def test_the_json_contains_the_model_the_reason_and_the_final_state(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert run("report", "--json", folder=tmp_path) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert set(found) >= KEYS
-    assert (found["model"], found["method"], found["form"]) == (
+    result = json.loads(capsys.readouterr().out)
+    assert set(result) >= KEYS
+    assert (result["model"], result["method"], result["form"]) == (
         "full equations", "verner87", "rational",
     )  # fmt: skip
     truth = taylor(dp, dp.DEFAULTS, find("report", load_module).y0, [0, 5])[-1]
-    assert list(found["final_state"]) == [*dp.STATE]
+    assert list(result["final_state"]) == [*dp.STATE]
     assert (
-        np.abs(np.array(list(found["final_state"].values())) - truth).max()
-        <= (found["error_estimate"])
+        np.abs(np.array(list(result["final_state"].values())) - truth).max()
+        <= (result["error_estimate"])
     )
-    assert found["error_estimate"] <= found["requested_accuracy"] == 1e-9
-    assert found["accuracy_met"] is True
-    assert set(found["declined_models"]) >= {"rest", "normal modes", "quadrature"}
-    assert {Path(path).name for path in found["files"].values()} == {
+    assert result["error_estimate"] <= result["requested_accuracy"] == 1e-9
+    assert result["accuracy_met"] is True
+    assert set(result["declined_models"]) >= {"rest", "normal modes", "quadrature"}
+    assert {Path(path).name for path in result["files"].values()} == {
         "report.csv", "report.png", "report.html",
     } == {path.name for path in tmp_path.iterdir()}  # fmt: skip
 
@@ -60,12 +60,16 @@ def test_a_prescribed_method_is_reported_with_its_error_and_the_runs_beside_it(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert run("program_3", "--json", folder=tmp_path) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert (found["method"], found["setting"], found["accuracy_met"]) == ("rk4", {"h": 0.01}, False)
-    (motion,) = found["beside"]
+    result = json.loads(capsys.readouterr().out)
+    assert (result["method"], result["setting"], result["accuracy_met"]) == (
+        "rk4",
+        {"h": 0.01},
+        False,
+    )
+    (motion,) = result["beside"]
     assert motion["accuracy_met"] is True
-    apart = [abs(found["final_state"][k] - motion["final_state"][k]) for k in dp.STATE]
-    assert 1e-8 < max(apart) < found["error_estimate"] < 1e-5
+    apart = [abs(result["final_state"][k] - motion["final_state"][k]) for k in dp.STATE]
+    assert 1e-8 < max(apart) < result["error_estimate"] < 1e-5
     assert run("program_3", folder=tmp_path) == 0
     assert "NOT MET, since the scene names the model or the step" in capsys.readouterr().out
 
@@ -84,12 +88,12 @@ def test_only_significant_digits_are_printed(
 
 def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
     scene = replace(find("small", load_module), outputs=("theta1", "energy"), samples=5)
-    found = run_scene(scene)
-    lines = table(found).splitlines()
+    result = run_scene(scene)
+    lines = table(result).splitlines()
     assert lines[0] == "t [s],theta1 [rad],energy [J]"
     rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
     assert rows[:, 0].tolist() == [0, 5, 10, 15, 20]
-    assert rows[:, 1].tolist() == found.y[0].tolist()
+    assert rows[:, 1].tolist() == result.y[0].tolist()
     assert np.ptp(rows[:, 2]) < 1e-6
     # no energy unless it is requested
     assert run_scene(replace(scene, outputs=("theta1",))).energy is None
@@ -118,14 +122,14 @@ def test_masses_at_a_constant_distance_are_joined(
 ) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(f'system = "{system}"\nduration = 2\naccuracy = 1e-6\n[initial]\n{initial}\n')
-    seen = track(run_scene(find(str(path), load_module)))
-    assert list(seen.links) == rods
-    assert not seen.springs
+    motion = track(run_scene(find(str(path), load_module)))
+    assert list(motion.links) == rods
+    assert not motion.springs
 
 
 def test_motions_in_space_are_projected_obliquely() -> None:
     # of three unit vectors the upright one stays upright, and areas of the ground shrink by
-    # the sine of the angle from which they are seen
+    # the sine of the elevation
     east, north, up = projected(np.eye(3)[:, :, None])[:, :, 0]
     assert up == pytest.approx([0, np.cos(ELEVATION)])
     assert abs(np.linalg.det([east, north])) == pytest.approx(np.sin(ELEVATION))
@@ -134,13 +138,13 @@ def test_motions_in_space_are_projected_obliquely() -> None:
 
 def test_specialised_code_is_generated_on_request() -> None:
     scene = replace(find("report", load_module), code="specialised")
-    found = run_scene(scene, specialiser)
-    assert found.selection.model.run.motion.module.PARAMETERS == ()
-    assert "def rhs_rational(" in Path(found.specialised_module.__file__).read_text()
-    assert any("specialised code (29 operations instead of 34" in line for line in summary(found))
+    result = run_scene(scene, specialiser)
+    assert result.selection.model.run.motion.module.PARAMETERS == ()
+    assert "def rhs_rational(" in Path(result.specialised_module.__file__).read_text()
+    assert any("specialised code (29 operations instead of 34" in line for line in summary(result))
     plain = run_scene(replace(scene, code=None), specialiser)
     assert plain.selection.model.run.motion.module is dp
-    assert np.abs(found.y - plain.y).max() < 2 * scene.accuracy
+    assert np.abs(result.y - plain.y).max() < 2 * scene.accuracy
     with pytest.raises(ValueError, match="needs a specialiser"):
         run_scene(scene)
 
@@ -158,9 +162,9 @@ def test_the_exit_code_depends_on_the_kind_of_error(
     path = tmp_path / "scene.toml"
     path.write_text(text)
     assert run(str(path), folder=tmp_path) == code
-    said = capsys.readouterr().err
-    assert words in said
-    assert "Traceback" not in said
+    message = capsys.readouterr().err
+    assert words in message
+    assert "Traceback" not in message
     assert [p.name for p in tmp_path.iterdir()] == ["scene.toml"]
 
 
@@ -230,7 +234,7 @@ def test_the_report_s_figures_are_plotted_with_a_note_on_what_is_known() -> None
 def test_progress_is_shown_on_a_terminal_only_and_erased(tmp_path: Path) -> None:
     command = [sys.executable, "-c", (
         "import time\nfrom solvers.io.progress import Progress\n"
-        "with Progress() as tell:\n    tell('working')\n    time.sleep(1.6)\nprint('done')"
+        "with Progress() as report:\n    report('working')\n    time.sleep(1.6)\nprint('done')"
     )]  # fmt: skip
     plain = subprocess.run(command, capture_output=True, check=True, text=True)
     assert (plain.stdout, plain.stderr) == ("done\n", "")

@@ -185,18 +185,18 @@ def test_a_scene_has_the_values_of_its_file(tmp_path: Path) -> None:
         label = "better"
         method = "verner98"
     """)
-    found = find(str(tmp_path / "mine.toml"), load_module)
-    assert found.name == "mine"
-    assert found.module is dp
-    assert found.params == (1.0, 0.3, 2.0, 2.0, -1.0)
-    assert found.y0 == pytest.approx((pi / 4, 0, 0, 2 * pi))
-    assert (found.duration, found.accuracy, found.step) == (2.0, 1e-4, 1e-3)
-    assert found.requested == (0,)
-    other, better = found.beside
+    mine = find(str(tmp_path / "mine.toml"), load_module)
+    assert mine.name == "mine"
+    assert mine.module is dp
+    assert mine.params == (1.0, 0.3, 2.0, 2.0, -1.0)
+    assert mine.y0 == pytest.approx((pi / 4, 0, 0, 2 * pi))
+    assert (mine.duration, mine.accuracy, mine.step) == (2.0, 1e-4, 1e-3)
+    assert mine.requested == (0,)
+    other, better = mine.beside
     assert other.y0 == pytest.approx((pi / 4 + 1e-3, 0, 0, 2 * pi))
     assert (other.method, other.step, other.label) == ("rk4", 1e-3, "other")
     # a method replaces method and step of the first scene
-    assert (better.method, better.step, better.y0) == ("verner98", None, found.y0)
+    assert (better.method, better.step, better.y0) == ("verner98", None, mine.y0)
 
 
 @pytest.mark.parametrize(("changes", "words"), [

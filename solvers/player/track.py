@@ -102,18 +102,18 @@ class Track:
     def json_values(self) -> dict[str, object]:
         """Values for JSON, with no more samples and digits than a screen can show."""
         n = len(self.t)
-        kept = np.arange(n)
+        indices = np.arange(n)
         if n > MOST_SAMPLES:
-            kept = np.linspace(0, n - 1, MOST_SAMPLES).round().astype(int)
+            indices = np.linspace(0, n - 1, MOST_SAMPLES).round().astype(int)
         # late times differ in late digits only, so that the duration determines the rounding
         decimals = 6 - floor(log10(self.t[-1] - self.t[0]))
         return {
             "label": self.label,
-            "t": [round(time, decimals) for time in self.t[kept].tolist()],
-            "positions": [[_rounded(axis[kept], 6) for axis in mass] for mass in self.positions],
+            "t": [round(time, decimals) for time in self.t[indices].tolist()],
+            "positions": [[_rounded(axis[indices], 6) for axis in mass] for mass in self.positions],
             "links": [list(pair) for pair in self.links],
             "springs": [list(pair) for pair in self.springs],
-            "energy_error": _rounded(self.energy_error[kept], 5),
+            "energy_error": _rounded(self.energy_error[indices], 5),
         }
 
 

@@ -1,1 +1,1 @@
-"""Scenes: what is there, and what is asked; files, and how they are read."""
+"""Scenes: motions in files, models of these motions, summaries and plots."""

@@ -162,7 +162,7 @@ def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
         _Curve(result, COLOURS[shift:] + COLOURS[:shift], style, label).plot(panel, picture)
     if picture == "path":
         in_space = mass_positions(results[0]).shape[1] == 3
-        x, y = ("horizontal", "vertical, seen from above") if in_space else ("x", "y")
+        x, y = ("horizontal", "vertical, oblique view") if in_space else ("x", "y")
         panel.set(xlabel=f"{x} / m", ylabel=f"{y} / m")
         panel.set_aspect("equal", adjustable="datalim")
         if "positions" not in results[0].scene.module.TIMED:  # else the pivot may move

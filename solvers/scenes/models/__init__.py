@@ -1,1 +1,1 @@
-"""Models of a motion, from the smallest to the full equations, each with its error."""
+"""Models of a motion, one class in one file each, and the selection of the simplest."""

@@ -98,8 +98,8 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
         for name, factor in list(best["cost_ratios"][axis].items())[:2]
     )
     why = (
-        f"cheapest for {best['global_error']:.0e} as measured in scene {nearest['scene']!r}, whose "
-        f"modes are most similar: {seconds * 1e6:.3g} us for {nearest['duration']:g} s; others "
+        f"cheapest for {best['global_error']:.0e} as measured in scene {nearest['scene']!r}, the "
+        f"most similar one: {seconds * 1e6:.3g} us for {nearest['duration']:g} s; others "
         f"there: {others}"
     )
     form = form if form in module.FORMS else usual_form(module, method)
