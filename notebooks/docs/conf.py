@@ -45,6 +45,7 @@ extensions = [
 root_doc = "README"
 include_patterns = [
     "README.md",
+    "CHANGELOG.md",
     "derive/README.md",
     "derive/**/README.md",
     "solvers/README.md",

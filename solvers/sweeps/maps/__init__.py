@@ -131,7 +131,7 @@ class Map:
             raise ValueError(f"{module.SYSTEM} does not conserve its energy")
 
     def values(self, motions: Motions) -> Array:
-        """The numbers, shape (n, *shape); NaN where there are none."""
+        """The numbers, one entry of the map's shape for each motion; NaN where there are none."""
         raise NotImplementedError
 
     def panels(self, name: str, results: Results) -> Panels:
