@@ -17,12 +17,21 @@ from solvers.player.track import Track
 
 
 def track_of(method: str, h: float | None = None) -> Track:
-    motion = integrate(dp, (0, 5), (pi / 2, pi, 0, 0), dp.DEFAULTS, method=method, h=h,
-                       t_eval=np.linspace(0, 5, 301), energy=True)  # fmt: skip
+    motion = integrate(
+        dp,
+        (0, 5),
+        (pi / 2, pi, 0, 0),
+        dp.DEFAULTS,
+        method=method,
+        h=h,
+        t_eval=np.linspace(0, 5, 301),
+        energy=True,
+    )
     assert motion.energy is not None
     positions = np.asarray(dp.positions_many(0.0, motion.y, dp.DEFAULTS))
-    return Track(method, motion.t, positions, ((-1, 0), (0, 1)), (),
-                 motion.energy / motion.energy[0] - 1)  # fmt: skip
+    return Track(
+        method, motion.t, positions, ((-1, 0), (0, 1)), (), motion.energy / motion.energy[0] - 1
+    )
 
 
 def at_rest(
@@ -39,17 +48,31 @@ class Player:
     def __init__(self, driver: Any, path: Path) -> None:
         self.driver, self.path = driver, path
 
-    def open(self, tracks: Sequence[Track], *, text: str = "", size: tuple[int, int] = (1280, 800),
-             density: int = 1, playing: bool = False, scheme: str = "light") -> None:  # fmt: skip
+    def open(
+        self,
+        tracks: Sequence[Track],
+        *,
+        text: str = "",
+        size: tuple[int, int] = (1280, 800),
+        density: int = 1,
+        playing: bool = False,
+        scheme: str = "light",
+    ) -> None:
         Page(text, text, tracks).write(self.path)
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": size[0], "height": size[1], "deviceScaleFactor": density, "mobile": False,
-        })  # fmt: skip
+        self.driver.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride",
+            {"width": size[0], "height": size[1], "deviceScaleFactor": density, "mobile": False},
+        )
         motion = "no-preference" if playing else "reduce"
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
-            {"name": "prefers-reduced-motion", "value": motion},
-            {"name": "prefers-color-scheme", "value": scheme},
-        ]})  # fmt: skip
+        self.driver.execute_cdp_cmd(
+            "Emulation.setEmulatedMedia",
+            {
+                "features": [
+                    {"name": "prefers-reduced-motion", "value": motion},
+                    {"name": "prefers-color-scheme", "value": scheme},
+                ]
+            },
+        )
         self.driver.get(self.path.as_uri())
         self.settle()
 

@@ -82,9 +82,13 @@ def random_scene(random: np.random.Generator) -> Scene:
         params[1] = 10 ** random.uniform(-12, -5)
         outputs = ("theta1", "theta1_dot")
     return Scene(
-        module, tuple(params), tuple(y0), duration,
-        accuracy=10 ** random.uniform(-10, -2), outputs=outputs,
-    )  # fmt: skip
+        module,
+        tuple(params),
+        tuple(y0),
+        duration,
+        accuracy=10 ** random.uniform(-10, -2),
+        outputs=outputs,
+    )
 
 
 def accuracy_of(scene: Scene) -> tuple[str, float]:
@@ -93,9 +97,16 @@ def accuracy_of(scene: Scene) -> tuple[str, float]:
     motion = Motion(scene.module, scene.params, scene.y0, scene.duration, scene.requested)
     with ignore_predictability():
         fine = integrate(
-            scene.module, (0, scene.duration), scene.y0, scene.params, method="verner98",
-            rtol=3e-14, atol=1e-16, t_eval=motion.sample_times, max_steps=10**7,
-        ).y.T  # fmt: skip
+            scene.module,
+            (0, scene.duration),
+            scene.y0,
+            scene.params,
+            method="verner98",
+            rtol=3e-14,
+            atol=1e-16,
+            t_eval=motion.sample_times,
+            max_steps=10**7,
+        ).y.T
     error = np.abs(model.states(motion.sample_times) - fine)[:, list(scene.requested)].max()
     if error > min(scene.accuracy, model.error_estimate):  # or it is the reference that is wrong
         error = largest_error(motion, model, digits=40)
@@ -389,10 +400,17 @@ def test_scenes_can_name_every_model_and_the_full_equations_come_last() -> None:
 
 def test_every_model_is_selected_by_a_scene_that_ships() -> None:
     expected = {
-        "rest": "rest", "upright": "pendulum", "tremor": "normal modes", "single": "pendulum",
-        "separatrix": "pendulum", "rotation": "pendulum", "one_bob": "pendulum",
-        "flea": "pendulum and light masses", "weightless": "quadrature", "report": "full equations",
-    }  # fmt: skip
+        "rest": "rest",
+        "upright": "pendulum",
+        "tremor": "normal modes",
+        "single": "pendulum",
+        "separatrix": "pendulum",
+        "rotation": "pendulum",
+        "one_bob": "pendulum",
+        "flea": "pendulum and light masses",
+        "weightless": "quadrature",
+        "report": "full equations",
+    }
     for name, model in expected.items():
         selection = selected(find(name, load_module))
         assert selection.model.name == model

@@ -89,9 +89,14 @@ def mutated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str, old: str
     ],
 )
 def test_a_mass_at_a_wrong_position_is_noticed(
-    name: str, old: str, new: str, player: Player, tracks: tuple[Track, Track],
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
-) -> None:  # fmt: skip
+    name: str,
+    old: str,
+    new: str,
+    player: Player,
+    tracks: tuple[Track, Track],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
     mutated(monkeypatch, tmp_path, name, old, new)
     player.open(tracks)
     assert fitted(player, tracks)[1] > 2
@@ -253,8 +258,9 @@ def test_it_shows_the_distance_of_the_last_masses(
     assert player.find("#distance").text == "a run has ended"
     player.open(tracks)
     player.drag("#time-slider", 10, 300)
-    positions = [[np.interp(player.time, track.t, axis) for axis in track.positions[-1]]
-              for track in tracks]  # fmt: skip
+    positions = [
+        [np.interp(player.time, track.t, axis) for axis in track.positions[-1]] for track in tracks
+    ]
     shown = re.fullmatch(r"last masses (\d\.\d{4}) m apart", player.find("#distance").text)
     assert shown
     assert float(shown[1]) == pytest.approx(np.hypot(*np.subtract(*positions)), abs=2e-4)

@@ -40,8 +40,10 @@ def test_the_json_contains_the_model_the_reason_and_the_final_state(
     result = json.loads(capsys.readouterr().out)
     assert set(result) >= KEYS
     assert (result["model"], result["method"], result["form"]) == (
-        "full equations", "verner87", "rational",
-    )  # fmt: skip
+        "full equations",
+        "verner87",
+        "rational",
+    )
     truth = taylor(dp, dp.DEFAULTS, find("report", load_module).y0, [0, 5])[-1]
     assert list(result["final_state"]) == [*dp.STATE]
     assert (
@@ -51,9 +53,9 @@ def test_the_json_contains_the_model_the_reason_and_the_final_state(
     assert result["error_estimate"] <= result["requested_accuracy"] == 1e-9
     assert result["accuracy_met"] is True
     assert set(result["declined_models"]) >= {"rest", "normal modes", "quadrature"}
-    assert {Path(path).name for path in result["files"].values()} == {
-        "report.csv", "report.png", "report.html",
-    } == {path.name for path in tmp_path.iterdir()}  # fmt: skip
+    names = {Path(path).name for path in result["files"].values()}
+    assert names == {"report.csv", "report.png", "report.html"}
+    assert names == {path.name for path in tmp_path.iterdir()}
 
 
 def test_a_prescribed_method_is_reported_with_its_error_and_the_runs_beside_it(
@@ -195,9 +197,14 @@ def lines_of(chart: Figure) -> list[tuple[str, int]]:
 def test_plots_show_all_existing_quantities_with_units_and_equal_axes_in_space() -> None:
     scene = find("report", load_module)
     assert default_pictures(run_scene(scene)) == (
-        "theta1, theta2 over t", "theta1_dot over theta1", "theta2_dot over theta2",
-        "theta2 over theta1", "theta2_dot over theta1_dot", "path", "energy",
-    )  # fmt: skip
+        "theta1, theta2 over t",
+        "theta1_dot over theta1",
+        "theta2_dot over theta2",
+        "theta2 over theta1",
+        "theta2_dot over theta1_dot",
+        "path",
+        "energy",
+    )
     chart = figure([run_scene(scene)])
     panels = [panel for panel in chart.axes if panel.axison]
     assert len(panels) == 7
@@ -220,8 +227,13 @@ def test_plots_show_all_existing_quantities_with_units_and_equal_axes_in_space()
 
 
 def test_the_report_s_figures_are_plotted_with_a_note_on_what_is_known() -> None:
-    for name, curves in (("figure_3_1", 4), ("figure_3_3", 2), ("figure_3_6", 1),
-                         ("figure_4_2", 1), ("figure_4_5", 2)):  # fmt: skip
+    for name, curves in (
+        ("figure_3_1", 4),
+        ("figure_3_3", 2),
+        ("figure_3_6", 1),
+        ("figure_4_2", 1),
+        ("figure_4_5", 2),
+    ):
         scene = find(name, load_module)
         chart = figure([run_scene(one) for one in (scene, *scene.beside)])
         (panel,) = chart.axes
@@ -232,10 +244,14 @@ def test_the_report_s_figures_are_plotted_with_a_note_on_what_is_known() -> None
 
 
 def test_progress_is_shown_on_a_terminal_only_and_erased(tmp_path: Path) -> None:
-    command = [sys.executable, "-c", (
-        "import time\nfrom solvers.io.progress import Progress\n"
-        "with Progress() as report:\n    report('working')\n    time.sleep(1.6)\nprint('done')"
-    )]  # fmt: skip
+    command = [
+        sys.executable,
+        "-c",
+        (
+            "import time\nfrom solvers.io.progress import Progress\n"
+            "with Progress() as report:\n    report('working')\n    time.sleep(1.6)\nprint('done')"
+        ),
+    ]
     plain = subprocess.run(command, capture_output=True, check=True, text=True)
     assert (plain.stdout, plain.stderr) == ("done\n", "")
     ours, theirs = pty.openpty()
