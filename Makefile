@@ -19,7 +19,7 @@ docs: .venv/docs  ## build the documentation site, into out/docs
 		--doctree-dir out/docs-cache/doctrees . out/docs
 	@echo out/docs/index.html
 
-derive: .venv/base  ## write the generated modules anew
+derive: .venv/base  ## write the generated modules and the tables of READMEs anew
 	$(BIN)/holonomic derive
 
 bench: .venv/bench  ## time compiled loops beside other programs (ten minutes, idle machine)

@@ -15,7 +15,6 @@ from solvers.runge_kutta.methods_table import methods_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import Stepper
 
-README = Path(methods.__file__).parent.parent / "README.md"
 FILE = '''"""A throw-away pair of orders 2 and 1, 2 stages.
 
 Nobody, Journal of Nothing 1 (1901) 1-2.
@@ -62,9 +61,3 @@ def test_it_is_in_the_table(throwaway: str) -> None:
     assert "| `throwaway` | Throw-away 2(1) | explicit | 2 | 1 | 2 | 2.00 | 0.00 |" in (
         methods_table().splitlines()
     )
-
-
-def test_the_readme_holds_the_table_of_all_methods() -> None:
-    text = README.read_text(encoding="utf-8")
-    table = text.partition("<!-- methods -->\n")[2].partition("\n<!-- end of methods -->")[0]
-    assert table == methods_table(), "run python -m solvers.runge_kutta.methods_table"

@@ -1,6 +1,7 @@
 """READMEs of packages: their snippets run, their links exist, and their tables match the code."""
 
 import re
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import fields
@@ -10,18 +11,18 @@ from typing import get_args
 import pytest
 
 import generated.double_pendulum as dp
-from derive.commands import systems
+from derive.codegen.tree import Tree
 from derive.verification.hand import EQUATIONS, HEADER
 from derive.verification.verdict import Verdict, VerdictName
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
+from solvers.app.readme_tables import TABLES
 from solvers.scenes import reading as scenes
 from solvers.scenes.models import catalogue
 from solvers.scenes.run import run_scene
 from solvers.scenes.shipped import find as find_scene
-from solvers.sweeps import map_kinds, reading
+from solvers.sweeps import reading
 from solvers.sweeps.run import sweep
-from solvers.sweeps.status import STATUSES
 
 ROOT = Path(__file__).parent.parent
 READMES = [p for package in ("derive", "solvers") for p in sorted((ROOT / package).rglob("*.md"))]
@@ -67,24 +68,40 @@ SCENES = ROOT / "solvers" / "scenes" / "README.md"
 SWEEPS = ROOT / "solvers" / "sweeps" / "README.md"
 
 
-def status_table() -> str:
-    rows = [f"| {code} | {status} |\n" for code, status in enumerate(STATUSES)]
-    return "| number | status |\n|---|---|\n" + "".join(rows)
-
-
-@pytest.mark.parametrize(
-    ("path", "marker", "table"),
-    [
-        (DERIVE, "systems", systems.markdown_table),
-        (SCENES, "models", catalogue.markdown_table),
-        (SWEEPS, "map kinds", map_kinds.markdown_table),
-        (SWEEPS, "statuses of motions", status_table),
-    ],
-)
-def test_a_generated_table_is_current(path: Path, marker: str, table: Callable[[], str]) -> None:
-    between = rf"<!-- {marker} -->\n(.*)<!-- end of {marker} -->"
-    (written,) = re.findall(between, path.read_text(encoding="utf-8"), re.DOTALL)
+@pytest.mark.parametrize(("name", "title", "table"), TABLES)
+def test_a_generated_table_is_current(name: str, title: str, table: Callable[[], str]) -> None:
+    between = rf"<!-- {title} -->\n(.*)<!-- end of {title} -->"
+    (written,) = re.findall(between, (ROOT / name).read_text(encoding="utf-8"), re.DOTALL)
     assert written == table()
+
+
+def test_every_marked_table_is_generated() -> None:
+    titles = {
+        (str(path.relative_to(ROOT)), title)
+        for path in READMES
+        for title in re.findall(r"<!-- end of (.*) -->", path.read_text(encoding="utf-8"))
+    }
+    assert titles == {(name, title) for name, title, _ in TABLES}
+
+
+def test_the_command_checks_and_mends_a_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in READMES:
+        (tmp_path / path.relative_to(ROOT)).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, tmp_path / path.relative_to(ROOT))
+    page = tmp_path / "derive" / "README.md"
+    page.write_text(page.read_text(encoding="utf-8").replace("| `foucault_", "| `faucault_"))
+    generated = Tree(tmp_path, {}, complete=False)
+    monkeypatch.setattr("derive.commands.derive.planned", lambda *_: generated)
+    monkeypatch.setattr("solvers.app.readme_tables.ROOT", tmp_path)
+    assert main(["derive", "--check"]) == 1
+    assert f"{page}: differs" in (output := capsys.readouterr().out)
+    assert "+| `foucault_pendulum`" in output
+    assert "to update it: holonomic derive\n" in output
+    assert main(["derive"]) == 0
+    assert page.read_text(encoding="utf-8") == DERIVE.read_text(encoding="utf-8")
+    assert main(["derive", "--check"]) == 0
 
 
 def test_the_operations_of_the_readme_are_those_of_the_module() -> None:

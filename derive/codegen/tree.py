@@ -25,7 +25,7 @@ class Tree:
     """The generated texts for the files of a folder."""
 
     folder: Path
-    texts: Mapping[str, str]  # by name of the file
+    texts: Mapping[str, str]  # by name or path of the file in the folder
     complete: bool  # whether every other file in the folder is an orphan
 
     def differences(self) -> list[Difference]:
@@ -48,11 +48,13 @@ class Tree:
     def write(self) -> list[Path]:
         """Replace every file that differs by one rename, and return the paths of these files."""
         # all files are complete before the first rename
-        self.folder.mkdir(parents=True, exist_ok=True)
-        remove_abandoned(self.folder)
-        changed = [d.path.name for d in self.differences() if d.reason != "orphan"]
-        write_texts(self.folder, {name: self.texts[name] for name in changed})
-        return [self.folder / name for name in changed]
+        for folder in {(self.folder / name).parent for name in self.texts}:
+            folder.mkdir(parents=True, exist_ok=True)
+            remove_abandoned(folder)
+        changed = [d.path for d in self.differences() if d.reason != "orphan"]
+        by_path = {self.folder / name: name for name in self.texts}
+        write_texts(self.folder, {by_path[path]: self.texts[by_path[path]] for path in changed})
+        return changed
 
     @staticmethod
     def _difference(path: Path, text: str) -> Difference | None:

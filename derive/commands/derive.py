@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from shlex import quote
@@ -34,11 +34,11 @@ def main(argv: Sequence[str]) -> int:
     return run(parser.parse_args(argv))
 
 
-def run(arguments: Namespace) -> int:
-    """Run the command and return its exit code: 0, 1 (differences), 2 (input), 4 (files)."""
+def run(arguments: Namespace, others: Iterable[Tree] = ()) -> int:
+    """Run the command, also on `others`; return 0, 1 (differences), 2 (input) or 4 (files)."""
     try:
-        tree = planned(arguments.systems, arguments.output)
-        return _check(tree, arguments) if arguments.check else _write(tree)
+        trees = [planned(arguments.systems, arguments.output), *others]
+        return max([_check(tree, arguments) if arguments.check else _write(tree) for tree in trees])
     except (UnknownSystemError, SystemDefinitionError, UnsupportedFunctionError) as error:
         print(f"holonomic derive: {error}", file=sys.stderr)
         return 2

@@ -14,7 +14,8 @@ def methods_table() -> str:
     by_name = {name: load(name) for name in names()}
     ranked = sorted(by_name, key=lambda name: (not by_name[name].is_explicit, by_name[name].order))
     header = "| name | method | kind | order | embedded | stages | real axis | imaginary axis |"
-    return "\n".join([header, "|" + "---|" * 8, *(_row(name, by_name[name]) for name in ranked)])
+    rows = [_row(name, by_name[name]) for name in ranked]
+    return "\n".join([header, "|" + "---|" * 8, *rows, ""])
 
 
 def _row(name: str, tableau: Tableau) -> str:
@@ -24,7 +25,3 @@ def _row(name: str, tableau: Tableau) -> str:
     numbers = tableau.order, tableau.embedded_order or "", tableau.stages
     limits = ("∞" if x == inf else f"{x:.2f}" for x in (real, imaginary))
     return f"| {' | '.join(map(str, (f'`{name}`', tableau.title, kind, *numbers, *limits)))} |"
-
-
-if __name__ == "__main__":
-    print(methods_table())
