@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
@@ -56,6 +56,11 @@ def panels(
 def coloured(values: Iterable[Value]) -> Iterator[tuple[Value, str]]:
     """The first seven different values, each with a colour of its own."""
     return zip(dict.fromkeys(values), COLOURS, strict=False)
+
+
+def columns(rows: Sequence[object], *names: str) -> list[list[Any]]:
+    """The values of each attribute of the rows, such as coordinates to plot."""
+    return [[getattr(row, name) for row in rows] for name in names]
 
 
 def legend_beside(axes: Axes, **options: Any) -> None:

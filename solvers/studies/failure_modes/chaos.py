@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import inf, pi
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -18,18 +17,7 @@ from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import panels
 from solvers.io.text_table import text_table
-from solvers.studies.failure_modes.horizon import (
-    CLOSE,
-    OFFSET,
-    TOLERANCES,
-    Horizon,
-    Separation,
-    horizon,
-    plot_horizons,
-    plot_separation,
-    reference_motion,
-    separation,
-)
+from solvers.studies.failure_modes import horizon
 from solvers.studies.failure_modes.lyapunov import Mean, lyapunov
 from solvers.studies.failure_modes.study import Load, Study
 
@@ -48,24 +36,12 @@ LONG_RUNS: tuple[Mapping[str, Any], ...] = (
 
 @dataclass(frozen=True)
 class Statistics:
-    """Means over a run that is many horizons long.
+    """Means over a run that is many horizons long."""
 
-    Attributes
-    ----------
-    run : str
-        Method and tolerance or step.
-    energy_error : float
-        At the end, relative to the initial energy above that of the equilibrium.
-    kinetic : Mean
-        Kinetic energy in J.
-    upright : Mean
-        Fraction of time with the second coordinate above the horizontal.
-    """
-
-    run: str
-    energy_error: float
-    kinetic: Mean
-    upright: Mean
+    run: str  # method and tolerance or step
+    energy_error: float  # at the end
+    kinetic: Mean  # kinetic energy in J
+    upright: Mean  # fraction of time with the second bob above its joint
 
 
 @dataclass(frozen=True)
@@ -73,8 +49,8 @@ class ChaosResults:
     """Exponent in 1/s, separation, horizons and statistics of one motion."""
 
     exponent: Mean
-    separation: Separation
-    horizons: list[Horizon]
+    separation: horizon.Separation
+    horizons: list[horizon.Horizon]
     statistics: list[Statistics]
 
 
@@ -90,38 +66,34 @@ class Chaos(Study[ChaosResults]):
         Methods whose horizons are measured.
     """
 
+    SMALL = (1e4, 20.0, 5e3, ("dp54", "verner98"))
+
     exponent_seconds: float = 1e5
     horizon_seconds: float = 40.0
     statistics_seconds: float = 5e4
     methods: tuple[str, ...] = METHODS
 
-    @classmethod
-    def small(cls) -> Chaos:
-        """The study with shorter runs and two methods."""
-        return cls(1e4, 20.0, 5e3, ("dp54", "verner98"))
-
     def run(self, load: Load) -> ChaosResults:
-        """Results for the double pendulum with its default parameters."""
         double = load("double_pendulum")
         exponent = lyapunov(double, double.DEFAULTS, CHAOTIC, self.exponent_seconds)
-        t, reference = reference_motion(double, CHAOTIC, self.horizon_seconds)
+        reference = horizon.reference_motion(double, CHAOTIC, self.horizon_seconds)
         horizons = [
-            horizon(double, t, reference, exponent.value, method, tolerance)
+            horizon.horizon(double, *reference, exponent.value, method, tolerance)
             for method in self.methods
-            for tolerance in TOLERANCES
+            for tolerance in horizon.TOLERANCES
         ]
         means = [statistics(double, self.statistics_seconds, run) for run in LONG_RUNS]
-        return ChaosResults(exponent, separation(double, t, reference), horizons, means)
+        return ChaosResults(exponent, horizon.separation(double, *reference), horizons, means)
 
     def summary(self, results: ChaosResults) -> Iterator[str]:
-        """Exponent, horizons and means."""
         apart = results.separation
-        close = apart.distance < CLOSE
+        close = apart.distance < horizon.CLOSE
         linear = abs(apart.distance[close] / apart.predicted[close] - 1).max()
         yield f"Chaos, the report's motion: largest Lyapunov exponent {results.exponent} per s"
         yield (
-            f"a difference of {OFFSET:g} grows as e^({apart.rate:.3f} t) while it is small, for "
-            f"{apart.t[close][-1]:.1f} s; relative error of the variational equations {linear:.1g}"
+            f"a difference of {horizon.OFFSET:g} grows as e^({apart.rate:.3f} t) while it is "
+            f"small, for {apart.t[close][-1]:.1f} s; "
+            f"relative error of the variational equations {linear:.1g}"
         )
         yield "horizon ln(1/tolerance)/exponent, and the time at which the error reaches 1, in s:"
         rows: dict[float, list[object]] = {}
@@ -133,14 +105,13 @@ class Chaos(Study[ChaosResults]):
         yield from text_table(columns, rows.values())
         yield "means over many horizons: final energy error, kinetic energy, time with bob 2 up"
         columns = {"run": "", "energy error": ".0e", "kinetic/J": "", "bob 2 up": ""}
-        shown = attrgetter("run", "energy_error", "kinetic", "upright")
-        yield from text_table(columns, map(shown, results.statistics))
+        means = ((s.run, s.energy_error, s.kinetic, s.upright) for s in results.statistics)
+        yield from text_table(columns, means)
 
     def plot(self, results: ChaosResults) -> Figure:
-        """Growth of a difference over time; measured and predicted horizons over the tolerance."""
         figure, (growth, horizons) = panels("Chaos in the report's motion", columns=2)
-        plot_separation(growth, results.separation, results.exponent.value)
-        plot_horizons(horizons, results.horizons)
+        horizon.plot_separation(growth, results.separation, results.exponent.value)
+        horizon.plot_horizons(horizons, results.horizons)
         return figure
 
 

@@ -43,35 +43,17 @@ BLOCKS, LENGTH = 40, 3
 
 @dataclass(frozen=True)
 class Drift:
-    """Energy error of a long run.
-
-    Attributes
-    ----------
-    method, form : str
-        Method and form of the equations.
-    steps_per_period : int
-        Period of the slow mode over step size.
-    periods : ndarray of shape (samples,)
-        Times in periods of the slow mode.
-    energy_error : ndarray of shape (samples,)
-        Relative to the initial energy above that of the equilibrium.
-    exponent : float
-        Power of time with which the largest error grows: 1 for a steady drift, 0 for none.
-    rate : float
-        Drift per period, from a straight line fitted to the whole run.
-    early_error, largest_error : float
-        Largest error in the first hundredth of the run, and in the whole run.
-    """
+    """Energy error of a long run; times are in periods of the slow mode."""
 
     method: str
     form: str
     steps_per_period: int
-    periods: Array
-    energy_error: Array
-    exponent: float
-    rate: float
-    early_error: float
-    largest_error: float
+    periods: Array  # times
+    energy_error: Array  # at these times, relative
+    exponent: float  # the largest error grows with this power: 1 for a steady drift, 0 for none
+    rate: float  # drift per period, from a straight line fitted to the whole run
+    early_error: float  # the largest in the first hundredth of the run
+    largest_error: float  # the largest in the whole run
 
 
 def drift(pendulum: GeneratedModule, periods: float, case: Case) -> Drift:
@@ -107,16 +89,12 @@ class EnergyDrift(Study[list[Drift]]):
         Method, form and steps per period of each run; at most seven methods.
     """
 
+    SMALL = (1e3,)
+
     periods: float = 1e5
     cases: tuple[Case, ...] = CASES
 
-    @classmethod
-    def small(cls) -> EnergyDrift:
-        """The study over 1000 periods."""
-        return cls(1e3)
-
     def run(self, load: Load) -> list[Drift]:
-        """Energy error of each case, computed in parallel."""
         pendulum = load("double_pendulum")
         with ThreadPoolExecutor() as pool:
             try:
@@ -126,7 +104,6 @@ class EnergyDrift(Study[list[Drift]]):
                 raise
 
     def summary(self, results: list[Drift]) -> Iterator[str]:
-        """Largest errors, drift rates and exponents."""
         periods = max(row.periods[-1] for row in results)
         yield f"Relative energy error of the double pendulum over {periods:.3g} periods"
         columns = {"method": "", "form": "", "steps/period": "d"}
@@ -136,18 +113,14 @@ class EnergyDrift(Study[list[Drift]]):
         yield from text_table(columns, map(attrgetter(*shown, "rate", "exponent"), results))
 
     def plot(self, results: list[Drift]) -> Figure:
-        """Largest energy error so far over time, on logarithmic axes."""
         title = "Energy in long runs: lost by Runge-Kutta methods, kept by symplectic methods"
         figure, (axes,) = panels(title, size=(8, 5))
         colours = dict(coloured(d.method for d in results))
         for d in results:
-            axes.loglog(
-                d.periods[1:],
-                np.maximum.accumulate(np.abs(d.energy_error))[1:],
-                color=colours[d.method],
-                linestyle="-" if d.form == "hamiltonian" else "--",
-                label=f"{d.method}, {d.form}, {d.steps_per_period} steps per period",
-            )
+            largest = np.maximum.accumulate(np.abs(d.energy_error))[1:]
+            label = f"{d.method}, {d.form}, {d.steps_per_period} steps per period"
+            style = "-" if d.form == "hamiltonian" else "--"
+            axes.loglog(d.periods[1:], largest, style, color=colours[d.method], label=label)
         axes.set(xlabel="periods of the slow mode", ylabel="largest energy error so far, relative")
         legend_beside(axes, fontsize="small")
         return figure

@@ -15,7 +15,7 @@ from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
-from solvers.io.figures import COLOURS, coloured
+from solvers.io.figures import COLOURS, coloured, columns
 from solvers.references.taylor import taylor
 
 Array = NDArray[np.float64]
@@ -32,49 +32,23 @@ LOST = 1.0
 
 @dataclass(frozen=True)
 class Separation:
-    """Growth of a small difference of two motions.
+    """Growth of a small difference of two motions."""
 
-    Attributes
-    ----------
-    t : ndarray of shape (n,)
-        Times in s.
-    distance : ndarray of shape (n,)
-        Length of the difference of states, from two references.
-    predicted : ndarray of shape (n,)
-        The same to first order, from the variational equations.
-    rate : float
-        Growth rate in 1/s while the difference is small.
-    """
-
-    t: Array
-    distance: Array
-    predicted: Array
-    rate: float
+    t: Array  # in s
+    distance: Array  # length of the difference of states, from two references
+    predicted: Array  # the same to first order, from the variational equations
+    rate: float  # growth rate in 1/s while the difference is small
 
 
 @dataclass(frozen=True)
 class Horizon:
-    """Time until which a trajectory is right.
-
-    Attributes
-    ----------
-    method : str
-        Name of the method.
-    tolerance : float
-        Relative and absolute.
-    predicted : float
-        ln(1/tolerance)/λ in s.
-    measured : float
-        Time in s at which the error reaches `LOST`.
-    energy_error : float
-        Largest error of the run, relative to the initial energy above that of the equilibrium.
-    """
+    """Time until which a trajectory is right."""
 
     method: str
-    tolerance: float
-    predicted: float
-    measured: float
-    energy_error: float
+    tolerance: float  # relative and absolute
+    predicted: float  # ln(1/tolerance)/exponent in s
+    measured: float  # time in s at which the error reaches `LOST`
+    energy_error: float  # the largest of the run
 
 
 def reference_motion(
@@ -127,8 +101,7 @@ def plot_horizons(axes: Axes, rows: Sequence[Horizon]) -> None:
     """Plot measured and predicted horizons over the tolerance."""
     for method, colour in coloured(row.method for row in rows):
         lost = [row for row in rows if row.method == method and row.measured < inf]
-        tolerances, times = [row.tolerance for row in lost], [row.measured for row in lost]
-        axes.semilogx(tolerances, times, "o", color=colour, label=method)
+        axes.semilogx(*columns(lost, "tolerance", "measured"), "o", color=colour, label=method)
     predicted = sorted({row.tolerance: row.predicted for row in rows}.items())
     axes.semilogx(*zip(*predicted, strict=True), color="#888888", label="ln(1/tolerance)/exponent")
     axes.set(xlabel="tolerance", ylabel="horizon / s")

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.integrate import integrate
-from solvers.io.figures import coloured, panels
+from solvers.io.figures import coloured, columns, panels
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load as load_method
 from solvers.runge_kutta.stability_function import StabilityFunction
@@ -26,17 +26,7 @@ STEPS_PER_PERIOD = (20.0, 100.0, 500.0, 2500.0)
 
 @dataclass(frozen=True)
 class Growth:
-    """Growth of a small oscillation.
-
-    Attributes
-    ----------
-    method : str
-        Name of the method.
-    steps_per_period : float
-        Period over step size.
-    predicted, measured : float
-        Logarithm of the amplitude's growth over a period.
-    """
+    """Growth of a small oscillation: logarithm of the amplitude's growth over a period."""
 
     method: str
     steps_per_period: float
@@ -67,7 +57,6 @@ class Oscillation(Study[list[Growth]]):
     """Euler and RK2 with decreasing steps; RK3 and RK4 on both sides of their limit."""
 
     def run(self, load: Load) -> list[Growth]:
-        """Growth for each method and number of steps."""
         cases = [(method, steps) for method in ("rk1", "midpoint") for steps in STEPS_PER_PERIOD]
         for method in ("rk3", "rk4"):
             function = StabilityFunction.of(load_method(method))
@@ -76,19 +65,16 @@ class Oscillation(Study[list[Growth]]):
         return [growth(load("single_pendulum"), *case) for case in cases]
 
     def summary(self, results: list[Growth]) -> Iterator[str]:
-        """Predicted and measured growth per period."""
         yield "Small oscillations of the single pendulum: logarithm of the growth per period"
-        columns = {"method": "", "steps/period": ".4g", "predicted": ".4e", "measured": ".4e"}
-        yield from text_table(columns, map(astuple, results))
+        specs = {"method": "", "steps/period": ".4g", "predicted": ".4e", "measured": ".4e"}
+        yield from text_table(specs, map(astuple, results))
 
     def plot(self, results: list[Growth]) -> Figure:
-        """Growth per period over the number of steps per period."""
         title = "Small oscillations grow with every step of Euler's method and of RK2"
         figure, (axes,) = panels(title, size=(7, 4.5))
         for method, colour in coloured(("rk1", "midpoint")):
             rows = [row for row in results if row.method == method]
-            steps = [row.steps_per_period for row in rows]
-            predicted, measured = [r.predicted for r in rows], [r.measured for r in rows]
+            steps, predicted, measured = columns(rows, "steps_per_period", "predicted", "measured")
             axes.loglog(steps, predicted, color=colour, label=f"{method}, from R(z)")
             axes.loglog(steps, measured, "o", color=colour, label=f"{method}, run")
         axes.set(xlabel="steps per period", ylabel="logarithm of growth per period")

@@ -14,7 +14,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.io.figures import COLOURS, panels
+from solvers.io.figures import COLOURS, columns, panels
 from solvers.io.text_table import text_table
 from solvers.references.elliptic import pendulum as exact_solution
 from solvers.studies.failure_modes.study import Load, Study
@@ -29,24 +29,12 @@ METHODS, TOLERANCES = ("dp54", "verner87", "verner98"), (1e-4, 1e-6, 1e-8, 1e-10
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Growth of small errors near the upright equilibrium.
+    """Growth of small errors near the upright equilibrium."""
 
-    Attributes
-    ----------
-    distance : float
-        Initial distance from upright in rad.
-    predicted : float
-        Growth of a small change of the start during one fall.
-    amplification : float
-        Largest growth, from the variational equations.
-    error : float
-        Largest error of a run, in rad and rad/s.
-    """
-
-    distance: float
-    predicted: float
-    amplification: float
-    error: float
+    distance: float  # initial distance from upright in rad
+    predicted: float  # growth of a small change of the start during one fall
+    amplification: float  # largest growth, from the variational equations
+    error: float  # largest error of a run, in rad and rad/s
 
 
 def sensitivity(module: GeneratedModule) -> list[Sensitivity]:
@@ -72,23 +60,13 @@ def sensitivity(module: GeneratedModule) -> list[Sensitivity]:
 class Departure:
     """The end of a motion that would approach the upright equilibrium on the separatrix.
 
-    Attributes
-    ----------
-    method : str
-        Name of the method.
-    tolerance : float
-        Relative and absolute.
-    defect : float
-        Relative energy error at the end, k² - 1: negative if the pendulum turns back.
-    predicted, measured : float
-        Time in s at which it turns back or passes the top: from the exact solution with that
-        energy, and from the run.
+    The pendulum turns back or passes the top at a time in s.
     """
 
     method: str
-    tolerance: float
-    defect: float
-    predicted: float
+    tolerance: float  # relative and absolute
+    defect: float  # relative energy error at the end, k² - 1: negative if the pendulum turns back
+    predicted: float  # from the exact solution with that energy
     measured: float
 
 
@@ -114,18 +92,10 @@ def departures(module: GeneratedModule) -> list[Departure]:
 
 @dataclass(frozen=True)
 class Upright:
-    """Release at the floating-point number nearest to the upright equilibrium.
+    """Release at the floating-point number nearest to the upright equilibrium."""
 
-    Attributes
-    ----------
-    offset : float
-        Difference between π and this number, in rad.
-    predicted, measured : float
-        Time in s at which the pendulum is horizontal.
-    """
-
-    offset: float
-    predicted: float
+    offset: float  # difference between π and this number, in rad
+    predicted: float  # time in s at which the pendulum is horizontal
     measured: float
 
 
@@ -170,20 +140,18 @@ class Separatrix(Study[SeparatrixResults]):
     """Release near upright and at upright, and motions on the separatrix."""
 
     def run(self, load: Load) -> SeparatrixResults:
-        """Results for the single pendulum."""
         module = load("single_pendulum")
         return SeparatrixResults(sensitivity(module), departures(module), upright(module))
 
     def summary(self, results: SeparatrixResults) -> Iterator[str]:
-        """Growth of errors, and times of departure."""
         yield f"Single pendulum released near upright: growth of errors in {DURATION:g} s"
-        columns = {"distance/rad": ".0e", "one fall": ".1e", "motion": ".1e"}
-        columns[f"error of {METHOD}, rtol {TOLERANCE:g}"] = ".1e"
-        yield from text_table(columns, map(astuple, results.sensitivity))
+        specs = {"distance/rad": ".0e", "one fall": ".1e", "motion": ".1e"}
+        specs[f"error of {METHOD}, rtol {TOLERANCE:g}"] = ".1e"
+        yield from text_table(specs, map(astuple, results.sensitivity))
         yield "on the separatrix: the pendulum turns back (-) or passes the top (+) after a time"
-        columns = {"method": "", "tolerance": ".0e", "energy defect": "+.1e"}
-        columns |= {"predicted/s": ".3f", "measured/s": ".3f"}
-        yield from text_table(columns, map(astuple, results.departures))
+        specs = {"method": "", "tolerance": ".0e", "energy defect": "+.1e"}
+        specs |= {"predicted/s": ".3f", "measured/s": ".3f"}
+        yield from text_table(specs, map(astuple, results.departures))
         fall = results.upright
         yield (
             f"released upright, {fall.offset:.1e} rad from pi: horizontal after "
@@ -191,11 +159,9 @@ class Separatrix(Study[SeparatrixResults]):
         )
 
     def plot(self, results: SeparatrixResults) -> Figure:
-        """Growth of errors near upright."""
         figure, (axes,) = panels("Single pendulum released near upright", size=(7, 4.5))
-        rows, blue = results.sensitivity, COLOURS[0]
-        distance, predicted = [row.distance for row in rows], [row.predicted for row in rows]
-        growth = [row.amplification for row in rows]
+        names, blue = ("distance", "amplification", "predicted"), COLOURS[0]
+        distance, growth, predicted = columns(results.sensitivity, *names)
         axes.loglog(distance, growth, "o", color=blue, label="growth of small errors within 10 s")
         axes.loglog(distance, predicted, color=blue, label="frequency / distance: one fall")
         axes.set(xlabel="distance from upright / rad", ylabel="factor")

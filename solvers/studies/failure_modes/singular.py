@@ -39,24 +39,14 @@ STATES, ALIGNED = 100, 1e-9
 
 @dataclass(frozen=True)
 class AccuracyLoss:
-    """Accuracy of both forms for one mass m1.
+    """Accuracy of both forms for one mass m1."""
 
-    Attributes
-    ----------
-    m1, condition : float
-        The mass in kg, and the median condition number of M.
-    acceleration, velocity : float
-        Median relative errors of Lagrange's accelerations and of Hamilton's velocities.
-    lagrangian, hamiltonian : float
-        Least error of a motion's final state in each form, in rad and rad/s; NaN below `LIGHTEST`.
-    """
-
-    m1: float
-    condition: float
-    acceleration: float
-    velocity: float
-    lagrangian: float
-    hamiltonian: float
+    m1: float  # in kg
+    condition: float  # median condition number of M
+    acceleration: float  # median relative error of Lagrange's accelerations
+    velocity: float  # the same of Hamilton's velocities
+    lagrangian: float  # least error of a final state, in rad and rad/s; NaN below `LIGHTEST`
+    hamiltonian: float  # the same in Hamilton's form
 
 
 def accuracy_loss(pendulum: GeneratedModule, m1: float) -> AccuracyLoss:
@@ -109,26 +99,20 @@ def least_error(pendulum: GeneratedModule, params: Sequence[float], form: str) -
 class SingularMassMatrix(Study[list[AccuracyLoss]]):
     """Accuracy of both forms as m1 decreases, in kg."""
 
+    SMALL = ((1.0, 1e-4),)
+
     masses: tuple[float, ...] = MASSES
 
-    @classmethod
-    def small(cls) -> SingularMassMatrix:
-        """The study with two masses."""
-        return cls((1.0, 1e-4))
-
     def run(self, load: Load) -> list[AccuracyLoss]:
-        """Accuracy for each mass."""
         return [accuracy_loss(load("double_pendulum"), m1) for m1 in self.masses]
 
     def summary(self, results: list[AccuracyLoss]) -> Iterator[str]:
-        """Errors beside the condition number."""
         yield "Aligned rods, m1 -> 0, m2 = 1 kg: errors of one evaluation and of a motion"
         columns = {"m1/kg": ".0e", "condition": ".1e", "Lagrange qdd": ".1e", "Hamilton qd": ".1e"}
         columns |= {"Lagrange end": ".1e", "Hamilton end": ".1e"}
         yield from text_table(columns, map(astuple, results))
 
     def plot(self, results: list[AccuracyLoss]) -> Figure:
-        """Errors over the mass."""
         title = "Aligned rods, light first mass: loss of accuracy in both forms"
         figure, (axes,) = panels(title, size=(7, 4.5))
         m1 = [row.m1 for row in results]

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
 from solvers.integration.timing import TimedRun, timed_run
-from solvers.io.figures import coloured, legend_beside, panels
+from solvers.io.figures import coloured, columns, legend_beside, panels
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load as load_method
 from solvers.studies.failure_modes.study import Load, Study
@@ -31,29 +31,15 @@ Motion = tuple[tuple[float, ...], tuple[float, ...]]
 
 @dataclass(frozen=True)
 class Cost:
-    """The cheapest run of a method that meets the requested accuracy.
+    """The cheapest run of a method that meets the requested accuracy."""
 
-    Attributes
-    ----------
-    family, method : str
-        Family of scenes, and name of the method.
-    ratio : float
-        Frequency of the fast mode over that of the slow mode, about the equilibrium.
-    steps, work_rhs : int
-        Number of steps, and of evaluations of the right-hand side.
-    work_seconds : float
-        Time of the compiled run.
-    global_error : float
-        Of the slow angle, in rad.
-    """
-
-    family: str
+    family: str  # of scenes
     method: str
-    ratio: float
+    ratio: float  # of the frequencies of the fast and the slow mode, about the equilibrium
     steps: int
-    work_rhs: int
-    work_seconds: float
-    global_error: float
+    work_rhs: int  # evaluations of the right-hand side
+    work_seconds: float  # of the compiled run
+    global_error: float  # of the slow angle, in rad
 
 
 def short_second_rod(ratio: float) -> Motion:
@@ -130,16 +116,12 @@ class StiffScene:
 class Stiffness(Study[list[Cost]]):
     """The cheapest sufficient run of each method on each scene."""
 
+    SMALL = ((3.0, 100.0, 300.0),)
+
     ratios: tuple[float, ...] = RATIOS
     methods: tuple[str, ...] = (*EXPLICIT, *IMPLICIT)
 
-    @classmethod
-    def small(cls) -> Stiffness:
-        """The study with three ratios."""
-        return cls((3.0, 100.0, 300.0))
-
     def run(self, load: Load) -> list[Cost]:
-        """Costs of all methods that reach the requested accuracy."""
         costs = []
         for family, (system, motion, slow) in FAMILIES.items():
             for ratio in self.ratios:
@@ -153,7 +135,6 @@ class Stiffness(Study[list[Cost]]):
         return costs
 
     def summary(self, results: list[Cost]) -> Iterator[str]:
-        """The fastest explicit and implicit method at each ratio, and the crossovers."""
         yield f"Stiff scenes: cheapest runs with the slow angle right to {ACCURACY:g} rad"
         rows = []
         families = list(dict.fromkeys(cost.family for cost in results))
@@ -165,20 +146,17 @@ class Stiffness(Study[list[Cost]]):
                 microseconds = 1e6 * best.work_seconds
                 cells.append(f"{best.steps} steps, {microseconds:.0f} us, {best.method}")
             rows.append((family, ratio, *cells))
-        columns = {"family": "", "fast/slow": ".4g", " explicit": "", " implicit": ""}
-        yield from text_table(columns, rows)
+        specs = {"family": "", "fast/slow": ".4g", " explicit": "", " implicit": ""}
+        yield from text_table(specs, rows)
         for family in families:
             ratios = [crossover(results, family, work) for work in ("work_rhs", "work_seconds")]
+            text = "implicit methods do not become cheaper"
             if all(map(isfinite, ratios)):
-                yield (
-                    f"{family}: implicit methods cost less from a ratio of {ratios[0]:.0f} on "
-                    f"(right-hand sides), {ratios[1]:.0f} (seconds)"
-                )
-            else:
-                yield f"{family}: implicit methods do not become cheaper"
+                text = f"implicit methods cost less from a ratio of {ratios[0]:.0f} on "
+                text += f"(right-hand sides), {ratios[1]:.0f} (seconds)"
+            yield f"{family}: {text}"
 
     def plot(self, results: list[Cost]) -> Figure:
-        """Cost over the ratio of frequencies, one panel per family."""
         families = list(dict.fromkeys(cost.family for cost in results))
         title = "Cost of a slow angle within 1e-3 rad after 6 s, beside a fast mode"
         figure, axes = panels(title, columns=len(families), size=(13, 4))
@@ -187,9 +165,9 @@ class Stiffness(Study[list[Cost]]):
         for panel, family in zip(axes, families, strict=True):
             for method, colour in coloured(cost.method for cost in results):
                 rows = [c for c in results if (c.family, c.method) == (family, method)]
-                ratios, times = [c.ratio for c in rows], [1e3 * c.work_seconds for c in rows]
-                style = {"linestyle": "--" if method in EXPLICIT else "-", "color": colour}
-                panel.loglog(ratios, times, marker=".", label=method, **style)
+                times = [1e3 * c.work_seconds for c in rows]
+                style = ".--" if method in EXPLICIT else ".-"
+                panel.loglog(*columns(rows, "ratio"), times, style, color=colour, label=method)
             panel.set(title=family, xlabel="fast over slow frequency", xlim=(0.7, 1e4))
         axes[0].set_ylabel("time, compiled / ms")
         legend_beside(axes[-1], title="explicit dashed")
@@ -201,21 +179,14 @@ def crossover(costs: Sequence[Cost], family: str, work: str) -> float:
     ratios = sorted({cost.ratio for cost in costs if cost.family == family})
     gains = []
     for ratio in ratios:
-        least = [
-            min(
-                (getattr(cost, work) for cost in _select(costs, family, ratio, kind)),
-                default=np.inf,
-            )
-            for kind in (EXPLICIT, IMPLICIT)
-        ]
-        gains.append(np.log(least[0] / least[1]))
+        kinds = (_select(costs, family, ratio, kind) for kind in (EXPLICIT, IMPLICIT))
+        explicit, implicit = (min(*columns(kind, work), default=np.inf) for kind in kinds)
+        gains.append(np.log(explicit / implicit))
     k = next((k for k in range(len(gains)) if min(gains[k:]) > 0), 0)
     if k == 0:
         return float("nan")
     return float(np.exp(np.interp(0.0, gains[k - 1 : k + 1], np.log(ratios[k - 1 : k + 1]))))
 
 
-def _select(
-    costs: Sequence[Cost], family: str, ratio: float, methods: Sequence[str]
-) -> Iterator[Cost]:
-    return (c for c in costs if (c.family, c.ratio) == (family, ratio) and c.method in methods)
+def _select(costs: Sequence[Cost], family: str, ratio: float, methods: Sequence[str]) -> list[Cost]:
+    return [c for c in costs if (c.family, c.ratio) == (family, ratio) and c.method in methods]

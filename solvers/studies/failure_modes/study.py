@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import Any, Generic, Self, TypeVar
+from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from matplotlib.figure import Figure
 
@@ -21,6 +21,9 @@ Load = Callable[[str], GeneratedModule]
 class Study(ABC, Generic[Results]):
     """A study of one failure mode, in a file of its own; its attributes are its settings."""
 
+    #: Settings with which the study takes a few seconds only.
+    SMALL: ClassVar[tuple[Any, ...]] = ()
+
     @property
     def name(self) -> str:
         """The name of the study's file."""
@@ -28,8 +31,8 @@ class Study(ABC, Generic[Results]):
 
     @classmethod
     def small(cls) -> Self:
-        """The study with settings that need a few seconds only."""
-        return cls()
+        """The study with the settings of `SMALL`."""
+        return cls(*cls.SMALL)
 
     @abstractmethod
     def run(self, load: Load) -> Results:

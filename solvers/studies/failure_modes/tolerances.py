@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from solvers.integration.ensemble import ensemble
-from solvers.io.figures import coloured, legend_beside, panels
+from solvers.io.figures import coloured, columns, legend_beside, panels
 from solvers.io.text_table import text_table
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import SCIPY
@@ -25,41 +25,25 @@ MOTIONS, DURATION = 24, 3.0
 
 @dataclass(frozen=True)
 class ToleranceAccuracy:
-    """Global error over tolerance of a method, for many motions.
-
-    Attributes
-    ----------
-    method : str
-        Name of the method.
-    tolerance : float
-        Relative and absolute.
-    median, worst : float
-        Global error over tolerance.
-    relative_to_growth : float
-        Median of the same over the growth of small errors in the motion itself.
-    """
+    """Global error over tolerance of a method, for many motions."""
 
     method: str
-    tolerance: float
+    tolerance: float  # relative and absolute
     median: float
     worst: float
-    relative_to_growth: float
+    relative_to_growth: float  # median of the same over the growth of small errors in the motion
 
 
 @dataclass(frozen=True)
 class Tolerances(Study[list[ToleranceAccuracy]]):
     """Global errors of double pendulums, compared with Taylor series."""
 
+    SMALL = (("dp54", "verner98", "RK45"), 6)
+
     methods: tuple[str, ...] = METHODS
     motions: int = MOTIONS
 
-    @classmethod
-    def small(cls) -> Tolerances:
-        """The study with three methods and six motions."""
-        return cls(("dp54", "verner98", "RK45"), 6)
-
     def run(self, load: Load) -> list[ToleranceAccuracy]:
-        """Accuracy of each method with each tolerance."""
         pendulum = load("double_pendulum")
         generator = np.random.default_rng(3)
         count, n, span = self.motions, len(pendulum.STATE), (0.0, DURATION)
@@ -85,24 +69,22 @@ class Tolerances(Study[list[ToleranceAccuracy]]):
         return results
 
     def summary(self, results: list[ToleranceAccuracy]) -> Iterator[str]:
-        """Median and worst ratio of every method; SciPy's methods are in capitals."""
         yield f"Achieved over requested error of double pendulums, {DURATION:g} s: median, worst"
-        columns = dict.fromkeys((f"tolerance {row.tolerance:.0e}" for row in results), ">")
+        specs = dict.fromkeys((f"tolerance {row.tolerance:.0e}" for row in results), ">")
         cells: dict[str, list[str]] = {}
         for row in results:
             cells.setdefault(row.method, []).append(f"{row.median:.3g}, {row.worst:.3g}")
-        yield from text_table({"method": ""} | columns, ((m, *c) for m, c in cells.items()))
+        yield from text_table({"method": ""} | specs, ((m, *c) for m, c in cells.items()))
 
     def plot(self, results: list[ToleranceAccuracy]) -> Figure:
-        """Median and worst ratio of every method."""
         title = "Achieved over requested error: medians (dots) and worst of many motions"
         figure, (axes,) = panels(title, size=(9, 4.5))
         methods = list(dict.fromkeys(row.method for row in results))
         for k, (tolerance, colour) in enumerate(coloured(row.tolerance for row in results)):
             rows = [row for row in results if row.tolerance == tolerance]
             x = [methods.index(row.method) + 0.15 * (k - 1) for row in rows]
-            medians = [row.median for row in rows]
-            axes.vlines(x, medians, [row.worst for row in rows], colour)
+            medians, worst = columns(rows, "median", "worst")
+            axes.vlines(x, medians, worst, colour)
             axes.plot(x, medians, "o", color=colour, label=f"tolerance {tolerance:.0e}")
         axes.axhline(1, color="#888888")
         axes.set(yscale="log", ylabel="error / tolerance", xticks=range(len(methods)))
