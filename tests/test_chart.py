@@ -19,12 +19,10 @@ from solvers.io.figures import save
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.scenes.shipped import find
 from solvers.studies.work_precision import measurement, peers
-from solvers.studies.work_precision.curve import Curve, Point
-from solvers.studies.work_precision.frontier import frontier
+from solvers.studies.work_precision.curve import Curve, Point, frontier
+from solvers.studies.work_precision.findings import misleading_energy, rounding_limits, wrong_above
 from solvers.studies.work_precision.measurement import combinations, curves
-from solvers.studies.work_precision.misleading_energy import misleading_energy, wrong_above
 from solvers.studies.work_precision.reference import Reference
-from solvers.studies.work_precision.rounding_limit import rounding_limits
 from solvers.studies.work_precision.scene_curves import SceneCurves
 
 REPORT = find("report", load_module)

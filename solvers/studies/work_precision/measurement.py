@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import partial
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +21,6 @@ from solvers.studies.work_precision.curve import Combination, Curve, Point
 from solvers.studies.work_precision.reference import Reference
 
 Array = NDArray[np.float64]
-
 #: The methods that the report calls RK1 to RK4.
 REPORT_METHODS = {"RK1": "rk1", "RK2": "midpoint", "RK3": "rk3", "RK4": "rk4"}
 FORMS = ("lagrangian", "hamiltonian", "rational")
@@ -38,12 +39,9 @@ def combinations(module: GeneratedModule) -> Iterator[Combination]:
     forms = [form for form in FORMS if form in module.FORMS]
     with_jacobian = [f for f in forms if Form(module, f, module.DEFAULTS).has_jacobian]
     for method in names():
-        for form in forms if load(method).is_explicit else with_jacobian:
-            yield method, form, "compiled"
-            yield method, form, "python"
-    for method in SCIPY:
-        for form in forms:
-            yield method, form, "scipy"
+        possible = forms if load(method).is_explicit else with_jacobian
+        yield from product([method], possible, ("compiled", "python"))
+    yield from product(SCIPY, forms, ["scipy"])
 
 
 def curves(scene: Scene, reference: Reference, combinations: Iterable[Combination]) -> list[Curve]:
@@ -72,12 +70,9 @@ def curves(scene: Scene, reference: Reference, combinations: Iterable[Combinatio
     """
     results = []
     for combination in combinations:
-        try:
-            points = list(_points(scene, reference, combination))
-        except NoCompilerError:
-            continue
-        if points:
-            results.append(Curve(scene.name, *combination, points))
+        with suppress(NoCompilerError):
+            if points := list(_points(scene, reference, combination)):
+                results.append(Curve(scene.name, *combination, points))
     return results
 
 
@@ -85,14 +80,12 @@ def _points(scene: Scene, reference: Reference, combination: Combination) -> Ite
     method, form, backend = combination
     solve = partial(timed_run, scene.module, scene.params, scene.y0, scene.duration)
     for setting in _settings(method, backend, scene.duration):
-        run = solve(method=method, form=form, backend=backend, **setting)
-        if run is None:
-            continue
-        costs = run.work_seconds, run.work_rhs
-        if new := point(scene, reference, setting, *costs, run.end):
-            yield new
-        if run.work_seconds > _longest(combination) / 2:
-            return
+        if run := solve(method=method, form=form, backend=backend, **setting):
+            costs = run.work_seconds, run.work_rhs
+            if new := point(scene, reference, setting, *costs, run.end):
+                yield new
+            if run.work_seconds > _longest(combination) / 2:
+                return
 
 
 def _settings(method: str, backend: str, duration: float) -> list[dict[str, float]]:

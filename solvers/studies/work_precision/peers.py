@@ -8,6 +8,7 @@ Python function into a loop of RK4 steps; numbalsoda's LSODA and DOP853 take its
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -46,16 +47,12 @@ def curves(
     form = Form(scene.module, fastest_form(scene.module), scene.params)
     start = form.from_ordinary(0.0, np.array(scene.y0))
     results = []
-    for name, peer in PEERS.items():
-        installed = package(name)
-        if installed is None:
-            continue
-        try:
-            for method, run in peer(installed, scene, form, start):
+    installed = {name: found for name in PEERS if (found := package(name))}
+    for name, found in installed.items():
+        with suppress(NoCompilerError):
+            for method, run in PEERS[name](found, scene, form, start):
                 points = list(_points(scene, reference, form, method, run))
                 results.append(Curve(scene.name, method, form.name, name, points))
-        except NoCompilerError:
-            continue
     return results
 
 
@@ -148,10 +145,9 @@ def _numbalsoda(package: Any, scene: Scene, form: Form, start: Array) -> Iterato
         solver = getattr(package, method)
 
         def run(tolerance: float, solver: Any = solver) -> Run:
-            tolerances = {"rtol": tolerance, "atol": tolerance}
-
             def state() -> tuple[Array, None]:
-                rows, succeeded = solver(rhs.address, start, times, params, **tolerances)
+                arguments = rhs.address, start, times, params
+                rows, succeeded = solver(*arguments, rtol=tolerance, atol=tolerance)
                 return (rows[-1] if succeeded else np.full(len(start), np.nan)), None
 
             return state
@@ -160,9 +156,5 @@ def _numbalsoda(package: Any, scene: Scene, form: Form, start: Array) -> Iterato
 
 
 #: The methods of each package.
-PEERS: dict[str, Peer] = {
-    "heyoka": _heyoka,
-    "diffrax": _diffrax,
-    "numba": _numba,
-    "numbalsoda": _numbalsoda,
-}
+PEERS: dict[str, Peer] = {"heyoka": _heyoka, "diffrax": _diffrax}
+PEERS |= {"numba": _numba, "numbalsoda": _numbalsoda}

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from solvers.io.figures import COLOURS, coloured, panels
+from solvers.io.figures import COLOURS, coloured, columns, panels
 from solvers.studies.work_precision.curve import Curve, select
 from solvers.studies.work_precision.measurement import FORMS, REPORT_METHODS
 from solvers.studies.work_precision.peers import PEERS
@@ -39,14 +39,19 @@ def work_precision(title: str, curves: Sequence[Curve]) -> Figure:
         calls of the right-hand side.
     """
     figure, (seconds, calls, choices, peers) = panels(title, rows=2, columns=2, size=(14, 10))
-    _plot_methods(seconds, calls, curves)
+    for n, method in enumerate(METHODS):
+        style = {"color": COLOURS[n % len(COLOURS)], "linestyle": STYLES[n // len(COLOURS)]}
+        combinations = ((method, form, "compiled") for form in reversed(FORMS))
+        for curve in list(select(curves, *combinations))[:1]:  # rational where there is one
+            _plot(seconds, curve, method, **style)
+            _plot(calls, curve, method, "work_rhs", **style)
     seconds.set(title="methods, compiled, fastest form", xlabel="time / s")
     calls.set(title="the same", xlabel="calls of the right-hand side")
-    for (backend, method), style in zip(BACKENDS.items(), STYLES, strict=True):
+    for (backend, method), line in zip(BACKENDS.items(), STYLES, strict=True):
         for form, colour in coloured(FORMS):
             for curve in select(curves, (method, form, backend)):
                 label = f"{method}, {backend}, {form}"
-                _plot(choices, curve, "work_seconds", label, color=colour, linestyle=style)
+                _plot(choices, curve, label, color=colour, linestyle=line)
     choices.set(title="forms and backends", xlabel="time / s")
     _plot_peers(peers, curves)
     for panel in (calls, choices, peers):
@@ -57,15 +62,6 @@ def work_precision(title: str, curves: Sequence[Curve]) -> Figure:
     return figure
 
 
-def _plot_methods(seconds: Axes, calls: Axes, curves: Sequence[Curve]) -> None:
-    for n, method in enumerate(METHODS):
-        style = {"color": COLOURS[n % len(COLOURS)], "linestyle": STYLES[n // len(COLOURS)]}
-        combinations = ((method, form, "compiled") for form in reversed(FORMS))
-        for curve in list(select(curves, *combinations))[:1]:  # rational where there is one
-            _plot(seconds, curve, "work_seconds", method, **style)
-            _plot(calls, curve, "work_rhs", method, **style)
-
-
 def _plot_peers(panel: Axes, curves: Sequence[Curve]) -> None:
     panel.set(title="other programs", xlabel="time / s")
     others = [curve for curve in curves if curve.backend in PEERS]
@@ -74,13 +70,13 @@ def _plot_peers(panel: Axes, curves: Sequence[Curve]) -> None:
         panel.set_title("other programs: none is installed")
         return
     for curve in select(curves, (EXAMPLE, "rational", "compiled")):
-        _plot(panel, curve, "work_seconds", f"holonomic {EXAMPLE}", color="black")
+        _plot(panel, curve, f"holonomic {EXAMPLE}", color="black")
     for n, curve in enumerate(others):
         style = {"color": COLOURS[n % 6], "linestyle": STYLES[n // 6]}
-        _plot(panel, curve, "work_seconds", f"{curve.backend} {curve.method}", **style)
+        _plot(panel, curve, f"{curve.backend} {curve.method}", **style)
 
 
-def _plot(panel: Axes, curve: Curve, work: str, label: str, **style: str) -> None:
+def _plot(panel: Axes, curve: Curve, label: str, work: str = "work_seconds", **style: str) -> None:
     panel.loglog(*curve.costs(work), marker=".", label=label, **style)
 
 
@@ -103,9 +99,8 @@ def steps(title: str, curves: Sequence[Curve]) -> Figure:
     figure, (axes,) = panels(title, size=(7.5, 5))
     for (name, method), colour in coloured(REPORT_METHODS.items()):
         for curve in select(curves, (method, "lagrangian", "compiled")):
-            h = [p.setting["h"] for p in curve.points]
-            errors = [p.global_error for p in curve.points]
-            axes.loglog(h, errors, marker=".", color=colour, label=f"{name} ({method})")
+            points = zip(*((p.setting["h"], p.global_error) for p in curve.points), strict=True)
+            axes.loglog(*points, marker=".", color=colour, label=f"{name} ({method})")
     axes.set(xlabel="step / s", ylabel=ERROR)
     if axes.lines:
         axes.legend(frameon=False)
@@ -117,8 +112,8 @@ def energy(title: str, curves: Sequence[Curve], wrong: float) -> Figure:
     figure, (axes,) = panels(title, size=(7.5, 5))
     for backend, colour in coloured(BACKENDS):
         points = [p for c in curves if c.backend == backend for p in c.points]
-        energies, errors = [p.energy_error for p in points], [p.global_error for p in points]
-        axes.loglog(energies, errors, ".", color=colour, markersize=4, label=backend)
+        errors = columns(points, "energy_error", "global_error")
+        axes.loglog(*errors, ".", color=colour, markersize=4, label=backend)
     axes.axhline(wrong, color="#888888", label="above: no digit is right")
     axes.set(xlabel="energy error, relative", ylabel=ERROR)
     axes.legend(frameon=False)

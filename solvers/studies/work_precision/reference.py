@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,14 +63,13 @@ class Reference:
             When the equations call functions other than sines and cosines of angles.
         """
         module, params, span = scene.module, scene.params, (0.0, scene.duration)
-        end, rough = (
-            taylor(module, params, scene.y0, span, digits)[-1] for digits in (DIGITS, FEWER)
-        )
+        solve = partial(taylor, module, params, scene.y0, span)
+        end, rough = (solve(digits)[-1] for digits in (DIGITS, FEWER))
         error = max(float(np.abs(end - rough).max()), float(np.spacing(np.abs(end).max())))
         others = {}
         if mode_spread(module, params) < STIFF:
-            midpoint = extrapolated(module, params, scene.y0, span, STEP)
-            others["extrapolated midpoint rule"] = midpoint[-1]
+            solution = extrapolated(module, params, scene.y0, span, STEP)
+            others["extrapolated midpoint rule"] = solution[-1]
         if module.STATE == ("theta", "theta_dot"):
             _, length, gravity = params
             start = (scene.y0[0], scene.y0[1])

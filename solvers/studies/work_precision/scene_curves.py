@@ -13,49 +13,31 @@ from solvers.io.json_values import jsonable
 from solvers.io.text_table import text_table
 from solvers.scenes.scene import Scene
 from solvers.studies.work_precision import plots
-from solvers.studies.work_precision.curve import Curve
-from solvers.studies.work_precision.frontier import FrontierPoint, frontier
-from solvers.studies.work_precision.misleading_energy import (
+from solvers.studies.work_precision.curve import Curve, FrontierPoint, frontier
+from solvers.studies.work_precision.findings import (
     MisleadingEnergy,
+    RoundingLimit,
     misleading_energy,
+    rounding_limits,
     wrong_above,
 )
 from solvers.studies.work_precision.reference import Reference
-from solvers.studies.work_precision.rounding_limit import RoundingLimit, rounding_limits
 
 #: Choices with which the frontier is compared.
-COMPARED = {
-    "method": ("rk4",),
-    "form": ("lagrangian", "hamiltonian"),
-    "backend": ("compiled", "python", "scipy", "heyoka", "numbalsoda", "numba", "diffrax"),
-}
+BACKENDS = ("compiled", "python", "scipy", "heyoka", "numbalsoda", "numba", "diffrax")
+COMPARED = [("method", "rk4"), ("form", "lagrangian"), ("form", "hamiltonian")]
+COMPARED += [("backend", backend) for backend in BACKENDS]
 
 
 @dataclass(frozen=True)
 class SceneCurves:
-    """Curves of a scene, and the findings that follow from them.
-
-    Attributes
-    ----------
-    scene : Scene
-        The motion.
-    reference : Reference
-        Its final state.
-    curves : list of Curve
-        The measurements.
-    frontier, frontier_rhs : list of FrontierPoint
-        The cheapest combinations in seconds and in evaluations of the right-hand side.
-    rounding_limits : list of RoundingLimit
-        Steps below which rounding dominates.
-    misleading_energy : MisleadingEnergy or None
-        The run with the least energy error and a wrong trajectory.
-    """
+    """Curves of a scene, and the findings that follow from them."""
 
     scene: Scene
     reference: Reference
     curves: list[Curve]
-    frontier: list[FrontierPoint]
-    frontier_rhs: list[FrontierPoint]
+    frontier: list[FrontierPoint]  # the cheapest combinations in seconds
+    frontier_rhs: list[FrontierPoint]  # the same in evaluations of the right-hand side
     rounding_limits: list[RoundingLimit]
     misleading_energy: MisleadingEnergy | None
 
@@ -74,12 +56,8 @@ class SceneCurves:
         error = f"own error {reference.global_error:.1e}"
         yield f"reference: {reference.METHOD}, {error}; differences: {others}"
         yield "the cheapest combination for each error, and the relative time of the best with ...:"
-        shown = [
-            (choice, value)
-            for choice, values in COMPARED.items()
-            for value in values
-            if any(value in row.cost_ratios[choice] for row in self.frontier)
-        ]
+        ratios = [row.cost_ratios for row in self.frontier]
+        shown = [pair for pair in COMPARED if any(pair[1] in each[pair[0]] for each in ratios)]
         columns = {"error": ".0e", "time/us": ".1f", "calls": ".0f", "cheapest": ""}
         columns |= {value: ".3g" for _, value in shown}
         yield from text_table(columns, (_row(row, shown) for row in self.frontier))
