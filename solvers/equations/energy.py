@@ -50,28 +50,8 @@ def supplied_energy(
 ) -> NDArray[np.float64]:
     """Energy in J supplied by forces, friction and prescribed motions since the first sample.
 
-    By Simpson's rule over the samples; zeros for a system without such a supply.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    t : array_like of shape (n,)
-        Times in s, increasing.
-    y : array_like of shape (state, n)
-        Coordinates and velocities at these times, in the order of ``module.STATE``.
-    params : sequence of float
-        In the order of ``module.PARAMETERS``.
-
-    Returns
-    -------
-    ndarray of shape (n,)
-        The first is 0.
-
-    Raises
-    ------
-    ValueError
-        When energy is supplied, and three times or more do not increase.
+    By Simpson's rule over the samples `y` of shape (state, n) at increasing times `t` in s; zeros
+    for a system without such a supply.
     """
     times = np.asarray(t, dtype=float)
     if not has_function(module, "power"):

@@ -20,50 +20,25 @@ Array = NDArray[np.float64]
 class Form:
     """One form of a generated module's equations, with fixed parameters.
 
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    name : str
-        ``lagrangian``, ``hamiltonian``, ``rational`` or ``variational``.
-    params : sequence of float or ndarray
-        In the order of ``module.PARAMETERS``; arrays if they differ between motions.
-
-    Attributes
-    ----------
-    function : callable
-        The generated right-hand side, of a time, a state as numbers, and parameters.
-    state, ordinary : tuple of str
-        Names of the components of the form's state and of an ordinary state.
-    angle_columns, shared_columns : list of pairs of int
-        Indices in an ordinary state and in the form's: of each angle and its sine, which its
-        cosine follows; and of each component that both states share.
-
-    Raises
-    ------
-    ValueError
-        When the module has no such form.
+    `params` may be arrays that differ between motions. `function` is the generated right-hand side;
+    `state` and `ordinary` are names of components, of the form's state and of an ordinary state.
+    `angle_columns` and `shared_columns` are pairs of indices, in an ordinary state and the form's:
+    of each angle and its sine, which its cosine follows; and of each component that both share.
     """
 
     def __init__(self, module: GeneratedModule, name: str, params: Sequence[Any]) -> None:
         if name not in module.FORMS:
             raise ValueError(f"form {name!r}: {module.SYSTEM} has {', '.join(module.FORMS)}")
         self.name, self.module, self.params = name, module, tuple(params)
-        self.function = function(module, named("rhs", name))
-        jacobian = named("jacobian", name)
+        self.function, jacobian = function(module, named("rhs", name)), named("jacobian", name)
         self._jacobian = function(module, jacobian) if has_function(module, jacobian) else None
         self.state: tuple[str, ...] = module.STATES[name]
         self.ordinary = state_names(module, name)
-        self.angle_columns = [
-            (k, self.state.index(f"sin_{q}"))
-            for k, q in enumerate(module.COORDINATES)
-            if f"sin_{q}" in self.state
-        ]
-        self.shared_columns = [
-            (k, self.state.index(part))
-            for k, part in enumerate(self.ordinary)
-            if part in self.state
-        ]
+        index = {part: i for i, part in enumerate(self.state)}
+        sines = [(k, f"sin_{q}") for k, q in enumerate(module.COORDINATES)]
+        self.angle_columns = [(k, index[sine]) for k, sine in sines if sine in index]
+        parts = enumerate(self.ordinary)
+        self.shared_columns = [(k, index[part]) for k, part in parts if part in index]
 
     @property
     def angles(self) -> list[tuple[int, int]]:
@@ -96,7 +71,7 @@ class Form:
     def from_ordinary(self, t: float, y: Array) -> Array:
         """The state of this form for the ordinary state `y` at time `t`."""
         if self.name == "hamiltonian":
-            return np.array(function(self.module, "hamiltonian_state")(t, y, self.params))
+            return np.array(self.module.hamiltonian_state(t, y, self.params))
         return self._rearranged(y[np.newaxis])[0]
 
     def _rearranged(self, y: Array) -> Array:
@@ -117,27 +92,11 @@ class Form:
     def to_ordinary(self, t: float, z: Array, before: Array, elapsed: float) -> Array:
         """The ordinary state of `z` at time `t`.
 
-        Whole turns of angles known by sine and cosine are counted from the state
-        `before`, `elapsed` seconds ago, with the mean of both velocities.
-
-        Parameters
-        ----------
-        t : float
-            In s.
-        z : ndarray of shape (m,)
-            A state of this form.
-        before : ndarray of shape (state,)
-            An ordinary state shortly before.
-        elapsed : float
-            Time since `before` in s, negative backwards.
-
-        Returns
-        -------
-        ndarray of shape (state,)
-            In the order of ``ordinary``; rad, m, rad/s and m/s.
+        Whole turns of angles known by sine and cosine are counted from the ordinary state
+        `before`, `elapsed` seconds ago (negative backwards), with the mean of both velocities.
         """
         if self.name == "hamiltonian":
-            return np.array(function(self.module, "lagrangian_state")(t, z, self.params))
+            return np.array(self.module.lagrangian_state(t, z, self.params))
         y = np.empty_like(before)
         for k, i in self.shared_columns:
             y[k] = z[i]
@@ -157,12 +116,6 @@ class Form:
         turns = np.reshape(wrapped, (len(self.angle_columns), len(y))).T / (2 * np.pi)
         return z, np.round(turns)
 
-    def _many(self, name: str, t: ArrayLike, states: Array) -> Array:
-        """A vectorised function of the module at states in rows; NaN and infinity propagate."""
-        params = [np.asarray(p, float) for p in self.params]
-        with np.errstate(all="ignore"):
-            return np.asarray(function(self.module, name)(t, states.T, params)).T
-
     def to_ordinary_many(self, t: ArrayLike, z: Array, turns: Array) -> Array:
         """The ordinary states (n, state) from the results of `from_ordinary_many`."""
         if self.name == "hamiltonian":
@@ -173,6 +126,12 @@ class Form:
         for (k, i), whole in zip(self.angle_columns, turns.T, strict=True):
             y[:, k] = np.arctan2(z[:, i], z[:, i + 1]) + 2 * np.pi * whole
         return y
+
+    def _many(self, name: str, t: ArrayLike, states: Array) -> Array:
+        """A vectorised function of the module at states in rows; NaN and infinity propagate."""
+        params = [np.asarray(p, float) for p in self.params]
+        with np.errstate(all="ignore"):
+            return np.asarray(function(self.module, name)(t, states.T, params)).T
 
 
 def fastest_form(module: GeneratedModule) -> str:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 Numbers = Iterable[float]
 Arrays = Sequence[Any] | NDArray[Any]
 Array = NDArray[Any]
+Rows = tuple[tuple[float, ...], ...]
 
 
 class GeneratedModule(Protocol):
@@ -77,15 +78,13 @@ class GeneratedModule(Protocol):
 
     def rhs(self, t: float, y: Numbers, params: Numbers) -> tuple[float, ...]: ...
     def rhs_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
-    def jacobian(self, t: float, y: Numbers, params: Numbers) -> tuple[tuple[float, ...], ...]: ...
+    def jacobian(self, t: float, y: Numbers, params: Numbers) -> Rows: ...
     def jacobian_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
     def energy(self, t: float, y: Numbers, params: Numbers) -> float: ...
     def energy_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
-    def mass_matrix(
-        self, t: float, y: Numbers, params: Numbers
-    ) -> tuple[tuple[float, ...], ...]: ...
+    def mass_matrix(self, t: float, y: Numbers, params: Numbers) -> Rows: ...
     def mass_matrix_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
-    def positions(self, t: float, y: Numbers, params: Numbers) -> tuple[tuple[float, ...], ...]: ...
+    def positions(self, t: float, y: Numbers, params: Numbers) -> Rows: ...
     def positions_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
     def hamiltonian_state(self, t: float, y: Numbers, params: Numbers) -> tuple[float, ...]: ...
     def hamiltonian_state_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...
@@ -103,29 +102,10 @@ def has_function(module: GeneratedModule, name: str) -> bool:
 
 
 def function(module: GeneratedModule, name: str) -> Callable[..., Any]:
-    """The function `name` of a generated module.
-
-    Parameters
-    ----------
-    module : GeneratedModule
-        A generated module.
-    name : str
-        A key of ``module.OPERATIONS``, or one of these with ``_many`` after it.
-
-    Returns
-    -------
-    callable
-        The function.
-
-    Raises
-    ------
-    ValueError
-        When the module does not have it.
-    """
+    """The function `name`, or ``name_many``, of a generated module; ValueError without it."""
     if not has_function(module, name.removesuffix("_many")):
-        raise ValueError(
-            f"{module.SYSTEM} has no function {name!r}; it has {', '.join(module.OPERATIONS)}"
-        )
+        known = ", ".join(module.OPERATIONS)
+        raise ValueError(f"{module.SYSTEM} has no function {name!r}; it has {known}")
     return cast("Callable[..., Any]", getattr(module, name))
 
 
@@ -155,5 +135,5 @@ def header(module: GeneratedModule) -> Path | None:
 
 def state_names(module: GeneratedModule, form: str) -> tuple[str, ...]:
     """Names of an ordinary state: (q, q̇), and of the variational form a small change of it."""
-    changes = [f"delta_{name}" for name in module.STATE]
-    return (*module.STATE, *(changes if form == "variational" else ()))
+    changes = [f"delta_{name}" for name in module.STATE if form == "variational"]
+    return (*module.STATE, *changes)

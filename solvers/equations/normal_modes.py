@@ -16,43 +16,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Modes:
-    """Small oscillations about a stable equilibrium: M₀ ẍ + K x = 0.
+    """Small oscillations about a stable equilibrium: M₀ ẍ + K x = 0."""
 
-    Attributes
-    ----------
-    mass_matrix, stiffness_matrix : ndarray of shape (n, n)
-        M₀ and K.
-    frequencies : ndarray of shape (n,)
-        ω in rad/s, ascending; the eigenvalues of the equations of motion are ±iω.
-    shapes : ndarray of shape (n, n)
-        A column for each mode, with unit mass: shapesᵀ M₀ shapes = 1.
-    """
-
-    mass_matrix: Array
-    stiffness_matrix: Array
-    frequencies: Array
-    shapes: Array
+    mass_matrix: Array  # M₀
+    stiffness_matrix: Array  # K
+    frequencies: Array  # ω in rad/s, ascending; the eigenvalues of the equations are ±iω
+    shapes: Array  # a column for each mode, with unit mass: shapesᵀ M₀ shapes = 1
 
     @classmethod
     def at_rest(cls, module: GeneratedModule, params: Sequence[float]) -> Modes:
         """The modes about the equilibrium of the module's function ``linear``.
 
-        Parameters
-        ----------
-        module : module
-            A generated module.
-        params : sequence of float
-            In the order of ``module.PARAMETERS``.
-
-        Returns
-        -------
-        Modes
-            In order of frequency.
-
-        Raises
-        ------
-        ValueError
-            When the system has no known equilibrium, it is not stable, or a mode has no mass.
+        `ValueError` if the system has no known equilibrium, or it is not stable.
         """
         name = module.SYSTEM
         if not has_function(module, "linear"):
@@ -60,10 +35,8 @@ class Modes:
         mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
         squares, shapes = eigh(stiffness_matrix, mass_matrix)
         if squares[0] <= 0:
-            raise ValueError(
-                f"{name} does not oscillate about rest with {params}: squared frequencies are "
-                f"{squares}"
-            )
+            reason = f"squared frequencies are {squares}"
+            raise ValueError(f"{name} does not oscillate about rest with {params}: {reason}")
         return cls(mass_matrix, stiffness_matrix, np.sqrt(squares), shapes)
 
     @property

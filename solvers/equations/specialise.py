@@ -8,21 +8,16 @@ from solvers.equations.module import GeneratedModule, named
 from solvers.equations.module_cache import cached_module
 from solvers.runge_kutta.catalogue import SCIPY, load
 
-#: Functions that an integration in each form requires.
-REQUIRED_FUNCTIONS = {
-    "lagrangian": ("rhs",),
-    "rational": ("rhs_rational",),
-    "hamiltonian": ("rhs_hamiltonian", "hamiltonian_state", "lagrangian_state"),
-}
-
 #: Maps a system's name, values of its parameters and names of functions to texts by file name.
 Generator = Callable[[str, Mapping[str, float], Sequence[str]], Mapping[str, str]]
 
 
 def required_functions(method: str, form: str) -> tuple[str, ...]:
     """Names of the functions that a method requires; implicit methods require a Jacobian."""
+    conversions = ("hamiltonian_state", "lagrangian_state") if form == "hamiltonian" else ()
     is_implicit = method not in SCIPY and not load(method).is_explicit
-    return (*REQUIRED_FUNCTIONS[form], *((named("jacobian", form),) if is_implicit else ()))
+    jacobian = (named("jacobian", form),) if is_implicit else ()
+    return (named("rhs", form), *conversions, *jacobian)
 
 
 def specialised_module(
