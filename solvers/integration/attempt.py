@@ -6,12 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solvers.runge_kutta.step_control import Controller
-from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
+from solvers.runge_kutta.stepper import Array, NoConvergenceError, NotFiniteError, Stepper
 
-Array = NDArray[np.float64]
 #: Failures of a step that a smaller step may avoid.
 FAILURES = (NotFiniteError, NoConvergenceError)
 
@@ -29,19 +27,18 @@ class Point:
 class Accepted:
     """A step with a sufficiently small error; `norm` is that of its error."""
 
-    stepper: Stepper
+    attempts: Attempts
     start: Point
     end: Point
     norm: float
-    normalise: Callable[[Array], Array] | None = None
 
     def state(self, t: float) -> Array:
         """The state at a time within the step, by a shorter step from its start."""
         if t == self.end.t:
             return self.end.y
         start = self.start
-        y = self.stepper.step(start.t, start.y, t - start.t, start.derivative)[0]
-        return self.normalise(y) if self.normalise else y
+        y = self.attempts.stepper.step(start.t, start.y, t - start.t, start.derivative)[0]
+        return self.attempts.normalise(y)
 
 
 @dataclass(frozen=True)
@@ -51,11 +48,6 @@ class Rejected:
     h: float
     failure: ArithmeticError | None = None
 
-    @classmethod
-    def failed(cls, h: float, failure: ArithmeticError) -> Rejected:
-        """A step of size `h` that failed."""
-        return cls(h / 4, failure)
-
 
 @dataclass(frozen=True)
 class Attempts:
@@ -63,7 +55,7 @@ class Attempts:
 
     stepper: Stepper
     controller: Controller | None
-    normalise: Callable[[Array], Array] | None = None
+    normalise: Callable[[Array], Array] = lambda y: y
 
     def attempt(self, start: Point, t: float, h: float, *, is_last: bool) -> Accepted | Rejected:
         """Try the step from `start` to `t`, of size `h`; the last step needs no derivative."""
@@ -72,8 +64,7 @@ class Attempts:
             step = self.stepper.step(start.t, start.y, t - start.t, start.derivative)
             y, error, derivative = step
             norm = controller.norm(error, start.y, y) if controller else 0.0
-            if self.normalise:
-                y = self.normalise(y)
+            y = self.normalise(y)
             if not np.isfinite(y).all() or not np.isfinite(norm):
                 raise NotFiniteError(f"the state at t = {t} or its error is not finite")
             if controller and norm > 1:
@@ -81,5 +72,12 @@ class Attempts:
             if derivative is None:
                 derivative = start.derivative if is_last else self.stepper.derivative(t, y)
         except FAILURES as failure:
-            return Rejected.failed(h, failure)
-        return Accepted(self.stepper, start, Point(t, y, derivative), norm, self.normalise)
+            return Rejected(h / 4, failure)
+        return Accepted(self, start, Point(t, y, derivative), norm)
+
+    def first_step_size(self, start: Point, end: float, shortest: float) -> float:
+        """The first step size of steps that are controlled."""
+        assert self.controller is not None
+        guess = self.controller.initial_step
+        rhs, duration = self.stepper.derivative, end - start.t
+        return max(guess(rhs, start.t, start.y, start.derivative, duration), 2 * shortest)

@@ -43,27 +43,19 @@ def ensemble(
 
     Parameters
     ----------
-    module : module
-        A generated module, such as ``generated.double_pendulum``.
-    t_span : pair of float
-        Start and end in s; the end may be the earlier one.
+    module, t_span, method, form, rtol, atol, h, max_steps, backend, compensated
+        As in `integrate`.
     y0 : array_like of shape (state, n), or mapping of str to array_like
-        Initial coordinates and velocities of each motion, in the order of ``module.STATE``; in
-        the variational form followed by a small change. Or arrays and numbers by name, as
-        ``{"theta1": [0.1, 0.2], "theta2": 0.0}``: velocities that are left out are 0.
+        As in `integrate`, for each of n motions: ``{"theta1": [0.1, 0.2], "theta2": 0.0}``.
     params : array_like of shape (parameters,) or (parameters, n), or mapping
-        In the order of ``module.PARAMETERS``; the same for all motions or different for each. Or
-        numbers and arrays by name: parameters that are left out have their default values.
-    method, form, rtol, atol, h, max_steps, backend, compensated : optional
-        As in `solvers.integrate`.
+        As in `integrate`; the same for all motions or different for each.
     t_eval : array_like of shape (times,), optional
         Times in s at which states are recorded; none by default.
     events : Event or sequence of Event, optional
         Events to locate.
     occurrences : int, optional
-        How many occurrences of each event to store, counted from the start. Of an
-        `solvers.Extremum` those with the smallest and the largest value are stored, so that it
-        must be 2 or more.
+        How many occurrences of each event to store, counted from the start; with an `Extremum`,
+        2 or more.
     workers : int, optional
         Number of threads; by default one for each processor.
     stop : StopFlag, optional
@@ -77,19 +69,10 @@ def ensemble(
 
     Raises
     ------
-    ValueError
-        When an argument is invalid, before anything is computed.
-    solvers.runge_kutta.catalogue.UnknownMethodError
-        When no method has this name.
-    solvers.integration.compiled.compiler.NoCompilerError
-        When ``backend="compiled"`` or ``compensated=True``, and no compiler could build the loop.
+    ValueError, UnknownMethodError, NoCompilerError
+        As by `integrate`.
     solvers.integration.solution.Interrupted
         When the user interrupts; it holds the `Ensemble` up to then.
-
-    Warns
-    -----
-    UserWarning
-        When no compiler could build the loop, and it runs in Python.
 
     Examples
     --------
@@ -109,13 +92,11 @@ def ensemble(
     constants = validation.parameter_rows(module, params, len(states))
     extremes = any(isinstance(event, Extremum) for event in problem.events)
     occurrences = validation.count("occurrences", occurrences, 2 if extremes else 1)
-    threads = len(os.sched_getaffinity(0)) if workers is None else workers
-    threads = validation.count("workers", threads, 1)
+    processors = len(os.sched_getaffinity(0))
+    threads = validation.count("workers", processors if workers is None else workers, 1)
     problem, program = compiled_loop.select(problem, lanes=True)
-    backend_name = f"compiled by {program.library.compiler}" if program else "python"
-    assert problem.samples is not None
-    shape, about = (len(problem.events), occurrences), f"{problem.description}, {backend_name}"
-    result = Ensemble.empty(len(states), problem.units, problem.samples, shape, about)
+    loop = f"compiled by {program.library.compiler}" if program else "python"
+    result = Ensemble.empty(problem, len(states), occurrences, loop)
     run = EnsembleRun(problem, states, constants, result, stop or StopFlag())
     try:
         if program:

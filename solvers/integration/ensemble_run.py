@@ -7,17 +7,15 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from solvers.integration import loops
+from solvers.integration import python_loop
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Extremum
 from solvers.integration.problem import EventFunction, Outcome, Problem
-from solvers.integration.solution import Status
-
-Array = NDArray[np.float64]
+from solvers.integration.solution import Array, Status
 
 
 class StopFlag:
@@ -114,11 +112,11 @@ class EnsembleRun:
             for k, start in enumerate(self.states):
                 if self.stop.is_set:
                     return
-                problem = self.problem.with_params(self.params[k % len(self.params)].tolist())
-                problem = replace(problem, start=start)
+                params = self.params[k % len(self.params)].tolist()
+                problem = replace(self.problem.with_params(params), start=start)
                 outcome = Outcome.at_start(problem)
                 try:
-                    loops.run(problem, outcome)
+                    python_loop.run(problem, outcome)
                 finally:
                     self._store(outcome, k)
         finally:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.integration.solution import Status
+from solvers.integration.problem import Problem
+from solvers.integration.solution import Array, Status
 from solvers.io.xarray_dataset import dataset
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)
@@ -75,32 +75,25 @@ class Ensemble:
     t_eval: Array
 
     @classmethod
-    def empty(
-        cls, n: int, units: Mapping[str, str], t_eval: Array, events: tuple[int, int], run: str
-    ) -> Ensemble:
-        """An ensemble of `n` motions without results; `events` is (events, occurrences)."""
-        state = len(units)
-
-        def unknown(*shape: int) -> Array:
-            return np.full(shape, np.nan)
-
-        def counts(*shape: int) -> NDArray[np.int64]:
-            return np.zeros(shape, np.int64)
-
+    def empty(cls, problem: Problem, n: int, occurrences: int, backend: str) -> Ensemble:
+        """An ensemble of `n` motions of `problem` without results."""
+        t_eval, state, events = problem.samples, len(problem.units), len(problem.events)
+        assert t_eval is not None
+        unknown = partial(np.full, fill_value=np.nan)
         return cls(
             t=unknown(n),
-            y=unknown(n, state).T,  # in memory the states of a motion are adjacent
+            y=unknown((n, state)).T,  # in memory the states of a motion are adjacent
             growth=unknown(n),
-            samples=np.moveaxis(unknown(n, state, len(t_eval)), 1, 0),
-            t_events=unknown(n, *events),
-            y_events=np.moveaxis(unknown(n, *events, state), -1, 0),
-            occurred=counts(n, events[0]),
+            samples=np.moveaxis(unknown((n, state, len(t_eval))), 1, 0),
+            t_events=unknown((n, events, occurrences)),
+            y_events=np.moveaxis(unknown((n, events, occurrences, state)), -1, 0),
+            occurred=np.zeros((n, events), np.int64),
             status=np.full(n, Status.INTERRUPTED, object),
-            steps=counts(n),
-            rejected=counts(n),
-            nfev=counts(n),
-            run=run,
-            units=units,
+            steps=np.zeros(n, np.int64),
+            rejected=np.zeros(n, np.int64),
+            nfev=np.zeros(n, np.int64),
+            run=f"{problem.description}, {backend}",
+            units=problem.units,
             t_eval=t_eval,
         )
 
@@ -122,44 +115,18 @@ class Ensemble:
         )
 
     def to_table(self) -> dict[str, NDArray[Any]]:
-        """The end of each motion in a row, as ``pandas.DataFrame`` takes it.
-
-        Returns
-        -------
-        dict of str to ndarray of shape (n,)
-            ``t``, each component of the state, ``status`` as a name, ``steps``, ``rejected``,
-            ``nfev``, and of the variational form ``growth``.
-        """
+        """The end of each motion in a row, as ``pandas.DataFrame`` takes it."""
+        table = {"t": self.t, **dict(zip(self.units, self.y, strict=True))}
         growth = {} if np.isnan(self.growth).all() else {"growth": self.growth}
-        return {
-            "t": self.t,
-            **dict(zip(self.units, self.y, strict=True)),
-            **growth,
-            "status": np.array([status.name for status in self.status], dtype=str),
-            "steps": self.steps,
-            "rejected": self.rejected,
-            "nfev": self.nfev,
-        }
+        status = np.array([status.name for status in self.status], dtype=str)
+        counts = {"steps": self.steps, "rejected": self.rejected, "nfev": self.nfev}
+        return {**table, **growth, "status": status, **counts}
 
     def to_xarray(self) -> Any:
-        """The motions as a dataset with named dimensions.
-
-        Returns
-        -------
-        xarray.Dataset
-            With the dimensions ``component``, ``motion``, ``time``, ``event`` and ``occurrence``.
-
-        Raises
-        ------
-        ImportError
-            When xarray is not installed: it comes with the extra ``xarray``.
-        """
+        """An ``xarray.Dataset``; its dimensions are component, motion, time, event, occurrence."""
         events = ("motion", "event", "occurrence")
-        table = self.to_table()
-        variables: dict[str, Any] = {
-            name: ("motion", table[name]) for name in table if name not in self.units
-        }
-        variables |= {
+        table = {k: ("motion", v) for k, v in self.to_table().items() if k not in self.units}
+        variables = table | {
             "y": (("component", "motion"), self.y),
             "samples": (("component", "motion", "time"), self.samples),
             "t_events": (events, self.t_events, {"units": "s"}),

@@ -51,10 +51,8 @@ class Event:
 
     def __post_init__(self) -> None:
         if self.name not in self.module.STATE:
-            hint, known = (
-                did_you_mean(str(self.name), self.module.STATE),
-                ", ".join(self.module.STATE),
-            )
+            hint = did_you_mean(str(self.name), self.module.STATE)
+            known = ", ".join(self.module.STATE)
             raise ValueError(f"no component is called {self.name!r}{hint}; known names: {known}")
         if isinstance(self.value, bool) or not _is_finite(self.value):
             raise ValueError(f"value = {self.value!r} of {self.name} must be a finite number")
@@ -80,11 +78,9 @@ class Extremum(Event):
 
     Parameters
     ----------
-    module : module
-        The generated module.
     name : str
         A velocity, such as ``theta1_dot``.
-    value, direction, terminal
+    module, value, direction, terminal
         As in `Event`; a velocity vanishes at 0.
 
     Raises
@@ -105,14 +101,15 @@ class Extremum(Event):
     value: float = 0.0
 
     def __post_init__(self) -> None:
+        coordinates = self.module.COORDINATES
         if self.name.endswith("_dot_dot"):
+            known = ", ".join(coordinates)
             raise ValueError(
-                f"{self.name.removesuffix('_dot')} is not a coordinate: extremes are those of "
-                + ", ".join(self.module.COORDINATES)
+                f"{self.coordinate} is not a coordinate: extremes are those of {known}"
             )
         super().__post_init__()
-        if self.coordinate not in self.module.COORDINATES or self.coordinate == self.name:
-            rates = ", ".join(self.module.STATE[len(self.module.COORDINATES) :])
+        if self.coordinate not in coordinates or self.coordinate == self.name:
+            rates = ", ".join(self.module.STATE[len(coordinates) :])
             raise ValueError(f"{self.name} is not a velocity: extremes need one of {rates}")
 
     @property

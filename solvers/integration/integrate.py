@@ -7,18 +7,15 @@ from math import inf
 from warnings import warn
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
-from solvers.integration import compiled_loop, loops, validation
+from solvers.integration import compiled_loop, python_loop, validation
 from solvers.integration.predictability import PredictabilityWarning, predictable_until
 from solvers.integration.problem import EventFunction, Options, Outcome, Problem
 from solvers.integration.solution import Interrupted, Solution, Status
 from solvers.integration.step_stability import step_instability
 from solvers.integration.validation import Values
-
-Array = NDArray[np.float64]
 
 
 def integrate(
@@ -91,10 +88,8 @@ def integrate(
 
     Raises
     ------
-    ValueError
+    ValueError, solvers.runge_kutta.catalogue.UnknownMethodError
         When an argument is invalid, before anything is computed.
-    solvers.runge_kutta.catalogue.UnknownMethodError
-        When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
         When ``backend="compiled"`` or ``compensated=True``, and no compiler could build the loop.
     solvers.integration.solution.Interrupted
@@ -111,56 +106,49 @@ def integrate(
     --------
     >>> import generated.double_pendulum as dp
     >>> motion = integrate(dp, (0, 1), (0.1, 0.0, 0.0, 0.0), dp.DEFAULTS, t_eval=[0, 0.5, 1])
-    >>> motion.y.shape
-    (4, 3)
-    >>> motion.status.name
-    'FINISHED'
-
-    Numbers by name:
-
-    >>> y0 = {"theta1": 0.1, "theta2": 0.0}
-    >>> again = integrate(dp, (0, 1), y0, {"g": 9.81}, t_eval=[0, 0.5, 1])
+    >>> motion.y.shape, motion.status.name
+    ((4, 3), 'FINISHED')
+    >>> by_name = integrate(dp, (0, 1), {"theta1": 0.1, "theta2": 0.0}, {"g": 9.81})
     """
     options = Options(method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated)
     problem = validation.problem(module, t_span, y0, params, options)
     problem, program = compiled_loop.select(problem, lanes=False)
     outcome = Outcome.at_start(problem)
     try:
-        loops.run(problem, outcome, program)
+        if program:
+            compiled_loop.run(problem, outcome, program)
+        else:
+            python_loop.run(problem, outcome)
     except KeyboardInterrupt as interruption:
         raise Interrupted(_solution(problem, outcome, energy)) from interruption
-    return _checked(problem, outcome, energy)
-
-
-def _checked(problem: Problem, outcome: Outcome, energy: bool) -> Solution:
-    """The solution, with checks of its stability and its predictability."""
     instability = step_instability(problem, failed=outcome.status is Status.NOT_FINITE)
     if instability:
         outcome.status = Status.UNSTABLE
+    solution = _solution(problem, outcome, energy, instability)
     start, end = problem.span[0], outcome.end[0]
-    has_ended = outcome.status in (Status.FINISHED, Status.EVENT)
-    until = predictable_until(problem, end) if has_ended else inf
+    until = predictable_until(problem, end) if solution.success else inf
     if abs(until - start) < abs(end - start):
-        warn(
+        message = (
             f"this trajectory is not predictable beyond t = {until:.4g}: errors of "
             f"{problem.tolerance:.1g} have grown to its size there; reduce rtol and atol, or use "
-            "its energies and statistics only",
-            PredictabilityWarning,
-            stacklevel=3,
+            "its energies and statistics only"
         )
-    return _solution(problem, outcome, energy, instability)
+        warn(message, PredictabilityWarning, stacklevel=2)
+    return solution
 
 
 def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = "") -> Solution:
-    times, rows = outcome.rows()
-    t, y = outcome.end
-    is_finished = outcome.status is Status.FINISHED
-    detail = "" if is_finished else f" ({detail or f't = {t}, y = {y}'})"
+    (times, rows), (t, y), form = outcome.rows(), outcome.end, problem.form
+    if outcome.status is not Status.FINISHED:
+        detail = f" ({detail or f't = {t}, y = {y}'})"
+    states, energies = rows.T[: len(form.module.STATE)], None
+    if energy:
+        energies = np.asarray(form.module.energy_many(times, states, form.params))
     return Solution(
         t=times,
         y=rows.T,
-        t_events=[np.array(times) for times in outcome.t_events],
-        y_events=[np.array(states).reshape(-1, len(y)) for states in outcome.y_events],
+        t_events=[np.array(roots) for roots in outcome.t_events],
+        y_events=[np.array(rows).reshape(-1, len(y)) for rows in outcome.y_events],
         nfev=outcome.nfev,
         njev=outcome.njev,
         status=outcome.status,
@@ -169,12 +157,7 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = ""
         rejected=outcome.rejected,
         run=f"{problem.description}, {outcome.backend}",
         backend=outcome.backend.partition(" ")[0],
-        energy=_energy(problem.form, times, rows.T) if energy else None,
+        energy=energies,
         end=outcome.end,
         units=problem.units,
     )
-
-
-def _energy(form: Form, t: Array, y: Array) -> Array:
-    states = y[: len(form.module.STATE)]
-    return np.asarray(form.module.energy_many(t, states, form.params))

@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import DenseOutput, OdeSolver
 
 from solvers.integration.attempt import Accepted, Attempts, Point, Rejected
-from solvers.integration.problem import SHORTEST
+from solvers.integration.problem import shortest_step
 from solvers.integration.validation import tolerances
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.step_control import Controller
-from solvers.runge_kutta.stepper import Stepper
+from solvers.runge_kutta.stepper import Array, Stepper
 from solvers.runge_kutta.tableau import Tableau
 
-Array = NDArray[np.float64]
+#: Options of the solver classes, with SciPy's default values.
+OPTIONS = {"max_step": np.inf, "first_step": None, "rtol": 1e-3, "atol": 1e-6}
 
 
 def ode_solver(method: str) -> type[OdeSolver]:
@@ -43,9 +43,8 @@ def ode_solver(method: str) -> type[OdeSolver]:
     Examples
     --------
     >>> from scipy.integrate import solve_ivp
-    >>> solution = solve_ivp(
-    ...     lambda t, y: -y, (0, 1), [1.0], method=ode_solver("verner87"), rtol=1e-10
-    ... )
+    >>> verner87 = ode_solver("verner87")
+    >>> solution = solve_ivp(lambda t, y: -y, (0, 1), [1.0], method=verner87, rtol=1e-10)
     >>> round(float(solution.y[0, -1]), 6)
     0.367879
     """
@@ -64,27 +63,23 @@ class _Method(OdeSolver):
     y: Array
 
     def __init__(
-        self, fun: Any, t0: float, y0: Array, t_bound: float, max_step: float = np.inf,
-        rtol: float = 1e-3, atol: float = 1e-6, vectorized: bool = False,
-        first_step: float | None = None, **unknown: Any,
-    ) -> None:  # fmt: skip
-        if unknown:
-            raise ValueError(f"method {self.name!r} has no option {', '.join(sorted(unknown))}")
+        self, fun: Any, t0: float, y0: Array, t_bound: float, vectorized: bool = False, **given: Any
+    ) -> None:
+        if unknown := sorted(given.keys() - OPTIONS):
+            raise ValueError(f"method {self.name!r} has no option {', '.join(unknown)}")
         super().__init__(fun, t0, y0, t_bound, vectorized)
-        for name, value in (("max_step", max_step), ("first_step", first_step)):
-            if value is not None and not value > 0:
-                raise ValueError(f"{name} = {value} must be positive")
-        self._controller = Controller(self.tableau.error_order, *tolerances(rtol, atol, self.n))
+        options: dict[str, Any] = OPTIONS | given
+        for name in ("max_step", "first_step"):
+            if options[name] is not None and not options[name] > 0:
+                raise ValueError(f"{name} = {options[name]} must be positive")
+        limits = tolerances(options["rtol"], options["atol"], self.n)
+        self._controller = Controller(self.tableau.error_order, *limits)
         stepper = Stepper(self.tableau, self.fun)
         self._attempts = Attempts(stepper, self._controller)
         self._point = Point(self.t, self.y, stepper.derivative(self.t, self.y))
-        self._max_step = max_step
-        self._shortest = SHORTEST * float(np.spacing(max(abs(t0), abs(t_bound))))
-        guess = self._controller.initial_step
-        self._h = first_step or max(
-            2 * self._shortest,
-            guess(stepper.derivative, t0, self.y, self._point.derivative, t_bound - t0),
-        )
+        self._max_step, self._shortest = options["max_step"], shortest_step(t0, t_bound)
+        guess = self._attempts.first_step_size
+        self._h = options["first_step"] or guess(self._point, t_bound, self._shortest)
 
     def _step_impl(self) -> tuple[bool, str | None]:
         while True:

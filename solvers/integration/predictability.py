@@ -54,11 +54,9 @@ def predictable_until(problem: Problem, end: float) -> float:
     is not integrated to the end is extrapolated. The result is infinity if there is no such time
     before `end`, or if it is unknown: for fixed steps, and without a compiled loop.
     """
-    begin = problem.span[0]
-    module = problem.form.module
+    begin, module = problem.span[0], problem.form.module
     if problem.h is not None or begin == end or "variational" not in module.FORMS:
         return inf
-    start = problem.start[: len(module.STATE)]
     variational = replace(
         problem.with_form("variational"),
         method=load(METHOD),
@@ -76,11 +74,11 @@ def predictable_until(problem: Problem, end: float) -> float:
         program = loop(variational)
     except NoCompilerError:
         return inf
+    start = problem.start[: len(module.STATE)]
     states = np.array([[*start, *np.ones_like(start)]])
     batch = Batch(program, variational, states, capacity=CHUNK, pauses=True)
-    allowed = np.log(
-        1 / min(ERROR_RATIO * max(problem.tolerance, np.finfo(float).eps), LARGEST_ERROR)
-    )
+    error = min(ERROR_RATIO * max(problem.tolerance, np.finfo(float).eps), LARGEST_ERROR)
+    allowed, direction = np.log(1 / error), float(np.sign(end - begin))
     base, elapsed, growth = 0.0, np.empty(0), np.empty(0)
     status = None
     while status is None:
@@ -97,12 +95,11 @@ def predictable_until(problem: Problem, end: float) -> float:
             rows, size = rows[FIRST_STEPS + 1 :], size[FIRST_STEPS + 1 :]
         if len(rows):
             elapsed, growth = np.abs(rows["t"] - begin), size - base
-        unpredictable = np.flatnonzero(
-            (growth >= allowed) & (growth > POWER * np.log(elapsed / first))
-        )
+        is_chaotic = growth > POWER * np.log(elapsed / first)
+        unpredictable = elapsed[is_chaotic & (growth >= allowed)]
         if unpredictable.size:
-            return begin + float(np.sign(end - begin) * elapsed[unpredictable[0]])
-    if not elapsed.size or growth[-1] <= POWER * np.log(elapsed[-1] / first):
+            return begin + direction * float(unpredictable[0])
+    if not elapsed.size or not is_chaotic[-1]:
         return inf
     after = float(allowed / growth[-1] * elapsed[-1])
-    return inf if after >= abs(end - begin) else begin + float(np.sign(end - begin)) * after
+    return inf if after >= abs(end - begin) else begin + direction * after

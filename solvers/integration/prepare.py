@@ -22,17 +22,7 @@ NOT_NUMBERS = -1
 
 
 class NotFinishedError(ArithmeticError):
-    """A motion did not reach its end.
-
-    Attributes
-    ----------
-    status : Status
-        The reason.
-    t : float
-        The time in s that it reached.
-    y : tuple of float
-        The state there.
-    """
+    """A motion did not reach its end: `status` is the reason, `t` and `y` time and state there."""
 
     def __init__(self, status: Status, t: float, y: tuple[float, ...]) -> None:
         super().__init__(f"{status.value} (t = {t}, y = {y})")
@@ -58,10 +48,9 @@ def prepare(
     module : module
         A generated module.
     params : array_like of shape (parameters,), or mapping of str to float
-        In the order of ``module.PARAMETERS``, or by name; ``run((t0, t1), y0, params)`` takes
-        others.
+        As in `integrate`; ``run((t0, t1), y0, params)`` takes others.
     method, form, rtol, atol, h, max_steps, compensated : optional
-        As in `solvers.integrate`; `method` is none of SciPy's.
+        As in `integrate`; `method` is none of SciPy's.
 
     Returns
     -------
@@ -70,10 +59,8 @@ def prepare(
 
     Raises
     ------
-    ValueError
+    ValueError, solvers.runge_kutta.catalogue.UnknownMethodError
         When an argument is invalid, or no compiled loop can solve the problem.
-    solvers.runge_kutta.catalogue.UnknownMethodError
-        When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
         When no compiler could build the loop.
 
@@ -84,9 +71,6 @@ def prepare(
     >>> end = run((0, 5), (0.1, 0.0, 0.0, 0.0))
     >>> [round(x, 6) for x in end]
     [-0.026553, -0.044719, -0.27311, 0.19133]
-
-    With other parameters:
-
     >>> on_the_moon = run((0, 5), (0.1, 0.0, 0.0, 0.0), {"g": 1.62})
     """
     options = Options(
@@ -101,8 +85,7 @@ def prepare(
 class Prepared:
     """A function that integrates one motion after another: ``run((t0, t1), y0, params=None)``.
 
-    It takes a time span in s, an ordinary state, and optionally parameters, in order or by name.
-    It returns the state at the end of the time span as a tuple. It raises `ValueError` for invalid
+    Times are in s; `y0` and `params` are in order or by name. It raises `ValueError` for invalid
     arguments, and `NotFinishedError` where the motion does not reach the end of the time span.
     """
 
@@ -164,7 +147,6 @@ class Prepared:
         self._params[:] = validation.parameters(self._problem.form.module, params).tolist()
 
     def _checked(self, y0: Any) -> list[Any]:
-        """An initial state, checked."""
         form = self._problem.form
         return validation.initial_state(form.module, y0, form.name).tolist()
 

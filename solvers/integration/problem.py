@@ -7,17 +7,21 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form, fastest_form
-from solvers.integration.solution import Status
+from solvers.integration.solution import Array, Status
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.tableau import Tableau
 
-Array = NDArray[np.float64]
 #: The shortest step, in units of the spacing of floating-point times.
 SHORTEST = 10
 EventFunction = Callable[[float, Array], float]
+
+
+def shortest_step(begin: float, end: float) -> float:
+    """The shortest step between two times in s."""
+    return SHORTEST * float(np.spacing(max(abs(begin), abs(end))))
 
 
 @dataclass(frozen=True)
@@ -79,9 +83,8 @@ class Problem:
     @property
     def controller(self) -> Controller | None:
         """A new step size controller; None for fixed steps."""
-        if self.h is not None:
-            return None
-        return Controller(self.tableau.error_order, self.rtol, self.atol)
+        is_fixed = self.h is not None
+        return None if is_fixed else Controller(self.tableau.error_order, self.rtol, self.atol)
 
     @property
     def units(self) -> dict[str, str]:

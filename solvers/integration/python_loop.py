@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import numpy as np
 
+from solvers.integration import scipy_loop
 from solvers.integration.attempt import FAILURES, Accepted, Attempts, Point, Rejected
-from solvers.integration.problem import SHORTEST, Outcome, Problem
+from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Status
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
+from solvers.runge_kutta.tableau import Tableau
 
 #: Most successive failures of a step, each of which divides its size by four.
 MOST_FAILURES = 25
 
 
 def run(problem: Problem, outcome: Outcome) -> None:
-    """Integrate `problem`; `outcome` holds the results so far at any time."""
-    stepper = Stepper(problem.tableau, problem.form.rhs, problem.form.jacobian)
+    """Integrate `problem`, by SciPy if it has the method; `outcome` holds the results so far."""
+    if not isinstance(problem.method, Tableau):
+        scipy_loop.run(problem, outcome)
+        return
+    stepper = Stepper(problem.method, problem.form.rhs, problem.form.jacobian)
     try:
         outcome.status = _run(problem, outcome, stepper)
     finally:
@@ -33,8 +38,8 @@ def _run(problem: Problem, outcome: Outcome, stepper: Stepper) -> Status:
         point = Point(begin, y, stepper.derivative(begin, y))
     except NotFiniteError:
         return Status.NOT_FINITE
-    shortest = SHORTEST * float(np.spacing(max(abs(begin), abs(end))))
-    h, failures = _first_step_size(problem, attempts, point, shortest), 0
+    shortest, failures = shortest_step(begin, end), 0
+    h = problem.h or attempts.first_step_size(point, end, shortest)
     while point.t != end:
         if outcome.steps == problem.max_steps:
             return Status.STEP_LIMIT
@@ -67,18 +72,7 @@ def _step(
     try:
         return trial, isinstance(trial, Accepted) and recorder.advance(t, trial.state)
     except FAILURES as failure:
-        return Rejected.failed(h, failure), False
-
-
-def _first_step_size(problem: Problem, attempts: Attempts, point: Point, shortest: float) -> float:
-    if attempts.controller is None:
-        assert problem.h is not None
-        return problem.h
-    derivative, duration = attempts.stepper.derivative, problem.span[1] - point.t
-    guess = attempts.controller.initial_step(
-        derivative, point.t, point.y, point.derivative, duration
-    )
-    return max(guess, 2 * shortest)
+        return Rejected(h / 4, failure), False
 
 
 def _step_end(problem: Problem, t: float, h: float, steps: int) -> float:

@@ -6,21 +6,16 @@ from collections.abc import Callable
 from itertools import takewhile
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from solvers.integration.problem import EventFunction, Outcome, Problem
-
-Array = NDArray[np.float64]
+from solvers.integration.solution import Array
 
 
 class Recorder:
     """Records the samples and events of successive steps in an `Outcome`.
 
-    Attributes
-    ----------
-    t, y : float and ndarray
-        Time in s and ordinary state at the end of the last step.
+    `t` and `y` are the time in s and the ordinary state at the end of the last step.
     """
 
     def __init__(self, problem: Problem, outcome: Outcome) -> None:
@@ -37,9 +32,11 @@ class Recorder:
         self._outcome.y.append(y.copy()[np.newaxis])
 
     def advance(self, end: float, state: Callable[[float], Array]) -> bool:
-        """Record the step that ends at `end`; return whether an event ends the run."""
-        # `state` gives the state at a time within the step, in the form of the problem; where it
-        # raises ArithmeticError, nothing is recorded
+        """Record the step that ends at `end`; return whether an event ends the run.
+
+        `state` gives the state at a time within the step, in the form of the problem; where it
+        raises `ArithmeticError`, nothing is recorded.
+        """
         t = self.t
 
         def ordinary(time: float) -> Array:
@@ -49,7 +46,7 @@ class Recorder:
 
         values = [event(end, ordinary(end)) for event in self.events]
         roots = self._roots(t, end, values, ordinary)
-        stops = bool(roots) and getattr(self.events[roots[-1][0]], "terminal", False)
+        stops = bool(roots) and _is_terminal(self.events[roots[-1][0]])
         until = roots[-1][1] if stops else end
         times = [until] if self.samples is None else self._due(t, until)
         samples = [(time, ordinary(time)) for time in times]
@@ -68,27 +65,26 @@ class Recorder:
         """The sample times up to `until` that are not yet recorded."""
         assert self.samples is not None
         waiting = self.samples[self._sampled :]
-        reached = takewhile(lambda time: abs(time - t) <= abs(until - t), waiting)
-        return [float(time) for time in reached]
+        return [float(s) for s in takewhile(lambda s: abs(s - t) <= abs(until - t), waiting)]
 
     def _roots(
         self, t: float, end: float, values: list[float], ordinary: Callable[[float], Array]
     ) -> list[tuple[int, float]]:
         """The events of a step and their times, in order, up to the first that is terminal."""
         crossings = []
-        for k, (event, before, after) in enumerate(
-            zip(self.events, self._values, values, strict=True)
-        ):
+        for k, (before, after) in enumerate(zip(self._values, values, strict=True)):
             crossed = before != 0 and np.sign(before) != np.sign(after)
-            if crossed and np.sign(after - before) * getattr(event, "direction", 0) >= 0:
-                root = _root(event, ordinary, t, end)
+            direction = getattr(self.events[k], "direction", 0)
+            if crossed and np.sign(after - before) * direction >= 0:
+                root = _root(self.events[k], ordinary, t, end)
                 crossings.append((abs(root - t), k, root))
-        roots = []
-        for _, k, root in sorted(crossings):
-            roots.append((k, root))
-            if getattr(self.events[k], "terminal", False):
-                break
-        return roots
+        crossings.sort()
+        terminal = [n for n, (_, k, _) in enumerate(crossings, 1) if _is_terminal(self.events[k])]
+        return [(k, root) for _, k, root in crossings[: terminal[0] if terminal else None]]
+
+
+def _is_terminal(event: EventFunction) -> bool:
+    return bool(getattr(event, "terminal", False))
 
 
 def _root(event: EventFunction, state: Callable[[float], Array], t: float, end: float) -> float:

@@ -6,15 +6,12 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import integrate
 
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.recorder import Recorder
-from solvers.integration.solution import Status
+from solvers.integration.solution import Array, Status
 from solvers.runge_kutta.stepper import NotFiniteError
-
-Array = NDArray[np.float64]
 
 
 def run(problem: Problem, outcome: Outcome) -> None:
@@ -43,7 +40,7 @@ def _run(problem: Problem, outcome: Outcome, recorder: Recorder) -> Status:
 
 
 def _solver(problem: Problem, outcome: Outcome, y0: Array) -> integrate.OdeSolver:
-    form, method, (begin, end) = problem.form, problem.method, problem.span
+    form, method, (begin, end) = problem.form, str(problem.method), problem.span
 
     def rhs(t: float, z: Array) -> Array:
         outcome.nfev += 1
@@ -56,9 +53,8 @@ def _solver(problem: Problem, outcome: Outcome, y0: Array) -> integrate.OdeSolve
     options = {"rtol": problem.rtol, "atol": problem.atol}
     if form.has_jacobian and method in ("Radau", "BDF", "LSODA"):
         options["jac"] = jacobian
-    return getattr(integrate, str(method))(
-        rhs, begin, form.from_ordinary(begin, y0), end, **options
-    )
+    z = form.from_ordinary(begin, y0)
+    return getattr(integrate, method)(rhs, begin, z, end, **options)
 
 
 def _state_within(problem: Problem, solver: integrate.OdeSolver) -> Callable[[float], Array]:

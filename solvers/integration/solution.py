@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -45,8 +45,8 @@ class Solution:
     t : ndarray of shape (n,)
         Times in s: those requested, or the start and every step's end.
     y : ndarray of shape (state, n)
-        Coordinates and velocities at these times, whatever form was integrated; in the
-        variational form with their small changes below.
+        Coordinates and velocities at these times, whatever the form; in the variational form with
+        their small changes below.
     t_events, y_events : list of ndarray
         Times in s and states, the latter of shape (occurrences, state), of each event.
     nfev, njev : int
@@ -103,47 +103,23 @@ class Solution:
     def __repr__(self) -> str:
         t_end, y_end = self.end
         t_start = f"{self.t[0]:.6g} to " if len(self.t) else ""
+        components = zip(self.units.items(), y_end, strict=True)
+        state = [f"{name} = {y:.6g} {unit}".rstrip() for (name, unit), y in components]
         return (
             f"Solution: {self.status.value}\n"
             f"  t = {t_start}{t_end:.6g} s, {len(self.t)} times, {self.steps} steps, "
             f"{self.rejected} rejected\n"
             f"  {self.run}\n"
-            f"  final state: {_named(self.units, y_end)}"
+            f"  final state: {', '.join(state)}"
         )
 
     def to_table(self) -> dict[str, Array]:
-        """Time, components and energy as columns, as ``pandas.DataFrame`` takes them.
-
-        Returns
-        -------
-        dict of str to ndarray of shape (n,)
-            ``t``, each component of the state, and ``energy`` if requested.
-
-        Examples
-        --------
-        >>> import generated.single_pendulum as sp
-        >>> from solvers import integrate
-        >>> solution = integrate(sp, (0, 1), {"theta": 0.1}, sp.DEFAULTS, energy=True)
-        >>> list(solution.to_table())
-        ['t', 'theta', 'theta_dot', 'energy']
-        """
+        """Columns: ``t``, the components, and ``energy`` if requested."""
         table = {"t": self.t, **dict(zip(self.units, self.y, strict=True))}
         return table if self.energy is None else {**table, "energy": self.energy}
 
     def to_xarray(self) -> Any:
-        """The motion as a dataset with named variables and units.
-
-        Returns
-        -------
-        xarray.Dataset
-            A variable for each component of the state, and ``energy`` if requested, along the
-            dimension ``t``.
-
-        Raises
-        ------
-        ImportError
-            When xarray is not installed: it comes with the extra ``xarray``.
-        """
+        """An ``xarray.Dataset`` of the components, and ``energy`` if requested, along ``t``."""
         units = {**self.units, "energy": "J"}
         columns = self.to_table()
         t = columns.pop("t")
@@ -152,20 +128,8 @@ class Solution:
         return dataset(variables, {"t": ("t", t, {"units": "s"})}, about)
 
 
-def _named(units: Mapping[str, str], values: Iterable[float]) -> str:
-    """Components with their names and units."""
-    parts = (f"{n} = {y:.6g} {u}" for (n, u), y in zip(units.items(), values, strict=True))
-    return ", ".join(map(str.rstrip, parts))
-
-
 class Interrupted(KeyboardInterrupt):
-    """The user has interrupted an integration.
-
-    Attributes
-    ----------
-    solution
-        The results up to then.
-    """
+    """The user has interrupted an integration; `solution` holds the results up to then."""
 
     def __init__(self, solution: object) -> None:
         super().__init__("interrupted; its attribute `solution` holds the results so far")

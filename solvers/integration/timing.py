@@ -9,15 +9,12 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration import loops, validation
+from solvers.integration import python_loop, validation
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.problem import Options, Outcome, Problem
-from solvers.integration.solution import Status
-
-Array = NDArray[np.float64]
+from solvers.integration.solution import Array, Status
 
 #: Largest number of steps of a timed run.
 MOST_STEPS = 10**8
@@ -52,7 +49,7 @@ def timed_run(
     Parameters
     ----------
     module, params, y0, method, form, h
-        As in `solvers.integrate`.
+        As in `integrate`.
     duration : float
         In s.
     backend : {"compiled", "python", "scipy"}
@@ -67,9 +64,8 @@ def timed_run(
     Examples
     --------
     >>> import generated.single_pendulum as sp
-    >>> run = timed_run(
-    ...     sp, sp.DEFAULTS, (1.0, 0.0), 1.0, method="rk4", form="rational", backend="python", h=0.1
-    ... )
+    >>> choice = dict(method="rk4", form="rational", backend="python", h=0.1)
+    >>> run = timed_run(sp, sp.DEFAULTS, (1.0, 0.0), 1.0, **choice)
     >>> run.steps, run.work_rhs
     (10, 40)
     """
@@ -96,7 +92,7 @@ def timed_run(
 
 def _outcome(problem: Problem) -> Outcome:
     outcome = Outcome.at_start(problem)
-    loops.run(problem, outcome)
+    python_loop.run(problem, outcome)
     return outcome
 
 
@@ -114,21 +110,9 @@ def median_seconds(run: Callable[[], object]) -> float:
 def work_at(error: float, errors: Sequence[float], works: Sequence[float]) -> float:
     """The work for an error, interpolated on logarithmic scales; NaN outside of the runs.
 
-    Each run counts with the largest error of it and of all runs with more work: a smaller error
-    at less work is a coincidence. Where rounding makes errors grow again, the curve ends: with
-    the pair of neighbours whose larger error is least.
-
-    Parameters
-    ----------
-    error : float
-        The error.
-    errors, works : sequence of float
-        Error and work of each run, in the order of increasing work; all positive.
-
-    Returns
-    -------
-    float
-        In the unit of `works`.
+    Runs are in the order of increasing work. Each counts with the largest error of it and of all
+    runs with more work: a smaller error at less work is a coincidence. Where rounding makes errors
+    grow again, the curve ends: with the pair of neighbours whose larger error is least.
     """
     if not errors:
         return float("nan")

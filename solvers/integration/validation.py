@@ -6,19 +6,18 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, state_names
-from solvers.integration.problem import SHORTEST, Options, Problem
+from solvers.integration.problem import Options, Problem, shortest_step
+from solvers.integration.solution import Array
 from solvers.io.suggestion import did_you_mean
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.runge_kutta.tableau import Tableau
 
-Array = NDArray[np.float64]
 #: Numbers in the order of their names, or by name.
 Values: TypeAlias = ArrayLike | Mapping[str, Any]
-
 #: The largest count that loops can reach exactly.
 MOST = 2**53
 
@@ -27,7 +26,10 @@ def problem(
     module: GeneratedModule, t_span: ArrayLike, y0: Values, params: Values, options: Options
 ) -> Problem:
     """The problem that `integrate` solves, from its arguments, all of which are checked."""
-    check_backend(options)
+    if options.backend not in (None, "compiled", "python"):
+        raise ValueError(f"backend {options.backend!r} must be 'compiled' or 'python'")
+    if options.compensated and options.backend == "python":
+        raise ValueError("compensated = True needs a compiled loop, not backend 'python'")
     span, method, name = time_span(t_span), options.method, options.form or "lagrangian"
     form = Form(module, name, parameters(module, params).tolist())
     start = initial_state(module, y0, name)
@@ -81,25 +83,22 @@ def state_rows(module: GeneratedModule, values: Values, form: str) -> Array:
 
 
 def _parameters(module: GeneratedModule, values: Values) -> ArrayLike:
-    if not isinstance(values, Mapping):
-        return values
-    defaults = zip(module.PARAMETERS, module.DEFAULTS, strict=True)
-    return _in_order("params", values, module.PARAMETERS, dict(defaults))
+    defaults = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
+    return _in_order("params", values, module.PARAMETERS, defaults)
 
 
 def _states(module: GeneratedModule, values: Values, form: str) -> ArrayLike:
-    if not isinstance(values, Mapping):
-        return values
-    half, names = len(module.COORDINATES), state_names(module, form)
-    velocities = module.STATE[half:]
+    velocities = module.STATE[len(module.COORDINATES) :]
     defaults = dict.fromkeys([*velocities, *(f"delta_{name}" for name in velocities)], 0.0)
-    return _in_order("y0", values, names, defaults)
+    return _in_order("y0", values, state_names(module, form), defaults)
 
 
 def _in_order(
-    what: str, values: Mapping[str, Any], names: Sequence[str], defaults: Mapping[str, float]
+    what: str, values: Values, names: Sequence[str], defaults: Mapping[str, float]
 ) -> ArrayLike:
-    """The values of a mapping in the order of `names`, completed by `defaults`."""
+    """The values of a mapping in the order of `names`, completed by `defaults`; others as given."""
+    if not isinstance(values, Mapping):
+        return values
     for name in values:
         if name not in names:
             hint, known = did_you_mean(str(name), names), ", ".join(names) or "none"
@@ -122,8 +121,7 @@ def numbers(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
         raise ValueError(
             f"{name} has shape {array.shape}: give {len(expected)} numbers, {', '.join(expected)}"
         )
-    _check_finite(name, array)
-    return array
+    return _finite(name, array)
 
 
 def _rows(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
@@ -134,14 +132,13 @@ def _rows(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
         if array.ndim == 2 and array.shape[1] == size:
             hint += f"; transpose it: {name}.T"
         raise ValueError(f"{name} has shape {array.shape}: {hint}")
-    _check_finite(name, array)
-    return np.ascontiguousarray(array.T)
+    return np.ascontiguousarray(_finite(name, array).T)
 
 
 def time_span(values: ArrayLike) -> tuple[float, float]:
     """Start and end."""
-    array = numbers("t_span", values, ("t_start", "t_end"))
-    return float(array[0]), float(array[1])
+    start, end = numbers("t_span", values, ("t_start", "t_end")).tolist()
+    return start, end
 
 
 def times(values: ArrayLike, span: tuple[float, float]) -> Array:
@@ -149,7 +146,7 @@ def times(values: ArrayLike, span: tuple[float, float]) -> Array:
     array = _floats("t_eval", values)
     if array.ndim != 1:
         raise ValueError(f"t_eval has shape {array.shape}: give a list of times")
-    _check_finite("t_eval", array)
+    _finite("t_eval", array)
     low, high = sorted(span)
     outside = array[(array < low) | (array > high)]
     if outside.size:
@@ -176,11 +173,9 @@ def step_control(
 
 def tolerances(rtol: float, atol: ArrayLike, size: int) -> tuple[float, Array]:
     """Tolerances, of which one at least is positive in every component."""
-    array = _floats("atol", atol)
-    relative = _floats("rtol", rtol)
+    array, relative = _floats("atol", atol), _floats("rtol", rtol)
     for name, value in (("rtol", relative), ("atol", array)):
-        _check_finite(name, value)
-        if np.any(value < 0):
+        if np.any(_finite(name, value) < 0):
             raise ValueError(f"{name} = {value} must not be negative")
     if relative.ndim or array.shape not in ((), (size,)):
         raise ValueError(f"rtol must be a number, atol a number or {size} of them")
@@ -193,12 +188,11 @@ def tolerances(rtol: float, atol: ArrayLike, size: int) -> tuple[float, Array]:
 
 def step_size(h: float, span: tuple[float, float]) -> float:
     """A fixed step size: positive, and large enough to change the time."""
-    array = _floats("h", h)
+    array, shortest = _floats("h", h), shortest_step(*span)
     if array.ndim or not np.isfinite(array) or array <= 0:
         raise ValueError(f"h = {h} must be a positive number (the direction follows from t_span)")
-    resolution = SHORTEST * float(np.spacing(np.abs(span).max()))
-    if array < resolution and span[0] != span[1]:
-        raise ValueError(f"h = {h} is below the resolution {resolution} of times in {span}")
+    if array < shortest and span[0] != span[1]:
+        raise ValueError(f"h = {h} is below the resolution {shortest} of times in {span}")
     return float(array)
 
 
@@ -209,14 +203,6 @@ def count(name: str, value: object, least: int) -> int:
     if not least <= value <= MOST:
         raise ValueError(f"{name} = {value} must be from {least} to {MOST}")
     return int(value)
-
-
-def check_backend(options: Options) -> None:
-    """Raise `ValueError` for an unknown backend, or one that cannot compensate rounding errors."""
-    if options.backend not in (None, "compiled", "python"):
-        raise ValueError(f"backend {options.backend!r} must be 'compiled' or 'python'")
-    if options.compensated and options.backend == "python":
-        raise ValueError("compensated = True needs a compiled loop, not backend 'python'")
 
 
 def check_positive(**numbers: float | None) -> None:
@@ -244,6 +230,7 @@ def _floats(name: str, values: Any) -> Array:
     return np.array(array, dtype=float)
 
 
-def _check_finite(name: str, array: Array) -> None:
+def _finite(name: str, array: Array) -> Array:
     if not np.isfinite(array).all():
         raise ValueError(f"{name} = {array} must be finite")
+    return array
