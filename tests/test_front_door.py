@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import derive
+import generated.double_pendulum as dp
 import holonomic
 import solvers
-from solvers import Grid, load_scene, load_sweep, run_scene, sweep
+from solvers import Final, Grid, Sweep, load_scene, load_sweep, run_scene, sweep
 from solvers.app.scenes import shipped
 from solvers.io.toml_input import InputError
 from solvers.sweeps import reading
@@ -63,6 +64,24 @@ def test_a_scene_runs_by_name_by_file_and_as_an_object() -> None:
     assert np.array_equal(by_name.y, as_object.y)
     with pytest.raises(InputError, match="did you mean 'single'"):
         run_scene("singel")
+
+
+def test_results_are_shown_as_a_few_lines(tmp_path: Path) -> None:
+    result = run_scene("report")
+    lines = repr(result).splitlines()
+    assert lines[:2] == ["SceneResult: the report's scene", "  t = 0 to 5 s, 501 samples"]
+    assert lines[2] == f"  model: full equations by {result.method}, {result.form} form"
+    assert lines[3].endswith(", requested 1e-09")
+    assert lines[4].startswith("  final state: theta1 = 2.22806 rad, theta2 = -0.267045 rad, ")
+    assert "model: pendulum\n" in repr(run_scene("single"))
+    axes = Grid({"theta1": [0.1, 0.2, 0.3], "theta2": [0.0, 0.1]})
+    definition = Sweep(dp, axes, {"end": Final(("theta1",))}, duration=1, title="ends")
+    assert repr(sweep(definition, tmp_path)).splitlines() == [
+        f"Results: ends, in {tmp_path}",
+        "  6 motions: 6 finished",
+        "  axes: theta1, theta2",
+        "  maps: end (3, 2, 1)",
+    ]
 
 
 def test_specialised_code_needs_no_further_argument() -> None:

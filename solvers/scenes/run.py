@@ -63,6 +63,18 @@ class SceneResult:
     full_equations_seconds: float
     general_code_seconds: float
 
+    def __repr__(self) -> str:
+        scene, model, units = self.scene, self.selection.model, self.scene.module.UNITS
+        by = f" by {self.method}, {self.form} form" if self.method else ""
+        values = [f"{name} = {x:.6g} {units[name]}" for name, x in self.final_state.items()]
+        return (
+            f"SceneResult: {scene.title}\n"
+            f"  t = {self.t[0]:.6g} to {self.t[-1]:.6g} s, {len(self.t)} samples\n"
+            f"  model: {model.name}{by}\n"
+            f"  error estimate {model.error_estimate:.1e}, requested {scene.accuracy:.0e}\n"
+            f"  final state: {', '.join(values) or 'not requested'}"
+        )
+
     @property
     def method(self) -> str | None:
         """The method of integration; None for a closed form."""
