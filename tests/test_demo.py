@@ -14,10 +14,9 @@ import generated.double_pendulum as dp
 from derive.verification.report.judgement import EQUATIONS
 from solvers.app.cli import main
 from solvers.app.demo import stages
-from solvers.app.demo.code import FUNCTIONS
-from solvers.app.demo.html import table
+from solvers.app.demo.equations import FUNCTIONS
 from solvers.app.demo.page import write_page
-from solvers.app.demo.stage import Stage
+from solvers.app.demo.stage import Stage, table
 from solvers.equations.module import operations_on_state
 
 

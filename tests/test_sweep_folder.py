@@ -160,7 +160,7 @@ def test_a_missing_scheduler_is_reported(
     argv = ["sweep", str(write_sweep(tmp_path)), "--output", str(tmp_path / "out"), "--scheduler"]
     assert main([*argv, "tcp://127.0.0.1:9"]) == 4
     assert "no scheduler answers at tcp://127.0.0.1:9" in capsys.readouterr().err
-    monkeypatch.setattr("solvers.app.packages.optional_package", lambda _: None)
+    monkeypatch.setitem(sys.modules, "distributed", None)
     assert main([*argv, "tcp://127.0.0.1:9"]) == 4
     assert "pip install 'holonomic[cluster]'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -10,26 +10,19 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 
-from solvers.app.commands.options import Formatter
-from solvers.app.packages import required_package
+from solvers.app.commands.options import Formatter, required_package
 
 #: Modules of `solvers.app.commands`, in the order of the help text.
 COMMANDS = "systems derive verify demo run sweep chart stability bench".split()
 
+#: Invalid input, numerical failure, and files or environment.
+EXIT_CODES = {ValueError: 2, ArithmeticError: 3, MemoryError: 3, OSError: 4}
+
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command.
+    """Run a command with these arguments, or those of the process; return its exit code.
 
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        Arguments; by default those of the process.
-
-    Returns
-    -------
-    int
-        0 done, 1 a check failed, 2 invalid input, 3 numerical failure, 4 files or environment,
-        130 interrupted.
+    0 done, 1 a check failed, 130 interrupted; `EXIT_CODES` for errors.
     """
     parser = command_parser()
     arguments = parser.parse_args(argv)
@@ -42,9 +35,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         except BrokenPipeError:  # the reader has closed the pipe; do not fail when flushing
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
-        except (ValueError, ArithmeticError, MemoryError, OSError) as error:
+        except tuple(EXIT_CODES) as error:
             print(f"{name}: {error}", file=sys.stderr)
-            return _exit_code(error)
+            return next(code for kind, code in EXIT_CODES.items() if isinstance(error, kind))
 
 
 def command_parser() -> ArgumentParser:
@@ -66,16 +59,6 @@ def command_parser() -> ArgumentParser:
         command.add_arguments(subparser)
         subparser.set_defaults(run=command.run)
     return parser
-
-
-def _exit_code(error: Exception) -> int:
-    match error:
-        case ValueError():
-            return 2
-        case ArithmeticError() | MemoryError():
-            return 3
-        case _:
-            return 4
 
 
 def _without_command(parser: ArgumentParser, arguments: Namespace) -> int:

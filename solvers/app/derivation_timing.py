@@ -8,15 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
+import sympy.physics.mechanics as me
 from sympy.core.cache import clear_cache
-from sympy.physics.mechanics import (
-    LagrangesMethod,
-    Lagrangian,
-    Particle,
-    Point,
-    ReferenceFrame,
-    dynamicsymbols,
-)
 
 from derive.codegen.functions import contents
 from derive.codegen.writing import files
@@ -45,23 +38,13 @@ def chain(n: int, form: str = "") -> tuple[float, float, str, str]:
 
 @dataclass(frozen=True)
 class Mechanics:
-    """A chain of pendulums by SymPy's own mechanics.
+    """A chain of pendulums by SymPy's own mechanics."""
 
-    Attributes
-    ----------
-    mass_matrix, forcing : sympy.Matrix
-        Of the equations of first order: coordinates, then speeds.
-    coordinates, speeds : sequence
-        Functions of time.
-    constants : sequence of sympy.Symbol
-        Masses, lengths and g.
-    """
-
-    mass_matrix: sp.Matrix
+    mass_matrix: sp.Matrix  # of the equations of first order: coordinates, then speeds
     forcing: sp.Matrix
-    coordinates: Sequence[Any]
+    coordinates: Sequence[Any]  # functions of time, as the speeds
     speeds: Sequence[Any]
-    constants: Sequence[sp.Symbol]
+    constants: Sequence[sp.Symbol]  # masses, lengths and g
 
     @property
     def rates(self) -> list[sp.Expr]:
@@ -72,7 +55,7 @@ class Mechanics:
 def mechanics(n: int) -> Mechanics:
     """Derive a chain of n pendulums, as SymPy's documentation does."""
     method, q, constants = _lagranges_method(n)
-    speeds = dynamicsymbols(f"u1:{n + 1}")
+    speeds = me.dynamicsymbols(f"u1:{n + 1}")
     named = dict(zip((angle.diff() for angle in q), speeds, strict=True))
     mass_matrix, forcing = (m.subs(named) for m in (method.mass_matrix_full, method.forcing_full))
     return Mechanics(mass_matrix, forcing, q, speeds, constants)
@@ -88,19 +71,19 @@ def lagranges_method(n: int) -> float:
     return time.perf_counter() - begin
 
 
-def _lagranges_method(n: int) -> tuple[LagrangesMethod, list[Any], tuple[sp.Symbol, ...]]:
-    q, g = dynamicsymbols(f"theta1:{n + 1}"), sp.Symbol("g")
+def _lagranges_method(n: int) -> tuple[Any, list[Any], tuple[sp.Symbol, ...]]:
+    q, g = me.dynamicsymbols(f"theta1:{n + 1}"), sp.Symbol("g")
     m, lengths = sp.symbols(f"m1:{n + 1}"), sp.symbols(f"l1:{n + 1}")
-    frame, pivot = ReferenceFrame("N"), Point("O")
+    frame, pivot = me.ReferenceFrame("N"), me.Point("O")
     pivot.set_vel(frame, 0)
     x, y, bobs = sp.S.Zero, sp.S.Zero, []
     for k in range(n):
         x, y = x + lengths[k] * sp.sin(q[k]), y - lengths[k] * sp.cos(q[k])
-        place = pivot.locatenew(f"P{k}", x * frame.x + y * frame.y)
-        place.set_vel(frame, place.pos_from(pivot).dt(frame))
-        bob = Particle(f"bob{k}", place, m[k])
+        point = pivot.locatenew(f"P{k}", x * frame.x + y * frame.y)
+        point.set_vel(frame, point.pos_from(pivot).dt(frame))
+        bob = me.Particle(f"bob{k}", point, m[k])
         bob.potential_energy = m[k] * g * y
         bobs.append(bob)
-    method = LagrangesMethod(Lagrangian(frame, *bobs), q)
+    method = me.LagrangesMethod(me.Lagrangian(frame, *bobs), q)
     method.form_lagranges_equations()
     return method, q, (*m, *lengths, g)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from solvers.app.commands import options
 
 if TYPE_CHECKING:
-    from solvers.io.progress import Progress
     from solvers.scenes.scene import Scene
     from solvers.studies.work_precision.curve import Combination
     from solvers.studies.work_precision.scene_curves import SceneCurves
@@ -26,7 +25,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "that are installed. The default scenes take about two minutes; nothing else should run "
         "on the machine meanwhile."
     )
-    options.add_scenes(parser, "a name, or a file that ends in .toml", DEFAULT)
+    options.add_scenes(parser, DEFAULT)
     options.add_output(parser, "plots")
     options.add_json(parser)
     record = "chart compiled loops only and record the cheapest methods, which scenes then use"
@@ -37,14 +36,18 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Measure, plot and print."""
     from solvers.io.atomic_write import write_text
+    from solvers.io.figures import save
     from solvers.scenes.models.method_choice import RECORD
     from solvers.studies.work_precision.scene_curves import record
 
     results, plots = [], []
     for scene in options.selected_scenes(arguments, DEFAULT):
         result = _measured(scene, compiled_only=arguments.record)
-        paths = _write_plots(result, arguments.output)
         results.append(result)
+        paths = []
+        for name, figure in result.plots().items():
+            paths.append(str(arguments.output / f"{name}.png"))
+            save(figure, Path(paths[-1]))
         plots += paths
         if not arguments.json:
             print(*result.summary(), f"plots: {', '.join(paths)}", "", sep="\n", flush=True)
@@ -56,7 +59,6 @@ def run(arguments: Namespace) -> int:
 
 
 def _measured(scene: Scene, *, compiled_only: bool) -> SceneCurves:
-    from solvers.app.packages import optional_package
     from solvers.io.progress import Progress
     from solvers.studies.work_precision import peers
     from solvers.studies.work_precision.measurement import combinations, curves
@@ -66,32 +68,19 @@ def _measured(scene: Scene, *, compiled_only: bool) -> SceneCurves:
     with Progress() as report:
         report(f"{scene.name}: reference")
         reference = Reference.of(scene)
-        selected = list(combinations(scene.module))
-        if compiled_only:
-            selected = [combination for combination in selected if combination[2] == "compiled"]
-        measured = curves(scene, reference, _reported(scene.name, selected, report))
+        every = combinations(scene.module)
+        selected = [one for one in every if one[2] == "compiled" or not compiled_only]
+
+        def reported() -> Iterator[Combination]:
+            for n, combination in enumerate(selected, 1):
+                report(f"{scene.name}: {', '.join(combination)} ({n} of {len(selected)})")
+                yield combination
+
+        measured = curves(scene, reference, reported())
         if not compiled_only:
             report(f"{scene.name}: other programs")
-            measured += peers.curves(scene, reference, optional_package)
+            measured += peers.curves(scene, reference, options.optional_package)
         return SceneCurves.of(scene, reference, measured)
-
-
-def _reported(
-    scene: str, selected: Sequence[Combination], report: Progress
-) -> Iterator[Combination]:
-    """Combinations, each reported when its measurement starts."""
-    for n, combination in enumerate(selected, 1):
-        report(f"{scene}: {', '.join(combination)} ({n} of {len(selected)})")
-        yield combination
-
-
-def _write_plots(result: SceneCurves, folder: Path) -> list[str]:
-    from solvers.io.figures import save
-
-    plots = {folder / f"{name}.png": figure for name, figure in result.plots().items()}
-    for path, figure in plots.items():
-        save(figure, path)
-    return list(map(str, plots))
 
 
 def _as_json(results: Sequence[SceneCurves], plots: Sequence[str]) -> dict[str, Any]:

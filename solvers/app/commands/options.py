@@ -1,11 +1,13 @@
-"""Arguments that several commands share."""
+"""Arguments, output and optional packages that several commands share."""
 
 from __future__ import annotations
 
 import json
 from argparse import Action, ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from solvers.io.toml_input import names
@@ -40,24 +42,17 @@ def complete_with(action: Action, kind: str, words: Sequence[str]) -> None:
     setattr(action, "complete", completion)  # noqa: B010  the attribute is shtab's
 
 
-def add_scenes(parser: ArgumentParser, meaning: str, default: Sequence[str]) -> None:
+def add_scenes(parser: ArgumentParser, default: Sequence[str]) -> None:
     """Add the argument SCENE, which can be repeated."""
-    usual = f" (default: {', '.join(default)})"
-    action = parser.add_argument("scenes", nargs="*", metavar="SCENE", help=meaning + usual)
+    meaning = f"a name, or a file that ends in .toml (default: {', '.join(default)})"
+    action = parser.add_argument("scenes", nargs="*", metavar="SCENE", help=meaning)
     complete_with(action, "scenes", shipped("scenes"))
 
 
-def add_output(parser: ArgumentParser, contents: str) -> None:
-    """Add the option ``--output``."""
-    meaning = f"folder for {contents} (default: out)"
-    add_folder(parser, meaning, Path("out"))
-
-
-def add_folder(parser: ArgumentParser, meaning: str, default: Path | None) -> None:
-    """Add the option ``--output`` with a default and a help text of its own."""
-    action = parser.add_argument(
-        "--output", type=Path, metavar="DIR", default=default, help=meaning
-    )
+def add_output(parser: ArgumentParser, contents: str, default: str = "out") -> None:
+    """Add the option ``--output`` for a folder."""
+    meaning = f"folder for {contents} (default: {default})"
+    action = parser.add_argument("--output", type=Path, metavar="DIR", default="out", help=meaning)
     setattr(action, "complete", FOLDER)  # noqa: B010  the attribute is shtab's
 
 
@@ -88,3 +83,19 @@ def print_json(results: Any) -> None:
     from solvers.io.json_values import jsonable
 
     print(json.dumps(jsonable(results), indent=2, ensure_ascii=False))
+
+
+def optional_package(name: str) -> ModuleType | None:
+    """A package, or None if it is not installed."""
+    try:
+        return import_module(name)
+    except ImportError:
+        return None
+
+
+def required_package(name: str, extra: str) -> ModuleType:
+    """A package; `OSError` names the extra that installs it."""
+    package = optional_package(name)
+    if package is None:
+        raise OSError(f"{name} is not installed: pip install 'holonomic[{extra}]'")
+    return package

@@ -17,7 +17,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "Run scenes with the smallest model whose error stays below the requested accuracy; write "
         "each motion as a table, a plot and a page that plays it."
     )
-    options.add_scenes(parser, "a name, or a file that ends in .toml", DEFAULT)
+    options.add_scenes(parser, DEFAULT)
     options.add_output(parser, "tables, plots and pages")
     options.add_json(parser)
     options.add_examples(parser, "holonomic run separatrix --json", scenes=True)

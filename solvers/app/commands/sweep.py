@@ -31,7 +31,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         "sweep", metavar="SWEEP", help=f"{', '.join(names)}, or a file that ends in .toml"
     )
     options.complete_with(action, "sweeps", names)
-    options.add_folder(parser, "folder of the sweep (default: out/SWEEP)", None)
+    options.add_output(parser, "the sweep", "out/SWEEP")
+    parser.set_defaults(output=None)
     workers = "number of concurrent chunks (default: one for each processor)"
     parser.add_argument("--workers", type=int, metavar="N", help=workers)
     scheduler = "address of a Dask scheduler that runs the chunks, such as tcp://host:8786"
@@ -85,16 +86,13 @@ def run(arguments: Namespace) -> int:
 @contextmanager
 def _pool(arguments: Namespace) -> Iterator[Pool]:
     """Threads of this process, or the cluster behind a scheduler."""
-    from solvers.app.packages import optional_package
     from solvers.sweeps.pool import Pool
 
     address, workers = arguments.scheduler, arguments.workers
     if address is None:
         yield Pool(workers=workers)
         return
-    distributed: Any = optional_package("distributed")
-    if distributed is None:
-        raise OSError("--scheduler needs Dask: pip install 'holonomic[cluster]'")
+    distributed: Any = options.required_package("distributed", "cluster")
     try:
         client = distributed.Client(address, timeout=PATIENCE)
     except (OSError, ValueError, TimeoutError) as error:

@@ -7,8 +7,7 @@ from html import escape
 from pathlib import Path
 
 from derive.verification.report.comparison import STYLE as DERIVATION_STYLE
-from solvers.app.demo.html import table
-from solvers.app.demo.stage import Stage
+from solvers.app.demo.stage import Number, Stage, table
 from solvers.io.atomic_write import write_text
 from solvers.player import page as motions
 from solvers.player.document import document
@@ -57,8 +56,8 @@ SECTIONS = {
 }
 
 
-def page(stages: Mapping[str, Stage], versions: Mapping[str, str]) -> str:
-    """The page as HTML; stages without content are left out."""
+def write_page(path: Path, stages: Mapping[str, Stage], versions: Mapping[str, str]) -> None:
+    """Write the page atomically; stages without content are left out."""
     shown = {name: stages[name] for name in SECTIONS if name in stages and stages[name].html}
     links = "".join(f'<a href="#{name}">{escape(SECTIONS[name][0])}</a> ' for name in shown)
     header = (
@@ -69,12 +68,7 @@ def page(stages: Mapping[str, Stage], versions: Mapping[str, str]) -> str:
     sections = "\n".join(_section(name, stage) for name, stage in shown.items())
     body = f"{header}<main>{sections}{_numbers(shown, versions)}</main>"
     style = motions.style() + DERIVATION_STYLE + STYLE.read_text(encoding="utf-8")
-    return document(TITLE, body, style=style, script=motions.script())
-
-
-def write_page(path: Path, stages: Mapping[str, Stage], versions: Mapping[str, str]) -> None:
-    """Write the page atomically."""
-    write_text(path, page(stages, versions))
+    write_text(path, document(TITLE, body, style=style, script=motions.script()))
 
 
 def _section(name: str, stage: Stage) -> str:
@@ -85,10 +79,5 @@ def _section(name: str, stage: Stage) -> str:
 
 def _numbers(stages: Mapping[str, Stage], versions: Mapping[str, str]) -> str:
     numbers = [number for stage in stages.values() for number in stage.numbers]
-    rows = [(number.quantity, number.value, number.method, number.command) for number in numbers]
-    return (
-        '<section id="numbers"><h2>Numbers and their origins</h2>'
-        + table(("quantity", "value", "method", "command"), rows)
-        + table(("environment", ""), versions.items())
-        + "</section>"
-    )
+    tables = table(Number._fields, numbers) + table(("environment", ""), versions.items())
+    return f'<section id="numbers"><h2>Numbers and their origins</h2>{tables}</section>'

@@ -1,28 +1,28 @@
-"""The results of one stage of the demonstration."""
+"""The results of a stage of the demonstration, and the elements of its HTML."""
 
 from __future__ import annotations
 
+from base64 import b64encode
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from html import escape
+from typing import NamedTuple
+
+from matplotlib.figure import Figure
+
+from solvers.io.figures import png, svg
+
+#: On a narrow screen the cells of a table with so many columns are stacked.
+STACKED = 4
 
 
-@dataclass(frozen=True)
-class Number:
-    """A reported number and its origin.
-
-    Attributes
-    ----------
-    quantity, value : str
-        The quantity and its value with a unit.
-    method : str
-        How the value was obtained: proof, computation or measurement.
-    command : str
-        The command that reproduces it.
-    """
+class Number(NamedTuple):
+    """A reported number and its origin: a proof, a computation or a measurement."""
 
     quantity: str
-    value: str
+    value: str  # with its unit
     method: str
-    command: str
+    command: str  # which reproduces it
 
 
 @dataclass(frozen=True)
@@ -32,3 +32,38 @@ class Stage:
     lines: tuple[str, ...]
     html: str = ""
     numbers: tuple[Number, ...] = ()
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of plain text."""
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in heads)
+    body = "".join(
+        f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows
+    )
+    kind = ' class="stacks"' if len(heads) >= STACKED else ""
+    return f"<table{kind}><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def pair(left: str, right: str) -> str:
+    """Two columns where the screen is wide enough."""
+    return f'<div class="pair"><div>{left}</div><div>{right}</div></div>'
+
+
+def svg_image(figure: Figure, alternative: str) -> str:
+    """A chart as vector graphics."""
+    return _image("svg+xml", svg(figure).encode(), alternative)
+
+
+def png_image(figure: Figure, alternative: str) -> str:
+    """A chart as pixels."""
+    return _image("png", png(figure), alternative)
+
+
+def _image(kind: str, data: bytes, alternative: str) -> str:
+    source = f"data:image/{kind};base64,{b64encode(data).decode()}"
+    return f'<img class="chart" src="{source}" alt="{escape(alternative)}">'
+
+
+def details(summary: str, html: str) -> str:
+    """Collapsed content below a summary."""
+    return f"<details><summary>{escape(summary)}</summary>{html}</details>"

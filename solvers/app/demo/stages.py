@@ -9,12 +9,9 @@ from importlib.metadata import version
 from pathlib import Path
 
 import generated.double_pendulum as double_pendulum
-from solvers.app.demo.code import generation
-from solvers.app.demo.cost import cost
-from solvers.app.demo.derivation import derivation
-from solvers.app.demo.flips import flips
-from solvers.app.demo.limits import limits
-from solvers.app.demo.motion import motion
+from solvers.app.demo.equations import derivation, generation
+from solvers.app.demo.methods import cost, limits
+from solvers.app.demo.motions import flips, motion
 from solvers.app.demo.stage import Stage
 from solvers.app.demo.verdicts import verification
 from solvers.app.modules import load

@@ -9,8 +9,7 @@ from typing import Any
 
 from derive.verification.report.comparison import verdict_html
 from derive.verification.verdict import Verdict
-from solvers.app.demo.html import details, table
-from solvers.app.demo.stage import Number, Stage
+from solvers.app.demo.stage import Number, Stage, details, table
 from solvers.app.verdict.report import counted, report_verdicts
 
 DESCRIPTIONS = {

@@ -1,19 +1,25 @@
-"""The motion of a scene, integrated by two programs, and played beside Euler's method."""
+"""The motion of a scene beside Euler's method, and a map of many motions."""
 
 from __future__ import annotations
 
+import time
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from solvers.app.demo.stage import Number, Stage
+from solvers.app.demo.stage import Number, Stage, png_image
 from solvers.equations.energy import energy_error
 from solvers.integration.integrate import integrate
 from solvers.integration.solution import Solution
 from solvers.player.page import player
 from solvers.player.track import Track
 from solvers.scenes.scene import Scene
+from solvers.sweeps.convergence import convergence, tighter_rtol
+from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.run import sweep
+from solvers.sweeps.sweep import Sweep
 
 #: Relative and absolute tolerance of both programs, and the step size of Euler's method in s.
 TOLERANCE, STEP = 1e-12, 0.01
@@ -24,37 +30,30 @@ def motion(scene: Scene) -> Stage:
     module, span = scene.module, (0.0, scene.duration)
     run = partial(integrate, module, span, scene.y0, scene.params, t_eval=scene.times, energy=True)
     accurate = run(method="verner98", rtol=TOLERANCE, atol=TOLERANCE)
-    euler = run(method="rk1", h=STEP)
     independent = partial(solve_ivp, module.rhs, span, scene.y0, args=(scene.params,))
     scipy = independent(method="DOP853", rtol=TOLERANCE, atol=TOLERANCE)
     tracks = [
         _track(scene, f"Verner 9(8), tolerance {TOLERANCE:g}", accurate),
-        _track(scene, f"Euler, h = {STEP:g} s", euler),
+        _track(scene, f"Euler, h = {STEP:g} s", run(method="rk1", h=STEP)),
     ]
     difference = float(np.abs(accurate.y[:, -1] - scipy.y[:, -1]).max())
     change = float(np.abs(tracks[0].energy_error).max())
     angles = zip(module.COORDINATES, accurate.y[:, -1], strict=False)
     end = ", ".join(f"{name} = {value:.9f}" for name, value in angles)
+    after, command = f"after {scene.duration:g} s", "holonomic demo"
+    apart = f"largest difference between the states of two programs {after}"
+    programs = f"Verner 9(8) and SciPy's DOP853, both with tolerances of {TOLERANCE:g}"
+    energy = "computed along the motion, relative to the energy above rest"
     return Stage(
         (
-            f"after {scene.duration:g} s: {end} rad",
+            f"{after}: {end} rad",
             accurate.run,
             f"difference from SciPy's DOP853 {difference:.1g}, energy error {change:.1g}",
         ),
         player(tracks),
         (
-            Number(
-                f"largest difference between the states of two programs after {scene.duration:g} s",
-                f"{difference:.1e} rad or rad/s",
-                f"Verner 9(8) and SciPy's DOP853, both with tolerances of {TOLERANCE:g}",
-                "holonomic demo",
-            ),
-            Number(
-                "largest relative energy error",
-                f"{change:.1e}",
-                "computed along the motion, relative to the energy above rest",
-                "holonomic demo",
-            ),
+            Number(apart, f"{difference:.1e} rad or rad/s", programs, command),
+            Number("largest relative energy error", f"{change:.1e}", energy, command),
         ),
     )
 
@@ -64,3 +63,23 @@ def _track(scene: Scene, label: str, run: Solution) -> Track:
     assert run.energy is not None
     error = energy_error(scene.module, scene.params, run.energy)
     return Track(label, run.t, positions, ((-1, 0), (0, 1)), (), error)
+
+
+def flips(definition: Sweep, folder: Path) -> Stage:
+    """Run or resume a sweep and plot its map: the time until a double pendulum first flips."""
+    start = time.perf_counter()
+    results = sweep(definition, folder)
+    seconds = time.perf_counter() - start
+    change = convergence(definition)["flip"]
+    motions, duration = f"{definition.motions:,}", f"{definition.duration:g} s"
+    flipped = f"{results.count.get('event', 0):,}"
+    method = (
+        f"{change.motions} of them repeated with rtol = {tighter_rtol(definition):.0e}: "
+        f"half of the times change by less than {change.median:.0e} s"
+    )
+    quantity = f"motions of {motions} that flip within {duration}"
+    return Stage(
+        (f"{motions} motions of {duration}: {flipped} flip ({seconds:.1f} s this time)",),
+        png_image(figure(results), "Map of the time until one of the rods flips"),
+        (Number(quantity, flipped, method, f"holonomic sweep {definition.name}"),),
+    )
