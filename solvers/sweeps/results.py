@@ -66,16 +66,6 @@ class Results:
             f"{self.definition.motions:,} motions, {counts}; maps: {maps}"
         )
 
-    def __repr__(self) -> str:
-        shapes = [f"{name} {grid.shape}" for name, grid in self.maps.items()]
-        counts = [f"{n:,} {status}" for status, n in self.count.items()]
-        return (
-            f"Results: {self.definition.title}, in {self.folder}\n"
-            f"  {self.status.size:,} motions: {', '.join(counts)}\n"
-            f"  axes: {', '.join(self.axes)}\n"
-            f"  maps: {', '.join(shapes)}"
-        )
-
     @property
     def count(self) -> dict[str, int]:
         """Number of motions by status."""
