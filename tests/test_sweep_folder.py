@@ -24,7 +24,7 @@ import generated.double_pendulum as dp
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.integration.ensemble_run import StopFlag
-from solvers.sweeps import chunk_length, pool
+from solvers.sweeps import pool, worker
 from solvers.sweeps.axes import Grid, Random
 from solvers.sweeps.folder import Folder, FolderError
 from solvers.sweeps.maps.final import Final
@@ -47,7 +47,7 @@ Cluster: TypeAlias = tuple[str, list["subprocess.Popen[bytes]"]]
 def many_chunks() -> Iterator[None]:
     """A small sweep has many chunks only if their overhead is small."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(chunk_length, "COST", 1e-5)
+        patch.setattr(worker, "COST", 1e-5)
         yield
 
 

@@ -60,7 +60,7 @@ class Axes(ABC):
         return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class _Listed(Axes):
     """Axes with listed values."""
 
@@ -68,6 +68,10 @@ class _Listed(Axes):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _columns(self.values))
+
+    def __repr__(self) -> str:
+        axes = (f"{name}: {len(v)} from {v[0]:g} to {v[-1]:g}" for name, v in self.values.items())
+        return f"{type(self).__name__}({', '.join(axes)})"
 
     @property
     def smallest(self) -> dict[str, float]:
@@ -88,7 +92,7 @@ class _Listed(Axes):
         return type(self)({name: values[:1] for name, values in self.values.items()})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Grid(_Listed):
     """Every combination of the values on some axes; the last axis varies fastest.
 
@@ -106,9 +110,8 @@ class Grid(_Listed):
 
     Examples
     --------
-    >>> grid = Grid({"theta1": [0.0, 0.1, 0.2], "m2": [1.0, 2.0]})
-    >>> grid.shape
-    (3, 2)
+    >>> Grid({"theta1": [0.0, 0.1, 0.2], "m2": [1.0, 2.0]})
+    Grid(theta1: 3 from 0 to 0.2, m2: 2 from 1 to 2)
     """
 
     is_grid: ClassVar[bool] = True
@@ -130,7 +133,7 @@ class Grid(_Listed):
         return dict(self.values)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Table(_Listed):
     """One motion for each row of a table.
 

@@ -54,15 +54,14 @@ def check_energy(module: GeneratedModule, given: Sequence[str], values: Values) 
     """Check that an energy and one velocity that follows from it are given together."""
     free = [name for name, value in values.items() if value == FROM_ENERGY]
     velocities = module.STATE[len(module.COORDINATES) :]
+    known = ", ".join(velocities)
     if len(free) > 1 or not {*free} <= {*velocities}:
-        raise ValueError(
-            f'{", ".join(free)} = "{FROM_ENERGY}": the energy determines one velocity, one of '
-            f"{', '.join(velocities)}"
-        )
+        word = f'{", ".join(free)} = "{FROM_ENERGY}"'
+        raise ValueError(f"{word}: the energy determines one velocity, one of {known}")
     if bool(free) != (ENERGY in given):
         raise ValueError(
             "an energy requires a velocity that follows from it, and vice versa: give energy, "
-            f'and "{FROM_ENERGY}" as the value of one of {", ".join(velocities)}'
+            f'and "{FROM_ENERGY}" as the value of one of {known}'
         )
 
 

@@ -24,8 +24,8 @@ from numpy.lib.format import dtype_to_descr, write_array_header_1_0
 from numpy.typing import NDArray
 
 from solvers.io.atomic_write import replacing, write_text
-from solvers.sweeps.chunk_length import chunk_length
 from solvers.sweeps.sweep import Sweep
+from solvers.sweeps.worker import chunk_length
 
 MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 2
 #: Hexadecimal digits of a digest in a file's name.

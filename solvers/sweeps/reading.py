@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Callable, Mapping
+from functools import partial
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -19,10 +20,17 @@ from solvers.sweeps.sweep import Sweep
 
 FILES = Path(__file__).parent / "files"
 REQUIRED = ("system", "duration", "axes", "maps")
-OPTIONAL = ("title", "method", "rtol", "atol", "max_steps", "initial", "parameters", "random")
-KEYS = REQUIRED + OPTIONAL
 #: Largest number of values along an axis, and of motions or steps.
 MAX_VALUES, MAX_COUNT = 10**7, 10**11
+#: Optional keys of a file that are arguments of `Sweep`, and how they are read.
+OPTIONS: dict[str, Callable[[str, object], Any]] = {
+    "title": toml_input.text,
+    "method": toml_input.text,
+    "rtol": partial(toml_input.number, unit="1"),
+    "atol": partial(toml_input.number, unit="1"),
+    "max_steps": partial(toml_input.whole, least=1, most=MAX_COUNT),
+}
+KEYS = (*REQUIRED, *OPTIONS, "initial", "parameters", "random")
 
 
 def names() -> tuple[str, ...]:
@@ -48,22 +56,15 @@ def _sweep(path: Path, table: Mapping[str, Any], module: Callable[[str], Generat
         equations = module(str(path.parent / name) if name.endswith(".toml") else name)
     except LookupError as error:
         raise InputError(f"system = {name[:50]!r}: {error.args[0]}") from error
-    title = str(equations.__doc__).partition(":")[0].partition(".")[0]
-    options: dict[str, Any] = {
-        key: toml_input.number(key, table[key], "1") for key in ("rtol", "atol") if key in table
-    }
-    if "method" in table:
-        options["method"] = toml_input.text("method", table["method"])
-    if "max_steps" in table:
-        options["max_steps"] = toml_input.whole("max_steps", table["max_steps"], 1, MAX_COUNT)
+    options: dict[str, Any] = {"title": str(equations.__doc__).partition(":")[0].partition(".")[0]}
+    options |= {key: read(key, table[key]) for key, read in OPTIONS.items() if key in table}
     maps = {
         key: map_kinds.read(f"maps.{key}", equations, toml_input.table(f"maps.{key}", one))
         for key, one in toml_input.table("maps", table["maps"]).items()
     }
     axes, values = _axes(path, equations, table), _values(equations, table)
     duration = toml_input.number("duration", table["duration"], "s")
-    title = toml_input.text("title", table.get("title", title))
-    return Sweep(equations, axes, maps, duration, values, name=path.stem, title=title, **options)
+    return Sweep(equations, axes, maps, duration, values, name=path.stem, **options)
 
 
 def _values(module: GeneratedModule, table: Mapping[str, Any]) -> dict[str, float | str]:
@@ -87,15 +88,15 @@ def _axes(path: Path, module: GeneratedModule, table: Mapping[str, Any]) -> Axes
         return _from_file(path.parent / table["axes"], module)
     axes = toml_input.table("axes", table["axes"])
     toml_input.check_keys("[axes]", axes, (*module.STATE, *module.PARAMETERS, ENERGY), KEYS)
+    keys = ("from", "to") if "random" in table else ("from", "to", "count")
+    limits = {name: _limits(module, name, one, keys) for name, one in axes.items()}
     if "random" in table:
         random = toml_input.table("random", table["random"])
         toml_input.check_keys("random", random, ("count", "seed"))
         count = toml_input.whole("random.count", random.get("count"), 1, MAX_COUNT)
         seed = toml_input.whole("random.seed", random.get("seed", 0), 0, 2**63)
-        limits = {name: _limits(module, name, one, ("from", "to")) for name, one in axes.items()}
         return Random(limits, count, seed)
-    keys, counts = ("from", "to", "count"), {}
-    limits = {name: _limits(module, name, one, keys) for name, one in axes.items()}
+    counts = {}
     for name, one in axes.items():
         counts[name] = toml_input.whole(f"axes.{name}.count", one["count"], 1, MAX_VALUES)
     if (motions := prod(counts.values())) > MAX_COUNT:

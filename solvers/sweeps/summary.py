@@ -28,10 +28,9 @@ def summary(
         f"{definition.motions:,} motions of {definition.duration:g} s, "
         f"{load(definition.method).title}, {definition.form} form, rtol = {definition.rtol:g}{time}"
     )
-    yield "status: " + ", ".join(
-        f"{name} {n:,}{f' ({HINTS[name]})' if name in HINTS else ''}"
-        for name, n in results.count.items()
-    )
+    hints = {name: f" ({hint})" for name, hint in HINTS.items()}
+    counts = (f"{name} {n:,}{hints.get(name, '')}" for name, n in results.count.items())
+    yield f"status: {', '.join(counts)}"
     for name, values in ranges(results).items():
         if not values["known"]:
             yield f"{name}: no values"
@@ -62,16 +61,10 @@ def ranges(results: Results) -> dict[str, dict[str, Any]]:
             labels = [part[k] for part, k in zip(one.labels, index, strict=True)]
             values = rows[(slice(None), *index)]
             finite = values[np.isfinite(values)]
-            low, middle, high = (
-                np.percentile(finite, (0, 50, 100)).tolist() if finite.size else [np.nan] * 3
-            )
-            statistics[" ".join([name, *labels])] = {
-                "smallest": low,
-                "median": middle,
-                "largest": high,
-                "unit": one.unit(module, *labels[:1]),
-                "known": finite.size / values.size,
-            }
+            known = np.percentile(finite, (0, 50, 100)).tolist() if finite.size else [np.nan] * 3
+            numbers = dict(zip(("smallest", "median", "largest"), known, strict=True))
+            unit, share = one.unit(module, *labels[:1]), finite.size / values.size
+            statistics[" ".join([name, *labels])] = {**numbers, "unit": unit, "known": share}
     return statistics
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from solvers.equations.forms import fastest_form
-from solvers.equations.module import GeneratedModule, header, state_names
+from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
 from solvers.integration import validation
 from solvers.integration.problem import Options
@@ -93,10 +93,10 @@ class Sweep:
 
     def __getstate__(self) -> dict[str, Any]:
         """A module cannot be pickled: its source takes its place."""
-        return {**vars(self), "module": Source.of(self.module)}
+        return {**vars(self), "module": _source(self.module)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state, module=_load(state["module"]))
+        vars(self).update(state, module=_module(*state["module"]))
 
     def unchecked(self, **changes: Any) -> Sweep:
         """A copy with other values of some fields, which are not checked."""
@@ -110,11 +110,6 @@ class Sweep:
         if any(one.is_variational for one in self.maps.values()):
             return "variational"
         return fastest_form(self.module)
-
-    @property
-    def state(self) -> tuple[str, ...]:
-        """Names of the components of an initial state."""
-        return state_names(self.module, self.form)
 
     @property
     def samples(self) -> int:
@@ -173,26 +168,15 @@ class Sweep:
         }
 
 
-@dataclass(frozen=True)
-class Source:
-    """A generated module for workers: its name, or its files as pairs of name and text."""
-
-    name: str
-    texts: tuple[tuple[str, str], ...] = ()
-
-    @classmethod
-    def of(cls, module: GeneratedModule) -> Source:
-        """The source of a module that is loaded here."""
-        if module.__name__.startswith("generated."):
-            return cls(module.__name__)
-        files = filter(None, (Path(str(module.__file__)), header(module)))
-        texts = tuple((path.name, path.read_text(encoding="utf-8")) for path in files)
-        return cls(module.SYSTEM, texts)
+def _source(module: GeneratedModule) -> tuple[str, tuple[tuple[str, str], ...]]:
+    """The name of a module that ships; else of the system, and names and texts of its files."""
+    if module.__name__.startswith("generated."):
+        return module.__name__, ()
+    files = filter(None, (Path(str(module.__file__)), header(module)))
+    return module.SYSTEM, tuple((path.name, path.read_text(encoding="utf-8")) for path in files)
 
 
 @lru_cache
-def _load(source: Source) -> GeneratedModule:
-    """The module; each process loads it once."""
-    if not source.texts:
-        return import_module(source.name)
-    return cached_module(source.name, repr(source.texts), lambda: dict(source.texts))
+def _module(name: str, texts: tuple[tuple[str, str], ...]) -> GeneratedModule:
+    """The module from this source; each process loads it once."""
+    return cached_module(name, repr(texts), lambda: dict(texts)) if texts else import_module(name)

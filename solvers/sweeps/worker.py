@@ -1,4 +1,4 @@
-"""A chunk of a sweep, computed in a thread, another process, or on another machine."""
+"""Chunks of a sweep: their length; a chunk is computed in a thread or on another machine."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,6 +16,15 @@ from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.maps import Motions
 from solvers.sweeps.status import CODES
 from solvers.sweeps.sweep import Sweep
+
+#: Longest duration of a chunk in s, approximately, and its overhead.
+CHUNK, COST = 1.0, 0.004
+#: Number of motions that are timed.
+TRIALS = 64
+#: Seconds for each evaluation of a right-hand side of n components: this times n^1.5.
+EVALUATION = 0.25e-9
+#: Largest number of bytes for the states of a chunk; its working memory is about ten times as much.
+MAX_BYTES = 8e6
 
 
 def run_chunk(
@@ -61,3 +70,20 @@ def integrated(
     if (motions.status == Status.INTERRUPTED).any():
         raise InterruptedError("the sweep was stopped")
     return motions
+
+
+def chunk_length(sweep: Sweep) -> int:
+    """Number of motions in a chunk: about a second of work, less in short sweeps."""
+    # in short sweeps chunks cost as much as waiting for the last of them; time follows from the
+    # number of evaluations, not from the clock, so that a sweep is always divided in the same way
+    starts, params, status = initial_states(sweep, sweep.axes.subset(TRIALS))
+    runs = status == 0
+    evaluations = 1
+    if runs.any():
+        evaluations += int(integrated(sweep, starts[runs], [p[runs] for p in params]).nfev.sum())
+    size = starts.shape[1]
+    each = evaluations / len(status) * EVALUATION * size**1.5
+    events = sum(one.occurrences * len(one.events(sweep.module)) for one in sweep.maps.values())
+    most = MAX_BYTES / (8 * size * (1 + sweep.samples + events))
+    seconds = min(CHUNK, (COST * each * sweep.motions) ** 0.5)
+    return max(1, int(min(seconds / each, most)))

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Self, TypeAlias
 
-import numpy as np
-
 from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event
@@ -33,10 +31,6 @@ class Motions:
     params: list[Array]
     ensemble: Ensemble
     events: slice
-
-    def energies(self, t: Array | float, y: Array) -> Array:
-        """Energies in J of states in rows."""
-        return np.asarray(self.module.energy_many(t, y.T, self.params))
 
     def indices(self, components: tuple[str, ...]) -> list[int]:
         """Indices of components of the state."""

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from solvers.sweeps.axes import Array
 from solvers.sweeps.maps import Map, Motions
 
@@ -25,6 +27,10 @@ class EnergyError(Map):
     uses_energy = True
 
     def values(self, motions: Motions) -> Array:
-        n, ensemble = len(motions.module.STATE), motions.ensemble
-        before = motions.energies(0.0, motions.starts[:, :n])
-        return motions.energies(ensemble.t, ensemble.y.T[:, :n]) - before
+        n, ensemble, energy = (
+            len(motions.module.STATE),
+            motions.ensemble,
+            motions.module.energy_many,
+        )
+        after = np.asarray(energy(ensemble.t, ensemble.y[:n], motions.params))
+        return after - np.asarray(energy(0.0, motions.starts[:, :n].T, motions.params))

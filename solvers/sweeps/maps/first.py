@@ -71,8 +71,8 @@ class First(Map):
                 f"{varied[0]} varies and the lowest position depends on it, so that a barrier "
                 "proves nothing; remove one of them"
             )
-        known = {**dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True)), **values}
-        params = [float(known[parameter]) for parameter in module.PARAMETERS]
+        defaults = zip(module.PARAMETERS, module.DEFAULTS, strict=True)
+        params = [float(values.get(name, default)) for name, default in defaults]
         if lower := lower_position(module, self.of, self.barrier, params):
             position = ", ".join(f"{q} = {value:.6g}" for q, value in lower.items())
             raise ValueError(

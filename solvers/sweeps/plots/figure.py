@@ -13,10 +13,8 @@ from solvers.io import figures
 from solvers.io.notation import symbol
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.maps import Panels
-from solvers.sweeps.plots.image import image
-from solvers.sweeps.plots.labels import letter
-from solvers.sweeps.plots.lines import CURVES, curves, line, section
-from solvers.sweeps.plots.quantity import Quantity
+from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
+from solvers.sweeps.plots.quantity import Quantity, letter
 from solvers.sweeps.results import Results
 from solvers.sweeps.status import GOOD
 

@@ -1,18 +1,20 @@
-"""One number of a map's: values, label and colours."""
+"""Quantities in plots: values and colours of a map's number; axes with symbols and units."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
+from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 
 from solvers.io.notation import axis_label, symbol
 from solvers.sweeps.axes import Array
+from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.maps import Map
 from solvers.sweeps.results import Results
 
-#: Where nothing happened or nothing is known, and where it is proved that nothing can happen.
-NOTHING, NEVER = "#c8c8c8", "#ffffff"
 #: Colours cover values between these percentiles; values beyond have the colours of the ends.
 PERCENTILES = (0.5, 99.5)
 
@@ -81,3 +83,37 @@ class Quantity:
 def wrapped(angles: Array) -> Array:
     """Angles between -π and π."""
     return np.asarray(np.remainder(angles + np.pi, 2 * np.pi) - np.pi)
+
+
+def letter(name: str) -> str:
+    """The mathematical symbol of a quantity."""
+    return "$E$" if name == ENERGY else symbol(name)
+
+
+def label_axis(panel: Axes, axis: str, results: Results, name: str) -> None:
+    """Label an axis of a panel along which a quantity varies."""
+    unit = results.unit(name)
+    panel.set(**{f"{axis}label": axis_label(letter(name), unit)})
+    if unit == "rad" and np.pi < np.ptp(results.axes[name]) < 5 * np.pi:
+        ticks = {"x": panel.xaxis, "y": panel.yaxis}[axis]
+        ticks.set_major_locator(MultipleLocator(np.pi / 2))
+        ticks.set_major_formatter(FuncFormatter(_multiple_of_pi))
+
+
+def add_colour_bar(panel: Axes, mappable: ScalarMappable, label: str) -> None:
+    """Add a colour bar beside a panel; its numbers are written without powers of ten."""
+    bar = panel.figure.colorbar(mappable, ax=panel, label=label)
+    if isinstance(mappable.norm, LogNorm):
+        low, high = mappable.norm.vmin or 1.0, mappable.norm.vmax or 1.0
+        parts = (1.0,) if high > 1e3 * low else (1.0, 2.0, 5.0)
+        bar.ax.yaxis.set_major_locator(LogLocator(subs=parts, numticks=12))
+        bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        bar.ax.yaxis.set_minor_formatter(NullFormatter())
+
+
+def _multiple_of_pi(value: float, _: int) -> str:
+    n = round(value / (np.pi / 2))
+    whole, sign = abs(n) // 2, "−" if n < 0 else ""
+    if n % 2 == 0:
+        return "0" if n == 0 else f"{sign}{whole if whole > 1 else ''}π"
+    return f"{sign}{abs(n) if abs(n) > 1 else ''}π/2"
