@@ -10,29 +10,15 @@ Array = NDArray[np.float64]
 
 
 def pendulum(length: float, gravity: float, y0: tuple[float, float], times: ArrayLike) -> Array:
-    """States (theta, theta_dot) of a single pendulum with the state `y0` at time 0.
+    """States (theta, theta_dot) of a single pendulum with the state `y0` at time 0, shape (n, 2).
 
-    Parameters
-    ----------
-    length, gravity : float
-        In m and m/s², both positive.
-    y0 : pair of float
-        Angle from the downward vertical in rad, and its velocity in rad/s.
-    times : array_like of shape (n,)
-        In s.
+    Angles are measured from the downward vertical, and are not wrapped. All quantities are in SI
+    units.
 
-    Returns
-    -------
-    ndarray of shape (n, 2)
-        Angles, not wrapped, and velocities.
-
-    Notes
-    -----
     With ω = √(g/l), energy is k² = sin²(θ/2) + (θ̇/2ω)². Swinging (k < 1),
     sin(θ/2) = k sn(u, k) with u = ωt + u₀; turning over (k > 1), θ/2 = am(ku, 1/k) (NIST
-    Digital Library of Mathematical Functions, 22.19(i)); on the separatrix (k = 1),
-    θ = 2 gd(u). Everything is computed from 1 - k² = cos²(θ/2) - (θ̇/2ω)², so that motions
-    close to the separatrix are as accurate as others.
+    Digital Library of Mathematical Functions, 22.19(i)); on the separatrix (k = 1), θ = 2 gd(u).
+    1 - k² is computed as cos²(θ/2) - (θ̇/2ω)², which stays accurate close to the separatrix.
     """
     omega = np.sqrt(gravity / length)
     whole = np.round(y0[0] / (2 * np.pi))
@@ -101,10 +87,7 @@ def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
     sn, cn = np.sin(phi), np.cos(phi)
     dn = np.sqrt(cn**2 + complement * sn**2)
     root = np.sqrt(complement)
-    sn, cn, dn = (
-        np.where(is_reflected, reflected, direct)
-        for reflected, direct in ((cn / dn, sn), (root * sn / dn, cn), (root / dn, dn))
-    )
+    sn, cn, dn = np.where(is_reflected, (cn / dn, root * sn / dn, root / dn), (sn, cn, dn))
     sn = np.copysign(sn, rest)
     am = np.arctan2(sn, cn) + np.pi * halves
     sign = np.where(halves % 2, -1.0, 1.0)

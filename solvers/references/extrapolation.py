@@ -1,7 +1,6 @@
 """Motions by Gragg's extrapolated midpoint rule in extended precision.
 
-The equations are in Lagrange's form, with sines and cosines of angles. They share nothing but the
-physics with `solvers.references.taylor`.
+The equations are in Lagrange's form: only the physics is that of `solvers.references.taylor`.
 """
 
 from __future__ import annotations
@@ -28,29 +27,12 @@ def extrapolated(
     times: ArrayLike,
     h: float = 0.02,
 ) -> Array:
-    """States (q, q̇) at `times`; the state at the first of them is `y0`.
+    """States (q, q̇) at `times`, in rows; the state at the first of them is `y0`.
 
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    params, y0 : sequence of float
-        In the order of ``module.PARAMETERS`` and ``module.STATE``.
-    times : array_like of shape (n,)
-        Increasing or decreasing, in s.
-    h : float
-        Longest step in s; there is no step control.
-
-    Returns
-    -------
-    ndarray of shape (n, state)
-        The states, rounded to floats at the end.
-
-    Notes
-    -----
-    The rule and its extrapolation in h² are W. B. Gragg's (E. Hairer, S. P. Nørsett,
-    G. Wanner, Solving Ordinary Differential Equations I, section II.9, without smoothing).
-    Numbers have a mantissa of 64 bits where the platform supports it, else of 53.
+    Steps are at most `h` long; there is no step control. The rule and its extrapolation in h² are
+    W. B. Gragg's (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
+    section II.9, without smoothing). Numbers have a mantissa of 64 bits where the platform supports
+    it, else of 53.
     """
     constants = np.array(params, dtype=np.longdouble)
 

@@ -8,6 +8,7 @@ Evaluating Derivatives, section 13.2).
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from decimal import Decimal
 from operator import mul
 from typing import TypeAlias
@@ -17,32 +18,18 @@ Tape: TypeAlias = "list[Series]"
 ZERO = Decimal(0)
 
 
+@dataclass(eq=False, repr=False)
 class Series:
-    """Σ coefficients[k] xᵏ, up to the order computed so far.
+    """Σ coefficients[k] xᵏ, up to the order computed so far."""
 
-    Parameters
-    ----------
-    tape : list
-        Records the operations on this series; constants are not recorded.
-    coefficients : list of Decimal
-        Coefficients computed so far.
-    coefficient : callable, optional
-        Computes the coefficient of an order; None for a series that is extended from outside.
-    constant : bool
-        Whether all coefficients but the first are zero.
-    """
+    tape: Tape
+    coefficients: list[Decimal]
+    next_coefficient: Callable[[int], Decimal] | None = None  # None: extended from outside
+    constant: bool = False
 
-    def __init__(
-        self,
-        tape: Tape,
-        coefficients: list[Decimal],
-        coefficient: Callable[[int], Decimal] | None = None,
-        constant: bool = False,
-    ) -> None:
-        self.tape, self.coefficients, self.constant = tape, coefficients, constant
-        self._coefficient = coefficient
-        if coefficient:
-            tape.append(self)
+    def __post_init__(self) -> None:
+        if self.next_coefficient:
+            self.tape.append(self)
 
     @classmethod
     def number(cls, tape: Tape, value: Decimal | float) -> Series:
@@ -51,14 +38,12 @@ class Series:
 
     def extend(self, order: int) -> None:
         """Compute the coefficient of this order from those below."""
-        assert self._coefficient
-        self.coefficients.append(self._coefficient(order))
+        assert self.next_coefficient
+        self.coefficients.append(self.next_coefficient(order))
 
     def at(self, order: int) -> Decimal:
         """A computed coefficient."""
-        if self.constant and order:
-            return ZERO
-        return self.coefficients[order]
+        return ZERO if self.constant and order else self.coefficients[order]
 
     def _series(self, other: Series | float) -> Series:
         return other if isinstance(other, Series) else Series.number(self.tape, other)
@@ -105,7 +90,7 @@ class Series:
         def coefficient(k: int) -> Decimal:
             return (a.at(k) - sum(map(mul, b[1 : k + 1], quotient.coefficients[::-1]), ZERO)) / b[0]
 
-        quotient._coefficient = coefficient
+        quotient.next_coefficient = coefficient
         self.tape.append(quotient)
         return quotient
 

@@ -9,18 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from decimal import Decimal, localcontext
+from functools import reduce
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, named
-from solvers.references.series import Series, Tape
+from solvers.references.series import Series
 
 Array = NDArray[np.float64]
 
 #: Digits computed in addition to those requested.
 GUARD = 6
+NO_SERIES = (
+    "{} has no Taylor series, since its equations {}: ordinary numbers have to do; ask for less "
+    "accuracy or a shorter duration"
+)
 
 
 def taylor(
@@ -61,8 +66,7 @@ def taylor(
     (2005): order -ln(ε)/2 + 1, and 1/e² of the distance to the nearest singularity.
     """
     samples = [Decimal(float(t)) for t in np.asarray(times, dtype=float)]
-    with localcontext() as context:
-        context.prec = digits + GUARD
+    with localcontext(prec=digits + GUARD):
         motion = _Motion(module, params, y0)
         order = int(digits * 2.302585 / 2) + 2
         states, t = [], samples[0]
@@ -85,52 +89,37 @@ class NoSeriesError(ArithmeticError):
 class _Motion:
     """A motion as power series of its state about the current time.
 
-    The state is that of the fastest form, followed by the angles, whose derivatives are
-    velocities in that state.
-
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    params, y0 : sequence of float
-        In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact.
+    The state is that of the fastest form, followed by the angles, whose derivatives are velocities
+    in that state.
     """
 
     def __init__(
         self, module: GeneratedModule, params: Sequence[float], y0: Sequence[float]
     ) -> None:
         form = Form(module, fastest_form(module), (0.0,) * len(module.PARAMETERS))
-        self._half = len(module.COORDINATES)
-        self._tape: Tape = []
+        half, self._tape = len(module.COORDINATES), list[Series]()
         self._state = [Series(self._tape, []) for _ in form.state]
         constants = [Series.number(self._tape, p) for p in params]
         name = named("rhs", form.name)
         if name in module.TIMED:
-            raise self._refusal(module, "depend on time")
+            raise NoSeriesError(NO_SERIES.format(module.SYSTEM, "depend on time"))
         try:
             rates = form.function(0.0, self._state, constants)
         except TypeError:  # of the function, which takes numbers only
-            raise self._refusal(module, "call a function") from None
+            raise NoSeriesError(NO_SERIES.format(module.SYSTEM, "call a function")) from None
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
-        self._columns = dict(form.shared_columns)
+        columns = dict(form.shared_columns)
         start = [Decimal(0)] * len(form.state)
         for k, i in form.shared_columns:
             start[i] = Decimal(float(y0[k]))
         for angle, (k, i) in enumerate(form.angle_columns):
             start[i], start[i + 1] = sine_and_cosine(Decimal(float(y0[k])))
             start.append(Decimal(float(y0[k])))
-            self._columns[k] = len(form.state) + angle
-            self._rates.append(self._state[self._columns[self._half + k]])
+            columns[k] = len(form.state) + angle
+            self._rates.append(self._state[columns[half + k]])
             self._state.append(Series(self._tape, []))
+        self._columns = [columns[k] for k in range(2 * half)]
         self.restart(start)
-
-    @staticmethod
-    def _refusal(module: GeneratedModule, why: str) -> NoSeriesError:
-        system = module.SYSTEM
-        return NoSeriesError(
-            f"{system} has no Taylor series, since its equations {why}: ordinary numbers have to "
-            "do; ask for less accuracy or a shorter duration"
-        )
 
     def restart(self, state: Sequence[Decimal]) -> None:
         """Discard all coefficients and continue from this state."""
@@ -142,7 +131,7 @@ class _Motion:
     @property
     def ordinary(self) -> list[Decimal]:
         """Coordinates and velocities at the current time."""
-        return [self._state[self._columns[k]].at(0) for k in range(2 * self._half)]
+        return [self._state[k].at(0) for k in self._columns]
 
     def expand(self, order: int) -> Decimal:
         """Compute the series up to `order`; return the length of a step."""
@@ -151,23 +140,21 @@ class _Motion:
                 series.extend(k)
             for series, rate in zip(self._state, self._rates, strict=True):
                 series.coefficients.append(rate.at(k) / (k + 1))
-        size = max(abs(series.at(0)) for series in self._state)
-        radius = min(
-            ((size / last).ln() / k).exp() if last else Decimal(1)
+
+        def largest(k: int) -> Decimal:
+            return max(abs(series.at(k)) for series in self._state)
+
+        radii = [
+            ((largest(0) / last).ln() / k).exp() if (last := largest(k)) else Decimal(1)
             for k in (order - 1, order)
-            for last in [max(abs(series.at(k)) for series in self._state)]
-        )
-        return radius / Decimal(2).exp()
+        ]
+        return min(radii) / Decimal(2).exp()
 
     def state_after(self, h: Decimal) -> list[Decimal]:
-        """The state after `h`."""
-        state = []
-        for series in self._state:
-            value = Decimal(0)
-            for coefficient in reversed(series.coefficients):
-                value = value * h + coefficient
-            state.append(value)
-        return state
+        """The state after `h`, by Horner's rule."""
+        zero = Decimal(0)
+        coefficients = (reversed(series.coefficients) for series in self._state)
+        return [reduce(lambda value, c: value * h + c, each, zero) for each in coefficients]
 
 
 def sine_and_cosine(x: Decimal) -> tuple[Decimal, Decimal]:
