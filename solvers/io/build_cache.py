@@ -1,8 +1,8 @@
 """A cache of built files that can be trusted.
 
-Files are built in a private folder inside the cache. The whole folder is then renamed into place,
-with digests of its files, so that concurrent processes share one result, and damaged, incomplete or
-foreign files are never loaded. There are no locks.
+Files are built in a private folder, which is then renamed into place with digests of its files.
+Concurrent processes share one result, and damaged, incomplete or foreign files are never loaded.
+There are no locks.
 """
 
 from __future__ import annotations
@@ -15,14 +15,12 @@ import stat
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
-#: The file with the digests of a complete folder, one a line.
-DIGESTS = "digests.sha256"
-#: Prefix of the folders in which files are built.
-BUILD_PREFIX = "build-"
+#: The file with the digests of a complete folder, one a line; and where files are built.
+DIGESTS, BUILD_PREFIX = "digests.sha256", "build-"
 
 
 class NotMovedError(OSError):
@@ -37,8 +35,7 @@ def cache_folder() -> Path:
         return _private_folder()
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
+        tempfile.TemporaryFile(dir=folder).close()
     except OSError:
         return _private_folder()
     return folder if _is_private(folder) else _private_folder()
@@ -100,19 +97,14 @@ def _move(ready: Path, folder: Path, build: Path) -> None:
         except OSError:
             if is_intact(folder):
                 return
-            # a damaged or foreign folder: move it into the build folder, which is removed
-            try:
+            with suppress(OSError):  # damaged or foreign: removed with the build folder
                 os.rename(folder, build / f"damaged-{attempt}")
-            except OSError:
-                continue
     raise NotMovedError(f"cannot move it to {folder}")
 
 
 def _remove_abandoned(folder: Path, age: float) -> None:
     """Remove build folders of killed processes that are older than `age` seconds."""
     for build in folder.glob(f"{BUILD_PREFIX}*"):
-        try:
+        with suppress(OSError):  # removed by its own process
             if time.time() - build.stat().st_mtime > age:
                 shutil.rmtree(build, ignore_errors=True)
-        except OSError:
-            continue  # removed by its own process

@@ -16,20 +16,6 @@ def attach(
 
     The stub (``__init__.pyi``) is what editors and type checkers read, so that the names of a
     package and their homes are written once.
-
-    Parameters
-    ----------
-    package : str
-        Name of the package.
-    stub : pathlib.Path
-        Its stub: lines such as ``from derive.system.parts import PointMass as PointMass``.
-
-    Returns
-    -------
-    getattr, dir : callable
-        The package's ``__getattr__`` and ``__dir__``.
-    all : list of str
-        The names.
     """
     modules = homes(stub)
 

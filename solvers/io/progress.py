@@ -13,9 +13,9 @@ WIDTH = 78
 
 
 class Progress:
-    """Shows the current activity on standard error if that is a terminal, and erases it at the end.
+    """Shows the activity that it is called with on standard error if that is a terminal.
 
-    Call it with a description of the activity; it adds the elapsed seconds.
+    It adds the elapsed seconds, and erases its line at the end.
     """
 
     def __init__(self) -> None:
@@ -39,26 +39,16 @@ class Progress:
             self._thread.join()
 
     def _report(self) -> None:
-        if self._stop.wait(FIRST):
-            return
-        while True:
-            line = f"{self._text}, {time.monotonic() - self._since:.0f} s"[:WIDTH]
-            sys.stderr.write(f"\r{line:<{WIDTH}}")
-            sys.stderr.flush()
-            if self._stop.wait(NEXT):
-                sys.stderr.write(f"\r{'':<{WIDTH}}\r")
-                sys.stderr.flush()
-                return
+        wait = FIRST
+        while not self._stop.wait(wait):
+            line, wait = f"{self._text}, {time.monotonic() - self._since:.0f} s"[:WIDTH], NEXT
+            print(f"\r{line:<{WIDTH}}", end="", file=sys.stderr, flush=True)
+        if wait == NEXT:
+            print(f"\r{'':<{WIDTH}}\r", end="", file=sys.stderr, flush=True)
 
 
 class Rate:
-    """Progress of a number of parts: how many are done, the rate, and the remaining time.
-
-    Parameters
-    ----------
-    total, left : int
-        Number of parts, and of those that are left.
-    """
+    """Progress of `total` parts, of which `left` are left: the rate, and the remaining time."""
 
     def __init__(self, total: int, left: int) -> None:
         self._total, self._left, self._done, self._since = total, left, 0, time.monotonic()

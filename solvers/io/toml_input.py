@@ -123,8 +123,6 @@ def whole(key: str, value: object, least: int, most: int) -> int:
     """A whole number."""
     if value is None:
         raise InputError(f"{key} is missing: give a whole number from {least} to {most}")
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise InputError(
-            f"{key} = {shortened(value)} must be a whole number from {least} to {most}"
-        )
-    return value
+    if type(value) is int and least <= value <= most:
+        return value
+    raise InputError(f"{key} = {shortened(value)} must be a whole number from {least} to {most}")

@@ -34,18 +34,10 @@ class NoCompilerError(RuntimeError):
 
 @dataclass(frozen=True)
 class Library:
-    """A shared library on disk.
-
-    Attributes
-    ----------
-    path : Path
-        The file, whose digest has just been checked.
-    compiler : str
-        The command that built it.
-    """
+    """A shared library on disk, whose digest has just been checked."""
 
     path: Path
-    compiler: str
+    compiler: str  # the command that built it
 
 
 def build(source: str, *, reproducible: bool = False) -> Library:

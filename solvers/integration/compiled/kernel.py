@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from functools import cache
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,39 +25,9 @@ Array = NDArray[np.float64]
 class Kernel:
     """The compiled program for one form of a module's equations and one method.
 
-    Parameters
-    ----------
-    module : module
-        A generated module.
-    form : str
-        One of its forms.
-    method : str
-        Name of a Runge-Kutta method.
-    lanes : bool, optional
-        Whether to run many motions at once, where right-hand side and method allow it.
-    compensated : bool, optional
-        Whether the state's rounding errors are carried along.
-    reproducible : bool, optional
-        Whether every compiler must give the same bits.
-
-    Attributes
-    ----------
-    run : ctypes function
-        Takes a task; releases the global interpreter lock while it runs.
-    single : ctypes function or None
-        Takes a task of one motion, its span, its start and an array for its end; not with lanes.
-    trajectory, row : numpy.dtype
-        Layout of a motion in memory, and of a sample; their ``scale`` is the exponent of the
-        power of two that was taken out of the variation, in the variational form with lanes.
-    library : Library
-        The compiled file.
-
-    Raises
-    ------
-    solvers.integration.compiled.compiler.NoCompilerError
-        When no compiler could build it.
-    solvers.integration.compiled.layout.LayoutError
-        When C and Python disagree about a structure.
+    With `lanes` it runs many motions at once, where right-hand side and method allow it; else it
+    also has the function `single`, for a motion from start to end. If `compensated`, the state's
+    rounding errors are carried along; if `reproducible`, every compiler gives the same bits.
     """
 
     def __init__(
@@ -74,14 +44,13 @@ class Kernel:
         vectors = lanes and source.vectorises and tableau.is_explicit
         # a single motion is rescaled in Python instead
         variations = source.ordinary // 2 if lanes and form == "variational" else 0
-        sizes = source.sizes(tableau, compensated=compensated, variations=variations)
-        text = program(
-            source, tableau, lanes=vectors, compensated=compensated, variations=variations
-        )
+        extent: dict[str, Any] = {"compensated": compensated, "variations": variations}
+        sizes = source.sizes(tableau, **extent)
+        text = program(source, tableau, lanes=vectors, **extent)
         self.library = build(text, reproducible=reproducible)
         library = ctypes.CDLL(str(self.library.path))
         check(library, sizes)
-        self.run = library.run
+        self.run = library.run  # releases the global interpreter lock
         self.run.restype, self.run.argtypes = None, [ctypes.POINTER(Task)]
         self.single = None if lanes else library.single
         self.trajectory, self.row = record("Trajectory", sizes), record("Row", sizes)
@@ -96,31 +65,9 @@ kernel = cache(Kernel)
 class Batch:
     """Motions in memory, and the task of integrating them.
 
-    Parameters
-    ----------
-    kernel : Kernel
-        The compiled program.
-    problem : Problem
-        The problem that all motions share; its form has arrays of parameters if they differ.
-    starts : ndarray of shape (n, state), optional
-        Ordinary initial states; by default that of the problem.
-    capacity : int, optional
-        How many rows each motion may write: its samples, or the ends of its steps.
-    occurrences : int, optional
-        How many rows each motion may write for each event.
-    pauses : bool, optional
-        Whether a motion pauses when its rows are full.
-
-    Attributes
-    ----------
-    motions : structured ndarray of shape (n,)
-        Type ``Trajectory`` in ``c/layout.h``.
-    rows, event_rows : structured ndarray of shape (n, capacity), (n, events, occurrences)
-        The samples and events written.
-    stop : ndarray of shape (1,)
-        Any value but 0 makes `run` return.
-    task : ctypes structure
-        The argument of the compiled program.
+    `starts` are ordinary initial states in rows, by default that of the problem; its form has
+    arrays of parameters if they differ. Each motion may write `capacity` rows for its samples or
+    the ends of its steps, and `occurrences` rows for each event; `pauses` when they are full.
     """
 
     def __init__(
@@ -136,7 +83,7 @@ class Batch:
         starts = problem.start[np.newaxis] if starts is None else starts
         n, events, form = len(starts), cast("list[Event]", problem.events), problem.form
         self._kernel, self.form = kernel, form
-        self.motions = np.zeros(n, kernel.trajectory)
+        self.motions = np.zeros(n, kernel.trajectory)  # Trajectory in c/layout.h
         self.motions["t"], self.motions["t_end"] = problem.span
         self.motions["min_h"] = SHORTEST * np.spacing(np.abs(problem.span).max())
         self.motions["z"], self.motions["turns"] = form.from_ordinary_many(problem.span[0], starts)
@@ -144,7 +91,7 @@ class Batch:
             self.motions["params"][:, k] = parameter
         self.rows = np.zeros((n, capacity), kernel.row)
         self.event_rows = np.zeros((n, len(events), occurrences), kernel.row)
-        self.stop = np.zeros(1, np.int64)
+        self.stop = np.zeros(1, np.int64)  # any other value makes `run` return
         self._times = np.empty(0) if problem.samples is None else problem.samples
         self._events = np.array([_event(form, event, pauses) for event in events], EVENT)
         self.task = Task(
@@ -175,7 +122,10 @@ class Batch:
         self._kernel.run(self.task)
 
     def ordinary(self, rows: NDArray[np.void], motions: NDArray[np.intp] | None = None) -> Array:
-        """Ordinary states, in rows, of `rows` of some motions, by default of all."""
+        """Ordinary states, in rows, of `rows` of some motions, by default of all.
+
+        Powers of two that were taken out of a variation are its rows' ``scale``.
+        """
         form = self.form
         if motions is not None and any(np.size(parameter) > 1 for parameter in form.params):
             own = [np.broadcast_to(p, len(self.motions))[motions] for p in form.params]

@@ -106,36 +106,18 @@ STAGE = """\
 
 @dataclass(frozen=True)
 class Equations:
-    """One form of a system's equations in C.
+    """One form of a system's equations in C; `state`, `parameters` and `ordinary` are sizes."""
 
-    Attributes
-    ----------
-    header : str
-        Text of the generated header.
-    rhs, jacobian : str
-        Names of the right-hand side and its Jacobian, which does not exist in every form.
-    state, parameters, ordinary : int
-        Number of components of the form's state, of parameters, and of an ordinary state.
-    angles : sequence of pairs of int
-        For every angle known by sine and cosine: the index of its sine, which its cosine
-        follows, and of its velocity.
-    from_ordinary, to_ordinary : sequence of str
-        Statements that compute the state z of this form and the turns of its angles from
-        the ordinary state y, and y from these.
-    vectorises : bool
-        Whether the right-hand side calls no function, so that its numbers may be vectors.
-    """
-
-    header: str
-    rhs: str
+    header: str  # text of the generated header
+    rhs: str  # names of the right-hand side and its Jacobian, which not every form has
     jacobian: str
     state: int
     parameters: int
     ordinary: int
-    angles: Sequence[tuple[int, int]]
-    from_ordinary: Sequence[str]
-    to_ordinary: Sequence[str]
-    vectorises: bool
+    angles: Sequence[tuple[int, int]]  # indices of the sine, before the cosine, and the velocity
+    from_ordinary: Sequence[str]  # statements: state z and turns from the ordinary state y
+    to_ordinary: Sequence[str]  # and y from these
+    vectorises: bool  # the right-hand side calls no function: its numbers may be vectors
 
     def sizes(self, tableau: Tableau, *, compensated: bool, variations: int) -> dict[str, int]:
         """Numbers of components of the arrays in ``layout.h``."""

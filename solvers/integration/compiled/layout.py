@@ -66,10 +66,9 @@ def record(structure: str, sizes: Mapping[str, int]) -> np.dtype[np.void]:
     fields = members(structure)
     if structure == "Trajectory":  # it begins with the numbers of a Motion
         fields = members("Motion") + fields[1:]
-    return np.dtype([
-        (name, np.int64 if kind == "int64_t" else float, (sizes[length],) if length else ())
-        for kind, name, length in fields
-    ])  # fmt: skip
+    types = {"int64_t": np.int64}
+    shaped = ((name, types.get(kind, float), length) for kind, name, length in fields)
+    return np.dtype([(name, kind, (sizes[n],) if n else ()) for name, kind, n in shaped])
 
 
 EVENT = record("Event", {})
@@ -85,13 +84,7 @@ class Task(ctypes.Structure):
 
 
 def check(library: ctypes.CDLL, sizes: Mapping[str, int]) -> None:
-    """Compare the sizes of all structures with those of a compiled library.
-
-    Raises
-    ------
-    LayoutError
-        When one differs.
-    """
+    """Compare the sizes of all structures with those of a compiled library."""
     expected = {name: record(name, sizes).itemsize for name in ("Trajectory", "Row", "Event")}
     expected["Task"] = ctypes.sizeof(Task)
     compiled = (ctypes.c_int64 * len(expected)).in_dll(library, "LAYOUT_SIZES")

@@ -22,28 +22,17 @@ void rhs(double t, const double *y, double *dy, const double *params)
 
 @dataclass(frozen=True)
 class NativeRhs:
-    """``void rhs(double t, const double *y, double *dy, const double *params)``.
+    """``void rhs(double t, const double *y, double *dy, const double *params)``."""
 
-    Attributes
-    ----------
-    function : ctypes function
-        Takes a float and three pointers, such as ``array.ctypes.data``.
-    address : int
-        Address of the function, for numba, Cython or another library.
-    library : Library
-        The file, which stays loaded as long as `function` exists.
-    """
-
-    function: Any
-    address: int
+    function: Any  # of ctypes; takes a float and three pointers, such as ``array.ctypes.data``
+    address: int  # for numba, Cython or another library, as long as `function` exists
     library: Library
 
 
 def equations(module: GeneratedModule, form: str) -> Equations:
     """One form of a generated module in C."""
-    path = header(module)
+    path, name = header(module), module.SYSTEM
     if path is None:
-        name = module.SYSTEM
         raise ValueError(f"{name}.h is missing: write it with holonomic derive {name}")
     text = path.read_text(encoding="utf-8")
     rhs, jacobian = (f"{path.stem}_{named(stem, form)}" for stem in ("rhs", "jacobian"))
