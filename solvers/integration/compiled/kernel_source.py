@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
 from solvers.integration.problem import SHORTEST
@@ -15,9 +16,7 @@ from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.tableau import Tableau
 
 PROGRAM = """\
-#include <math.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 #include <time.h>
 {lanes}
@@ -63,19 +62,14 @@ enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
 
 {solution}
 
-static inline real increment(real h, real (*k)[DIM], int n)
-{{
-    return {increment};
-}}
+{increment}
+{estimate}
+{second_estimate}"""
 
-static inline real estimate(real h, real (*k)[DIM], int n)
+WEIGHTED_SUM = """\
+static inline real {name}(real h, real (*k)[DIM], int n)
 {{
-    return {estimate};
-}}
-
-static inline real second_estimate(real h, real (*k)[DIM], int n)
-{{
-    return {second_estimate};
+    return {sum};
 }}
 """
 
@@ -189,6 +183,11 @@ def _implicit(tableau: Tableau) -> str:
 
 
 def _method(tableau: Tableau) -> str:
+    names, weights = (
+        "increment estimate second_estimate".split(),
+        (tableau.b, *tableau.error_weights),
+    )
+    pairs = zip_longest(names, weights, fillvalue=())
     return METHOD.format(
         title=tableau.title,
         stages=tableau.stages,
@@ -197,9 +196,7 @@ def _method(tableau: Tableau) -> str:
         estimates=len(tableau.error_weights),
         is_explicit=int(tableau.is_explicit),
         solution=_explicit(tableau) if tableau.is_explicit else _implicit(tableau),
-        increment=_sum(tableau.b),
-        estimate=_sum(tableau.error_weights[0]) if tableau.b_hat else "0.0*h",
-        second_estimate=_sum(tableau.error_weights[1]) if tableau.b_low else "0.0*h",
+        **{name: WEIGHTED_SUM.format(name=name, sum=_sum(w)) for name, w in pairs},
     )
 
 

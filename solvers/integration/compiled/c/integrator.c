@@ -188,22 +188,19 @@ static int is_full(const Task *task, const Trajectory *trajectory)
 static int finish_step(Lanes *lanes, int lane, int returning)
 {
     WithinStep *within = &lanes->within[lane];
-    if (within->mode == ADVANCE) {
-        Trajectory *trajectory = within->trajectory;
-        const enum Status now = status(lanes, lane);
-        if (now != RUNNING || returning || is_full(lanes->task, trajectory)) {
-            read_lane(&lanes->motion, MOTION_SIZE, lane, trajectory->motion);
-            trajectory->status = now;
-            within->mode = IDLE;
-            if (!returning) {
-                load_motion(lanes, lane);
-            }
-            update_lane(lanes, lane);
-            return within->mode == IDLE;
+    Trajectory *trajectory = within->trajectory;
+    const int advances = within->mode == ADVANCE;
+    const enum Status now = advances ? status(lanes, lane) : RUNNING;
+    if (advances && (now != RUNNING || returning || is_full(lanes->task, trajectory))) {
+        read_lane(&lanes->motion, MOTION_SIZE, lane, trajectory->motion);
+        trajectory->status = now;
+        within->mode = IDLE;
+        if (!returning) {
+            load_motion(lanes, lane);
         }
     }
     update_lane(lanes, lane);
-    return 0;
+    return advances && within->mode == IDLE;
 }
 
 /* One step in every lane; returns the lanes that need to be processed one by one. */
@@ -311,19 +308,16 @@ void run(Task *task)
         }
         mask accepted, failed;
         const mask attention = advance(&lanes, &accepted, &failed) | ((mask){0} - returning);
-        if (!any(attention)) {
-            move(&lanes, accepted);
-            continue;
-        }
-        for (int lane = 0; lane < LANES; lane++) {
+        const int processed = any(attention) ? LANES : 0;
+        for (int lane = 0; lane < processed; lane++) {
             if (MASK_LANE(attention, lane)) {
-                const int moves = process_step(&lanes, lane, MASK_LANE(accepted, lane) != 0,
-                                               MASK_LANE(failed, lane) != 0);
-                MASK_LANE(accepted, lane) = -moves;
+                const int has_failed = MASK_LANE(failed, lane) != 0;
+                const int is_accepted = MASK_LANE(accepted, lane) != 0;
+                MASK_LANE(accepted, lane) = -process_step(&lanes, lane, is_accepted, has_failed);
             }
         }
         move(&lanes, accepted);
-        for (int lane = 0; lane < LANES; lane++) {
+        for (int lane = 0; lane < processed; lane++) {
             if (MASK_LANE(attention, lane)) {
                 busy -= finish_step(&lanes, lane, returning);
             }

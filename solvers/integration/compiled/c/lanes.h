@@ -34,96 +34,61 @@ typedef union {
     mask bits;
 } Bits;
 
-static inline mask as_mask(real x)
-{
-    return (Bits){.value = x}.bits;
-}
+static inline mask as_mask(real x) { return (Bits){.value = x}.bits; }
+static inline real as_real(mask x) { return (Bits){.bits = x}.value; }
 
-static inline real as_real(mask x)
-{
-    return (Bits){.bits = x}.value;
-}
+static inline real splat(double x) { return (real){0} + x; }
 
-/* Bits shifted left, as of an unsigned number. */
-static inline mask shift_left(mask x, int count)
-{
+/* Bits shifted left, as of an unsigned number; x < y; x where the condition holds, y elsewhere;
+   and whether it holds in any lane. */
 #ifdef ONE_LANE
-    return (mask)((uint64_t)x << count);
+static inline mask shift_left(mask x, int count) { return (mask)((uint64_t)x << count); }
+static inline mask less_than(real x, real y) { return -(mask)(x < y); }
+static inline real select(mask condition, real x, real y) { return condition ? x : y; }
+static inline int any(mask condition) { return condition != 0; }
 #else
-    return x << count;
-#endif
-}
+static inline mask shift_left(mask x, int count) { return x << count; }
 
-/* x < y; register by register, since GCC 12 compares longer vectors element by element. */
+/* Register by register, since GCC 12 compares longer vectors element by element. */
 static inline mask less_than(real x, real y)
 {
-#ifdef ONE_LANE
-    return -(mask)(x < y);
-#else
     const union { real all; half part[2]; } a = {x}, b = {y};
     const union { half_mask part[2]; mask all; } result = {{
         (half_mask)(a.part[0] < b.part[0]), (half_mask)(a.part[1] < b.part[1]),
     }};
     return result.all;
-#endif
 }
 
-static inline real splat(double x)
-{
-    return (real){0} + x;
-}
-
-/* x where the condition holds, y elsewhere. */
 static inline real select(mask condition, real x, real y)
 {
-#ifdef ONE_LANE
-    return condition ? x : y;
-#else
     return as_real((as_mask(x) & condition) | (as_mask(y) & ~condition));
-#endif
 }
 
 static inline int any(mask condition)
 {
-#ifdef ONE_LANE
-    return condition != 0;
-#else
     const union { mask all; half_mask part[2]; } masks = {condition};
     half_mask result = masks.part[0] | masks.part[1];
     for (int lane = 1; lane < LANES/2; lane++) {
         result[0] |= result[lane];
     }
     return result[0] != 0;
+}
 #endif
-}
 
-static inline real lane_fabs(real x)
-{
-    return as_real(as_mask(x) & INT64_MAX);
-}
+static inline real lane_fabs(real x) { return as_real(as_mask(x) & INT64_MAX); }
 
 static inline real lane_copysign(real x, real sign)
 {
     return as_real((as_mask(x) & INT64_MAX) | (as_mask(sign) & INT64_MIN));
 }
 
-static inline real lane_fmax(real x, real y)
-{
-    return select(less_than(y, x), x, y);
-}
-
-static inline real lane_fmin(real x, real y)
-{
-    return select(less_than(x, y), x, y);
-}
+static inline real lane_fmax(real x, real y) { return select(less_than(y, x), x, y); }
+static inline real lane_fmin(real x, real y) { return select(less_than(x, y), x, y); }
 
 /* The sum of this and a number of moderate size ends in the bits of the nearest integer. */
 static const double ROUND = 0x1.8p52;
 
-static inline real lane_round(real x)
-{
-    return (x + ROUND) - ROUND;
-}
+static inline real lane_round(real x) { return (x + ROUND) - ROUND; }
 
 /* Square root where the condition holds, lane by lane: it is seldom needed. */
 static real lane_sqrt(real x, mask condition)
