@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import zip_longest
 
 from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
 from solvers.integration.problem import SHORTEST
@@ -62,9 +61,7 @@ enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
 
 {solution}
 
-{increment}
-{estimate}
-{second_estimate}"""
+{sums}"""
 
 WEIGHTED_SUM = """\
 static inline real {name}(real h, real (*k)[DIM], int n)
@@ -183,11 +180,8 @@ def _implicit(tableau: Tableau) -> str:
 
 
 def _method(tableau: Tableau) -> str:
-    names, weights = (
-        "increment estimate second_estimate".split(),
-        (tableau.b, *tableau.error_weights),
-    )
-    pairs = zip_longest(names, weights, fillvalue=())
+    first, second, *_ = *tableau.error_weights, (), ()
+    sums = {"increment": tableau.b, "estimate": first, "second_estimate": second}
     return METHOD.format(
         title=tableau.title,
         stages=tableau.stages,
@@ -196,7 +190,7 @@ def _method(tableau: Tableau) -> str:
         estimates=len(tableau.error_weights),
         is_explicit=int(tableau.is_explicit),
         solution=_explicit(tableau) if tableau.is_explicit else _implicit(tableau),
-        **{name: WEIGHTED_SUM.format(name=name, sum=_sum(w)) for name, w in pairs},
+        sums="\n".join(WEIGHTED_SUM.format(name=name, sum=_sum(w)) for name, w in sums.items()),
     )
 
 
