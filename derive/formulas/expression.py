@@ -8,9 +8,8 @@ are limited before anything is computed.
 from __future__ import annotations
 
 import ast
-import operator
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from decimal import Decimal
 from typing import Any, TypeAlias
 
@@ -26,18 +25,11 @@ RELATION = re.compile(r"(>=|<=|=|>|<)")
 
 #: The functions and constants available in every formula.
 FUNCTIONS: dict[str, Any] = {
-    function.__name__: function for function in (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.sqrt)
+    f.__name__: f for f in (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.sqrt)
 } | {"pi": sp.pi}
 
 #: Limits: characters of a formula, absolute value of an exponent, bits of a number.
 MAX_LENGTH, MAX_EXPONENT, MAX_BITS = 20_000, 100, 256
-
-OPERATORS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-}
 
 
 class ExpressionError(ValueError):
@@ -45,26 +37,10 @@ class ExpressionError(ValueError):
 
 
 def parse(text: str, scope: Scope) -> Value:
-    """Parse the formula `text`, with names from `scope`.
+    """Parse the formula `text`; its names and functions are those of `scope`, its value is finite.
 
     Numbers are exact (``1/2`` is one half, ``9.81`` is 981/100), ``(a, b)`` is a
     column and ``[[a, b], [c, d]]`` a matrix.
-
-    Parameters
-    ----------
-    text : str
-        The formula, of at most `MAX_LENGTH` characters.
-    scope : mapping of str to SymPy values and functions
-        All names available to it, functions such as those in `FUNCTIONS` included.
-
-    Returns
-    -------
-    sympy.Expr or sympy.ImmutableDenseMatrix
-
-    Raises
-    ------
-    ExpressionError
-        When `text` is not arithmetic on known names and functions, or has no finite value.
     """
     return evaluate(syntax_tree(text), text.strip(), scope)
 
@@ -105,7 +81,7 @@ class _Evaluator:
     def value(self, node: ast.expr) -> Any:
         value = self._value(node)
         if isinstance(value, sp.Rational):
-            bits = max(abs(value.p).bit_length(), value.q.bit_length())
+            bits = max(value.p.bit_length(), value.q.bit_length())
             if bits > MAX_BITS:
                 raise ExpressionError(f"a number has {bits} bits; at most {MAX_BITS} are allowed")
         return value
@@ -120,18 +96,22 @@ class _Evaluator:
                 return -self.value(operand)
             case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
                 return _power(self.value(base), self.value(exponent))
-            case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
-                return OPERATORS[type(op)](self.value(left), self.value(right))
+            case ast.BinOp(left=left, op=ast.Add(), right=right):
+                return self.value(left) + self.value(right)
+            case ast.BinOp(left=left, op=ast.Sub(), right=right):
+                return self.value(left) - self.value(right)
+            case ast.BinOp(left=left, op=ast.Mult(), right=right):
+                return self.value(left) * self.value(right)
+            case ast.BinOp(left=left, op=ast.Div(), right=right):
+                return self.value(left) / self.value(right)
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 return self._lookup(name, function=True)(*map(self.value, arguments))
             case ast.Tuple(elts=[_, *_] as items):
                 return sp.ImmutableDenseMatrix(list(map(self._entry, items)))
-            case ast.List(elts=[ast.List(elts=[_, *_] as first), *_] as rows) if all(
-                isinstance(row, ast.List) and len(row.elts) == len(first) for row in rows
-            ):
-                entries = [item for row in rows if isinstance(row, ast.List) for item in row.elts]
-                shape = len(rows), len(first)
-                return sp.ImmutableDenseMatrix(*shape, list(map(self._entry, entries)))
+            case ast.List(elts=[ast.List(elts=[_, *_]), *_] as lists):
+                rows = [row.elts for row in lists if isinstance(row, ast.List)]
+                if len(rows) == len(lists) and len(set(map(len, rows))) == 1:
+                    return sp.ImmutableDenseMatrix([list(map(self._entry, row)) for row in rows])
             case ast.BinOp(op=ast.BitXor()):
                 raise ExpressionError(f"{_quoted(node)}: write powers with **, not ^")
         raise ExpressionError(
@@ -170,9 +150,8 @@ def _quoted(node: ast.expr) -> str:
 
 def _power(base: Value, exponent: Value) -> Value:
     if not (isinstance(exponent, sp.Rational) and abs(exponent) <= MAX_EXPONENT):
-        raise ExpressionError(
-            f"exponent {str(exponent)[:50]}: only numbers up to {MAX_EXPONENT} are allowed"
-        )
+        limit = f"only numbers up to {MAX_EXPONENT} are allowed"
+        raise ExpressionError(f"exponent {str(exponent)[:50]}: {limit}")
     if isinstance(base, sp.MatrixBase):
         raise ExpressionError("powers of matrices are not supported: write out the product")
     if isinstance(base, sp.Rational) and base.p.bit_length() * abs(exponent) > MAX_BITS:

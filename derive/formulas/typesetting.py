@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from html import escape
 
 import sympy as sp
@@ -29,16 +30,8 @@ SUM, PRODUCT, POWER, ATOM = range(4)
 
 @dataclass(frozen=True)
 class Formula:
-    """A formula that notebooks display as mathematics.
+    """A formula that notebooks display as mathematics; other text is displayed unchanged.
 
-    Parameters
-    ----------
-    text : str
-        In the language of formulas: ``"L = m*x_dot**2/2"``. Text that is not a
-        formula is displayed unchanged.
-
-    Examples
-    --------
     >>> Formula("E = m*v**2/2").html.count("<math")
     2
     """
@@ -48,9 +41,10 @@ class Formula:
     @staticmethod
     def of(name: str, value: sp.Expr | sp.MatrixBase) -> Formula:
         """Return the formula ``name = value`` of a SymPy value."""
+        plain = partial(sp.sstr, order="lex")
         if not isinstance(value, sp.MatrixBase):
-            return Formula(f"{name} = {_plain(value)}")
-        rows = (", ".join(map(_plain, row)) for row in value.tolist())
+            return Formula(f"{name} = {plain(value)}")
+        rows = (", ".join(map(plain, row)) for row in value.tolist())
         return Formula(f"{name} = [{', '.join(f'[{row}]' for row in rows)}]")
 
     @property
@@ -64,10 +58,6 @@ class Formula:
 
     def _repr_html_(self) -> str:
         return self.html
-
-
-def _plain(value: sp.Expr) -> str:
-    return sp.sstr(value, order="lex")
 
 
 def _line(text: str) -> str:
@@ -103,19 +93,18 @@ def _markup_and_binding(node: ast.expr) -> tuple[str, int]:
             return "".join(_terms(node)), SUM
         case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
             return _power(base, exponent), POWER
-        case ast.BinOp(left=left, op=ast.Mult() | ast.Div()) if positive := _negated(left):
-            term = ast.BinOp(positive, node.op, node.right)
-            return MINUS + _operand(term, PRODUCT), SUM
+        case ast.BinOp(op=ast.Mult() | ast.Div()) if positive := _negated(node):
+            return MINUS + _operand(positive, PRODUCT), SUM
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
-            gap = GAP if _is_call(right) else ""
+            first = right.left if isinstance(right, ast.BinOp) else right
+            gap = GAP if isinstance(first, ast.Call) else ""
             return _operand(left, PRODUCT) + TIMES + gap + _operand(right, PRODUCT), PRODUCT
-        case ast.BinOp(left=left, op=ast.Div(), right=ast.Constant() as right) if not isinstance(
-            left, ast.Constant
-        ):  # a numeric factor before a long numerator, instead of a long fraction
+        case ast.BinOp(left=left, op=ast.Div(), right=right):
+            if isinstance(left, ast.Constant) or not isinstance(right, ast.Constant):
+                return f"<mfrac>{_row(_markup(left))}{_row(_markup(right))}</mfrac>", PRODUCT
+            # a numeric factor before a long numerator, instead of a long fraction
             factor = ast.BinOp(ast.Constant(1), ast.Div(), right)
             return _markup_and_binding(ast.BinOp(factor, ast.Mult(), left))
-        case ast.BinOp(left=left, op=ast.Div(), right=right):
-            return f"<mfrac>{_row(_markup(left))}{_row(_markup(right))}</mfrac>", PRODUCT
         case ast.Call(func=ast.Name(id=name), args=arguments):
             return _call(name, arguments)
         case ast.Tuple(elts=items):
@@ -123,10 +112,6 @@ def _markup_and_binding(node: ast.expr) -> tuple[str, int]:
         case ast.List(elts=rows) if all(isinstance(row, ast.List) for row in rows):
             return _matrix([row.elts for row in rows if isinstance(row, ast.List)]), ATOM
     raise ExpressionError(f"{ast.unparse(node)[:80]!r} cannot be typeset")
-
-
-def _is_call(node: ast.expr) -> bool:
-    return isinstance(node.left if isinstance(node, ast.BinOp) else node, ast.Call)
 
 
 def _negated(node: ast.expr) -> ast.expr | None:
@@ -190,10 +175,8 @@ def _infix(sign: str) -> str:
 def _brackets(markup: str) -> str:
     # brackets grow with fractions and tables only, not with accents
     stretchy = "true" if "<mfrac" in markup or "<mtable" in markup else "false"
-    left, right = (
-        f'<mo form="{form}" stretchy="{stretchy}">{bracket}</mo>'
-        for form, bracket in (("prefix", "("), ("postfix", ")"))
-    )
+    left = f'<mo form="prefix" stretchy="{stretchy}">(</mo>'
+    right = f'<mo form="postfix" stretchy="{stretchy}">)</mo>'
     return _row(left + markup + right)
 
 

@@ -9,10 +9,11 @@ the expression is zero exactly when the polynomial is.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from functools import cache, reduce
 from math import lcm
-from operator import mul
+from operator import or_
 
 import sympy as sp
 from sympy.polys.rings import PolyElement, PolyRing
@@ -22,23 +23,10 @@ MAX_MULTIPLE = 100
 
 
 def vanishes(expression: sp.Expr) -> bool:
-    """Whether `expression` is identically zero.
+    """Whether `expression`, rational in symbols and in sines and cosines of sums, is zero.
 
-    Parameters
-    ----------
-    expression : sympy.Expr
-        Rational in symbols, and in sines and cosines of sums of them.
-
-    Returns
-    -------
-    bool
-
-    Raises
-    ------
-    NotImplementedError
-        When it is not, or has a power or a multiple of an angle above `MAX_MULTIPLE`.
-    ZeroDivisionError
-        When a denominator is identically zero.
+    A `NotImplementedError` reports other expressions, and powers and multiples of angles above
+    `MAX_MULTIPLE`; a `ZeroDivisionError`, a denominator that is identically zero.
     """
     whole = _with_integer_angles(expression)
     expanded = whole.xreplace({wave: _expanded(wave) for wave in _waves(whole)})
@@ -56,19 +44,13 @@ def vanishes(expression: sp.Expr) -> bool:
 def is_positive(expression: sp.Expr, *, strictly: bool) -> bool:
     """Whether `expression` is proved positive, or not negative, as a sum of such terms."""
     numerator, denominator = sp.fraction(sp.together(expression))
-    forms = [
-        numerator,
-        *(
-            numerator.subs(wave(angle) ** 2, 1 - partner(angle) ** 2)
-            for wave, partner in ((sp.sin, sp.cos), (sp.cos, sp.sin))
-            for angle in {wave.args[0] for wave in _waves(numerator)}
-        ),
-    ]
+    angles = {wave.args[0] for wave in _waves(numerator)}
+    squares = [(sp.sin(angle) ** 2, sp.cos(angle) ** 2) for angle in angles]
+    forms = [numerator, *(numerator.subs(a, 1 - b) for a, b in squares)]
+    forms += [numerator.subs(b, 1 - a) for a, b in squares]
     factored = (sp.factor_terms(sp.expand(form)) for form in forms)
-    return bool(
-        denominator.is_positive
-        and any(form.is_positive if strictly else form.is_nonnegative for form in factored)
-    )
+    proofs = (form.is_positive if strictly else form.is_nonnegative for form in factored)
+    return bool(denominator.is_positive and any(proofs))
 
 
 @dataclass(frozen=True)
@@ -76,7 +58,7 @@ class _Fraction:
     """A polynomial over a product of powers of polynomials."""
 
     numerator: PolyElement
-    denominator: dict[PolyElement, int] = field(default_factory=dict)
+    denominator: Counter[PolyElement] = field(default_factory=Counter)  # powers
 
 
 class _Converter:
@@ -105,40 +87,28 @@ class _Converter:
         raise NotImplementedError(f"cannot decide whether {str(expression)[:80]!r} vanishes")
 
     def _sum(self, fractions: list[_Fraction]) -> _Fraction:
-        common: dict[PolyElement, int] = {}
-        for fraction in fractions:
-            for factor, power in fraction.denominator.items():
-                common[factor] = max(power, common.get(factor, 0))
+        common = reduce(or_, (fraction.denominator for fraction in fractions))
         total = self._ring.zero
         for fraction in fractions:
-            missing = [
-                factor
-                for factor, power in common.items()
-                for _ in range(power - fraction.denominator.get(factor, 0))
-            ]
-            total += reduce(self._times, missing, fraction.numerator)
-        return _Fraction(total, common if total else {})
+            missing = common - fraction.denominator
+            total += reduce(self._times, missing.elements(), fraction.numerator)
+        return _Fraction(total, common if total else Counter())
 
     def _product(self, a: _Fraction, b: _Fraction) -> _Fraction:
-        denominator = dict(a.denominator)
-        for factor, power in b.denominator.items():
-            denominator[factor] = denominator.get(factor, 0) + power
-        return _Fraction(self._times(a.numerator, b.numerator), denominator)
+        return _Fraction(self._times(a.numerator, b.numerator), a.denominator + b.denominator)
 
     def _inverse(self, a: _Fraction) -> _Fraction:
         if not a.numerator:
             raise ZeroDivisionError("a denominator is identically zero")
-        above = [factor for factor, power in a.denominator.items() for _ in range(power)]
         content, primitive = a.numerator.primitive()
         # common symbols become separate factors, because they often cancel
-        shared = reduce(
-            lambda m, n: tuple(map(min, m, n)), primitive.monoms(), primitive.monoms()[0]
-        )
-        denominator = {self._ring.gens[i]: power for i, power in enumerate(shared) if power}
+        shared = tuple(map(min, zip(*primitive.monoms(), strict=True)))
+        denominator = Counter(dict(zip(self._ring.gens, shared, strict=True)))
         rest = primitive.quo(self._ring({shared: sp.QQ(1)}))
         if rest != 1:
             denominator[rest] = 1
-        return _Fraction(reduce(self._times, above, self._ring(1 / content)), denominator)
+        above = a.denominator.elements()
+        return _Fraction(reduce(self._times, above, self._ring(1 / content)), +denominator)
 
     def _times(self, a: PolyElement, b: PolyElement) -> PolyElement:
         product = a * b
@@ -153,11 +123,8 @@ class _Converter:
             parts.setdefault(half, {})[(*monomial[:i], odd, *monomial[i + 1 :])] = coefficient
         if set(parts) <= {0}:
             return poly
-        return reduce(
-            lambda total, part: total + mul(self._ring(part[1]), square ** part[0]),
-            parts.items(),
-            self._ring.zero,
-        )
+        terms = (self._ring(part) * square**half for half, part in parts.items())
+        return sum(terms, self._ring.zero)
 
 
 def _waves(expression: sp.Expr) -> set[sp.Expr]:
@@ -167,9 +134,8 @@ def _waves(expression: sp.Expr) -> set[sp.Expr]:
 def _with_integer_angles(expression: sp.Expr) -> sp.Expr:
     """Rescale the symbols of `expression` so that all multiples of angles are integers."""
     arguments = [sp.expand(wave.args[0]) for wave in _waves(expression)]
-    scale = lcm(
-        *(int(n.q) for a in arguments for n in a.as_coefficients_dict().values() if n.is_Rational)
-    )
+    multiples = [n for a in arguments for n in a.as_coefficients_dict().values()]
+    scale = lcm(*(int(n.q) for n in multiples if n.is_Rational))
     symbols = {symbol for argument in arguments for symbol in argument.free_symbols}
     if scale > 1:
         expression = expression.xreplace({symbol: scale * symbol for symbol in symbols})

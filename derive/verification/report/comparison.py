@@ -43,15 +43,7 @@ STYLE = """\
 
 @dataclass(frozen=True)
 class StepComparison:
-    """A step of the derivation and the report's equations; notebooks display both.
-
-    Attributes
-    ----------
-    step : Step
-        The derived step.
-    verdicts : tuple of Verdict
-        On the report's equations.
-    """
+    """A step of the derivation and the report's equations; notebooks display both."""
 
     step: Step
     verdicts: tuple[Verdict, ...]

@@ -23,16 +23,13 @@ from derive.verification.model import depends_on, time_derivative
 Vector: TypeAlias = sp.ImmutableDenseMatrix
 
 #: A generic state for numeric witnesses: unequal masses and lengths, nothing at rest.
-NUMBERS = dict(
-    pair.split("=")
-    for pair in (
-        "m1=1.3 m2=0.7 l1=1.1 l2=0.8 m=1.3 l=1.1 g=9.81 g_dot=0.21 theta1=0.6 theta2=-0.9 "
-        "theta=0.6 theta1_dot=1.7 theta2_dot=-0.4 theta_dot=1.7 theta1_ddot=0.5 theta2_ddot=2.3 "
-        "theta_ddot=0.5 chi1=0.3 chi2=0.2 t=0.4 theta0=0.15 psi=0.35 Ixx=1.1 Iyy=1.9 Izz=2.7 "
-        "omega_x=0.4 omega_y=-0.7 omega_z=1.2 omega_x_dot=0.8 omega_y_dot=0.3 omega_z_dot=-0.6 "
-        "stray=0.7"
-    ).split()
-)
+STATE = """
+m1=1.3 m2=0.7 l1=1.1 l2=0.8 m=1.3 l=1.1 g=9.81 g_dot=0.21 theta1=0.6 theta2=-0.9 theta=0.6
+theta1_dot=1.7 theta2_dot=-0.4 theta_dot=1.7 theta1_ddot=0.5 theta2_ddot=2.3 theta_ddot=0.5
+chi1=0.3 chi2=0.2 t=0.4 theta0=0.15 psi=0.35 Ixx=1.1 Iyy=1.9 Izz=2.7 omega_x=0.4 omega_y=-0.7
+omega_z=1.2 omega_x_dot=0.8 omega_y_dot=0.3 omega_z_dot=-0.6 stray=0.7
+"""
+NUMBERS = dict(pair.split("=") for pair in STATE.split())
 
 #: The value of a printed letter without a meaning.
 STRAY = sp.Symbol("stray")
@@ -115,8 +112,7 @@ def rigid_body() -> Context:
     spin, spin_rate = (sp.diag(*inertia) * Vector(w) for w in (omega, omega_dot))
     torque = spin_rate + Vector(omega).cross(spin)
     symbols = (*inertia, *omega, *omega_dot)
-    scope = {s.name: s for s in symbols}
-    scope |= _named("tau_x tau_y tau_z", *torque)
+    scope = {s.name: s for s in symbols} | _named("tau_x tau_y tau_z", *torque)
     return Context(scope, (_numbers(symbols),), index_count=3)
 
 
@@ -135,24 +131,18 @@ def _common_scope(derivation: Derivation) -> dict[str, Any]:
         return time_derivative(system, value.xreplace(momenta))
 
     def d(value: Any, symbol: sp.Symbol) -> Any:
-        if symbol == TIME and not value.has(TIME):
-            # L and H can depend on time through a varying gravity only
-            return value.diff(g) * G_DOT
-        return value.diff(symbol)
+        # L and H can depend on time through a varying gravity only
+        varying = symbol == TIME and not value.has(TIME)
+        return value.diff(g) * G_DOT if varying else value.diff(symbol)
 
     def only(value: Any, *symbols: sp.Symbol) -> Any:
         # the value with all other coordinates, velocities and accelerations set to 0
         others = {*system.q, *system.qdot, *system.qddot} - {*symbols}
         return value.xreplace(momenta).subs(dict.fromkeys(others, 0))
 
-    names = {s.name: s for s in (*system.params, TIME)}
-    energies = {"K": derivation.kinetic_energy, "P": derivation.potential_energy}
-    return (
-        FUNCTIONS
-        | names
-        | energies
-        | {"L": derivation.lagrangian, "d": d, "ddt": ddt, "only": only}
-    )
+    energies = derivation.kinetic_energy, derivation.potential_energy, derivation.lagrangian
+    scope = FUNCTIONS | {s.name: s for s in (*system.params, TIME)}
+    return scope | _named("K P L d ddt only", *energies, d, ddt, only)
 
 
 def _context(derivation: Derivation, scope: Mapping[str, Any], *, moving: bool) -> Context:

@@ -26,7 +26,7 @@ EQUATIONS = {equation.id: equation for equation in (*chapters.EQUATIONS, *append
 
 
 def verdicts(order_of: OrderOf) -> list[Verdict]:
-    """Judge all equations of the report; `order_of` returns the order of a Runge–Kutta method."""
+    """Judge all equations of the report."""
     return [verdict(equation, order_of) for equation in EQUATIONS.values()]
 
 
@@ -111,13 +111,11 @@ def check(equation: Equation, text: str, order_of: OrderOf) -> Check:
     return context.check(text, known | defined) if result.holds and "<" in text else result
 
 
-def _residual(equation: Equation, comparison: int) -> str:
+def _residual(equation: Equation, index: int) -> str:
     """Printed minus corrected form, in the comparison where they first differ."""
     context, known = _context(equation), _definitions_used(equation)
-    printed, corrected = (
-        context.comparisons(_with_measure(equation, text), known)[comparison].residual
-        for text in (equation.printed, equation.corrected)
-    )
+    texts = (_with_measure(equation, text) for text in (equation.printed, equation.corrected))
+    printed, corrected = (context.comparisons(text, known)[index].residual for text in texts)
     return sp.sstr(sp.factor_terms(sp.together(sp.expand(printed - corrected))))
 
 
@@ -165,9 +163,8 @@ def _definitions(text: str, context: Context, known: dict[str, Value]) -> dict[s
 
 def _method_lines(equation: Equation, text: str) -> list[str]:
     """The four stages and the step of one method, with `text` for `equation`."""
-    if equation.using:
-        keys = [*equation.using, equation.id]
-    else:
+    keys = [*equation.using, equation.id]
+    if not equation.using:  # the equations of one method follow each other
         keys = [e.id for e in EQUATIONS.values() if e.system == "method" and not e.using]
         first = keys.index(equation.id) // (STAGES + 1) * (STAGES + 1)
         keys = keys[first : first + STAGES + 1]

@@ -8,7 +8,7 @@ known through character recognition only, which can lose a bracket.
 from __future__ import annotations
 
 import re
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 
 import sympy as sp
 
@@ -21,34 +21,25 @@ OPENING = {"]": "[", "}": "{", ")": "("}
 
 @dataclass(frozen=True)
 class Scene:
-    """Masses in kg, lengths in m, gravity in m/s^2, start in rad and rad/s, duration in s."""
+    """A motion; by default that of chapters 3 to 5, with the velocities of program 1."""
 
-    masses: tuple[sp.Expr, ...]
-    lengths: tuple[sp.Expr, ...]
-    gravity: sp.Expr
-    angles: tuple[sp.Expr, ...]
-    velocities: tuple[sp.Expr, ...]
-    duration: sp.Expr
+    masses: tuple[sp.Expr, ...] = (sp.S(1), sp.S(1))  # kg
+    lengths: tuple[sp.Expr, ...] = (sp.S(2), sp.S(2))  # m
+    gravity: sp.Expr = sp.S(981) / 100  # m/s^2
+    angles: tuple[sp.Expr, ...] = (sp.pi / 2, sp.pi)  # rad
+    velocities: tuple[sp.Expr, ...] = (sp.S(0), sp.S(0))  # rad/s
+    duration: int = 5  # s
 
-    def differences(self, other: Scene) -> tuple[str, ...]:
-        """Describe the values that differ from those of `other`."""
-        own, others = asdict(self), asdict(other)
-        return tuple(
-            f"{name}: {sp.sstr(own[name])} instead of {sp.sstr(others[name])}"
-            for name in own
-            if own[name] != others[name]
-        )
+    @property
+    def differences(self) -> tuple[str, ...]:
+        """The values that differ from those of the prose."""
+        pairs = zip(asdict(self).items(), asdict(PROSE).values(), strict=True)
+        differing = [(name, own, stated) for (name, own), stated in pairs if own != stated]
+        return tuple(f"{n}: {sp.sstr(a)} instead of {sp.sstr(b)}" for n, a, b in differing)
 
 
-#: The values that chapters 3 to 5 state for all programs. Velocities are those of program 1.
-PROSE = Scene(
-    masses=(sp.S(1), sp.S(1)),
-    lengths=(sp.S(2), sp.S(2)),
-    gravity=sp.Rational("9.81"),
-    angles=(sp.pi / 2, sp.pi),
-    velocities=(sp.S(0), sp.S(0)),
-    duration=sp.S(5),
-)
+#: The values that the chapters state for all programs.
+PROSE = Scene()
 
 
 @dataclass(frozen=True)
@@ -77,18 +68,13 @@ def _first() -> Program:
     )
     call = "NDSolve[ { ..., theta2'[0] == 0, {theta1[t], theta2[t], t}, {t, 0, 5} ]"
     length = _length_solved(equations)
-    scene = replace(PROSE, lengths=(length, length))
+    scene = Scene(lengths=(length, length))
     stops = [_bracket_fault(call)]
     if _has_time_as_unknown(call):
         stops.append("it passes the time itself to NDSolve as an unknown")
-    return Program(
-        "program1",
-        "Appendix B, figure 1: Lagrangian",
-        f"the Euler-Lagrange equations of equal masses on rods of {length} m",
-        scene,
-        tuple(stops),
-        scene.differences(PROSE),
-    )
+    title = "Appendix B, figure 1: Lagrangian"
+    solves = f"the Euler-Lagrange equations of equal masses on rods of {length} m"
+    return Program("program1", title, solves, scene, tuple(stops), scene.differences)
 
 
 def _second() -> Program:
@@ -101,24 +87,16 @@ def _second() -> Program:
     )
     correct = double_pendulum(moving=False).check(f"L = {lagrangian}").holds
     text = "sol = First[NDSolve[...]]; x1[t] := Sin[phi1[t]] /. sol2; ... Plot[... /. sol, ...]"
-    scene = replace(PROSE, velocities=(sp.pi, 2 * sp.pi))
-    undefined = (
-        f"the coordinates of the bobs need {name}, which is never assigned; no plot uses them"
-        for name in _unassigned(text)
-    )
-    return Program(
-        "program2",
-        "Appendix B, figure 2: Euler-Lagrangian",
-        f"the Euler-Lagrange equations of {'the correct' if correct else 'a wrong'} Lagrangian",
-        scene,
-        (),
-        (
-            *scene.differences(PROSE),
-            *undefined,
-            "these coordinates omit the lengths, as for rods of 1 m",
-            "its last plot shows phi2 over phi1, not a path of the bobs",
-        ),
-    )
+    scene = Scene(velocities=(sp.pi, 2 * sp.pi))
+    differs = list(scene.differences)
+    for name in _unassigned(text):
+        needed = f"the coordinates of the bobs need {name}, which is never assigned"
+        differs.append(f"{needed}; no plot uses them")
+    differs.append("these coordinates omit the lengths, as for rods of 1 m")
+    differs.append("its last plot shows phi2 over phi1, not a path of the bobs")
+    title = "Appendix B, figure 2: Euler-Lagrangian"
+    solves = f"the Euler-Lagrange equations of {'the correct' if correct else 'a wrong'} Lagrangian"
+    return Program("program2", title, solves, scene, (), tuple(differs))
 
 
 def _third() -> Program:
@@ -144,25 +122,23 @@ def _third() -> Program:
     assigned = re.findall(r"\{(\w+), \w+, \w+, \w+\} =", loop)
     functions = set(re.findall(r"(\w+)\[t_", loop))
     needed = sorted(set(re.findall(r"\bj\d", loop)) - set(assigned))
-    scene = replace(PROSE, angles=(sp.S(0), -sp.pi / 4), duration=sp.S(50))
-    return Program(
-        "program3",
-        "Appendix B, figures 3 and 4: Runge-Kutta",
-        f"accelerations: the first {_agreement('theta1_ddot', f3)}, "
-        f"the second {_agreement('theta2_ddot', f4)}; "
-        "5000 steps of the classical fourth-order method, h = 0.01 s",
-        scene,
-        (
-            _bracket_fault(loop),
-            f"it assigns to its functions {', '.join(n for n in assigned if n in functions)}",
-            f"it never assigns to {', '.join(needed)}, which it needs",
-        ),
-        (
-            *scene.differences(PROSE),
-            "it has the fourth-order method only, and eight plots of this one run: if the figures "
-            "RK1 to RK4 show methods of these orders, no program computes three of them",
-        ),
+    scene = Scene(angles=(sp.S(0), -sp.pi / 4), duration=50)
+    title = "Appendix B, figures 3 and 4: Runge-Kutta"
+    solves = (
+        f"accelerations: the first {_agreement('theta1_ddot', f3)}, the second "
+        f"{_agreement('theta2_ddot', f4)}; 5000 steps of the classical fourth-order method, "
+        "h = 0.01 s"
     )
+    stops = (
+        _bracket_fault(loop),
+        f"it assigns to its functions {', '.join(n for n in assigned if n in functions)}",
+        f"it never assigns to {', '.join(needed)}, which it needs",
+    )
+    orders = (
+        "it has the fourth-order method only, and eight plots of this one run: if the figures "
+        "RK1 to RK4 show methods of these orders, no program computes three of them"
+    )
+    return Program("program3", title, solves, scene, stops, (*scene.differences, orders))
 
 
 def _length_solved(equations: tuple[str, ...]) -> sp.Expr:
