@@ -1,8 +1,7 @@
 """Safe parsing of formulas: text is parsed and never executed.
 
-Python's parser builds the syntax tree. Only the nodes listed here become SymPy
-values, and names are looked up only in the scope that the caller passes. Sizes
-are limited before anything is computed.
+Of the syntax tree that Python's parser builds, only the nodes listed here become SymPy
+values, with names from the caller's scope. Sizes are limited before anything is computed.
 """
 
 from __future__ import annotations

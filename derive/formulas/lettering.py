@@ -5,14 +5,11 @@ from __future__ import annotations
 import re
 from html import escape
 
-GREEK = dict(
-    zip(
-        "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi "
-        "chi psi omega Gamma Delta Theta Lambda Pi Sigma Phi Psi Omega".split(),
-        "αβγδεζηθκλμνξπρστφχψωΓΔΘΛΠΣΦΨΩ",
-        strict=True,
-    )
+NAMES = (
+    "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi "
+    "chi psi omega Gamma Delta Theta Lambda Pi Sigma Phi Psi Omega"
 )
+GREEK = dict(zip(NAMES.split(), "αβγδεζηθκλμνξπρστφχψωΓΔΘΛΠΣΦΨΩ", strict=True))
 DOTS = {"_dot": ".", "_ddot": ".."}
 
 

@@ -29,11 +29,6 @@ class Model:
         states = tuple(generic_state(system, index) for index in range(SUFFICIENT_STATES))
         return Context({**own_names(system), **self.names}, states)
 
-    @cached_property
-    def variables(self) -> tuple[sp.Symbol, ...]:
-        """All symbols that change during a motion."""
-        return variables(self.derivation.system)
-
     def holds_along_motions(self, residual: sp.Expr) -> bool:
         """Whether an equation of motion holds with the derived accelerations, in numbers."""
         derivation, accelerations = self.derivation, self.derivation.system.qddot
@@ -60,9 +55,8 @@ def own_names(system: System) -> Scope:
 
 def generic_state(system: System, index: int) -> State:
     """One of many states at which nothing vanishes; at the first, coordinates are small."""
-    values = {
-        s: sp.Rational(11 * k + 17 + 3 * index, 7 * k + 11) for k, s in enumerate(system.params)
-    }
+    shift = 17 + 3 * index
+    values = {s: sp.Rational(11 * k + shift, 7 * k + 11) for k, s in enumerate(system.params)}
     for k, symbol in enumerate(variables(system)):
         # signs vary, and angles exceed a right angle, so that sqrt(x**2) and x differ
         size = sp.Rational(5 * k + 3 + index, 9 * k + 14) * (1 + index)

@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive.formulas.expression import ExpressionError, parse
 from derive.mechanics.derivation import Derivation
-from derive.verification.model import Model, depends_on, time_derivative
+from derive.verification.model import Model, depends_on, time_derivative, variables
 from derive.verification.terms import (
     Term,
     WrongTerm,
@@ -74,10 +74,9 @@ def _judge_quantity(label: str, text: str, model: Model, kind: str, derived: sp.
     if kind == "energy" and is_zero(value - total):
         note = "it is T + V; Jacobi's integral, the value of H, is another quantity"
         return verdict(verdict="verified", note=note)
-    if kind in UP_TO_A_CONSTANT and all(is_zero(difference.diff(s)) for s in model.variables):
+    if kind in UP_TO_A_CONSTANT and all(is_zero(difference.diff(s)) for s in variables(system)):
         return verdict(verdict="equivalent", note="it differs by a constant")
-    wrong_term = _wrong_term_of_quotient(text, model, derived)
-    evidence = _evidence(model, value, derived, wrong_term)
+    evidence = _evidence(model, value, derived, _wrong_term_of_quotient(text, model, derived))
     return verdict(verdict="wrong", correction=str(derived), **evidence)
 
 
@@ -92,13 +91,13 @@ def _is_gauge_term(difference: sp.Expr, model: Model) -> bool:
 
 def _wrong_term_of_quotient(text: str, model: Model, derived: sp.Expr) -> WrongTerm | None:
     """Return the first wrong term of a sum, or of a quotient: its denominator comes first."""
-    scope, variables = model.context.scope, model.variables
+    scope, state = model.context.scope, variables(model.derivation.system)
     terms = split_terms(text, scope)
     if len(terms) == 1:
         numerator, denominator = sp.fraction(sp.together(terms[0].value))
         derived_numerator, derived_denominator = sp.fraction(sp.together(derived))
-        if depends_on(denominator, variables):
-            ratio = common_factor([Term("", denominator)], derived_denominator, variables)
+        if depends_on(denominator, state):
+            ratio = common_factor([Term("", denominator)], derived_denominator, state)
             if not model.context.is_zero(denominator - ratio * derived_denominator):
                 return WrongTerm(str(denominator), sp.expand(ratio * derived_denominator))
             terms, derived = [Term(text, numerator)], derived_numerator * ratio
@@ -106,35 +105,31 @@ def _wrong_term_of_quotient(text: str, model: Model, derived: sp.Expr) -> WrongT
             if printed[:1] == "(" and printed[-1:] == ")":
                 with suppress(ExpressionError):  # the brackets can belong to two factors
                     terms = split_terms(printed[1:-1], scope)
-    return first_wrong_term(terms, derived, variables)
+    return first_wrong_term(terms, derived, state)
 
 
 def _judge_equation_of_motion(label: str, text: str, model: Model) -> Verdict:
     """Judge an equation that must hold along every motion, and depend on accelerations."""
     if text.count("=") > 1:
         raise ExpressionError(f"an equation has one equals sign, not {text.count('=')}")
-    terms = [
-        term
-        for side, formula in zip((1, -1), text.split("="), strict=False)
-        for term in split_terms(formula, model.context.scope, side)
-    ]
-    value, accelerations = sp.Add(*(term.value for term in terms)), model.derivation.system.qddot
-    verdict = partial(Verdict, label, printed=text)
+    left, _, right = text.partition("=")
+    terms = split_terms(left, model.context.scope)
+    terms += split_terms(right, model.context.scope, -1) if "=" in text else []
+    system, verdict = model.derivation.system, partial(Verdict, label, printed=text)
+    state, accelerations = variables(system), system.qddot
+    value = sp.Add(*(term.value for term in terms))
     if not depends_on(value, accelerations):
         return verdict(verdict="wrong", note="it contains no acceleration")
-    candidates = [
-        equation * common_factor(terms, equation, model.variables, accelerations)
-        for equation in model.derivation.euler_lagrange
-    ]
-    derived = min(candidates, key=lambda e: len(differing_functions(terms, e, model.variables)))
+    equations = model.derivation.euler_lagrange
+    candidates = [e * common_factor(terms, e, state, accelerations) for e in equations]
+    derived = min(candidates, key=lambda e: len(differing_functions(terms, e, state)))
     if model.context.is_zero(value - derived):
         return verdict(verdict="verified")
     if not all(value.diff(a, b).equals(0) for a in accelerations for b in accelerations):
         return verdict(verdict="wrong", note="it is not linear in the accelerations")
     if model.holds_along_motions(value):
         return verdict(verdict="verified", note="it is a combination of the equations of motion")
-    wrong_term = first_wrong_term(terms, derived, model.variables)
-    evidence = _evidence(model, value, derived, wrong_term)
+    evidence = _evidence(model, value, derived, first_wrong_term(terms, derived, state))
     return verdict(verdict="wrong", correction=f"{derived} = 0", **evidence)
 
 

@@ -35,7 +35,7 @@ def verdict_rows(verdicts: Sequence[Verdict], width: int) -> Iterator[str]:
 
 
 def table_row(
-    columns: tuple[str, str, str],
+    columns: Sequence[str],
     details: Iterable[str],
     width: int,
     id_width: int = 7,

@@ -49,16 +49,12 @@ class StepComparison:
     verdicts: tuple[Verdict, ...]
 
     @property
-    def html(self) -> str:
-        """Two columns, or one column on narrow screens."""
+    def section(self) -> str:
+        """HTML: title and description, and below two columns, or one on narrow screens."""
         derived = "".join(formula.html for formula in self.step.formulas)
         printed = "".join(map(verdict_html, self.verdicts))
-        return f'<div class="step"><div>{derived}</div><div>{printed}</div></div>'
-
-    @property
-    def section(self) -> str:
-        """The same with title and description."""
-        return f"<h3>{self.step.title}</h3><p>{self.step.words}</p>{self.html}"
+        columns = f'<div class="step"><div>{derived}</div><div>{printed}</div></div>'
+        return f"<h3>{self.step.title}</h3><p>{self.step.words}</p>{columns}"
 
     def _repr_html_(self) -> str:
         return f"<style>{STYLE}</style>{self.section}"

@@ -1,8 +1,7 @@
 """Meanings of the report's symbols in terms of derived quantities.
 
-The report measures its vectors r with y downwards (11)–(16), and its positions
-x, y with y upwards (47)–(50). It writes θ and φ for the same angles, and P for
-the potential energy as well as for momenta.
+Its y points downwards in vectors r (11)–(16) and upwards in positions (47)–(50). It writes
+θ and φ for the same angles, and P for the potential energy and for momenta.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ def coefficients(lines: Sequence[str]) -> tuple[list[list[Fraction]], list[Fract
     *stages, step = lines
     A = []
     for name, line in zip(INCREMENTS, stages, strict=True):
-        time, state = _arguments(line, name)
+        time, state = (parse(text, SYMBOLS) for text in _arguments(line, name))
         A.append(_weights(state, "w_i", INCREMENTS))
         if _weights(time, "t_i", ["h"]) != [sum(A[-1])]:
             raise NotRungeKuttaError(f"{line!r}: c is not the sum of the row of A")
@@ -34,15 +34,12 @@ def coefficients(lines: Sequence[str]) -> tuple[list[list[Fraction]], list[Fract
     return A, _weights(parse(right, SYMBOLS), "w_i", INCREMENTS)
 
 
-def _arguments(line: str, name: str) -> tuple[sp.Expr, sp.Expr]:
+def _arguments(line: str, name: str) -> tuple[str, str]:
     left, _, right = line.partition("=")
-    match left.strip(), syntax_tree(right):
-        case str(defined), ast.BinOp(
-            left=ast.Name(id="h"),
-            op=ast.Mult(),
-            right=ast.Call(func=ast.Name(id="f"), args=[time, state], keywords=[]),
-        ) if defined == name:
-            return parse(ast.unparse(time), SYMBOLS), parse(ast.unparse(state), SYMBOLS)
+    match syntax_tree(right):
+        case ast.BinOp(ast.Name("h"), ast.Mult(), ast.Call(ast.Name("f"), [time, state], [])):
+            if left.strip() == name:
+                return ast.unparse(time), ast.unparse(state)
     raise NotRungeKuttaError(f"{line!r} must have the form {name} = h*f(t, w)")
 
 

@@ -1,8 +1,7 @@
 """The report's three Mathematica programs: the equations that each solves, and its errors.
 
-The formulas are retyped in the language of `derive.formulas.expression`. Of the program
-text, only the lines that show an error are quoted, with dots for omissions. The report is
-known through character recognition only, which can lose a bracket.
+Formulas are retyped in the language of `derive.formulas.expression`; of the program text,
+which character recognition can distort, only lines that show an error are quoted.
 """
 
 from __future__ import annotations
@@ -70,7 +69,8 @@ def _first() -> Program:
     length = _length_solved(equations)
     scene = Scene(lengths=(length, length))
     stops = [_bracket_fault(call)]
-    if _has_time_as_unknown(call):
+    *_, unknowns, interval = re.findall(r"{([^{}]*)}", call)
+    if interval.split(",")[0] in unknowns.split(", "):
         stops.append("it passes the time itself to NDSolve as an unknown")
     title = "Appendix B, figure 1: Lagrangian"
     solves = f"the Euler-Lagrange equations of equal masses on rods of {length} m"
@@ -89,9 +89,10 @@ def _second() -> Program:
     text = "sol = First[NDSolve[...]]; x1[t] := Sin[phi1[t]] /. sol2; ... Plot[... /. sol, ...]"
     scene = Scene(velocities=(sp.pi, 2 * sp.pi))
     differs = list(scene.differences)
-    for name in _unassigned(text):
-        needed = f"the coordinates of the bobs need {name}, which is never assigned"
-        differs.append(f"{needed}; no plot uses them")
+    for name in sorted(set(re.findall(r"/\. (\w+)", text))):  # solutions that are used
+        if not re.search(rf"\b{name} =", text):
+            needed = f"the coordinates of the bobs need {name}, which is never assigned"
+            differs.append(f"{needed}; no plot uses them")
     differs.append("these coordinates omit the lengths, as for rods of 1 m")
     differs.append("its last plot shows phi2 over phi1, not a path of the bobs")
     title = "Appendix B, figure 2: Euler-Lagrangian"
@@ -167,12 +168,6 @@ def _agreement(name: str, formula: str) -> str:
     return "is wrong"
 
 
-def _has_time_as_unknown(call: str) -> bool:
-    """Whether the variable of the last list, the range, is also one of the unknowns."""
-    *_, unknowns, interval = re.findall(r"{([^{}]*)}", call)
-    return interval.split(",")[0] in unknowns.replace(" ", "").split(",")
-
-
 def _bracket_fault(text: str) -> str:
     """Describe the first unbalanced bracket of `text`; empty if all are balanced."""
     opened: list[tuple[str, int]] = []
@@ -186,9 +181,3 @@ def _bracket_fault(text: str) -> str:
             if bracket != OPENING[letter]:
                 return f"the {bracket!r} after {text[:start].strip()!r} is never closed"
     return f"the {opened[-1][0]!r} at index {opened[-1][1]} is never closed" if opened else ""
-
-
-def _unassigned(text: str) -> list[str]:
-    """Names of solutions that are used, as in ``/. name``, and never assigned."""
-    used = sorted(set(re.findall(r"/\. (\w+)", text)))
-    return [name for name in used if not re.search(rf"\b{name} =", text)]
