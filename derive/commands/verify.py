@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
 from derive.verification.hand import HandDerivation, judge
-from derive.verification.table import table_width, verdict_rows, wrapped
+from derive.verification.verdict import table_width, verdict_rows, wrapped
 
 
 def verify(names: Sequence[str], *, as_json: bool) -> int:

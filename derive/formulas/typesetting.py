@@ -8,7 +8,7 @@ separate element, so that a narrow screen can break the line between them.
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from html import escape
@@ -21,7 +21,6 @@ from derive.formulas.lettering import letter_and_index, name_markup
 RELATIONS = {"=": "=", "<": "&lt;", ">": "&gt;", "<=": "≤", ">=": "≥"}
 #: Invisible operators, for screen readers.
 TIMES, APPLY = "<mo>&#x2062;</mo>", "<mo>&#x2061;</mo>"
-GAP = '<mspace width="0.167em"/>'
 MINUS = '<mo form="prefix">−</mo>'
 
 #: Binding strengths: an operand that binds less than its neighbour needs brackets.
@@ -51,7 +50,7 @@ class Formula:
     def html(self) -> str:
         """MathML elements, separated by spaces at which a line can break."""
         try:
-            lines = [_line(part) for part in self.text.split(";")]
+            lines = [" ".join(_elements(part)) for part in self.text.split(";")]
         except (ExpressionError, RecursionError):
             return f'<code class="formula">{escape(self.text)}</code>'
         return "".join(f'<div class="formula">{line}</div>' for line in lines)
@@ -60,13 +59,12 @@ class Formula:
         return self.html
 
 
-def _line(text: str) -> str:
-    first, *others = RELATION.split(text)
-    elements = _terms(syntax_tree(first))
-    for relation, side in zip(others[::2], others[1::2], strict=True):
+def _elements(text: str) -> Iterator[str]:
+    pieces = RELATION.split(text)
+    for relation, side in zip(["", *pieces[1::2]], pieces[::2], strict=True):
         head, *tail = _terms(syntax_tree(side))
-        elements += [_infix(RELATIONS[relation]) + head, *tail]
-    return " ".join(f'<math displaystyle="true">{element}</math>' for element in elements)
+        for term in (_infix(RELATIONS[relation]) + head if relation else head, *tail):
+            yield f'<math displaystyle="true">{term}</math>'
 
 
 def _terms(node: ast.expr) -> list[str]:
@@ -97,7 +95,7 @@ def _markup_and_binding(node: ast.expr) -> tuple[str, int]:
             return MINUS + _operand(positive, PRODUCT), SUM
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
             first = right.left if isinstance(right, ast.BinOp) else right
-            gap = GAP if isinstance(first, ast.Call) else ""
+            gap = '<mspace width="0.167em"/>' if isinstance(first, ast.Call) else ""
             return _operand(left, PRODUCT) + TIMES + gap + _operand(right, PRODUCT), PRODUCT
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             if isinstance(left, ast.Constant) or not isinstance(right, ast.Constant):

@@ -113,18 +113,14 @@ class _Converter:
     def _times(self, a: PolyElement, b: PolyElement) -> PolyElement:
         product = a * b
         for i, sine in self._sines.items():
-            product = self._without_squares(product, i, 1 - sine**2)
+            parts: dict[int, dict[tuple[int, ...], object]] = {}  # by the power of cos²
+            for monomial, coefficient in product.terms():
+                half, odd = divmod(monomial[i], 2)
+                parts.setdefault(half, {})[(*monomial[:i], odd, *monomial[i + 1 :])] = coefficient
+            if {*parts} - {0}:
+                terms = (self._ring(part) * (1 - sine**2) ** n for n, part in parts.items())
+                product = sum(terms, self._ring.zero)
         return product
-
-    def _without_squares(self, poly: PolyElement, i: int, square: PolyElement) -> PolyElement:
-        parts: dict[int, dict[tuple[int, ...], object]] = {}
-        for monomial, coefficient in poly.terms():
-            half, odd = divmod(monomial[i], 2)
-            parts.setdefault(half, {})[(*monomial[:i], odd, *monomial[i + 1 :])] = coefficient
-        if set(parts) <= {0}:
-            return poly
-        terms = (self._ring(part) * square**half for half, part in parts.items())
-        return sum(terms, self._ring.zero)
 
 
 def _waves(expression: sp.Expr) -> set[sp.Expr]:

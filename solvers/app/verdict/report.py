@@ -11,8 +11,7 @@ import generated.double_pendulum as double_pendulum
 from derive.verification.report.contexts import NUMBERS
 from derive.verification.report.judgement import verdicts
 from derive.verification.report.programs import PROSE, programs
-from derive.verification.table import table_row, table_width, verdict_rows, wrapped
-from derive.verification.verdict import Verdict
+from derive.verification.verdict import Verdict, table_row, table_width, verdict_rows, wrapped
 from solvers.app.verdict.claims import claims, objectives, recommendations
 from solvers.app.verdict.evidence import Evidence, Setting
 from solvers.runge_kutta.order_conditions import order
@@ -61,7 +60,7 @@ def tables(verdicts: Mapping[str, Any]) -> str:
         lines += [*(wrapped(detail, width, MARGIN) for detail in details), ""]
     for claim in verdicts["claims"]:
         details = [claim["number"], *([f"see {claim['figure']}"] if claim["figure"] else [])]
-        lines += table_row((claim["id"], claim["verdict"], claim["claim"]), details, width)
+        lines += table_row((claim["id"], claim["verdict"], claim["claim"], *details), width)
     lines += ["", "Lines that end in ... are complete in: holonomic verify --json"]
     lines += [f"equations: {counted(verdicts['equations'])}"]
     lines += [f"claims:    {counted(verdicts['claims'])}"]
