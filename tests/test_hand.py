@@ -109,13 +109,13 @@ def test_the_first_wrong_term_is_reported_with_its_correction(
     kind: str, key: str, text: str, wrong_term: str, correct_term: str | None
 ) -> None:
     model = Model(Derivation(load("double_pendulum")), {})
-    result = judge_formula("printed", text, model, kind, key)
+    result = judge_formula(model, "printed", text, kind, key)
     assert (result.verdict, result.wrong_term) == ("wrong", wrong_term)
     assert correct_term is None or result.correct_term == correct_term
     printed, derived = (float(part) for part in result.witness.split(" instead of "))
     assert abs(printed - derived) > 1e-3
     kind = "euler_lagrange" if "= 0" in result.correction else kind
-    assert judge_formula("corrected", result.correction, model, kind, key).verdict == "verified"
+    assert judge_formula(model, "corrected", result.correction, kind, key).verdict == "verified"
 
 
 def test_correct_accelerations_are_verified_in_any_form() -> None:
@@ -128,7 +128,7 @@ def test_correct_accelerations_are_verified_in_any_form() -> None:
         " + m2*l2*theta2_dot**2*sin(-D) - (m1 + m2)*g*sin(theta1))"
         "/((m1 + m2)*l1 - m2*l1*cos(-D)**2)",
     ):
-        assert judge_formula("", text, model, "accelerations", "theta1").verdict == "verified"
+        assert judge_formula(model, "", text, "accelerations", "theta1").verdict == "verified"
 
 
 def test_the_command_reports_errors_and_exits_with_a_code(
@@ -182,6 +182,8 @@ def test_invalid_files_are_rejected(text: str, words: str, tmp_path: Path) -> No
     ("euler_lagrange", "1e12*(l*theta_ddot + g*sin(theta)) = 0", "verified"),
     ("euler_lagrange", "theta_dot*(l*theta_ddot + g*sin(theta)) = 0", "verified"),
     ("euler_lagrange", "theta_ddot = 1 = 2", "unreadable"),
+    ("euler_lagrange", "(theta_ddot, 1)", "unreadable"),
+    ("lagrangian", "[[1, 2], [3, 4]]", "unreadable"),
     ("lagrangian", "m*l**2*theta_dot**2/2 + m*g*l*cos(theta) + theta_ddot**2", "unreadable"),
     ("lagrangian", "m*l**2*theta_dot**2/2 + m*g*l*cos(theta) + theta*theta_dot", "equivalent"),
     ("potential_energy", "m*g*l*(1 - cos(theta))", "equivalent"),
@@ -193,7 +195,7 @@ def test_invalid_files_are_rejected(text: str, words: str, tmp_path: Path) -> No
 ])  # fmt: skip
 def test_misleading_equations_are_judged_correctly(kind: str, text: str, verdict: str) -> None:
     model = Model(Derivation(load("single_pendulum")), {})
-    assert judge_formula("", text, model, kind, "theta").verdict == verdict
+    assert judge_formula(model, "", text, kind, "theta").verdict == verdict
 
 
 def test_keys_can_use_the_names_of_the_source(tmp_path: Path) -> None:
@@ -210,6 +212,6 @@ def test_keys_can_use_the_names_of_the_source(tmp_path: Path) -> None:
 def test_the_sum_of_energies_is_accepted_as_energy_although_it_is_not_conserved() -> None:
     model = Model(Derivation(load("rotating_hoop")), {})
     total = "m*R**2/2*(theta_dot**2 + Omega**2*sin(theta)**2) - m*g*R*cos(theta)"
-    result = judge_formula("", total, model, "energy")
+    result = judge_formula(model, "", total, "energy")
     assert result.verdict == "verified"
     assert "Jacobi" in result.note

@@ -64,5 +64,5 @@ def test_every_step_is_shown_with_its_own_lines(double: Derivation) -> None:
     assert len({*shown}) == len(shown)
     assert {*shown} <= {*EQUATIONS}
     for one in every:
-        assert one.html.count('class="line verified"') == len(one.verdicts)
+        assert one.section.count('class="line verified"') == len(one.verdicts)
         assert one.section.startswith(f"<h3>{one.step.title}</h3>")

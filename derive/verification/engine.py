@@ -115,9 +115,8 @@ def _compared(text: str, scope: Scope) -> Iterator[Comparison]:
         pair = (right, left) if "<" in relation else (left, right)
         shapes = [side.shape for side in pair if isinstance(side, sp.MatrixBase)]
         if len(set(shapes)) > 1:
-            raise ExpressionError(
-                f"cannot compare matrices of shapes {' and '.join(map(str, shapes))}"
-            )
+            both = " and ".join(map(str, shapes))
+            raise ExpressionError(f"cannot compare matrices of shapes {both}")
         if len(shapes) == 1:  # a number beside a matrix stands for each entry
             ones = sp.ones(*shapes[0])
             pair = tuple(s if isinstance(s, sp.MatrixBase) else s * ones for s in pair)

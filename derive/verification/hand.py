@@ -54,10 +54,7 @@ def judge(source: str | Path) -> HandDerivation:
     system = load(folder / name if name.endswith(".toml") else name)
     names = table.entries("names")
     model = Model(Derivation(_with_equal_parameters(table, system)), _meanings(names, system))
-    verdicts = [
-        judge_formula(key, text, model, kind, coordinate)
-        for key, text, kind, coordinate in _formulas(table, system, names)
-    ]
+    verdicts = [judge_formula(model, *row) for row in _formulas(table, system, names)]
     if not verdicts:
         raise InputError(f"{label} has no equations: give at least one of {', '.join(EQUATIONS)}")
     return HandDerivation(name, table.text("source", ""), table.text("note", ""), tuple(verdicts))

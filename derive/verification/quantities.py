@@ -45,7 +45,7 @@ CANONICAL = ("hamiltonian", "hamilton")
 UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")
 
 
-def judge_formula(label: str, text: str, model: Model, kind: str, coordinate: str = "") -> Verdict:
+def judge_formula(model: Model, label: str, text: str, kind: str, coordinate: str = "") -> Verdict:
     """Judge a formula for a key of `QUANTITIES`, or an equation of motion, ``euler_lagrange``."""
     try:
         if kind == "euler_lagrange":
@@ -58,7 +58,7 @@ def judge_formula(label: str, text: str, model: Model, kind: str, coordinate: st
 
 def _judge_quantity(label: str, text: str, model: Model, kind: str, derived: sp.Expr) -> Verdict:
     value = parse(text, model.context.scope)
-    if not isinstance(value, sp.Expr):
+    if isinstance(value, sp.MatrixBase):
         raise ExpressionError(f"{text[:50]!r} is a column or matrix, not a number")
     derivation, is_zero = model.derivation, model.context.is_zero
     system, verdict = derivation.system, partial(Verdict, label, printed=text)

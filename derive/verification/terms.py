@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import Scope, evaluate, syntax_tree
+from derive.formulas.expression import ExpressionError, Scope, evaluate, syntax_tree
 from derive.mechanics.reduction import collected, harmonics
 
 #: Coefficients, which depend on parameters only, by the function of the state that they multiply.
@@ -42,7 +42,10 @@ def split_terms(text: str, scope: Scope, side: int = 1) -> list[Term]:
     terms = []
     for sign, node in _summands(syntax_tree(text), 1):
         printed = f"{'' if sign > 0 else '-'}{ast.unparse(node)}"
-        terms.append(Term(printed, side * sign * evaluate(node, text, scope), side))
+        value = side * sign * evaluate(node, text, scope)
+        if isinstance(value, sp.MatrixBase):
+            raise ExpressionError(f"{printed[:50]!r} is a column or matrix, not a number")
+        terms.append(Term(printed, value, side))
     return terms
 
 
