@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from warnings import warn
 
+from solvers.equations.forms import fastest_form
 from solvers.equations.module import header
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
 from solvers.integration.events import Event
 from solvers.integration.problem import Outcome, Problem
+from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.tableau import Tableau
 
 #: Steps, and occurrences of an event, that C stores before Python collects them.
@@ -49,12 +51,13 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     compiler could, and it runs in Python.
     """
     must_compile = problem.backend == "compiled"
-    reason = "" if problem.backend == "python" else obstacle(problem)
+    reason = "it is to run in Python" if problem.backend == "python" else obstacle(problem)
     if reason and must_compile:
         raise ValueError(f"no compiled loop can solve this problem: {reason}")
-    if reason or problem.backend == "python":
+    if reason:
         return problem, None
-    compilable = problem.in_fastest_form()
+    is_free = problem.options.form is None and load(problem.options.method).is_explicit
+    compilable = problem.with_form(fastest_form(problem.form.module)) if is_free else problem
     try:
         return compilable, loop(compilable, lanes=lanes)
     except NoCompilerError as error:
@@ -66,9 +69,8 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
 
 def loop(problem: Problem, *, lanes: bool = False) -> Kernel:
     """The compiled loop for the problem."""
-    form, options = problem.form, problem.options
-    is_compensated = options.compensated
-    return kernel(form.module, form.name, options.method, lanes=lanes, compensated=is_compensated)
+    form, method, compensated = problem.form, problem.options.method, problem.options.compensated
+    return kernel(form.module, form.name, method, lanes=lanes, compensated=compensated)
 
 
 def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:

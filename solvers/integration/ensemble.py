@@ -69,8 +69,8 @@ def ensemble(
 
     Raises
     ------
-    ValueError, UnknownMethodError, NoCompilerError
-        As by `integrate`.
+    ValueError
+        When an argument is invalid; other errors, and the warning, are those of `integrate`.
     solvers.integration.solution.Interrupted
         When the user interrupts; it holds the `Ensemble` up to then.
 

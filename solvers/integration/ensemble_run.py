@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -75,22 +75,20 @@ class EnsembleRun:
         """Run the batch; C releases Python's lock, this thread receives interruptions."""
         batch.restart()
         with ThreadPoolExecutor(workers) as pool:
-            threads = [pool.submit(batch.run) for _ in range(workers)]
             try:
-                wait(threads)
+                for thread in [pool.submit(batch.run) for _ in range(workers)]:
+                    thread.result()
             except KeyboardInterrupt:
                 self.stop.set()
                 raise
-        for thread in threads:
-            thread.result()
 
     def _collect(self, batch: Batch) -> None:
         """Copy the results of the batch."""
         result, motions = self.result, batch.motions
         result.t[:], result.y.T[:] = motions["t"], batch.ordinary(motions)
         if motions["scale"].size:
-            size = len(result.units) // 2
-            self._set_growth(motions["z"][:, -size:], motions["scale"][:, 0])
+            changes = motions["z"][:, -(len(result.units) // 2) :]
+            self._set_growth(changes, motions["scale"][:, 0])
         result.status[:] = np.array(STATUSES, object)[motions["status"]]
         result.status[motions["status"] < STATUSES.index(Status.FINISHED)] = Status.INTERRUPTED
         result.steps[:], result.rejected[:] = motions["steps"], motions["rejected"]
@@ -144,12 +142,12 @@ class EnsembleRun:
         self.result.growth[:] = _log_length(changes, scale) - _log_length(before)
 
 
-def _stored(event: EventFunction, states: Sequence[Array]) -> list[int]:
+def _stored(event: EventFunction, states: Sequence[Array]) -> Sequence[int]:
     """The occurrences of an event to store: those of the extremes, or all."""
     if not states or not isinstance(event, Extremum):
-        return list(range(len(states)))
+        return range(len(states))
     values = [y[event.module.STATE.index(event.coordinate)] for y in states]
-    return [int(np.argmin(values)), int(np.argmax(values))]
+    return int(np.argmin(values)), int(np.argmax(values))
 
 
 def _log_length(changes: Array, scale: ArrayLike = 0.0) -> Array:

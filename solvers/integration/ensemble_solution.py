@@ -24,10 +24,8 @@ class Ensemble:
 
     Attributes
     ----------
-    t : ndarray of shape (n,)
-        Time in s at which each motion ended.
-    y : ndarray of shape (state, n)
-        Coordinates and velocities there.
+    t, y : ndarray of shape (n,) and (state, n)
+        Time in s at which each motion ended, coordinates and velocities there.
     growth : ndarray of shape (n,)
         In the variational form, natural logarithms of the ratio of the length of the small change
         at the end to that at the start, of any size; else NaN.
@@ -42,11 +40,9 @@ class Ensemble:
     status : ndarray of shape (n,)
         How each ended, a `Status`.
     steps, rejected, nfev : ndarray of shape (n,)
-        Accepted steps, rejected steps, evaluations of the right-hand side.
-    run : str
-        Method, form, step control, and backend.
-    units : dict of str to str
-        Units of the components of the state, in their order.
+        As in `Solution`, of each motion.
+    run, units
+        As in `Solution`.
     t_eval : ndarray of shape (times,)
         The requested times in s.
 

@@ -88,8 +88,10 @@ def integrate(
 
     Raises
     ------
-    ValueError, solvers.runge_kutta.catalogue.UnknownMethodError
+    ValueError
         When an argument is invalid, before anything is computed.
+    solvers.runge_kutta.catalogue.UnknownMethodError
+        When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
         When ``backend="compiled"`` or ``compensated=True``, and no compiler could build the loop.
     solvers.integration.solution.Interrupted

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
-from solvers.integration.attempt import Accepted, Attempts, Point, Rejected
 from solvers.integration.problem import shortest_step
+from solvers.integration.python_loop import Accepted, Attempts, Point, Rejected
 from solvers.integration.validation import tolerances
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.step_control import Controller

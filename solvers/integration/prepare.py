@@ -59,10 +59,9 @@ def prepare(
 
     Raises
     ------
-    ValueError, solvers.runge_kutta.catalogue.UnknownMethodError
-        When an argument is invalid, or no compiled loop can solve the problem.
-    solvers.integration.compiled.compiler.NoCompilerError
-        When no compiler could build the loop.
+    ValueError
+        When an argument is invalid, or no compiled loop can solve the problem; other errors are
+        those of `integrate`.
 
     Examples
     --------
@@ -105,7 +104,7 @@ class Prepared:
     def __call__(
         self, t_span: tuple[float, float], y0: Numbers, params: Numbers | None = None
     ) -> tuple[float, ...]:
-        """The state at the end of `t_span` of the motion that starts with `y0`."""
+        """The state at the end of `t_span`."""
         if params is not None or not self._has_defaults:
             self._has_defaults = False
             self._set_params(self._defaults if params is None else params)

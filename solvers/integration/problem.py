@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.forms import Form, fastest_form
+from solvers.equations.forms import Form
 from solvers.integration.solution import Array, Status
-from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.tableau import Tableau
 
 #: The shortest step, in units of the spacing of floating-point times.
@@ -64,27 +63,10 @@ class Problem:
         """The same problem with other parameters: numbers, or arrays for several motions."""
         return replace(self, form=Form(self.form.module, self.form.name, params))
 
-    def in_fastest_form(self) -> Problem:
-        """The problem in the form that a compiled loop runs fastest, unless a form is given."""
-        is_free = self.options.form is None and self.tableau.is_explicit
-        return self.with_form(fastest_form(self.form.module)) if is_free else self
-
-    @property
-    def tableau(self) -> Tableau:
-        """The method, which is not one of SciPy."""
-        assert isinstance(self.method, Tableau)
-        return self.method
-
     @property
     def backend(self) -> str | None:
         """The required backend, ``compiled`` or ``python``; None for any."""
         return "compiled" if self.options.compensated else self.options.backend
-
-    @property
-    def controller(self) -> Controller | None:
-        """A new step size controller; None for fixed steps."""
-        is_fixed = self.h is not None
-        return None if is_fixed else Controller(self.tableau.error_order, self.rtol, self.atol)
 
     @property
     def units(self) -> dict[str, str]:

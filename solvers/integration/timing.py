@@ -13,7 +13,7 @@ import numpy as np
 from solvers.equations.module import GeneratedModule
 from solvers.integration import python_loop, validation
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.problem import Options, Outcome, Problem
+from solvers.integration.problem import Options, Outcome
 from solvers.integration.solution import Array, Status
 
 #: Largest number of steps of a timed run.
@@ -80,20 +80,19 @@ def timed_run(
         return TimedRun(median_seconds(lambda: run(span, y0)), run.nfev, run.steps, np.array(end))
     options = Options(method, form, rtol, rtol, h, t_eval=span[1:], max_steps=MOST_STEPS)
     problem = validation.problem(module, span, y0, params, options)
+
+    def run_once() -> Outcome:
+        result = Outcome.at_start(problem)
+        python_loop.run(problem, result)
+        return result
+
     start = time.perf_counter()
-    outcome = _outcome(problem)
+    result = run_once()
     first = time.perf_counter() - start
-    if outcome.status is not Status.FINISHED:
+    if result.status is not Status.FINISHED:
         return None
-    _, rows = outcome.rows()
-    seconds = first if first > SECONDS else median_seconds(lambda: _outcome(problem))
-    return TimedRun(seconds, outcome.nfev, outcome.steps, rows[-1])
-
-
-def _outcome(problem: Problem) -> Outcome:
-    outcome = Outcome.at_start(problem)
-    python_loop.run(problem, outcome)
-    return outcome
+    seconds = first if first > SECONDS else median_seconds(run_once)
+    return TimedRun(seconds, result.nfev, result.steps, result.rows()[1][-1])
 
 
 def median_seconds(run: Callable[[], object]) -> float:
