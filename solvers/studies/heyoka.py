@@ -16,24 +16,14 @@ from solvers.equations.module import GeneratedModule, function
 
 Array = NDArray[np.float64]
 System = list[tuple[Any, Any]]
+Numbers = Sequence[float]
 
 
 def double_pendulum(hy: Any) -> dict[str, System]:
     """The double pendulum's equations with free parameters m1, m2, l1, l2, g.
 
     ``positions`` derives them with heyoka's Lagrangian from the positions of the masses, as
-    holonomic does; ``textbook`` from the kinetic energy that textbooks print. `generated`
-    returns those that holonomic generates.
-
-    Parameters
-    ----------
-    hy : module
-        heyoka.
-
-    Returns
-    -------
-    dict of str to list of pair
-        The two systems, angles before velocities.
+    holonomic does; ``textbook`` from the kinetic energy that textbooks print.
     """
     theta, omega = hy.make_vars("theta1", "theta2"), hy.make_vars("omega1", "omega2")
     m1, m2, l1, l2, g = (hy.par[k] for k in range(5))
@@ -85,19 +75,10 @@ def no_disk_cache(hy: Any) -> Iterator[None]:
 
 
 def single(
-    hy: Any,
-    system: System,
-    start: Sequence[float],
-    params: Sequence[float],
-    end: float,
-    tol: float,
-    *,
-    compact: bool = False,
+    hy: Any, system: System, start: Numbers, params: Numbers, end: float, tol: float, **options: Any
 ) -> Callable[[], Array]:
     """A function that integrates one motion; its next call overwrites the array it returns."""
-    # large systems need the compact mode, or they compile for minutes
-    options = {"tol": tol, "pars": list(params), "compact_mode": compact}
-    integrator = hy.taylor_adaptive(system, list(start), **options)
+    integrator = hy.taylor_adaptive(system, list(start), tol=tol, pars=list(params), **options)
 
     def run() -> Array:
         integrator.time = 0.0
@@ -109,7 +90,7 @@ def single(
 
 
 def batches(
-    hy: Any, system: System, starts: Array, params: Sequence[float], end: float, tol: float
+    hy: Any, system: System, starts: Array, params: Numbers, end: float, tol: float
 ) -> Callable[[], Array]:
     """A function that integrates motions, shape (n, state), in batches of the recommended size."""
     width = hy.recommended_simd_size()
@@ -130,7 +111,7 @@ def batches(
     return run
 
 
-def reference(hy: Any, system: System, starts: Array, params: Sequence[float], end: float) -> Array:
+def reference(hy: Any, system: System, starts: Array, params: Numbers, end: float) -> Array:
     """Final states by Taylor series in 80-bit numbers, with an error of about 1e-17 per step."""
     long = np.longdouble
     first, pars = [long(x) for x in starts[0]], [long(p) for p in params]

@@ -47,7 +47,7 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
     from solvers.app import derivation_timing as timing
     from solvers.app.modules import load
     from solvers.io.figures import save
-    from solvers.studies.benchmarks import chains, double_pendulum, flip_maps, growth, pipeline
+    from solvers.studies.benchmarks import chains, double_pendulum, flip_maps, pipeline
 
     peer = partial(options.required_package, extra="bench")
     module = load("double_pendulum")
@@ -61,7 +61,7 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
         case "chains":
             results = chains.figures(timing.chain, timing.lagranges_method, load, peer("heyoka"))
             plot = folder / "growth.png"
-            save(growth.plot(results["growth"]), plot)
+            save(chains.plot(results["growth"]), plot)
             return results, [*chains.summary(results), f"plot: {plot}"]
         case _:  # maps
             results = flip_maps.figures(module, peer("heyoka"), peer("numba"))

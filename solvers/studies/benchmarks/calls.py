@@ -58,15 +58,7 @@ void calls(double *y, double *dy, const double *params, long count)
 
 
 class Calls:
-    """Repeated calls of a compiled right-hand side.
-
-    Attributes
-    ----------
-    repetitions : int
-        Number of calls.
-    rates : ndarray of shape (state,)
-        Result of the last call.
-    """
+    """Repeated calls of a compiled right-hand side; `rates` has the result of the last one."""
 
     def __init__(self, text: str, state: int, params: Sequence[float], each: int) -> None:
         self._library = ctypes.CDLL(str(build(text).path))
@@ -81,10 +73,9 @@ class Calls:
 
     def __call__(self) -> None:
         """Make the calls."""
-        arrays = (self._y, self.rates, self._params)
-        self._library.calls(
-            *(ctypes.c_void_p(a.ctypes.data) for a in arrays), ctypes.c_long(self.repetitions)
-        )
+        arrays = self._y, self.rates, self._params
+        pointers = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
+        self._library.calls(*pointers, ctypes.c_long(self.repetitions))
 
 
 def parameters(n: int) -> list[float]:

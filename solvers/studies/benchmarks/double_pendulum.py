@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import ctypes
 import platform
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from importlib.resources import files
 from typing import Any
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, function
+from solvers.integration.compiled.compiler import build
+from solvers.integration.compiled.layout import SOURCES
+from solvers.integration.ensemble import ensemble
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
-from solvers.studies.benchmarks import rates
-from solvers.studies.benchmarks.motions import METHODS, MOTIONS, Curves, many_motions, one_motion
+from solvers.runge_kutta.catalogue import load
+from solvers.studies import heyoka
+from solvers.studies.benchmarks import motions
+from solvers.studies.benchmarks.median_times import compile_loop, median_times
+from solvers.studies.benchmarks.motions import END, METHODS, MOTIONS, START
 
 #: Global errors at which programs are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
+#: The method whose operations are counted.
+METHOD = "verner87"
 
 
 def figures(module: GeneratedModule, lambdified: Callable[..., object], hy: Any) -> dict[str, Any]:
@@ -21,19 +32,22 @@ def figures(module: GeneratedModule, lambdified: Callable[..., object], hy: Any)
     return {
         "machine": f"{platform.machine()}, Python {platform.python_version()}",
         "peers": {"heyoka": hy.__version__},
-        "one motion": _compared(one_motion(module, hy)),
-        "many motions": _compared(many_motions(module, hy)),
-        "right-hand side in Python": rates.calls(module, lambdified),
-        "operations a second": rates.peak_share(module),
-        "preparation": rates.preparation(module, hy),
+        "one motion": _compared(motions.one_motion(module, hy)),
+        "many motions": _compared(motions.many_motions(module, hy)),
+        "right-hand side in Python": _calls(module, lambdified),
+        "operations a second": _peak_share(module),
+        "preparation": _preparation(module, hy),
     }
 
 
-def _compared(curves: Curves) -> list[dict[str, Any]]:
+def _compared(curves: motions.Curves) -> list[dict[str, Any]]:
     """For each error the fastest of our methods, and the relative times of other programs."""
     rows = []
     for error in ERRORS:
-        times = {name: _time_at(curve, error) for name, curve in curves.items()}
+        times = {
+            name: work_at(error, [e for _, e in curve], [t for t, _ in curve])
+            for name, curve in curves.items()
+        }
         times = {name: time for name, time in times.items() if time > 0}  # neither 0 nor NaN
         method = min((name for name in METHODS if name in times), key=times.__getitem__)
         peers = {name: time for name, time in times.items() if name not in METHODS}
@@ -43,8 +57,66 @@ def _compared(curves: Curves) -> list[dict[str, Any]]:
     return rows
 
 
-def _time_at(curve: list[tuple[float, float]], error: float) -> float:
-    return work_at(error, [point[1] for point in curve], [point[0] for point in curve])
+def _calls(module: GeneratedModule, lambdified: Callable[..., object]) -> dict[str, float]:
+    """Seconds for a call of the right-hand side in Python, with one state."""
+    y, params = list(START), module.DEFAULTS
+    thousand: dict[str, Callable[[], object]] = {
+        "holonomic": lambda: [module.rhs(0.0, y, params) for _ in range(1000)],
+        "lambdify": lambda: [lambdified(y, params) for _ in range(1000)],
+    }
+    return {name: time / 1000 for name, time in median_times(thousand, 1.0).items()}
+
+
+def _preparation(module: GeneratedModule, hy: Any) -> dict[str, float]:
+    """Seconds before the first motion, once for each system and method."""
+    params = module.DEFAULTS
+
+    def set_up(system: Any, start: Sequence[float]) -> None:
+        hy.llvm_state.clear_memcache()
+        heyoka.single(hy, system, start, params, END, 1e-12)
+
+    rational_start = function(module, "rational_state")(0.0, START, params)
+    runs: dict[str, Callable[[], object]] = {
+        "holonomic, one motion": partial(compile_loop, module),
+        "holonomic, lanes": partial(compile_loop, module, lanes=True),
+    }
+    for name, system in heyoka.double_pendulum(hy).items():
+        runs[f"heyoka, {name}"] = partial(set_up, system, START)
+    runs["heyoka, rational"] = partial(set_up, heyoka.generated(hy, module), rational_start)
+    with heyoka.no_disk_cache(hy):
+        return median_times(runs, 0.0)
+
+
+def _peak_share(module: GeneratedModule) -> dict[str, float]:
+    """Operations per second in lanes on one core, and the largest possible number."""
+    library = _peak_library()
+    rounds = 1_000_000
+    tableau = load(METHOD)
+    weights = [*(a for row in tableau.A for a in row), *tableau.b]
+    state = len(module.STATES["rational"])
+    evaluations = module.OPERATIONS["rhs_rational"][0] * tableau.stages
+    step = 2 * state * sum(w != 0 for w in weights) + evaluations
+    controlled = step + 2 * state * sum(w != 0 for row in tableau.error_weights for w in row)
+    starts = motions.random_starts().T
+    run = partial(ensemble, module, (0, END), starts, module.DEFAULTS, method=METHOD, workers=1)
+    run_controlled, run_fixed = partial(run, rtol=1e-11, atol=1e-11), partial(run, h=0.01)
+    free, fixed = run_controlled(), run_fixed()
+    names = ("peak", "lanes, controlled steps", "lanes, fixed steps")
+    runs = (partial(library.peak, rounds), run_controlled, run_fixed)
+    steps = int((free.steps + free.rejected).sum()), int(fixed.steps.sum())
+    operations = library.operations() * rounds, controlled * steps[0], step * steps[1]
+    times = median_times(dict(zip(names, runs, strict=True)), 3.0)
+    return {name: count / times[name] for name, count in zip(names, operations, strict=True)}
+
+
+def _peak_library() -> ctypes.CDLL:
+    sources = SOURCES / "lanes.h", files(__package__) / "peak.c"
+    parts = ["#include <math.h>\n#include <stdint.h>"]
+    parts += [source.read_text(encoding="utf-8") for source in sources]
+    library = ctypes.CDLL(str(build("\n".join(parts)).path))
+    library.peak.argtypes, library.peak.restype = [ctypes.c_int64], ctypes.c_double
+    library.operations.restype = ctypes.c_int64
+    return library
 
 
 def summary(results: Mapping[str, Any]) -> Iterator[str]:
@@ -59,16 +131,9 @@ def summary(results: Mapping[str, Any]) -> Iterator[str]:
         rows = results[part]
         names = dict.fromkeys(name for row in rows for name in row["ratios"])
         columns = {"error": ".0e", "time/us": ".1f", "method": ""} | dict.fromkeys(names, ".3g")
-        cells = (
-            (
-                row["global_error"],
-                1e6 * row["seconds"],
-                row["method"],
-                *map(row["ratios"].get, names),
-            )
-            for row in rows
-        )
-        yield from text_table(columns, cells)
+        first = ((row["global_error"], 1e6 * row["seconds"], row["method"]) for row in rows)
+        ratios = (map(row["ratios"].get, names) for row in rows)
+        yield from text_table(columns, ((*a, *b) for a, b in zip(first, ratios, strict=True)))
         yield ""
     call = results["right-hand side in Python"]
     yield (

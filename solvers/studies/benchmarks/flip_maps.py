@@ -15,18 +15,8 @@ from numpy.typing import NDArray
 from solvers.equations.module import GeneratedModule
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
-from solvers.studies.benchmarks.flip_programs import (
-    ANGLES,
-    END,
-    FLIP,
-    Flips,
-    by_ensemble,
-    by_heyoka,
-    by_numba,
-    by_single_motions,
-    can_flip,
-    starts,
-)
+from solvers.studies.benchmarks import flip_programs as programs
+from solvers.studies.benchmarks.flip_programs import ANGLES, END, FLIP, Flips, can_flip, starts
 from solvers.studies.benchmarks.median_times import seconds
 from solvers.sweeps.axes import Random
 from solvers.sweeps.pool import Pool
@@ -62,36 +52,36 @@ def comparison(module: GeneratedModule, hy: Any, nb: Any) -> dict[str, Any]:
     equations, params = heyoka.double_pendulum(hy), list(module.DEFAULTS)
     settings: dict[str, dict[str, Flips]] = {
         "holonomic": {
-            f"{method}, {tol:g}": partial(by_ensemble, module, method, tol, 1)
+            f"{method}, {tol:g}": partial(programs.by_ensemble, module, method, tol, 1)
             for tol in (1e-8, 1e-9)
             for method in ("verner87", "verner98")
         },
         "heyoka": {
-            f"{name}, {tol:g}": partial(by_heyoka, hy, system, params, tol)
+            f"{name}, {tol:g}": partial(programs.by_heyoka, hy, system, params, tol)
             for tol in (1e-7, 1e-8)
             for name, system in equations.items()
         },
-        "numba": {f"h = {h:g}": by_numba(nb, module, h) for h in (4e-3, 2e-3, 1e-3)},
+        "numba": {f"h = {h:g}": programs.by_numba(nb, module, h) for h in (4e-3, 2e-3, 1e-3)},
     }
     coarse, whole = starts(module, COARSE), starts(module, SIDE)
     coarse = coarse[: len(coarse) // 16 * 16]  # in full batches
     # the reference of each program comes from another one
-    taylor = by_heyoka(hy, equations["textbook"], params, 1e-16, coarse)
-    references = {"heyoka": by_ensemble(module, "verner98", 1e-14, 1, coarse)}
+    taylor = programs.by_heyoka(hy, equations["textbook"], params, 1e-16, coarse)
+    references = {"heyoka": programs.by_ensemble(module, "verner98", 1e-14, 1, coarse)}
     times, selected = {}, {}
     for program, runs in settings.items():
         reference = references.get(program, taylor)
         valid = [
-            (_median_seconds(partial(run, coarse)), name, run)
+            (_median_seconds(run, coarse), name, run)
             for name, run in runs.items()
             if error(run(coarse), reference) <= ERROR
         ]
         _, selected[program], run = min(valid, key=itemgetter(0))
-        times[program] = _median_seconds(partial(run, whole))
+        times[program] = _median_seconds(run, whole)
     method, _, tolerance = selected["holonomic"].partition(", ")
     tol = float(tolerance)
-    times["one lane"] = _median_seconds(partial(by_single_motions, module, method, tol, whole))
-    times["both cores"] = _median_seconds(partial(by_ensemble, module, method, tol, 2, whole))
+    times["one lane"] = _median_seconds(programs.by_single_motions, module, method, tol, whole)
+    times["both cores"] = _median_seconds(programs.by_ensemble, module, method, tol, 2, whole)
     return {"motions": len(whole), "seconds": times, "settings": selected}
 
 
@@ -110,7 +100,7 @@ def overhead(module: GeneratedModule) -> list[dict[str, float]]:
                 sweep(definition, Path(folder) / "sweep", pool=Pool(workers=2))
 
         method, tol, moving = definition.method, definition.rtol, can_flip(module, state)
-        run_ensemble = partial(by_ensemble, module, method, tol, 2, moving)
+        run_ensemble = partial(programs.by_ensemble, module, method, tol, 2, moving)
         run_sweep()
         pairs = np.array([(seconds(run_sweep), seconds(run_ensemble)) for _ in range(7)])
         whole, ratio = np.median(pairs[:, 0]), np.median(pairs[:, 0] / pairs[:, 1])
@@ -118,10 +108,11 @@ def overhead(module: GeneratedModule) -> list[dict[str, float]]:
     return rows
 
 
-def _median_seconds(run: Callable[[], object]) -> float:
-    """The median of five runs after a first that compiles; of long runs, the time of the first."""
-    first = seconds(run)
-    return first if first > LONG else float(np.median([seconds(run) for _ in range(5)]))
+def _median_seconds(run: Callable[..., object], *arguments: Any) -> float:
+    """The median of five calls after a first that compiles; of long ones, the time of the first."""
+    call = partial(run, *arguments)
+    first = seconds(call)
+    return first if first > LONG else float(np.median([seconds(call) for _ in range(5)]))
 
 
 def summary(results: dict[str, Any]) -> Iterator[str]:
@@ -131,17 +122,13 @@ def summary(results: dict[str, Any]) -> Iterator[str]:
         f"Flip map, {SIDE} x {SIDE}, {END:g} s, {compared['motions']:,} motions; "
         f"{1 - FRACTION:.0%} of the times to {ERROR:g} s, on one core:"
     )
-    rows = (
-        (program, setting, times[program], times[program] / times["holonomic"])
-        for program, setting in compared["settings"].items()
-    )
+    relative = {program: time / times["holonomic"] for program, time in times.items()}
+    rows = ((p, setting, times[p], relative[p]) for p, setting in compared["settings"].items())
     columns = {"program": "", "setting": "", "time/s": ".2f", "ratio": ".1f"}
     yield from text_table(columns, rows)
     ratio = times["one lane"] / times["both cores"]
-    yield (
-        f"one motion at a time {times['one lane']:.2f} s; lanes on both cores "
-        f"{times['both cores']:.2f} s: {ratio:.1f} times as fast"
-    )
+    lanes = f"lanes on both cores {times['both cores']:.2f} s"
+    yield f"one motion at a time {times['one lane']:.2f} s; {lanes}: {ratio:.1f} times as fast"
     yield "Sweeps from random starts, on both cores, and their overhead over the ensemble alone:"
     columns = {"motions": ",", "time/s": ".2f", "overhead": "+.1%"}
     shown = itemgetter("motions", "seconds", "overhead")

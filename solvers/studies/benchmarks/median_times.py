@@ -1,4 +1,4 @@
-"""Median times of several programs, called in turn."""
+"""Median times of several programs, called in turn, and of compilation."""
 
 from __future__ import annotations
 
@@ -6,6 +6,12 @@ import time
 from collections.abc import Callable, Mapping
 
 import numpy as np
+
+from solvers.equations.module import GeneratedModule
+from solvers.integration.compiled.compiler import build
+from solvers.integration.compiled.kernel_source import program
+from solvers.integration.compiled.native import equations
+from solvers.runge_kutta.catalogue import load
 
 
 def seconds(run: Callable[[], object]) -> float:
@@ -25,3 +31,9 @@ def median_times(runs: Mapping[str, Callable[[], object]], duration: float) -> d
         for name, run in runs.items():
             times[name].append(seconds(run))
     return {name: float(np.median(values)) for name, values in times.items()}
+
+
+def compile_loop(module: GeneratedModule, *, lanes: bool = False) -> None:
+    """Compile a module's loop with ``verner98``, which no cache contains."""
+    text = program(equations(module, "rational"), load("verner98"), lanes=lanes, compensated=False)
+    build(f"{text}/* {time.perf_counter_ns()} */")

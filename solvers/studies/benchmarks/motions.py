@@ -21,10 +21,13 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.studies import heyoka
 from solvers.studies.benchmarks.median_times import median_times
+from solvers.studies.work_precision.measurement import FINEST_OF_SCIPY
 
 Array = NDArray[np.float64]
 #: Seconds and global errors of each program, from loose to tight tolerances.
 Curves = dict[str, list[tuple[float, float]]]
+#: Functions that return final states, by the names of programs.
+Runs = dict[str, Callable[[], Array]]
 
 #: The report's scene, and its state at 5 s from an 80-bit Taylor series.
 START, END = (pi / 2, pi, 0.0, 0.0), 5.0
@@ -34,8 +37,6 @@ METHODS = {"bs32": 1e-5, "dp54": 1e-9, "tsit54": 1e-9, "dop853": 0, "verner87": 
 MOTIONS = 4096
 #: Errors of heyoka are about its tolerance, ours a multiple: its tolerances reach further.
 HEYOKA_POWER = 8 / 7
-#: The least tolerance that SciPy accepts.
-FINEST_OF_SCIPY = 3e-14
 
 
 def tolerances(loosest: float, tightest: float) -> Array:
@@ -52,25 +53,23 @@ def random_starts() -> Array:
 
 def one_motion(module: GeneratedModule, hy: Any) -> Curves:
     """Curves of the report's scene: our methods, heyoka with three sets of equations, SciPy."""
-    params, final = module.DEFAULTS, np.array(FINAL)
+    params = module.DEFAULTS
     systems = {name: (e, START) for name, e in heyoka.double_pendulum(hy).items()}
     rational_start = function(module, "rational_state")(0.0, START, params)
     systems["rational"] = heyoka.generated(hy, module), rational_start
     curves: Curves = {}
     for tol in map(float, tolerances(-1, -14)):
-        runs: dict[str, Callable[[], Array]] = {
-            method: partial(_state, prepare(module, params, method=method, rtol=tol, atol=tol))
-            for method, finest in METHODS.items()
-            if tol > finest
-        }
-        for name, (equations, start) in systems.items():
-            run = heyoka.single(hy, equations, start, params, END, tol**HEYOKA_POWER)
+        ready = partial(prepare, module, params, rtol=tol, atol=tol)
+        runs: Runs = {m: partial(_state, ready(method=m)) for m in METHODS if tol > METHODS[m]}
+        for name, system in systems.items():
+            run = heyoka.single(hy, *system, params, END, tol**HEYOKA_POWER)
             runs[f"heyoka, {name}"] = run
         if tol > FINEST_OF_SCIPY:
             runs["solve_ivp"] = partial(_by_scipy, module, tol)
         for name, time in median_times(runs, 0.3).items():
             state = _ordinary(runs[name]()[np.newaxis])[0]
-            _append(curves, name, time, float(np.abs(state - final).max()))
+            if not isnan(error := float(np.abs(state - FINAL).max())):
+                curves.setdefault(name, []).append((time, error))
     return curves
 
 
@@ -96,32 +95,23 @@ def many_motions(module: GeneratedModule, hy: Any) -> Curves:
     systems["rational"] = heyoka.generated(hy, module), np.ascontiguousarray(rational.T)
     curves: Curves = {}
     for tol in map(float, tolerances(-3, -14)):
-        runs: dict[str, Callable[[], Array]] = {
-            method: partial(_by_ensemble, module, starts, method, tol)
-            for method, finest in METHODS.items()
-            if tol > finest
-        }
-        for name, (equations, start) in systems.items():
-            run = heyoka.batches(hy, equations, start, params, END, tol**HEYOKA_POWER)
+        ours = partial(_by_ensemble, module, starts, tol)
+        runs: Runs = {m: partial(ours, m) for m in METHODS if tol > METHODS[m]}
+        for name, system in systems.items():
+            run = heyoka.batches(hy, *system, params, END, tol**HEYOKA_POWER)
             runs[f"heyoka, {name}"] = run
         for name, time in median_times(runs, 0.0).items():
             # angles of the rational form are known up to whole turns
             apart = np.abs(_ordinary(runs[name]()) - final)
             apart[:, :2] = np.abs((apart[:, :2] + pi) % (2 * pi) - pi)
-            _append(curves, name, time / MOTIONS, float(np.median(apart.max(axis=1))))
+            if not isnan(error := float(np.median(apart.max(axis=1)))):
+                curves.setdefault(name, []).append((time / MOTIONS, error))
     return curves
 
 
-def _by_ensemble(module: GeneratedModule, starts: Array, method: str, tol: float) -> Array:
+def _by_ensemble(module: GeneratedModule, starts: Array, tol: float, method: str) -> Array:
     solve = partial(ensemble, method=method, rtol=tol, atol=tol, workers=1)
     return solve(module, (0.0, END), starts.T, module.DEFAULTS).y.T
-
-
-def _append(curves: Curves, name: str, time: float, error: float) -> None:
-    """Add a point to a curve unless the run failed."""
-    points = curves.setdefault(name, [])
-    if not isnan(error):
-        points.append((time, error))
 
 
 def _ordinary(states: Array) -> Array:

@@ -20,14 +20,11 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration.compiled.compiler import build
-from solvers.integration.compiled.kernel_source import program
-from solvers.integration.compiled.native import equations
 from solvers.integration.prepare import prepare
 from solvers.integration.timing import median_seconds
 from solvers.io.text_table import text_table
-from solvers.runge_kutta.catalogue import load
 from solvers.studies import heyoka
+from solvers.studies.benchmarks.median_times import compile_loop
 from solvers.studies.benchmarks.motions import END, FINAL, START
 
 Array = NDArray[np.float64]
@@ -45,49 +42,19 @@ ERROR, TOLERANCES = 1e-9, 10.0 ** -np.arange(6, 14)
 
 @dataclass(frozen=True)
 class Pipeline:
-    """Times of one program.
-
-    Attributes
-    ----------
-    name : str
-        Name of the program.
-    derivation, preparation, run : float
-        Seconds to derive equations, to prepare the first run, and of one run.
-    global_error : float
-        Of the final state.
-    """
+    """Times of one program in s."""
 
     name: str
     derivation: float
-    preparation: float
+    preparation: float  # of the first run
     run: float
-    global_error: float
+    global_error: float  # of the final state
 
 
 def pipelines(
     module: GeneratedModule, peer: Callable[[str], Any], chain: Chain, mechanics: Mechanics
 ) -> list[Pipeline]:
-    """The pipelines of all programs.
-
-    Parameters
-    ----------
-    module : module
-        The generated double pendulum.
-    peer : callable
-        Returns the package of another program.
-    chain, mechanics : callable
-        Derive a chain of pendulums, here and with SymPy's mechanics.
-
-    Returns
-    -------
-    list of Pipeline
-        Ours first.
-
-    Raises
-    ------
-    ArithmeticError
-        When a program does not reach an error of `ERROR` with any tolerance.
-    """
+    """The pipelines of all programs, ours first; `peer` returns the package of another one."""
     programs: Mapping[str, Callable[[], Prepared]] = {
         "holonomic": lambda: _ours(module, chain),
         "heyoka.py": lambda: _heyoka(peer("heyoka"), module),
@@ -118,9 +85,7 @@ def _measured(name: str, derivation: float, preparation: float, run: Run) -> Pip
 def _ours(module: GeneratedModule, chain: Chain) -> Prepared:
     derived, emitted, *_ = chain(2, "_rational")
     start = time.perf_counter()
-    source = equations(module, "rational")
-    text = program(source, load("verner98"), lanes=False, compensated=False)
-    build(f"{text}/* {time.perf_counter_ns()} */")  # not in the cache
+    compile_loop(module)
     preparation = emitted + time.perf_counter() - start
 
     def run(tolerance: float) -> Callable[[], Any]:
@@ -171,8 +136,8 @@ def _scipy(module: GeneratedModule, chain: Chain) -> Prepared:
     return derived, emitted, lambda tol: partial(_dop853, module.rhs, tol, module.DEFAULTS)
 
 
-def _pydy(_: GeneratedModule, module: GeneratedModule, mechanics: Mechanics) -> Prepared:
-    generators: Any = import_module("pydy.codegen.ode_function_generators")
+def _pydy(package: Any, module: GeneratedModule, mechanics: Mechanics) -> Prepared:
+    generators: Any = import_module(f"{package.__name__}.codegen.ode_function_generators")
     start = time.perf_counter()
     system = mechanics(2)
     derived = time.perf_counter()
@@ -187,6 +152,6 @@ def _pydy(_: GeneratedModule, module: GeneratedModule, mechanics: Mechanics) -> 
     return derived - start, preparation, lambda tol: partial(_dop853, rhs, tol, params)
 
 
-def _dop853(rhs: Callable[..., Any], tolerance: float, params: Any) -> Any:
-    solve = partial(solve_ivp, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=[END])
-    return solve(rhs, (0.0, END), START, args=(params,)).y[:, -1]
+def _dop853(rhs: Callable[..., Any], tol: float, params: Any) -> Any:
+    options = {"method": "DOP853", "rtol": tol, "atol": tol, "t_eval": [END]}
+    return solve_ivp(rhs, (0.0, END), START, args=(params,), **options).y[:, -1]

@@ -23,6 +23,8 @@ from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
 
 Array = NDArray[np.float64]
+#: Takes a step in s; returns the logarithm of an oscillation's growth per step.
+Growth = Callable[[float], float]
 
 #: Amplitude in units of the coordinates: nonlinear terms are below rounding.
 AMPLITUDE = 1e-7
@@ -42,36 +44,20 @@ BEYOND = 1.05
 
 @dataclass(frozen=True)
 class CriticalStep:
-    """The step at which a method becomes unstable for the fastest small oscillation.
+    """The step in s at which a method becomes unstable for the fastest small oscillation.
 
-    Attributes
-    ----------
-    method, title : str
-        Name in the catalogue, and common name.
-    order, stages : int
-        Order and number of stages.
-    function : StabilityFunction
-        The exact stability function.
-    predicted : float
-        The imaginary stability interval over the frequency, in s.
-    linear, measured : float
-        The limit for runs of the linear equations, and of the system's equations in small
-        motion. 0: growth even with the shortest step; inf: growth with none.
-    probe : float
-        A step in s.
-    growth_predicted, growth_measured : float
-        Logarithm of the growth per step of the linear equations with this step.
+    0: oscillations grow even with the shortest step; inf: with none.
     """
 
     method: str
-    title: str
+    title: str  # common name of the method
     order: int
     stages: int
     function: StabilityFunction
-    predicted: float
-    linear: float
-    measured: float
-    probe: float
+    predicted: float  # imaginary stability interval over the frequency
+    linear: float  # limit for runs of the linear equations
+    measured: float  # limit for runs of the system's equations in small motion
+    probe: float  # a step in s; the linear equations grow by these logarithms per step
     growth_predicted: float
     growth_measured: float
 
@@ -109,20 +95,14 @@ def critical_step(method: str, module: GeneratedModule, params: Sequence[float])
     no_growth = NO_GROWTH * fastest / float(modes.frequencies[0])
     measured = limit(running, fastest, no_growth)
     probe = BEYOND * measured if 0 < measured < inf else 1 / fastest
-    return CriticalStep(
-        *(method, tableau.title, tableau.order, tableau.stages, function),
-        predicted=function.imaginary_stability_interval / fastest,
-        linear=limit(linear, fastest, no_growth),
-        measured=measured,
-        probe=probe,
-        growth_predicted=float(np.log(np.abs(function(1j * probe * fastest)))),
-        growth_measured=linear(probe),
-    )
+    names = method, tableau.title, tableau.order, tableau.stages, function
+    predicted = function.imaginary_stability_interval / fastest
+    limits = predicted, limit(linear, fastest, no_growth), measured
+    growth = float(np.log(np.abs(function(1j * probe * fastest)))), linear(probe)
+    return CriticalStep(*names, *limits, probe, *growth)
 
 
-def limit(
-    growth: Callable[[float], float], frequency: float, no_growth: float = NO_GROWTH
-) -> float:
+def limit(growth: Growth, frequency: float, no_growth: float = NO_GROWTH) -> float:
     """The longest step without growth: 0 if all steps in the range have growth, inf if none."""
     stable, h = 0.0, SHORTEST / frequency
     while growth(h) <= no_growth:
@@ -137,7 +117,7 @@ def limit(
     return stable
 
 
-def _linear(method: str, modes: Modes) -> Callable[[float], float]:
+def _linear(method: str, modes: Modes) -> Growth:
     """Growth per step of M₀ ẍ + K x = 0, by the stepper in Python."""
     matrix = modes.matrix
     start = AMPLITUDE * np.concatenate([modes.shapes[:, -1], np.zeros(len(modes.frequencies))])
@@ -160,7 +140,7 @@ def _linear(method: str, modes: Modes) -> Callable[[float], float]:
 
 def _small_motion(
     method: str, module: GeneratedModule, params: Sequence[float], modes: Modes
-) -> Callable[[float], float]:
+) -> Growth:
     """Growth per step of the system itself, by `integrate`."""
     n = len(modes.frequencies)
     rest = np.concatenate([function(module, "equilibrium")(params), np.zeros(n)])

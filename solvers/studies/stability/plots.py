@@ -31,9 +31,8 @@ def regions(
     for step in steps:
         shared.setdefault(step.function, []).append(step)
     columns = min(5, len(shared))
-    figure, axes = panels(
-        title, rows=-(-len(shared) // columns), columns=columns, size=(2.6 * columns, 9)
-    )
+    rows = -(-len(shared) // columns)
+    figure, axes = panels(title, rows=rows, columns=columns, size=(2.6 * columns, 9))
     for panel, group in zip(axes, shared.values(), strict=False):
         _region(panel, group, frequencies, eigenvalues)
     for panel in axes[len(shared) :]:
@@ -70,10 +69,7 @@ def boundaries(functions: Mapping[str, StabilityFunction]) -> Figure:
 
 
 def _region(
-    panel: Axes,
-    group: Sequence[CriticalStep],
-    frequencies: Frequencies,
-    eigenvalues: Eigenvalues,
+    panel: Axes, group: Sequence[CriticalStep], frequencies: Frequencies, eigenvalues: Eigenvalues
 ) -> None:
     first = group[0]
     size = np.abs(first.function(X + 1j * Y[:, None]))
@@ -81,14 +77,12 @@ def _region(
     panel.contour(X, Y, size, levels=[1], colors=[COLOURS[0]], linewidths=0.8)
     panel.axhline(0, color="#bbbbbb", linewidth=0.5)
     panel.axvline(0, color="#bbbbbb", linewidth=0.5)
-    limited = 0 < first.predicted < inf
-    h = first.predicted if limited else 1 / frequencies[-1]
+    limits = {0: "no step is stable", inf: "every step is stable"}
+    limit = limits.get(first.predicted, f"h ≤ {first.predicted:.3g} s")
+    h = 1 / frequencies[-1] if first.predicted in limits else first.predicted
     along = h * eigenvalues
     panel.plot(along.real, along.imag, ".", color="#999999", markersize=1.5)
     modes = h * np.concatenate([frequencies, -frequencies])
     panel.plot(np.zeros_like(modes), modes, "o", color=COLOURS[1], markersize=3)
     panel.set(xlim=(LEFT, RIGHT), ylim=(-TOP, TOP), aspect="equal")
-    limit = "no step is stable" if first.predicted == 0 else "every step is stable"
-    if limited:
-        limit = f"h ≤ {first.predicted:.3g} s"
     panel.set_title(f"{', '.join(step.method for step in group)}\n{limit}", fontsize="small")

@@ -69,24 +69,16 @@ def _cells(step: CriticalStep) -> tuple[object, ...]:
 
 
 def _row(step: CriticalStep) -> dict[str, Any]:
-    function = step.function
-    return {
-        "method": step.method,
-        "title": step.title,
-        "order": step.order,
-        "stages": step.stages,
-        "stability_function": {
-            "numerator": [str(c) for c in function.numerator],
-            "denominator": [str(c) for c in function.denominator],
-        },
+    function, probe = step.function, {"h": step.probe}
+    probe |= {"growth_predicted": step.growth_predicted, "growth_measured": step.growth_measured}
+    numerator, denominator = map(str, function.numerator), map(str, function.denominator)
+    names = {name: getattr(step, name) for name in ("method", "title", "order", "stages")}
+    return names | {
+        "stability_function": {"numerator": [*numerator], "denominator": [*denominator]},
         "real_stability_interval": function.real_stability_interval,
         "imaginary_stability_interval": function.imaginary_stability_interval,
         "critical_step_predicted": step.predicted,
         "critical_step_measured": step.measured,
         "critical_step_measured_linear": step.linear,
-        "probe": {
-            "h": step.probe,
-            "growth_predicted": step.growth_predicted,
-            "growth_measured": step.growth_measured,
-        },
+        "probe": probe,
     }
