@@ -31,14 +31,13 @@ def cache_folder() -> Path:
     """A folder that only this user can write to: the usual cache, or one for this process."""
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     folder = Path(home) / "holonomic"
-    if not folder.is_absolute():
-        return _private_folder()
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError:
-        return _private_folder()
-    return folder if _is_private(folder) else _private_folder()
+    with suppress(OSError):
+        if folder.is_absolute():
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+            if _is_private(folder):
+                return folder
+    return _private_folder()
 
 
 def _is_private(folder: Path) -> bool:
@@ -60,9 +59,9 @@ def is_intact(folder: Path) -> bool:
         lines = (folder / DIGESTS).read_text(encoding="ascii").splitlines()
         expected = [tuple(line.split("  ", 1)) for line in lines]
         names = [name for _, name in expected]
-        if not names or not all(stat.S_ISREG((folder / n).lstat().st_mode) for n in names):
-            return False
-        return _is_private(folder) and expected == _digests(folder, names)
+        are_files = all(stat.S_ISREG((folder / name).lstat().st_mode) for name in names)
+        is_complete = bool(names) and are_files and _is_private(folder)
+        return is_complete and expected == _digests(folder, names)
     except (OSError, ValueError):
         return False
 

@@ -10,7 +10,7 @@ import ast
 import operator
 import re
 from collections.abc import Callable
-from math import inf, isfinite, pi
+from math import pi
 
 from solvers.io.suggestion import shortened
 
@@ -58,17 +58,12 @@ class QuantityError(ValueError):
 def quantity(value: object, unit: str) -> float:
     """A finite number in `unit`; a text may end in another unit of the same dimension."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise QuantityError(
-            f"{shortened(value)} is no number: write a number in {unit}, or a text "
-            f'such as "1/2 {unit}"'
-        )
-    if not isinstance(value, str):
-        number = float(value) if abs(value) < 1e308 else inf
-    else:
-        number = _parsed(value, unit)
-    if not isfinite(number):
+        hint = f'write a number in {unit}, or a text such as "1/2 {unit}"'
+        raise QuantityError(f"{shortened(value)} is no number: {hint}")
+    number = _parsed(value, unit) if isinstance(value, str) else value
+    if not abs(number) < 1e308:  # NaN, infinity, or a whole number that is no float
         raise QuantityError(f"{shortened(value)} is not finite")
-    return number
+    return float(number)
 
 
 def _parsed(text: str, unit: str) -> float:
@@ -103,10 +98,8 @@ def _value(node: ast.AST) -> float:
             return float(number)
         case ast.Name(id="pi"):
             return pi
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return -_value(operand)
-        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-            return _value(operand)
+        case ast.UnaryOp(op=ast.USub() | ast.UAdd() as op, operand=operand):
+            return -_value(operand) if isinstance(op, ast.USub) else _value(operand)
         case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
             result = OPERATORS[type(op)](_value(left), _value(right))
             if isinstance(result, complex):

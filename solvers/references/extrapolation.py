@@ -51,7 +51,7 @@ def extrapolated(
 
 
 def _extrapolated_step(rhs: Callable[[Long], Long], y: Long, h: np.longdouble) -> Long:
-    """The change over a step, by the rule with more and more substeps, extrapolated."""
+    """The state after a step, by the rule with more and more substeps, extrapolated."""
     row: list[Long] = []
     for j in range(1, COLUMNS + 1):
         above, row = row, [_midpoint_rule(rhs, y, h, 2 * j)]

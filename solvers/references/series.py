@@ -1,8 +1,7 @@
 """Power series whose coefficients are computed one order at a time.
 
-A function of sums, products and quotients, called once with series, records a tape of operations.
-Each order of all of them follows from the lower ones (A. Griewank, A. Walther,
-Evaluating Derivatives, section 13.2).
+A function of sums, products and quotients, called once with series, records a tape of operations;
+each order follows from the lower ones (A. Griewank, A. Walther, Evaluating Derivatives, 13.2).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Motions by Taylor series in decimal numbers of any length.
 
-The equations are a generated module's rational form: sums, products and quotients only, so
-that the generated function accepts power series. Numbers, steps and coefficients are independent
-of those of Runge–Kutta methods.
+The equations are a generated module's rational form, of sums, products and quotients, so that its
+function accepts power series. Nothing numerical is shared with Runge–Kutta methods.
 """
 
 from __future__ import annotations
@@ -100,8 +99,7 @@ class _Motion:
         half, self._tape = len(module.COORDINATES), list[Series]()
         self._state = [Series(self._tape, []) for _ in form.state]
         constants = [Series.number(self._tape, p) for p in params]
-        name = named("rhs", form.name)
-        if name in module.TIMED:
+        if named("rhs", form.name) in module.TIMED:
             raise NoSeriesError(NO_SERIES.format(module.SYSTEM, "depend on time"))
         try:
             rates = form.function(0.0, self._state, constants)
@@ -109,13 +107,14 @@ class _Motion:
             raise NoSeriesError(NO_SERIES.format(module.SYSTEM, "call a function")) from None
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
         columns = dict(form.shared_columns)
+        ordinary = [Decimal(float(y)) for y in y0]
         start = [Decimal(0)] * len(form.state)
         for k, i in form.shared_columns:
-            start[i] = Decimal(float(y0[k]))
-        for angle, (k, i) in enumerate(form.angle_columns):
-            start[i], start[i + 1] = sine_and_cosine(Decimal(float(y0[k])))
-            start.append(Decimal(float(y0[k])))
-            columns[k] = len(form.state) + angle
+            start[i] = ordinary[k]
+        for k, i in form.angle_columns:
+            start[i], start[i + 1] = sine_and_cosine(ordinary[k])
+            columns[k] = len(start)
+            start.append(ordinary[k])
             self._rates.append(self._state[columns[half + k]])
             self._state.append(Series(self._tape, []))
         self._columns = [columns[k] for k in range(2 * half)]

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import hypot
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Rhs = Callable[[float, Array], Array]
+from solvers.runge_kutta.stepper import Array, Rhs
 
 #: Fraction of the ideal step that is attempted, and limits to its change (E. Hairer,
 #: S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4).

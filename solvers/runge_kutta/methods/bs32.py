@@ -7,7 +7,5 @@ P. Bogacki, L. F. Shampine, A 3(2) pair of Runge-Kutta formulas, Applied Mathema
 from solvers.runge_kutta.tableau import Tableau
 
 tableau = Tableau.explicit(
-    "Bogacki-Shampine 3(2)",
-    rows="1/2; 0 3/4; 2/9 1/3 4/9",
-    b_hat="7/24 1/4 1/3 1/8",
+    "Bogacki-Shampine 3(2)", rows="1/2; 0 3/4; 2/9 1/3 4/9", b_hat="7/24 1/4 1/3 1/8"
 )
