@@ -8,20 +8,21 @@ import pytest
 import generated.double_pendulum as dp
 from solvers.app.commands.chart import DEFAULT
 from solvers.app.verdict.claims import claims, objectives, recommendations
-from solvers.app.verdict.evidence import Evidence, Setting
+from solvers.app.verdict.evidence import Evidence
+from solvers.scenes.scene import Scene
 from solvers.studies.failure_modes.lyapunov import Mean
 from solvers.studies.failure_modes.study import studies
 
 EQUATIONS = {"verified": 119, "misprint": 23}
-PROSE = Setting(dp.DEFAULTS, (pi / 2, pi, 0.0, 0.0), 5.0)
-FIRST = Setting((1.0, 1.0, 1.0, 1.0, 9.81), PROSE.y0, 5.0)
-SECOND = Setting(dp.DEFAULTS, (pi / 2, pi, pi, 2 * pi), 5.0)
-THIRD = Setting(dp.DEFAULTS, (0.0, -pi / 4, 0.0, 0.0), 50.0)
+PROSE = Scene(dp, dp.DEFAULTS, (pi / 2, pi, 0.0, 0.0), 5.0)
+FIRST = Scene(dp, (1.0, 1.0, 1.0, 1.0, 9.81), PROSE.y0, 5.0)
+SECOND = Scene(dp, dp.DEFAULTS, (pi / 2, pi, pi, 2 * pi), 5.0)
+THIRD = Scene(dp, dp.DEFAULTS, (0.0, -pi / 4, 0.0, 0.0), 50.0)
 
 
 @pytest.fixture(scope="module")
 def evidence() -> Evidence:
-    return Evidence(dp, PROSE, FIRST, SECOND, THIRD)
+    return Evidence(PROSE, FIRST, SECOND, THIRD)
 
 
 def test_each_claim_has_its_verdict_and_a_number_or_a_reason(evidence: Evidence) -> None:
@@ -80,7 +81,7 @@ def test_right_hand_sides_are_counted_to_an_error(evidence: Evidence) -> None:
 
 def test_verdicts_change_with_the_facts() -> None:
     # had all programs been set to what the prose says, these claims would stand
-    honest = Evidence(dp, PROSE, PROSE, PROSE, THIRD)
+    honest = Evidence(PROSE, PROSE, PROSE, THIRD)
     verdicts = {claim.id: claim.verdict for claim in claims(honest)}
     assert verdicts["3.1a"] == verdicts["3.2a"] == "supported"
 

@@ -11,7 +11,8 @@ import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.app.modules import load
 from solvers.app.verdict.claims import objectives
-from solvers.app.verdict.evidence import Evidence, Setting
+from solvers.app.verdict.evidence import Evidence
+from solvers.scenes.scene import Scene
 from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, statistics
 from solvers.studies.failure_modes.drift import EnergyDrift
 from solvers.studies.failure_modes.lyapunov import lyapunov
@@ -72,8 +73,8 @@ def test_the_drifts_of_energy_are_true() -> None:
 
 
 def test_the_calls_are_those_of_the_verdict() -> None:
-    scene = Setting(dp.DEFAULTS, CHAOTIC, 5.0)
-    verdicts = objectives(Evidence(dp, scene, scene, scene, scene), {"verified": 0, "misprint": 0})
+    scene = Scene(dp, dp.DEFAULTS, CHAOTIC, 5.0)
+    verdicts = objectives(Evidence(scene, scene, scene, scene), {"verified": 0, "misprint": 0})
     assert verdicts[2].number.removeprefix("for ") in PROSE.replace("`", "")
 
 

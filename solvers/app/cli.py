@@ -1,7 +1,5 @@
 """The command ``holonomic``: parser, exit codes and warnings."""
 
-from __future__ import annotations
-
 import os
 import sys
 import warnings

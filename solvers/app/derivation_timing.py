@@ -1,7 +1,5 @@
 """Derivation times of chains of pendulums, here and with SymPy's own mechanics."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -27,13 +25,13 @@ def lambdified_rhs() -> Callable[..., Any]:
 
 def chain(n: int, form: str = "") -> tuple[float, float, str, str]:
     """Seconds to derive and to write a right-hand side of n pendulums, and both texts."""
-    clear_cache()  # SymPy remembers what it has computed
-    begin = time.perf_counter()
+    clear_cache()  # otherwise SymPy reuses earlier results
+    start = time.perf_counter()
     generated = contents(Derivation(load(f"chain_{n}")), (f"rhs{form}",))
     derived = time.perf_counter()
     texts = files(generated)
     seconds = time.perf_counter() - derived
-    return derived - begin, seconds, texts[f"chain_{n}.py"], texts[f"chain_{n}.h"]
+    return derived - start, seconds, texts[f"chain_{n}.py"], texts[f"chain_{n}.h"]
 
 
 @dataclass(frozen=True)
@@ -64,11 +62,11 @@ def mechanics(n: int) -> Mechanics:
 def lagranges_method(n: int) -> float:
     """Seconds until SymPy's ``LagrangesMethod`` and ``lambdify`` have M and f of n pendulums."""
     clear_cache()
-    begin = time.perf_counter()
+    start = time.perf_counter()
     method, q, constants = _lagranges_method(n)
     state = (q, [angle.diff() for angle in q], *constants)
     sp.lambdify(state, (method.mass_matrix, method.forcing), cse=True)
-    return time.perf_counter() - begin
+    return time.perf_counter() - start
 
 
 def _lagranges_method(n: int) -> tuple[Any, list[Any], tuple[sp.Symbol, ...]]:

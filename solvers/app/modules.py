@@ -94,7 +94,7 @@ def build(system: System) -> GeneratedModule:
     from derive import Derivation
     from derive.codegen.writing import texts
 
-    # symbols of one name may differ in what they may be
+    # symbols of one name may differ in their assumptions
     assumptions = [(s.name, sorted(s.assumptions0.items())) for s in (*system.q, *system.params)]
     key = f"{system!r}{assumptions}{generator_text()}"
     module = cached_module(system.name, key, lambda: texts(Derivation(system)))

@@ -1,7 +1,5 @@
 """Tables in the READMEs of a repository checkout, rendered from the code they describe."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Scenes and sweeps by name, by file or as objects."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from os import PathLike, fspath
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``holonomic bench``."""
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
 from functools import partial

@@ -68,8 +68,9 @@ def _measured(scene: Scene, *, compiled_only: bool) -> SceneCurves:
     with Progress() as report:
         report(f"{scene.name}: reference")
         reference = Reference.of(scene)
-        every = combinations(scene.module)
-        selected = [one for one in every if one[2] == "compiled" or not compiled_only]
+        selected = list(combinations(scene.module))
+        if compiled_only:
+            selected = [combination for combination in selected if combination[2] == "compiled"]
 
         def reported() -> Iterator[Combination]:
             for n, combination in enumerate(selected, 1):
@@ -86,16 +87,15 @@ def _measured(scene: Scene, *, compiled_only: bool) -> SceneCurves:
 def _as_json(results: Sequence[SceneCurves], plots: Sequence[str]) -> dict[str, Any]:
     from solvers.studies.work_precision.reference import Reference
 
-    frontiers = [(*result.frontier, *result.frontier_rhs) for result in results]
     return {
-        "curves": [curve for result in results for curve in result.curves],
-        "frontier": [best for frontier in frontiers for best in frontier],
-        "rounding_limits": {result.scene.name: result.rounding_limits for result in results},
-        "misleading_energy": {result.scene.name: result.misleading_energy for result in results},
+        "curves": [curve for r in results for curve in r.curves],
+        "frontier": [best for r in results for best in (*r.frontier, *r.frontier_rhs)],
+        "rounding_limits": {r.scene.name: r.rounding_limits for r in results},
+        "misleading_energy": {r.scene.name: r.misleading_energy for r in results},
         "pictures": plots,
         "reference": {
             "method": Reference.METHOD,
-            "global_error": max(result.reference.global_error for result in results),
-            "scenes": {result.scene.name: result.reference for result in results},
+            "global_error": max(r.reference.global_error for r in results),
+            "scenes": {r.scene.name: r.reference for r in results},
         },
     }

@@ -1,7 +1,5 @@
 """``holonomic demo``."""
 
-from __future__ import annotations
-
 import time
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """``holonomic derive``."""
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 
 from derive.commands import arguments as derive_arguments

@@ -1,7 +1,5 @@
 """``holonomic run``."""
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 from collections import Counter
 

@@ -48,7 +48,7 @@ def run(arguments: Namespace) -> int:
             report(f"where methods fail: {study.name}")
             failures = study.run(load)
         results["failures"][study.name] = failures
-        # scenes have names, too
+        # the prefix keeps these apart from plots of scenes
         show(f"failures_{study.name}", study.summary(failures), study.plot(failures))
     if arguments.json:
         options.print_json(results)

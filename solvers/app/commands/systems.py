@@ -1,7 +1,5 @@
 """``holonomic systems``."""
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 
 from derive.system.shipped import names

@@ -1,7 +1,5 @@
 """``holonomic verify``."""
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 
 from solvers.app.commands.options import add_examples, add_json, print_json

@@ -1,7 +1,5 @@
 """The derivation of the double pendulum, and the code that is generated from it."""
 
-from __future__ import annotations
-
 import inspect
 from html import escape
 

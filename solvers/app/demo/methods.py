@@ -1,7 +1,5 @@
 """Methods on a scene: speed against accuracy, and the longest stable steps."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import isfinite, isinf
 

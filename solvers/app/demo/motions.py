@@ -1,7 +1,5 @@
 """The motion of a scene beside Euler's method, and a map of many motions."""
 
-from __future__ import annotations
-
 import time
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The page of the demonstration: one file without references to other files."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from html import escape
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The results of a stage of the demonstration, and the elements of its HTML."""
 
-from __future__ import annotations
-
 from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The stages of the demonstration, from positions to a map of motions."""
 
-from __future__ import annotations
-
 import platform
 from collections.abc import Callable
 from datetime import date

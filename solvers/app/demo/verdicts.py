@@ -1,7 +1,5 @@
 """The verdicts on the report, for the terminal and for the page."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
@@ -11,6 +9,8 @@ from derive.verification.report.comparison import verdict_html
 from derive.verification.verdict import Verdict
 from solvers.app.demo.stage import Number, Stage, details, table
 from solvers.app.verdict.report import counted, report_verdicts
+
+Rows = Sequence[Mapping[str, Any]]
 
 DESCRIPTIONS = {
     "verified": "hold as printed",
@@ -37,7 +37,7 @@ def verification() -> Stage:
             f"programs: {len(verdicts['programs'])}; {stopped} do not run as printed",
             "details and corrections: holonomic verify",
         ),
-        section(verdicts),
+        _section(verdicts["equations"], verdicts["programs"], verdicts["claims"]),
         (
             Number("equations of the report", equations, proof, "holonomic verify"),
             Number("claims of the report", claims, "computed", "holonomic verify"),
@@ -45,27 +45,24 @@ def verification() -> Stage:
     )
 
 
-def section(verdicts: Mapping[str, Any]) -> str:
+def _section(equations: Rows, programs: Rows, claims: Rows) -> str:
     """Counts, and collapsed lists of all misprints, claims and programs, as HTML."""
-    equations = verdicts["equations"]
     misprints = [verdict_html(Verdict(**row)) for row in equations if row["verdict"] == "misprint"]
-    claims = [
-        (row["id"], row["claim"], row["verdict"], row["number"]) for row in verdicts["claims"]
-    ]
-    programs = [
+    reasons = [(row["id"], row["claim"], row["verdict"], row["number"]) for row in claims]
+    stops = [
         (f"program {k}", "; ".join(program["stops"]) or "runs as printed")
-        for k, program in enumerate(verdicts["programs"], 1)
+        for k, program in enumerate(programs, 1)
     ]
     return (
         f"<p>Of {len(equations)} equations, {_described(equations)}. Of {len(claims)} "
-        f"objectives, claims and recommendations, {_described(verdicts['claims'])}.</p>"
+        f"objectives, claims and recommendations, {_described(claims)}.</p>"
         + details("All misprints and their corrections", "".join(misprints))
-        + details("All claims", table(("", "claim", "verdict", "reason"), claims))
-        + details("The three programs", table(("", "as printed"), programs))
+        + details("All claims", table(("", "claim", "verdict", "reason"), reasons))
+        + details("The three programs", table(("", "as printed"), stops))
     )
 
 
-def _described(rows: Sequence[Mapping[str, Any]]) -> str:
+def _described(rows: Rows) -> str:
     counts = Counter(row["verdict"] for row in rows).most_common()
     return ", ".join(
         f"<strong>{n}</strong> {escape(DESCRIPTIONS[verdict])}" for verdict, n in counts

@@ -4,8 +4,6 @@ Each is ``supported`` or ``contradicted`` by a reproducible number, or ``untesta
 could decide it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -75,7 +73,7 @@ def _chapter_3(e: Evidence) -> list[Claim]:
     by_step = ", ".join(f"{x:.1g} (h = {h:g} s)" for h, x in zip(steps, errors, strict=True))
     crossings = [int(np.sum(np.diff(np.sign(e.stepped("RK4", h)[0])) != 0)) for h in (0.01, 0.005)]
     methods = [e.error(name, 0.01) for name in REPORT_METHODS]
-    ratios = [e.speed_ratio(setting) for setting in (e.first, e.prose)]
+    ratios = [e.speed_ratio(scene) for scene in (e.first, e.prose)]
     return [
         Claim("3.1a", "the figure of the Lagrangian belongs to m = 1 kg, l = 2 m, g = 9.81",
               outcome(shorter < 1e-3),
@@ -121,7 +119,7 @@ def _chapter_4(e: Evidence) -> list[Claim]:
               f"{euler:.2g} rad; but section 4.2 shows the Euler-Lagrange equations, not Euler's "
               "method", STEPS),
         Claim("4.3", "Runge-Kutta is the best, for its curves are smooth", outcome(rough < 1e-3),
-              "the curve of RK4 with h = 0.1 s is smooth, too, and its error at 5 s is "
+              "the curve of RK4 with h = 0.1 s is also smooth, but its error at 5 s is "
               f"{rough:.2g} rad", CHART),
     ]  # fmt: skip
 

@@ -1,7 +1,5 @@
 """The verdicts on the double-pendulum report: equations, programs and claims."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -11,10 +9,12 @@ import generated.double_pendulum as double_pendulum
 from derive.verification.report.contexts import NUMBERS
 from derive.verification.report.judgement import verdicts
 from derive.verification.report.programs import PROSE, programs
+from derive.verification.report.programs import Scene as ReportScene
 from derive.verification.verdict import Verdict, table_row, table_width, verdict_rows, wrapped
 from solvers.app.verdict.claims import claims, objectives, recommendations
-from solvers.app.verdict.evidence import Evidence, Setting
+from solvers.app.verdict.evidence import Evidence
 from solvers.runge_kutta.order_conditions import order
+from solvers.scenes.scene import Scene
 
 #: Column where the details of a program start.
 MARGIN = 20
@@ -26,8 +26,7 @@ def report_verdicts() -> dict[str, Any]:
     ``state`` holds the values for which residuals are evaluated.
     """
     printed = programs()
-    settings = [_setting(scene) for scene in (PROSE, *(program.scene for program in printed))]
-    evidence = Evidence(double_pendulum, *settings)
+    evidence = Evidence(*map(_scene, (PROSE, *(program.scene for program in printed))))
     equations = verdicts(order)
     counts = Counter(str(verdict.verdict) for verdict in equations)
     tested = [*objectives(evidence, counts), *claims(evidence), *recommendations(evidence)]
@@ -40,10 +39,11 @@ def report_verdicts() -> dict[str, Any]:
     }
 
 
-def _setting(scene: Any) -> Setting:
-    values = [*scene.masses, *scene.lengths, scene.gravity]
-    initial = [*scene.angles, *scene.velocities]
-    return Setting(tuple(map(float, values)), tuple(map(float, initial)), float(scene.duration))
+def _scene(values: ReportScene) -> Scene:
+    params = [*values.masses, *values.lengths, values.gravity]
+    y0 = [*values.angles, *values.velocities]
+    floats = tuple(map(float, params)), tuple(map(float, y0)), float(values.duration)
+    return Scene(double_pendulum, *floats)
 
 
 def tables(verdicts: Mapping[str, Any]) -> str:
