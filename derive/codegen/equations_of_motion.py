@@ -12,7 +12,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.codegen.differentiation import Differentiation
-from derive.codegen.factorisation import Solver, factorisation
+from derive.codegen.factorisation import Factorisation, Loops, factorisation
 from derive.codegen.graph import Graph
 from derive.codegen.node import Node
 from derive.codegen.rational import angles
@@ -55,7 +55,7 @@ class EquationsOfMotion:
         return self._nodes(self._system.applied)
 
     @cached_property
-    def _factorisation(self) -> Solver:
+    def _factorisation(self) -> Loops | Factorisation:
         return factorisation(self._graph, [[self._inertia[i][j] for j in self._n] for i in self._n])
 
     def _rates(self, velocities: Sequence[Node]) -> list[Node]:

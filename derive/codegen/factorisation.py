@@ -12,10 +12,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import reduce
 from math import gcd, lcm
-from typing import Protocol
 
 from derive.codegen.graph import Graph
 from derive.codegen.node import Let, Node
+
+Rows = Sequence[Sequence[Node]]
 
 #: From this size on a loop is as fast as straight-line code, which grows with the cube.
 LARGE = 16
@@ -24,15 +25,7 @@ LARGE = 16
 SHORT = 3
 
 
-class Solver(Protocol):
-    """A factorised matrix M."""
-
-    def solve(self, right: Sequence[Node]) -> list[Node]:
-        """The solution x of M x = `right`."""
-        ...
-
-
-def factorisation(graph: Graph, matrix: Sequence[Sequence[Node]]) -> Solver:
+def factorisation(graph: Graph, matrix: Rows) -> Loops | Factorisation:
     """The factorisation of a symmetric positive definite matrix; its size decides which."""
     return (Loops if len(matrix) >= LARGE else Factorisation)(graph, matrix)
 
@@ -40,7 +33,7 @@ def factorisation(graph: Graph, matrix: Sequence[Sequence[Node]]) -> Solver:
 class Loops:
     """L D Lᵀ by loops, in functions of the generated module."""
 
-    def __init__(self, graph: Graph, matrix: Sequence[Sequence[Node]]) -> None:
+    def __init__(self, graph: Graph, matrix: Rows) -> None:
         self._graph = graph
         self._factors = graph.factorised(entry for i, row in enumerate(matrix) for entry in row[i:])
 
@@ -50,25 +43,17 @@ class Loops:
 
 
 class Factorisation:
-    """U D Uᵀ of a symmetric positive definite matrix of nodes.
+    """U D Uᵀ of a symmetric positive definite matrix of nodes."""
 
-    Attributes
-    ----------
-    pivots : list of Node
-        The entries of D; all are positive where the matrix is positive definite.
-    """
-
-    def __init__(self, graph: Graph, matrix: Sequence[Sequence[Node]]) -> None:
-        n = len(matrix)
-        self._scale = _common_scale(graph, matrix)
-        self._content = content = _content(matrix)
+    def __init__(self, graph: Graph, matrix: Rows) -> None:
+        n, zero = len(matrix), graph.node(0)
+        self._graph, self._content = graph, _content(matrix)
+        self._scale = scale = _common_scale(graph, matrix)
         self._rows = rows = [
-            [matrix[i][j] / (self._scale[i] * self._scale[j] * content) for j in range(n)]
+            [matrix[i][j] / (scale[i] * scale[j] * self._content) for j in range(n)]
             for i in range(n)
         ]
-        self._graph = graph
-        self.pivots = [graph.node(0)] * n
-        self._inverses = [graph.node(0)] * n
+        self.pivots, self._inverses = [zero] * n, [zero] * n  # all pivots are positive
         self._multipliers: dict[tuple[int, int], Node] = {}
         for k in reversed(range(n)):
             self.pivots[k] = graph.let(rows[k][k])
@@ -91,10 +76,8 @@ class Factorisation:
     def solve(self, right: Sequence[Node]) -> list[Node]:
         """The solution x of M x = `right`."""
         n = len(right)
-        y = [
-            self._graph.spread(node / scale, 1 / self._content)
-            for node, scale in zip(right, self._scale, strict=True)
-        ]
+        scaled = (node / scale for node, scale in zip(right, self._scale, strict=True))
+        y = [self._graph.spread(node, 1 / self._content) for node in scaled]
         for k in reversed(range(n)):
             y[k] = y[k] * self._inverses[k]
             for i in range(k):
@@ -102,16 +85,13 @@ class Factorisation:
                     y[i] = y[i] - self._rows[i][k] * y[k]
         x: list[Node] = []
         for k in range(n):
-            known = [
-                (x[i] * self._multipliers[i, k], -1)
-                for i in range(k)
-                if (i, k) in self._multipliers
-            ]
+            coupled = [i for i in range(k) if (i, k) in self._multipliers]
+            known = [(x[i] * self._multipliers[i, k], -1) for i in coupled]
             x.append(self._graph.let(self._graph.sum([(y[k], 1), *known])))
         return [node / scale for node, scale in zip(x, self._scale, strict=True)]
 
 
-def _content(matrix: Sequence[Sequence[Node]]) -> Fraction:
+def _content(matrix: Rows) -> Fraction:
     """The largest number of which all entries are integer multiples."""
     numbers = [abs(entry.scaled()[0]) for row in matrix for entry in row]
     return Fraction(
@@ -120,7 +100,7 @@ def _content(matrix: Sequence[Sequence[Node]]) -> Fraction:
     )
 
 
-def _common_scale(graph: Graph, matrix: Sequence[Sequence[Node]]) -> list[Node]:
+def _common_scale(graph: Graph, matrix: Rows) -> list[Node]:
     """Factors s of each row such that s_i s_j divides every entry (i, j)."""
     scales = [
         {f: p // 2 for f, p in row[i].exponents().items() if p > 1} for i, row in enumerate(matrix)

@@ -163,10 +163,7 @@ class Graph:
         rest = []
         for (node, coefficient), monomial in zip(ordered, monomials, strict=True):
             if common:
-                quotient = dict(monomial)
-                for n, p in common.items():
-                    quotient[n] = quotient.get(n, 0) - p
-                node = self._monomial(quotient)
+                node = self._monomial({n: p - common.get(n, 0) for n, p in monomial.items()})
             rest.append((node, coefficient / content))
         rest.sort(key=lambda item: item[0].rank)
         primitive = self._intern(Sum, tuple(rest))

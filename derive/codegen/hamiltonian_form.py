@@ -9,7 +9,8 @@ from functools import cached_property
 import sympy as sp
 
 from derive.codegen.equations_of_motion import EquationsOfMotion
-from derive.codegen.node import Node
+from derive.codegen.factorisation import Rows
+from derive.codegen.node import Node, Terms
 from derive.codegen.translation import Translation
 
 HALF = Fraction(1, 2)
@@ -57,20 +58,15 @@ class HamiltonianForm(EquationsOfMotion):
             rates.append(self._graph.sum([*inertial, *forces]))
         return [*self._velocities, *rates]
 
-    def _gradient(self, q: sp.Symbol, matrix: list[list[Node]]) -> list[list[Node]]:
+    def _gradient(self, q: sp.Symbol, matrix: Rows) -> list[list[Node]]:
         """∂matrix/∂q."""
         return [[self._derivative(entry, q.name) for entry in row] for row in matrix]
 
     @staticmethod
-    def _bilinear(
-        matrix: Sequence[Sequence[Node]], v: Sequence[Node], w: Sequence[Node], number: Fraction
-    ) -> list[tuple[Node, Fraction]]:
+    def _bilinear(matrix: Rows, v: Sequence[Node], w: Sequence[Node], number: Fraction) -> Terms:
         """The terms of number times vᵀ matrix w."""
-        return [
-            (entry * v[j] * w[k], number)
-            for j, row in enumerate(matrix)
-            for k, entry in enumerate(row)
-        ]
+        entries = ((j, k, entry) for j, row in enumerate(matrix) for k, entry in enumerate(row))
+        return tuple((entry * v[j] * w[k], number) for j, k, entry in entries)
 
     @property
     def jacobian_hamiltonian(self) -> list[Node]:

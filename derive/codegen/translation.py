@@ -12,13 +12,7 @@ from derive.codegen.graph import Graph
 from derive.codegen.node import Node
 
 #: Functions that generated code can call, by their names in ``math`` and C99.
-FUNCTIONS: dict[type[sp.Expr], str] = {
-    sp.sin: "sin",
-    sp.cos: "cos",
-    sp.tan: "tan",
-    sp.exp: "exp",
-    sp.log: "log",
-}
+FUNCTIONS = {sp.sin: "sin", sp.cos: "cos", sp.tan: "tan", sp.exp: "exp", sp.log: "log"}
 
 
 class UnsupportedFunctionError(ValueError):

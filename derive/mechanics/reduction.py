@@ -13,8 +13,11 @@ from math import prod
 
 import sympy as sp
 
+Square = Callable[[sp.Expr], sp.Expr]
 Wave = tuple[bool, sp.Expr]  # (is a sine, argument)
 HALF = sp.Rational(1, 2)
+#: Forms of cos 2a.
+SQUARES: tuple[Square, ...] = (lambda a: 1 - 2 * sp.sin(a) ** 2, lambda a: 2 * sp.cos(a) ** 2 - 1)
 #: Terms of the largest expression that is expanded to find a shorter form.
 LARGEST = 5000
 
@@ -26,7 +29,7 @@ def reduced(expression: sp.Expr) -> sp.Expr:
     waves = harmonics(expression)
     candidates = [waves, expression]
     if halves := _halves(waves):
-        candidates += [_halved(waves, halves, square) for square in (_by_sine, _by_cosine)]
+        candidates += [_halved(waves, halves, square) for square in SQUARES]
     return min(candidates, key=lambda candidate: int(candidate.count_ops()))
 
 
@@ -93,14 +96,6 @@ def _product(waves: list[Wave]) -> dict[Wave, sp.Expr]:
     return product
 
 
-def _by_sine(angle: sp.Expr) -> sp.Expr:
-    return 1 - 2 * sp.sin(angle) ** 2
-
-
-def _by_cosine(angle: sp.Expr) -> sp.Expr:
-    return 2 * sp.cos(angle) ** 2 - 1
-
-
 def _halves(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
     """Half the arguments of sines and cosines, where it is an integer combination of angles."""
     halves = {wave: wave.args[0] / 2 for wave in expression.atoms(sp.sin, sp.cos)}
@@ -111,12 +106,10 @@ def _halves(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
     }
 
 
-def _halved(
-    expression: sp.Expr, halves: dict[sp.Expr, sp.Expr], square: Callable[[sp.Expr], sp.Expr]
-) -> sp.Expr:
-    """`expression` with cos 2a as a square and sin 2a as a product."""
+def _halved(waves: sp.Expr, halves: dict[sp.Expr, sp.Expr], square: Square) -> sp.Expr:
+    """`waves` with cos 2a as a square and sin 2a as a product."""
     replacements = {
         wave: square(half) if isinstance(wave, sp.cos) else 2 * sp.sin(half) * sp.cos(half)
         for wave, half in halves.items()
     }
-    return sp.expand(expression.xreplace(replacements))
+    return sp.expand(waves.xreplace(replacements))

@@ -6,22 +6,19 @@ r"""One point mass on a rigid massless rod in a vertical plane.
     |θ \
         o m
 """
-
 from sympy import cos, sin, symbols
 
 from derive import Coordinate, Parameter, PointMass, System
 
 theta, g = symbols("theta g", real=True)
 m, l = symbols("m l", positive=True)
-
 system = System(
     name="single_pendulum",
     title="Single pendulum: a point mass on a rigid massless rod in a vertical plane",
     coordinates=[Coordinate(theta, "rad", "angle of the rod from the downward vertical")],
     parameters=[Parameter(m, "kg", 1.0, "mass of the bob"), Parameter(l, "m", 2.0, "length"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
-    masses=[PointMass(m, (l * sin(theta), -l * cos(theta)))], reactions=[l],
-)
+    masses=[PointMass(m, (l * sin(theta), -l * cos(theta)))], reactions=[l])
 
 PUBLISHED = r'''
 source = "L. D. Landau, E. M. Lifshitz, Mechanics, § 11, problem 1"

@@ -18,8 +18,7 @@ system = System(
                  Coordinate(phi, "rad", "direction of the rod about the vertical")],
     parameters=[Parameter(m, "kg", 1.0, "mass of the bob"), Parameter(l, "m", 1.0, "length"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
-    masses=[PointMass(m, (l * sin(theta) * cos(phi), l * sin(theta) * sin(phi), -l * cos(theta)))],
-)
+    masses=[PointMass(m, (l * sin(theta) * cos(phi), l * sin(theta) * sin(phi), -l * cos(theta)))])
 
 PUBLISHED = r'''
 source = "L. D. Landau, E. M. Lifshitz, Mechanics, § 14, problem 1"

@@ -19,8 +19,7 @@ system = System(
     parameters=[Parameter(M, "kg", 3.0, "mass that moves vertically"),
                 Parameter(m, "kg", 1.0, "mass that swings"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
-    masses=[PointMass(M, (0, r)), PointMass(m, (r * sin(theta), -r * cos(theta)))],
-)
+    masses=[PointMass(M, (0, r)), PointMass(m, (r * sin(theta), -r * cos(theta)))])
 
 PUBLISHED = r'''
 source = "Imperial College, The Swinging Atwood's Machine; after N. B. Tufillaro et al. (1984)"
