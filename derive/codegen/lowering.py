@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, TypeVar
 
 from derive.codegen import operation as op
@@ -41,7 +41,7 @@ class Lowering:
         self.operations: dict[int, op.Operation] = {}  # in no particular order
         self._parameters = parameters
         self._numbers: dict[op.Operation, int] = {}
-        self._lowered: dict[Node, int] = {}
+        self._lower = cache(self._operation)
         self.outputs = tuple(self._lower(node) for node in outputs)
         share_pairs(self.operations)
 
@@ -80,11 +80,6 @@ class Lowering:
         number = self._numbers.setdefault(operation, len(self._numbers))
         self.operations[number] = operation
         return number
-
-    def _lower(self, node: Node) -> int:
-        if node not in self._lowered:
-            self._lowered[node] = self._operation(node)
-        return self._lowered[node]
 
     def _operation(self, node: Node) -> int:
         match node:

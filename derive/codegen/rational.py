@@ -8,6 +8,7 @@ way, the pair (sin q, cos q) can replace it in the state.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from functools import cache
 
 from derive.codegen.graph import Graph
 from derive.codegen.node import (
@@ -39,15 +40,13 @@ def angles(nodes: Sequence[Node], coordinates: Collection[str]) -> frozenset[str
 
 def rationalised(nodes: Sequence[Node], angles: Collection[str]) -> list[Node]:
     """`nodes` in a new graph, with leaves ``sin_q`` and ``cos_q`` for each of the `angles`."""
-    rewriting = _Rewriting(Graph(), angles)
-    return [rewriting(node) for node in nodes]
+    return list(map(_Rewriting(angles).node, nodes))
 
 
 def with_fewest_calls(nodes: Sequence[Node], angles: Collection[str]) -> list[Node]:
     """`nodes`, with sines and cosines of sums expanded in a new graph if that needs fewer calls."""
     # a long chain has differences of all its angles, whose sines follow without further calls
-    rewriting = _Rewriting(Graph(), angles, as_calls=True)
-    rewritten = [rewriting(node) for node in nodes]
+    rewritten = list(map(_Rewriting(angles, as_calls=True).node, nodes))
     return rewritten if _calls(rewritten) < _calls(nodes) else list(nodes)
 
 
@@ -92,15 +91,9 @@ def _multiples(node: Node, names: Collection[str]) -> dict[str, int] | None:
 class _Rewriting:
     """Sums of angles expanded: their sines and cosines become leaves, or calls of their own."""
 
-    def __init__(self, graph: Graph, names: Collection[str], *, as_calls: bool = False) -> None:
-        self._graph, self._names, self._as_calls = graph, names, as_calls
-        self._nodes: dict[Node, Node] = {}
-        self._pairs: dict[tuple[tuple[str, int], ...], Pair] = {}
-
-    def __call__(self, node: Node) -> Node:
-        if node not in self._nodes:
-            self._nodes[node] = self._rewritten(node)
-        return self._nodes[node]
+    def __init__(self, names: Collection[str], *, as_calls: bool = False) -> None:
+        self._graph, self._names, self._as_calls = Graph(), names, as_calls
+        self.node, self._pair = cache(self._rewritten), cache(self._waves)
 
     def _rewritten(self, node: Node) -> Node:
         graph = self._graph
@@ -110,43 +103,37 @@ class _Rewriting:
             case Constant(value):
                 return graph.node(value)
             case Let(value):
-                return graph.let(self(value))
+                return graph.let(self.node(value))
             case Call(function, argument):
                 multiples = _multiples(node, self._names)
                 if multiples is None:
-                    return graph.call(function, self(argument))
+                    return graph.call(function, self.node(argument))
                 return self._pair(tuple(multiples.items()))[function == "cos"]
             case Sum(terms):
-                return graph.sum([(self(term), number) for term, number in terms])
+                return graph.sum([(self.node(term), number) for term, number in terms])
             case Product(powers):
-                return graph.product([(self(factor), power) for factor, power in powers])
+                return graph.product([(self.node(factor), power) for factor, power in powers])
             case Factorised(upper):
-                return graph.factorised([self(entry) for entry in upper])
+                return graph.factorised([self.node(entry) for entry in upper])
             case Component(solution, index):
-                matrix, *right = (self(operand) for operand in operands(solution))
+                matrix, *right = (self.node(operand) for operand in operands(solution))
                 return graph.solution(matrix, right)[index]
             case _:
                 raise NotImplementedError(f"no rational form of a {type(node).__name__} node")
 
-    def _pair(self, multiples: tuple[tuple[str, int], ...]) -> Pair:
+    def _waves(self, multiples: tuple[tuple[str, int], ...]) -> Pair:
         """Sine and cosine of an integer combination of angles, by the addition theorems."""
-        if multiples not in self._pairs:
-            (name, multiple), *others = multiples
-            sign = 1 if multiple > 0 else -1
-            sine, cosine = (self._wave(function, name) for function in ("sin", "cos"))
-            first = (sine, cosine) if sign == 1 else (-sine, cosine)
-            rest = tuple([(name, multiple - sign)] if multiple != sign else []) + tuple(others)
-            self._pairs[multiples] = self._added(first, self._pair(rest)) if rest else first
-        return self._pairs[multiples]
+        (name, multiple), *others = multiples
+        sign = 1 if multiple > 0 else -1
+        sine, cosine = (self._wave(function, name) for function in ("sin", "cos"))
+        a = (sine, cosine) if sign == 1 else (-sine, cosine)
+        rest = (*([(name, multiple - sign)] if multiple != sign else []), *others)
+        if not rest:
+            return a
+        b, let = self._pair(rest), self._graph.let  # most equations use both more than once
+        return let(a[0] * b[1] + a[1] * b[0]), let(a[1] * b[1] - a[0] * b[0])
 
     def _wave(self, function: str, name: str) -> Node:
         if self._as_calls:
             return self._graph.call(function, self._graph.leaf(name))
         return self._graph.leaf(f"{function}_{name}")
-
-    def _added(self, a: Pair, b: Pair) -> Pair:
-        # named, since most equations use both more than once
-        return (
-            self._graph.let(a[0] * b[1] + a[1] * b[0]),
-            self._graph.let(a[1] * b[1] - a[0] * b[0]),
-        )
