@@ -90,12 +90,11 @@ class EquationsOfMotion:
     @cached_property
     def _dependencies(self) -> dict[Node, list[int]]:
         """The variables that an entry of M̄ depends on; in a long chain two."""
-
-        def dependencies(entry: Node) -> list[int]:
-            leaves = self._derivative.leaves(entry)
-            return [k for k, name in enumerate(self._variables) if name in leaves]
-
-        return {entry: dependencies(entry) for row in self._inertia for entry in row}
+        leaves = {entry: self._derivative.leaves(entry) for row in self._inertia for entry in row}
+        return {
+            entry: [k for k, name in enumerate(self._variables) if name in names]
+            for entry, names in leaves.items()
+        }
 
     @cached_property
     def angles(self) -> tuple[sp.Symbol, ...]:

@@ -20,8 +20,7 @@ class LagrangianForm(EquationsOfMotion):
 
     @cached_property
     def _forcing(self) -> list[Node]:
-        v = self._rates(self._qdot)
-        forces = []
+        v, forces = self._rates(self._qdot), []
         for i, q in enumerate(self._system.q):
             inertial, gradient = self._inertial(i, v), self._derivative(self._potential, q.name)
             forces.append(self._graph.sum([(inertial, -1), (gradient, -1), (self._applied[i], 1)]))
@@ -63,10 +62,8 @@ class LagrangianForm(EquationsOfMotion):
     @property
     def reactions(self) -> list[Node]:
         """-(M̄ q̈ + Σ Γ v v + ∂V/∂l) of every constant length l."""
-        v = self._rates(self._qdot)
-        first = len(self._variables) - len(self._system.reactions)
-        forces = []
-        for i in range(first, len(self._variables)):
+        v, forces = self._rates(self._qdot), []
+        for i in range(len(v) - len(self._system.reactions), len(v)):
             terms = [(self._inertia[i][j] * self._accelerations[j], -1) for j in self._n]
             terms.append((self._inertial(i, v), -1))
             terms.append((self._derivative(self._potential, self._variables[i]), -1))

@@ -89,10 +89,6 @@ def published(name: str) -> str:
     return text if n or not text else f'system = "{name}"{text}'
 
 
-def _stems() -> set[str]:
-    return {module.name for module in iter_modules(systems.__path__)}
-
-
 def _module(stem: str) -> ModuleType:
     return import_module(f"derive.systems.{stem}")
 
@@ -100,7 +96,7 @@ def _module(stem: str) -> ModuleType:
 def _file(name: str) -> tuple[str, int]:
     """The file of a system, and n of a member of a family, otherwise 0."""
     family = re.match(r"(\w+)_([1-9]\d{0,2})\Z", name)
-    stems = _stems()
+    stems = {module.name for module in iter_modules(systems.__path__)}
     if family and f"{family[1]}_n" in stems and int(family[2]) <= LARGEST:
         return f"{family[1]}_n", int(family[2])
     if name not in stems or name.endswith("_n"):

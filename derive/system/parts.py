@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from numbers import Real
 
@@ -18,10 +19,8 @@ def formula(value: sp.Expr | float) -> sp.Expr:
     if isinstance(value, sp.Expr):
         return value.xreplace({n: sp.Rational(str(n)) for n in value.atoms(sp.Float)})
     if isinstance(value, Real) and not isinstance(value, bool):
-        try:
+        with suppress(TypeError, ValueError):
             return sp.Rational(str(value))
-        except (TypeError, ValueError):
-            pass
     raise SystemDefinitionError(
         f"{str(value)[:50]!r} is not a formula: use finite numbers and SymPy expressions"
     )
