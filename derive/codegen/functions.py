@@ -161,15 +161,13 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     sizes |= {form: len(states[form]) for form in ("rational", "variational") if form in states}
     functions = []
     for spec in SPECS:
-        shape = spec.shape.split()
+        axes = spec.shape.split()
         is_requested = only is None or spec.name in only
-        if is_requested and {*shape} <= {*sizes} and spec.exists(derivation):
+        if is_requested and {*axes} <= {*sizes} and spec.exists(derivation):
             detail, lowering = spec.detail(derivation), _lowering(spec, derivation)
             texts = spec.summary.format(detail), spec.returns.format(detail)
-            state, lengths = states.get(spec.form, ()), tuple(sizes[axis] for axis in shape)
-            functions.append(
-                Function(system, spec.name, *texts, spec.form, state, lengths, lowering)
-            )
+            state, shape = states.get(spec.form, ()), tuple(sizes[axis] for axis in axes)
+            functions.append(Function(system, spec.name, *texts, spec.form, state, shape, lowering))
     return Contents(derivation, states, tuple(functions))
 
 

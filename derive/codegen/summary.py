@@ -8,7 +8,6 @@ from textwrap import indent
 import sympy as sp
 
 from derive.codegen.functions import Contents, Form
-from derive.mechanics.derivation import Derivation
 from derive.system.system import System
 
 #: Unit of the momentum conjugate to a coordinate of this unit.
@@ -40,36 +39,22 @@ def units(system: System) -> dict[str, str]:
 
 def summary(contents: Contents) -> str:
     """Coordinates, states, parameters, positions, Lagrangian and equations of motion."""
-    system, derivation = contents.system, contents.derivation
-    unit = units(system)
-    return "\n\n".join(
-        _section(title, lines)
-        for title, lines in {
-            "Coordinates q": (f"{c.symbol} [{c.unit}]: {c.meaning}" for c in system.coordinates),
-            **{
-                title: (f"{name} [{unit[name]}]" for name in contents.states[form])
-                for form, title in STATES.items()
-                if form in contents.states
-            },
-            "Parameters params": (
-                f"{p.symbol} [{p.unit}] {'> 0' if p.symbol.is_positive else 'real'}, "
-                f"default {p.default}: {p.meaning}"
-                for p in system.parameters
-            ),
-            "Masses and their positions": (mass.words for mass in system.masses),
-            **_equations(derivation),
-        }.items()
-    )
-
-
-def _equations(derivation: Derivation) -> dict[str, list[str]]:
-    """The Lagrangian and the equations of motion, of a small system."""
-    if len(derivation.system.q) > READABLE:
-        return {}
-    return {
-        "Lagrangian": [f"L = {_text(derivation.lagrangian)}"],
-        "Equations of motion": [f"{_text(residual)} = 0" for residual in derivation.euler_lagrange],
-    }
+    system, derivation, unit = contents.system, contents.derivation, units(contents.system)
+    coordinates = [f"{c.symbol} [{c.unit}]: {c.meaning}" for c in system.coordinates]
+    sections = {"Coordinates q": coordinates}
+    for form, state in contents.states.items():
+        sections[STATES[form]] = [f"{name} [{unit[name]}]" for name in state]
+    sections["Parameters params"] = [
+        f"{p.symbol} [{p.unit}] {'> 0' if p.symbol.is_positive else 'real'}, "
+        f"default {p.default}: {p.meaning}"
+        for p in system.parameters
+    ]
+    sections["Masses and their positions"] = [mass.words for mass in system.masses]
+    if len(system.q) <= READABLE:
+        sections["Lagrangian"] = [f"L = {_text(derivation.lagrangian)}"]
+        residuals = map(_text, derivation.euler_lagrange)
+        sections["Equations of motion"] = [f"{residual} = 0" for residual in residuals]
+    return "\n\n".join(_section(title, lines) for title, lines in sections.items())
 
 
 def broken_sum(text: str, width: int) -> str:

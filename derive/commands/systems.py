@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from itertools import groupby
-from textwrap import indent, wrap
+from textwrap import TextWrapper
 
 from derive.system.catalogue import LARGEST, drawing, load, published
 from derive.system.shipped import USUAL, names
@@ -27,12 +27,9 @@ def description(name: str) -> str:
         "state": ", ".join(s.name for s in system.q + system.qdot),
         "parameters": ", ".join(parameters) or "none",
     }
-    lines = [
-        line
-        for title, text in rows.items()
-        for line in wrap(f"{title}: {text}", WIDTH, subsequent_indent="    ")
-    ]
-    return "\n".join([f"{name}: {system.title}", *picture, "", indent("\n".join(lines), "  ")])
+    layout = TextWrapper(WIDTH + 2, initial_indent="  ", subsequent_indent=" " * 6)
+    lines = [layout.fill(f"{title}: {text}") for title, text in rows.items()]
+    return "\n".join([f"{name}: {system.title}", *picture, "", *lines])
 
 
 def markdown_table() -> str:

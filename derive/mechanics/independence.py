@@ -41,10 +41,8 @@ def _generic_values(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> lis
     # a thread limits coordinates from above; a wheel's axis limits them from below
     for size in (sp.Rational(1, 8), sp.Integer(5), sp.Integer(1)):
         state = values | {q: values[q] * size for q in system.q}
-        upper = {
-            (i, j): mass_matrix[i, j].evalf(50, subs=state) for i in range(n) for j in range(i, n)
-        }
-        rows = [[upper[min(i, j), max(i, j)] for j in range(n)] for i in range(n)]
-        if all(entry.is_real for row in rows for entry in row):
+        pairs = [(i, j) for i in range(n) for j in range(i, n)]
+        upper = {(i, j): mass_matrix[i, j].evalf(50, subs=state) for i, j in pairs}
+        if all(entry.is_real for entry in upper.values()):
             break
-    return rows
+    return [[upper[min(i, j), max(i, j)] for j in range(n)] for i in range(n)]
