@@ -44,10 +44,7 @@ def _compared(curves: motions.Curves) -> list[dict[str, Any]]:
     """For each error the fastest of our methods, and the relative times of other programs."""
     rows = []
     for error in ERRORS:
-        times = {
-            name: work_at(error, [e for _, e in curve], [t for t, _ in curve])
-            for name, curve in curves.items()
-        }
+        times = {name: _time_at(curve, error) for name, curve in curves.items()}
         times = {name: time for name, time in times.items() if time > 0}  # neither 0 nor NaN
         method = min((name for name in METHODS if name in times), key=times.__getitem__)
         peers = {name: time for name, time in times.items() if name not in METHODS}
@@ -55,6 +52,11 @@ def _compared(curves: motions.Curves) -> list[dict[str, Any]]:
         row = {"global_error": error, "method": method, "seconds": times[method]}
         rows.append(row | {"peers": peers, "ratios": ratios})
     return rows
+
+
+def _time_at(curve: Sequence[tuple[float, float]], error: float) -> float:
+    times, errors = zip(*curve, strict=True)
+    return work_at(error, errors, times)
 
 
 def _calls(module: GeneratedModule, lambdified: Callable[..., object]) -> dict[str, float]:
@@ -123,10 +125,9 @@ def summary(results: Mapping[str, Any]) -> Iterator[str]:
     """The figures as tables."""
     yield f"{results['machine']}; heyoka {results['peers']['heyoka']}"
     yield ""
-    for title, part in (
-        ("One motion: the report's scene, 5 s", "one motion"),
-        (f"{MOTIONS} motions from rest, 5 s: one of them, on one core", "many motions"),
-    ):
+    many = f"{MOTIONS} motions from rest, 5 s: one of them, on one core"
+    titles = {"one motion": "One motion: the report's scene, 5 s", "many motions": many}
+    for part, title in titles.items():
         yield f"{title}. Times relative to holonomic, at equal global error:"
         rows = results[part]
         names = dict.fromkeys(name for row in rows for name in row["ratios"])

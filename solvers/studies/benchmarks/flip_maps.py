@@ -118,10 +118,9 @@ def _median_seconds(run: Callable[..., object], *arguments: Any) -> float:
 def summary(results: dict[str, Any]) -> Iterator[str]:
     """The figures as tables."""
     compared, times = results["compared"], results["compared"]["seconds"]
-    yield (
-        f"Flip map, {SIDE} x {SIDE}, {END:g} s, {compared['motions']:,} motions; "
-        f"{1 - FRACTION:.0%} of the times to {ERROR:g} s, on one core:"
-    )
+    accuracy = f"{1 - FRACTION:.0%} of the times to {ERROR:g} s"
+    motions = f"{END:g} s, {compared['motions']:,} motions"
+    yield f"Flip map, {SIDE} x {SIDE}, {motions}; {accuracy}, on one core:"
     relative = {program: time / times["holonomic"] for program, time in times.items()}
     rows = ((p, setting, times[p], relative[p]) for p, setting in compared["settings"].items())
     columns = {"program": "", "setting": "", "time/s": ".2f", "ratio": ".1f"}

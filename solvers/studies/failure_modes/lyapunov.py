@@ -91,10 +91,9 @@ def _advance(
     module: GeneratedModule, params: Sequence[float]
 ) -> Callable[[list[float]], ArrayLike]:
     """A function that advances a motion and a small change by one interval."""
-    span = (0.0, INTERVAL)
+    span, tol = (0.0, INTERVAL), TOLERANCE
     try:
-        run = prepare(module, params, form="variational", rtol=TOLERANCE, atol=TOLERANCE)
+        return partial(prepare(module, params, form="variational", rtol=tol, atol=tol), span)
     except NoCompilerError:
         solve = partial(integrate, form="variational", backend="python", t_eval=[INTERVAL])
-        return lambda y: solve(module, span, y, params, rtol=TOLERANCE, atol=TOLERANCE).y[:, -1]
-    return lambda y: run(span, y)
+        return lambda y: solve(module, span, y, params, rtol=tol, atol=tol).y[:, -1]

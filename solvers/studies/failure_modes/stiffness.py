@@ -100,15 +100,13 @@ class StiffScene:
             raise ArithmeticError(f"the references of a stiff scene differ: {ends}")
         return ends[0]
 
-    def cheapest(self, method: str, reference: float) -> tuple[TimedRun, float] | None:
-        """The cheapest run of sufficient accuracy, and its error."""
-        settings = [{"h": DURATION / n} for n in STEPS]
-        if load_method(method).b_hat:
-            settings = [{"rtol": tol} for tol in TOLERANCES]
-        for setting in settings:
-            run = self.run(method, **setting)
+    def cheapest(self, method: str, reference: float) -> tuple[int, int, float, float] | None:
+        """Steps, work and error of the cheapest run of sufficient accuracy."""
+        key, values = ("rtol", TOLERANCES) if load_method(method).b_hat else ("h", DURATION / STEPS)
+        for value in values:
+            run = self.run(method, **{key: value})
             if run and (error := abs(run.end[self.slow] - reference)) < ACCURACY:
-                return run, float(error)
+                return run.steps, run.work_rhs, run.work_seconds, float(error)
         return None
 
 
@@ -127,11 +125,8 @@ class Stiffness(Study[list[Cost]]):
             for ratio in self.ratios:
                 scene = StiffScene(load(system), *motion(ratio), slow)
                 reference = scene.reference()
-                for method in self.methods:
-                    if cheapest := scene.cheapest(method, reference):
-                        run, error = cheapest
-                        work = run.steps, run.work_rhs, run.work_seconds
-                        costs.append(Cost(family, method, scene.ratio, *work, error))
+                cheapest = {method: scene.cheapest(method, reference) for method in self.methods}
+                costs += [Cost(family, m, scene.ratio, *run) for m, run in cheapest.items() if run]
         return costs
 
     def summary(self, results: list[Cost]) -> Iterator[str]:

@@ -52,12 +52,10 @@ class Tolerances(Study[list[ToleranceAccuracy]]):
         params = np.array(pendulum.DEFAULTS) * generator.uniform(0.5, 1.5, (count, 5))
         motions = zip(starts.tolist(), params.tolist(), strict=True)
         exact = np.array([taylor(pendulum, p, y0, span, digits=18)[-1] for y0, p in motions])
-        offsets = (np.tile(unit, (count, 1)) for unit in np.eye(n))
         solve = partial(ensemble, pendulum, span)
-        carried = [
-            solve(np.hstack([starts, offset]).T, params.T, form="variational").y[n:].T
-            for offset in offsets
-        ]
+        carry = partial(solve, params=params.T, form="variational")
+        changed = (np.hstack([starts, np.tile(unit, (count, 1))]) for unit in np.eye(n))
+        carried = [carry(y0.T).y[n:].T for y0 in changed]
         growth = np.max([np.linalg.norm(change, axis=1) for change in carried], axis=0)
         results = []
         for method in self.methods:

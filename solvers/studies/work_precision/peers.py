@@ -67,15 +67,14 @@ def _points(
     for setting in map(float, settings):
         ready = run(setting)
         state, calls = ready()
-        if not np.isfinite(state).all():
-            continue
-        seconds = median_seconds(ready)
-        # angles are known up to whole turns: those next to the reference are taken
-        end = form.to_ordinary(0.0, state, reference.end, 0.0)
-        if new := point(scene, reference, {key: setting}, seconds, calls, end):
-            yield new
-        if seconds > LONGEST["compiled"] / 2:
-            return
+        if np.isfinite(state).all():
+            seconds = median_seconds(ready)
+            # angles are known up to whole turns: those next to the reference are taken
+            end = form.to_ordinary(0.0, state, reference.end, 0.0)
+            if new := point(scene, reference, {key: setting}, seconds, calls, end):
+                yield new
+            if seconds > LONGEST["compiled"] / 2:
+                return
 
 
 def _heyoka(hy: Any, scene: Scene, form: Form, start: Array) -> Iterator[Method]:
