@@ -76,6 +76,26 @@ function swatch(number) {
   return mark;
 }
 
+/** Lines in a frame with their texts: columns at x, rows at y, and the quantity below. */
+function drawGrid(context, { left, right, top, bottom }, columns, rows, quantity) {
+  context.strokeStyle = colour("grid");
+  context.fillStyle = colour("muted");
+  context.lineWidth = 1;
+  context.textAlign = "center";
+  context.textBaseline = "top";
+  for (const [x, text] of columns) {
+    line(context, [x, top], [x, bottom]);
+    context.fillText(text, x, bottom + 5);
+  }
+  context.fillText(quantity, (left + right) / 2, bottom + 20);
+  context.textAlign = "right";
+  context.textBaseline = "middle";
+  for (const [y, text] of rows) {
+    line(context, [left, y], [right, y]);
+    context.fillText(text, left - 6, y);
+  }
+}
+
 function line(context, from, to) {
   context.beginPath();
   context.moveTo(...from);

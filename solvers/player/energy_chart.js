@@ -54,26 +54,11 @@ class EnergyChart {
   }
 
   drawGrid(context) {
-    context.strokeStyle = colour("grid");
-    context.fillStyle = colour("muted");
-    context.lineWidth = 1;
-    context.textAlign = "right";
-    context.textBaseline = "middle";
-    const spacing = Math.ceil((20 * (this.high - this.low)) / (this.bottom - this.top));
-    for (const { value } of ticks(this.low, this.high, spacing)) {
-      const y = this.yAt(value);
-      line(context, [this.left, y], [this.right, y]);
-      context.fillText(powerOfTen(value), this.left - 6, y);
-    }
-    context.textAlign = "center";
-    context.textBaseline = "top";
+    const decades = Math.ceil((20 * (this.high - this.low)) / (this.bottom - this.top));
     const seconds = roundSpacing((50 * (endTime - startTime)) / (this.right - this.left));
-    for (const { value, text } of ticks(startTime, endTime, seconds)) {
-      const x = this.xAt(value);
-      line(context, [x, this.top], [x, this.bottom]);
-      context.fillText(text, x, this.bottom + 5);
-    }
-    context.fillText("time / s", (this.left + this.right) / 2, this.bottom + 20);
+    const rows = ticks(this.low, this.high, decades).map(({ value }) => [this.yAt(value), powerOfTen(value)]);
+    const columns = ticks(startTime, endTime, seconds).map(({ value, text }) => [this.xAt(value), text]);
+    drawGrid(context, this, columns, rows, "time / s");
   }
 
   moveCursor(time) {
@@ -85,15 +70,9 @@ class EnergyChart {
 
 /** Exponents of the powers of ten that enclose all errors. */
 function exponentRange() {
-  let [least, most] = [Infinity, 0];
-  for (const track of tracks) {
-    for (const signed of track.energy_error) {
-      const size = Math.abs(signed);
-      if (size > 0) least = Math.min(least, size);
-      most = Math.max(most, size);
-    }
-  }
-  if (most === 0) return [-17, -15]; // the size of rounding
+  const sizes = tracks.flatMap((track) => track.energy_error.map(Math.abs));
+  const [least, most] = rangeOf(sizes.filter((size) => size > 0));
+  if (most < 0) return [-17, -15]; // all are zero: the size of rounding
   const high = Math.ceil(Math.log10(most));
   // an error that changes sign may be arbitrarily small: twenty decades are sufficient
   const low = Math.max(Math.floor(Math.log10(least)), high - 20);

@@ -56,20 +56,20 @@ function largestDistance(time) {
   return largest;
 }
 
+/** The least and the largest of numbers, however many; infinite for none. */
+function rangeOf(values) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of values) {
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  return [low, high];
+}
+
 /** The box around all positions of all runs and the pivot: its centre, width and height in m. */
 function boundingBox() {
-  const edges = [0, 1].map((axis) => {
-    let [low, high] = [0, 0];
-    for (const track of tracks) {
-      for (const mass of track.positions) {
-        for (const value of mass[axis]) {
-          low = Math.min(low, value);
-          high = Math.max(high, value);
-        }
-      }
-    }
-    return [low, high];
-  });
+  const masses = tracks.flatMap((track) => track.positions);
+  const edges = [0, 1].map((axis) => rangeOf([0, ...masses.flatMap((mass) => mass[axis])]));
   const [width, height] = edges.map(([low, high]) => high - low);
   // masses that never leave the pivot need a scale, too
   const least = Math.max(width, height) * 1e-3 || 1;

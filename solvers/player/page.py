@@ -1,8 +1,10 @@
-"""A page: the player and the motions in one file without external resources."""
+"""Pages without external resources: the player and the motions in one HTML file."""
 
 from __future__ import annotations
 
+import hashlib
 import json
+from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -10,7 +12,6 @@ from pathlib import Path
 from string import Template
 
 from solvers.io.atomic_write import write_text
-from solvers.player.document import document
 from solvers.player.track import Track
 
 SOURCES = Path(__file__).parent
@@ -50,18 +51,7 @@ class Page:
         return document(self.title, body, style=style(), script=script())
 
     def write(self, path: Path) -> None:
-        """Write the file atomically; missing folders are created, an existing file is replaced.
-
-        Parameters
-        ----------
-        path : Path
-            Path of the file.
-
-        Raises
-        ------
-        OSError
-            When it cannot be written.
-        """
+        """Write the file atomically; missing folders are created, an existing file is replaced."""
         write_text(path, self.html)
 
     def _repr_html_(self) -> str:
@@ -69,11 +59,29 @@ class Page:
         return f'<iframe {attributes} srcdoc="{escape(self.html)}"></iframe>'
 
 
+def document(title: str, body: str, *, style: str, script: str) -> str:
+    """A page as text, with a policy that permits exactly this style and script, and no requests."""
+    # Template substitutes once, so that nothing is substituted in the texts themselves
+    policy = (
+        f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; "
+        "img-src data:; base-uri 'none'; form-action 'none'"
+    )
+    values = {"title": escape(title), "style": style, "body": body, "script": script}
+    return Template(_source("document.html")).substitute(values, policy=policy)
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
 def player(tracks: Sequence[Track]) -> str:
     """The part of a page that plays `tracks`, as HTML; it needs `style` and `script`."""
     _check(tracks)
     motions = json.dumps([track.json_values() for track in tracks], separators=(",", ":"))
-    return Template(_source("player.html")).substitute(motions=_escaped(motions))
+    # no character of a label starts or ends a tag or a comment
+    for character in "&<>":
+        motions = motions.replace(character, rf"\u{ord(character):04x}")
+    return Template(_source("player.html")).substitute(motions=motions)
 
 
 def _check(tracks: Sequence[Track]) -> None:
@@ -95,8 +103,3 @@ def script() -> str:
 
 def _source(name: str) -> str:
     return (SOURCES / name).read_text(encoding="utf-8")
-
-
-def _escaped(data: str) -> str:
-    """JSON without characters that start or end a tag or a comment."""
-    return data.replace("&", r"\u0026").replace("<", r"\u003c").replace(">", r"\u003e")

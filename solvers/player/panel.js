@@ -26,7 +26,7 @@ class Panel {
   draw(time) {
     const { context, width, height } = clearedCanvas(this.canvas);
     const view = new View(this.box, width, height);
-    drawGrid(context, view);
+    drawMetres(context, view);
     // a run that ends earlier than the others stays at its last position, and is pale
     const opacity = hasEnded(this.track, time) ? 0.35 : 1;
     for (const mass of this.track.positions.keys()) this.drawTrace(context, view, mass, time, opacity);
@@ -90,37 +90,19 @@ class View {
 
   /** The visible ranges in metres, from left to right and from bottom to top. */
   visibleRanges() {
-    const across = (this.right - this.left) / 2 / this.scale;
-    const up = (this.bottom - this.top) / 2 / this.scale;
-    return [
-      [this.centre[0] - across, this.centre[0] + across],
-      [this.centre[1] - up, this.centre[1] + up],
-    ];
+    const sides = [this.right - this.left, this.bottom - this.top];
+    const halves = sides.map((side) => side / 2 / this.scale);
+    return this.centre.map((middle, axis) => [middle - halves[axis], middle + halves[axis]]);
   }
 }
 
-function drawGrid(context, view) {
+function drawMetres(context, view) {
   if (view.scale === 0) return; // too small to show anything
-  const [horizontal, vertical] = view.visibleRanges();
   const spacing = roundSpacing(36 / view.scale);
-  context.strokeStyle = colour("grid");
-  context.fillStyle = colour("muted");
-  context.lineWidth = 1;
-  context.textAlign = "center";
-  context.textBaseline = "top";
-  for (const { value, text } of ticks(...horizontal, spacing)) {
-    const [x] = view.toPixels([value, 0]);
-    line(context, [x, view.top], [x, view.bottom]);
-    context.fillText(text, x, view.bottom + 5);
-  }
-  context.fillText("x / m", view.middle[0], view.bottom + 20);
-  context.textAlign = "right";
-  context.textBaseline = "middle";
-  for (const { value, text } of ticks(...vertical, spacing)) {
-    const [, y] = view.toPixels([0, value]);
-    line(context, [view.left, y], [view.right, y]);
-    context.fillText(text, view.left - 6, y);
-  }
+  const [columns, rows] = view.visibleRanges().map((range, axis) =>
+    ticks(...range, spacing).map(({ value, text }) => [view.toPixels([value, value])[axis], text]),
+  );
+  drawGrid(context, view, columns, rows, "x / m");
   context.fillText("y / m", view.left - 6, 10);
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import floor, log10
 
@@ -43,68 +44,45 @@ class Track:
     energy_error: Array
 
     def check(self) -> None:
-        """Check that this run can be played.
+        """Raise `ValueError` where this run cannot be played."""
+        for mistake in self._mistakes():
+            raise ValueError(f"track {self.label!r}: {mistake}")
 
-        Raises
-        ------
-        ValueError
-            When shapes disagree, a number is not finite, times do not increase, or a
-            rod or spring ends at no mass.
-        """
-        self._check_shapes()
-        self._check_numbers()
-        masses = len(self.positions)
-        for name, pairs in (("links", self.links), ("springs", self.springs)):
-            for pair in pairs:
-                if len(pair) != 2 or not all(-1 <= end < masses for end in pair):
-                    raise self._error(
-                        f"{name} holds {pair}, but a pair joins two of the masses 0 to "
-                        f"{masses - 1} and the pivot, -1: number the masses as in positions"
-                    )
-
-    def _check_shapes(self) -> None:
-        times, positions = np.shape(self.t), np.shape(self.positions)
-        errors = np.shape(self.energy_error)
+    def _mistakes(self) -> Iterator[str]:
+        """Mistakes with their remedies; those after the first may follow from it."""
+        times, positions, errors = map(np.shape, (self.t, self.positions, self.energy_error))
         if len(times) != 1 or times[0] < 2:
-            raise self._error(
-                f"t has shape {times}, but it must be (n,) with n at least 2: give the times in s"
-            )
-        n = times[0]
-        if len(positions) != 3 or positions[0] < 1 or positions[1:] != (2, n):
-            raise self._error(
+            yield f"t has shape {times}, but it must be (n,) with n at least 2: give the times in s"
+        n, masses = times[0], positions[0] if positions else 0
+        if len(positions) != 3 or masses < 1 or positions[1:] != (2, n):
+            yield (
                 f"positions has shape {positions}, but with {n} times it must be (masses, 2, {n}): "
                 "positions_many of a generated module gives that for y of shape (state, n)"
             )
         if errors != (n,):
-            raise self._error(
-                f"energy_error has shape {errors}, but with {n} times it must be ({n},): "
-                "give one number for each time"
-            )
-
-    def _check_numbers(self) -> None:
+            text = f"energy_error has shape {errors}, but with {n} times it must be ({n},)"
+            yield f"{text}: give one number for each time"
         arrays = {"t": self.t, "positions": self.positions, "energy_error": self.energy_error}
-        for name, values in arrays.items():
-            array = np.asarray(values)
-            for index in np.argwhere(~np.isfinite(array)).tolist()[:1]:
-                raise self._error(
-                    f"{name}{index} is {array[tuple(index)]}, but every number must be finite: "
-                    "leave out the samples after the run failed"
-                )
-        for k in np.flatnonzero(np.diff(self.t) <= 0).tolist()[:1]:
-            raise self._error(
-                f"t[{k + 1}] = {self.t[k + 1]} follows t[{k}] = {self.t[k]}, but times must "
-                "increase: sort the samples by time, and keep one of equal ones"
-            )
-
-    def _error(self, text: str) -> ValueError:
-        return ValueError(f"track {self.label!r}: {text}")
+        for name, array in arrays.items():
+            for index in np.argwhere(~np.isfinite(array)).tolist():
+                text = f"{name}{index} is {np.asarray(array)[tuple(index)]}"
+                remedy = "leave out the samples after the run failed"
+                yield f"{text}, but every number must be finite: {remedy}"
+        for k in np.flatnonzero(np.diff(self.t) <= 0).tolist():
+            text = f"t[{k + 1}] = {self.t[k + 1]} follows t[{k}] = {self.t[k]}"
+            remedy = "sort the samples by time, and keep one of equal ones"
+            yield f"{text}, but times must increase: {remedy}"
+        for name, pairs in (("links", self.links), ("springs", self.springs)):
+            for pair in pairs:
+                if len(pair) != 2 or not all(-1 <= end < masses for end in pair):
+                    text = f"{name} holds {pair}, but a pair joins two of the masses"
+                    remedy = "number the masses as in positions"
+                    yield f"{text} 0 to {masses - 1} and the pivot, -1: {remedy}"
 
     def json_values(self) -> dict[str, object]:
         """Values for JSON, with no more samples and digits than a screen can show."""
         n = len(self.t)
-        indices = np.arange(n)
-        if n > MOST_SAMPLES:
-            indices = np.linspace(0, n - 1, MOST_SAMPLES).round().astype(int)
+        indices = np.linspace(0, n - 1, min(n, MOST_SAMPLES)).round().astype(int)
         # late times differ in late digits only, so that the duration determines the rounding
         decimals = 6 - floor(log10(self.t[-1] - self.t[0]))
         return {

@@ -8,7 +8,6 @@ from derive.verification.report.comparison import STYLE as DERIVATION_STYLE
 from solvers.app.demo.stage import Number, Stage, table
 from solvers.io.atomic_write import write_text
 from solvers.player import page as motions
-from solvers.player.document import document
 
 STYLE = Path(__file__).with_name("demo.css")
 TITLE = "Double pendulum: from positions to motion"
@@ -66,7 +65,7 @@ def write_page(path: Path, stages: Mapping[str, Stage], versions: Mapping[str, s
     sections = "\n".join(_section(name, stage) for name, stage in shown.items())
     body = f"{header}<main>{sections}{_numbers(shown, versions)}</main>"
     style = motions.style() + DERIVATION_STYLE + STYLE.read_text(encoding="utf-8")
-    write_text(path, document(TITLE, body, style=style, script=motions.script()))
+    write_text(path, motions.document(TITLE, body, style=style, script=motions.script()))
 
 
 def _section(name: str, stage: Stage) -> str:
