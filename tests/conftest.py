@@ -16,7 +16,7 @@ from sharing import Shared
 
 from derive import Derivation, load
 from solvers.app.modules import load as load_module
-from solvers.scenes.shipped import find
+from solvers.scenes.reading import find
 from solvers.studies.stability.critical_step import CriticalStep
 from solvers.studies.stability.scene_stability import SceneStability
 

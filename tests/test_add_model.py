@@ -14,9 +14,9 @@ from solvers.app.modules import load as load_module
 from solvers.scenes import models
 from solvers.scenes.models import catalogue
 from solvers.scenes.models.motion import OutsideDomainError
+from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
-from solvers.scenes.shipped import find
 
 MODEL = '''
 """The first terms of a Taylor polynomial in time."""

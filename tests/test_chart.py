@@ -17,7 +17,7 @@ from solvers.equations.forms import Form
 from solvers.integration.timing import timed_run, work_at
 from solvers.io.figures import save
 from solvers.runge_kutta.catalogue import SCIPY, load
-from solvers.scenes.shipped import find
+from solvers.scenes.reading import find
 from solvers.studies.work_precision import measurement, peers
 from solvers.studies.work_precision.curve import Curve, Point, frontier
 from solvers.studies.work_precision.findings import misleading_energy, rounding_limits, wrong_above

@@ -13,8 +13,8 @@ import generated.double_pendulum as dp
 import holonomic
 import solvers
 from solvers import Final, Grid, Sweep, load_scene, load_sweep, run_scene, sweep
-from solvers.app.scenes import shipped
 from solvers.io.toml_input import InputError
+from solvers.scenes.reading import FILES
 from solvers.sweeps import reading
 
 HEAVY = ("sympy", "numpy", "scipy", "matplotlib")
@@ -57,7 +57,7 @@ def test_an_unknown_name_raises_an_attribute_error(package: object) -> None:
 
 def test_a_scene_runs_by_name_by_file_and_as_an_object() -> None:
     by_name = run_scene("single")
-    by_file = run_scene(shipped.FILES / "single.toml")
+    by_file = run_scene(FILES / "single.toml")
     as_object = run_scene(load_scene("single"))
     assert by_name.is_met
     assert np.array_equal(by_name.y, by_file.y)

@@ -29,8 +29,8 @@ from solvers.scenes.models.normal_modes import NormalModes
 from solvers.scenes.models.pendulum import Pendulum
 from solvers.scenes.models.quadrature import Quadrature, orbit
 from solvers.scenes.models.selection import ModelSelection, select_model
+from solvers.scenes.reading import find
 from solvers.scenes.scene import Scene
-from solvers.scenes.shipped import find
 
 Array = np.ndarray
 

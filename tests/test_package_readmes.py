@@ -19,8 +19,8 @@ from solvers.app.modules import load as load_module
 from solvers.app.readme_tables import TABLES
 from solvers.scenes import reading as scenes
 from solvers.scenes.models import catalogue
+from solvers.scenes.reading import find as find_scene
 from solvers.scenes.run import run_scene
-from solvers.scenes.shipped import find as find_scene
 from solvers.sweeps import reading
 from solvers.sweeps.run import sweep
 

@@ -22,8 +22,8 @@ from solvers.io.notation import symbol
 from solvers.references.taylor import taylor
 from solvers.scenes.geometry import ELEVATION, projected, track
 from solvers.scenes.plots import _labelled, default_pictures, figure
+from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
-from solvers.scenes.shipped import find
 from solvers.scenes.summary import summary, table
 
 KEYS = {"model", "method", "form", "final_state", "requested_accuracy", "error_estimate", "why"}

@@ -13,9 +13,8 @@ from solvers.app.modules import load as load_module
 from solvers.io.quantity import QuantityError, quantity
 from solvers.io.toml_input import InputError
 from solvers.scenes.checks import MassMatrixWarning
-from solvers.scenes.reading import read, scene
+from solvers.scenes.reading import find, names, read, scene
 from solvers.scenes.scene import Scene
-from solvers.scenes.shipped import find, names
 
 PLAIN = {"system": "double_pendulum", "duration": 5, "initial": {"theta1": 1, "theta2": 2}}
 

@@ -16,8 +16,8 @@ from solvers.app.cli import main as holonomic
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.scenes.geometry import energy_errors
+from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
-from solvers.scenes.shipped import find
 
 BEAD = """
 title = "Bead on a parabola that is shaken"

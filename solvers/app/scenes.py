@@ -5,7 +5,8 @@ from os import PathLike, fspath
 from pathlib import Path
 
 from solvers.app.modules import load, specialiser
-from solvers.scenes import run, shipped
+from solvers.scenes import run
+from solvers.scenes.reading import find as find_scene
 from solvers.scenes.run import SceneResult
 from solvers.scenes.scene import Scene
 from solvers.sweeps import reading
@@ -39,7 +40,7 @@ def load_scene(name: str | PathLike[str]) -> Scene:
     >>> load_scene("report").duration
     5.0
     """
-    return shipped.find(fspath(name), load)
+    return find_scene(fspath(name), load)
 
 
 def run_scene(scene: Scene | str | PathLike[str]) -> SceneResult:

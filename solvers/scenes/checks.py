@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
-from solvers.io.suggestion import did_you_mean, shortened
-from solvers.runge_kutta.catalogue import SCIPY, UnknownMethodError, load
+from solvers.io.suggestion import did_you_mean
+from solvers.runge_kutta.catalogue import SCIPY, load
 
 #: Most samples, and the finest accuracy.
 MOST_SAMPLES, FINEST = 1_000_001, 1e-13
@@ -65,11 +65,7 @@ def check_method(
         return
     if not isinstance(method, str):
         raise ValueError(f"method = {str(method)[:50]} must be text in quotes")
-    try:
-        tableau = load(method)
-    except UnknownMethodError as error:
-        raise ValueError(str(error)) from error
-    if not tableau.is_explicit and form == "rational":
+    if not load(method).is_explicit and form == "rational":
         raise ValueError(f"method = {method!r} needs a Jacobian: not form = 'rational'")
 
 
@@ -79,10 +75,8 @@ def check_pictures(pictures: Sequence[str], state: Sequence[str]) -> None:
     for picture in pictures:
         names, over = curves_of(picture)
         if picture not in ("path", "energy") and not {*names, over} <= set(known):
-            raise ValueError(
-                f"pictures name {picture[:50]!r}: write 'path', 'energy' or such as "
-                f"'{state[0]} over t', of {', '.join(known)}"
-            )
+            forms = f"'path', 'energy' or such as '{state[0]} over t', of {', '.join(known)}"
+            raise ValueError(f"pictures name {picture[:50]!r}: write {forms}")
 
 
 def curves_of(picture: str) -> tuple[list[str], str]:
@@ -98,28 +92,14 @@ def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[
             guess, names = did_you_mean(name, known), ", ".join(known)
             raise ValueError(f"outputs name {name[:50]!r}{guess}: known are {names}")
     if not set(outputs) & set(state):
-        names = ", ".join(state)
-        raise ValueError(
-            f"outputs = {list(outputs)} names no component of the state: add one of {names}"
-        )
+        text = f"outputs = {list(outputs)} names no component of the state"
+        raise ValueError(f"{text}: add one of {', '.join(state)}")
 
 
-def check_samples(value: object) -> None:
-    """Refuse a number of samples that is not whole or out of range."""
-    if isinstance(value, bool) or not isinstance(value, int) or not 2 <= value <= MOST_SAMPLES:
-        raise ValueError(
-            f"samples = {shortened(value)} must be a whole number from 2 to {MOST_SAMPLES}"
-        )
-
-
-def check_accuracy(accuracy: float) -> None:
-    """Refuse an accuracy that double precision cannot resolve."""
+def check_numbers(module: GeneratedModule, params: Sequence[float], accuracy: float) -> None:
+    """Refuse negative masses, lengths and stiffnesses, and more digits than double precision."""
     if accuracy < FINEST:
         raise ValueError(f"accuracy = {accuracy} is below {FINEST}, the limit of double precision")
-
-
-def check_params(module: GeneratedModule, params: Sequence[float]) -> None:
-    """Refuse negative masses, lengths and stiffnesses."""
     for name, value in zip(module.PARAMETERS, params, strict=True):
         if name in module.POSITIVE and value < 0:
             raise ValueError(f"{name} = {value} must be positive, in {module.UNITS[name]}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from itertools import product
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,10 @@ from solvers.equations.module import GeneratedModule
 from solvers.io import toml_input
 from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError
-from solvers.scenes.checks import check_samples
+from solvers.scenes.checks import MOST_SAMPLES
 from solvers.scenes.scene import Scene
 
+FILES = Path(__file__).parent / "files"
 #: Most pictures, outputs and runs.
 MOST = 24
 ABSENT, TURN = "absent", 2 * pi
@@ -30,6 +32,19 @@ BESIDE = ("label", *TABLES, "model", "method", "form", "step", "code", "accuracy
 KEYS = (*REQUIRED, "accuracy", "step", *LISTS, *TEXTS, "samples", "parameters", "beside")
 
 
+def names() -> tuple[str, ...]:
+    """Names of all scenes that ship, in alphabetical order."""
+    return toml_input.names(FILES)
+
+
+def find(name: str, load: Callable[[str], GeneratedModule]) -> Scene:
+    """The scene of a name, or in a TOML file; `InputError` where it is not valid.
+
+    `load` returns the generated module of a name, or raises `LookupError`.
+    """
+    return read(toml_input.path("scene", name, FILES), load)
+
+
 def read(path: Path, load: Callable[[str], GeneratedModule]) -> Scene:
     """The scene in a TOML file; `InputError` where the file or a value is not valid."""
 
@@ -43,22 +58,21 @@ def read(path: Path, load: Callable[[str], GeneratedModule]) -> Scene:
 def scene(name: str, table: Mapping[str, Any], load: Callable[[str], GeneratedModule]) -> Scene:
     """The scene of a parsed file; `InputError` or `ValueError` where it is not valid."""
     toml_input.check_keys("a scene", table, KEYS)
-    missing = [key for key in REQUIRED if key not in table]
-    if missing:
+    if missing := [key for key in REQUIRED if key not in table]:
         raise InputError(f"{missing[0]!r} is missing: a scene needs {', '.join(REQUIRED)}")
     try:
         module = load(toml_input.text("system", table["system"]))
     except LookupError as error:
         raise InputError(f"system = {table['system'][:50]!r}: {error.args[0]}") from error
     if "samples" in table:
-        check_samples(table["samples"])
+        toml_input.whole("samples", table["samples"], 2, MOST_SAMPLES)
     others = table.get("beside", [])
     if not isinstance(others, list) or not all(isinstance(other, dict) for other in others):
         raise InputError("'beside' must be tables: write [[beside]] and the differences below it")
     if len(others) > MOST:
         raise InputError(f"[[beside]] are {len(others)}: up to {MOST} can be shown")
-    for key in TABLES:
-        toml_input.table(key, table.get(key, {}))
+    for key, each in product(TABLES, (table, *others)):
+        toml_input.table(key, each.get(key, {}))
     beside = tuple(_beside(module, name, table, other) for other in others)
     title = str(module.__doc__).partition(":")[0].partition(".")[0]
     return _scene(module, name, {"title": title, **table}, beside)
@@ -72,10 +86,7 @@ def _beside(
     # a model or method replaces all settings of the integration
     replaced = INTEGRATION if INTEGRATION & set(other) else set()
     settings = {key: table[key] for key in table if key not in replaced}
-    merged = {}
-    for key in TABLES:
-        toml_input.table(key, other.get(key, {}))
-        merged[key] = table.get(key, {}) | other.get(key, {})
+    merged = {key: table.get(key, {}) | other.get(key, {}) for key in TABLES}
     return _scene(module, name, {**settings, "label": label, **other, **merged}, ())
 
 
@@ -115,20 +126,16 @@ def _parameters(module: GeneratedModule, table: object) -> tuple[float, ...]:
 
 
 def _initial(module: GeneratedModule, table: object) -> tuple[float, ...]:
-    given = _table("initial", table, module.STATE)
-    missing = [q for q in module.COORDINATES if q not in given]
-    if missing:
-        names = ", ".join(module.COORDINATES)
-        raise InputError(
-            f"initial.{missing[0]} is missing: give {names}; velocities that are left out are 0"
-        )
-    units = module.UNITS
+    given, units = _table("initial", table, module.STATE), module.UNITS
+    if missing := [q for q in module.COORDINATES if q not in given]:
+        remedy = f"give {', '.join(module.COORDINATES)}; velocities that are left out are 0"
+        raise InputError(f"initial.{missing[0]} is missing: {remedy}")
     for name, value in given.items():
         if units[name] == "rad" and isinstance(value, int | float) and abs(value) > TURN:
             text = f"initial.{name} = {value} is {value / TURN:.3g} turns"
             warnings.warn(f'{text}: write "{value} deg" if degrees are meant', stacklevel=2)
-    values = ((name, given.get(name, 0.0)) for name in module.STATE)
-    return tuple(toml_input.number(f"initial.{name}", value, units[name]) for name, value in values)
+    state = dict.fromkeys(module.STATE, 0.0) | given
+    return tuple(toml_input.number(f"initial.{q}", value, units[q]) for q, value in state.items())
 
 
 def _table(key: str, value: object, known: Sequence[str]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration import validation
+from solvers.io.toml_input import whole
 from solvers.scenes import checks
 
 #: Default number of samples: per second, at least and at most.
@@ -104,15 +105,16 @@ class Scene:
 
     def __post_init__(self) -> None:
         state = self.module.STATE
-        params = validation.parameters(self.module, self.params)
-        object.__setattr__(self, "params", tuple(params.tolist()))
-        y0 = validation.initial_state(self.module, self.y0)
-        object.__setattr__(self, "y0", tuple(y0.tolist()))
-        object.__setattr__(self, "outputs", tuple(self.outputs) or state)
-        object.__setattr__(self, "label", self.label or self.title)
+        completed = {
+            "params": tuple(validation.parameters(self.module, self.params).tolist()),
+            "y0": tuple(validation.initial_state(self.module, self.y0).tolist()),
+            "outputs": tuple(self.outputs) or state,
+            "label": self.label or self.title,
+        }
+        for name, value in completed.items():
+            object.__setattr__(self, name, value)
         validation.check_positive(duration=self.duration, accuracy=self.accuracy, step=self.step)
-        checks.check_accuracy(self.accuracy)
-        checks.check_params(self.module, self.params)
+        checks.check_numbers(self.module, self.params, self.accuracy)
         checks.check_masses(self.module, self.params, self.y0)
         checks.check_method(self.module, self.method, self.form, self.step, self.duration)
         if self.model is not None:
@@ -121,7 +123,7 @@ class Scene:
             checks.check_choice("model", self.model, tuple(catalogue.load()))
         checks.check_choice("code", self.code, ("general", "specialised"))
         if self.samples:
-            checks.check_samples(self.samples)
+            whole("samples", self.samples, 2, checks.MOST_SAMPLES)
         checks.check_outputs(self.outputs, state, (*state, ENERGY))
         checks.check_pictures(self.pictures, state)
 

@@ -71,7 +71,7 @@ def add_examples(parser: ArgumentParser, *examples: str, scenes: bool = False) -
 def selected_scenes(arguments: Namespace, default: Sequence[str]) -> list[Scene]:
     """The requested scenes, each once, or the default ones; the output folder is created."""
     from solvers.app.modules import load
-    from solvers.scenes.shipped import find
+    from solvers.scenes.reading import find
 
     scenes = [find(name, load) for name in dict.fromkeys(arguments.scenes or default)]
     arguments.output.mkdir(parents=True, exist_ok=True)

@@ -14,7 +14,7 @@ from solvers.app.demo.stage import Stage
 from solvers.app.demo.verdicts import verification
 from solvers.app.modules import load
 from solvers.integration.prepare import no_compiler
-from solvers.scenes import shipped
+from solvers.scenes.reading import find
 from solvers.sweeps import reading
 
 #: Packages whose versions the page states.
@@ -23,7 +23,7 @@ PACKAGES = ("holonomic", "sympy", "numpy", "scipy", "matplotlib")
 
 def stages(folder: Path) -> dict[str, Callable[[], Stage]]:
     """The stages by name, in their order; the map of motions needs a compiler."""
-    scene = shipped.find("report", load)
+    scene = find("report", load)
 
     def flip_map() -> Stage:
         if missing := no_compiler(scene.module):
