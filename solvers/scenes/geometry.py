@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solvers.equations.energy import energy_error, supplied_energy
-from solvers.player.track import Track
+from solvers.player.track import Pairs, Track
 from solvers.scenes.run import SceneResult, energies
 
 #: Largest relative change of a rod's length.
@@ -31,27 +31,21 @@ def projected(positions: np.ndarray) -> np.ndarray:
     return np.stack([right, np.cos(ELEVATION) * z + np.sin(ELEVATION) * depth], axis=1)
 
 
-def links(result: SceneResult, positions: np.ndarray) -> list[tuple[int, int]]:
-    """Pairs of indices of joined masses, the previous mass first; -1 is the origin."""
-    # neighbours at a constant distance, or a single mass whose distance is a coordinate
-    pairs = []
-    previous = np.zeros(positions.shape[1:])
-    for k, position in enumerate(positions):
-        if is_rigid(previous, position):
-            pairs.append((k - 1, k))
-        previous = position
-    if len(positions) == 1 and not pairs:
-        length = np.linalg.norm(positions[0], axis=0)
-        coordinates = result.y[: len(result.y) // 2]
-        if any(np.allclose(length, coordinate, rtol=RIGID) for coordinate in coordinates):
-            pairs.append((-1, 0))
-    return pairs
+def rods_and_springs(result: SceneResult) -> tuple[Pairs, Pairs]:
+    """Pairs of indices of joined masses, the previous mass first; -1 is the origin.
 
-
-def is_rigid(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether the distance of two masses is constant; positions have the shape (axes, samples)."""
-    length = np.linalg.norm(other - one, axis=0)
-    return bool(np.ptp(length) <= RIGID * length.max())
+    Rods join neighbours at a constant distance, a spring a single mass whose distance from the
+    origin is a coordinate.
+    """
+    positions = mass_positions(result)
+    lengths = np.linalg.norm(np.diff(positions, axis=0, prepend=0.0), axis=1)
+    is_rigid = np.ptp(lengths, axis=1) <= RIGID * lengths.max(axis=1)
+    rods = tuple((k - 1, k) for k in np.flatnonzero(is_rigid).tolist())
+    if len(positions) != 1 or rods:
+        return rods, ()
+    coordinates = result.y[: len(result.y) // 2]
+    is_spring = any(np.allclose(lengths[0], coordinate, rtol=RIGID) for coordinate in coordinates)
+    return (), ((-1, 0),) if is_spring else ()
 
 
 def energy_errors(result: SceneResult) -> np.ndarray:
@@ -64,11 +58,5 @@ def energy_errors(result: SceneResult) -> np.ndarray:
 
 def track(result: SceneResult) -> Track:
     """The motion for the page that plays it: masses joined by rods, or by springs."""
-    positions = mass_positions(result)
-    rods: list[tuple[int, int]] = []
-    springs: list[tuple[int, int]] = []
-    for a, b in links(result, positions):
-        start = positions[a] if a >= 0 else np.zeros_like(positions[b])
-        (rods if is_rigid(start, positions[b]) else springs).append((a, b))
-    joined = (tuple(rods), tuple(springs))
-    return Track(result.scene.label, result.t, projected(positions), *joined, energy_errors(result))
+    view, joined = projected(mass_positions(result)), rods_and_springs(result)
+    return Track(result.scene.label, result.t, view, *joined, energy_errors(result))

@@ -17,11 +17,8 @@ from solvers.scenes.summary import table
 def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]:
     """Write tables, a plot and a page of a scene and the scenes beside it; return their paths."""
     scene = results[0].scene
-    paths = {
-        "table": folder / f"{scene.name}.csv",
-        "picture": folder / f"{scene.name}.png",
-        "page": folder / f"{scene.name}.html",
-    }
+    endings = {"table": "csv", "picture": "png", "page": "html"}
+    paths = {name: folder / f"{scene.name}.{ending}" for name, ending in endings.items()}
     save(figure(results), paths["picture"])
     write_text(paths["table"], table(results[0]))
     for n, result in enumerate(results[1:], 2):

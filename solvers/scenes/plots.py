@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from itertools import groupby, pairwise
+from itertools import chain, cycle, groupby, pairwise
 from math import ceil
 from textwrap import fill
 from typing import Any
@@ -17,18 +16,14 @@ from matplotlib.ticker import MaxNLocator
 from solvers.io.figures import COLOURS, panels
 from solvers.io.notation import axis_label, symbol
 from solvers.scenes.checks import curves_of
-from solvers.scenes.geometry import energy_errors, links, mass_positions, projected
-from solvers.scenes.run import SceneResult
+from solvers.scenes.geometry import energy_errors, mass_positions, projected, rods_and_springs
+from solvers.scenes.run import Array, SceneResult
 
 STYLES = ("-", "--", ":", "-.")
-#: Smallest energy error on the logarithmic axis.
-LEAST = 1e-17
-#: Most panels in rows of three; more are in rows of four.
-MOST = 6
-#: Height of the title in inches.
-TITLE = 0.22
-#: Width of a panel and height of a row in inches, and characters of the note per inch.
-PANEL, ROW, CHARACTERS = 4.6, 3.6, 15
+#: Smallest energy error on the logarithmic axis, and most panels in rows of three instead of four.
+LEAST, MOST = 1e-17, 6
+#: Width of a panel, heights of a row and the title in inches, and characters of the note per inch.
+PANEL, ROW, TITLE, CHARACTERS = 4.6, 3.6, 0.22, 15
 
 
 def figure(results: Sequence[SceneResult]) -> Figure:
@@ -49,10 +44,8 @@ def figure(results: Sequence[SceneResult]) -> Figure:
     columns = min(len(pictures), 3 if len(pictures) <= MOST else 4)
     rows = ceil(len(pictures) / columns)
     width = max(PANEL * columns, 7.0)
-    note, title = (
-        _plain(fill(full_note(results), int(width * CHARACTERS))),
-        _plain(main.scene.title),
-    )
+    note = _plain(fill(full_note(results), int(width * CHARACTERS)))
+    title = _plain(main.scene.title)
     size = (width, ROW * rows + 0.6 + 0.16 * note.count("\n"))
     chart, axes = panels(title, rows=rows, columns=columns, size=size)
     for panel, picture in zip(axes, pictures, strict=False):
@@ -110,65 +103,60 @@ def _accuracy_note(result: SceneResult, is_labelled: bool) -> str:
     return f"[{label}{text}, error estimate {model.error_estimate:.1g}.]"
 
 
-@dataclass(frozen=True)
-class _Curve:
-    """A run in a panel: its result, the colours of its curves, line style and label."""
-
-    result: SceneResult
-    colours: Sequence[str]
-    style: str
-    label: str
-
-    def plot(self, panel: Axes, picture: str) -> None:
-        """Add the curves of a picture to a panel."""
-        if picture == "path":
-            self._path(panel)
-        elif picture == "energy":
-            error = np.maximum(np.abs(energy_errors(self.result)), LEAST)
-            options: dict[str, Any] = {"color": self.colours[0], "label": self.label}
-            panel.semilogy(self.result.t, error, self.style, linewidth=0.9, **options)
-        else:
-            self._curves(panel, picture)
-
-    def _curves(self, panel: Axes, picture: str) -> None:
-        names, over = curves_of(picture)
-        module, t = self.result.scene.module, self.result.t
-        columns = dict(zip(module.STATE, self.result.y, strict=True)) | {"t": t}
-        units = {**module.UNITS, "t": "s"}
-        for name, colour in zip(names, self.colours, strict=False):
-            words = filter(None, [symbol(name) if len(names) > 1 else "", self.label])
-            options: dict[str, Any] = {"color": colour, "label": ", ".join(words)}
-            panel.plot(columns[over], columns[name], self.style, linewidth=1.1, **options)
-        if over == "t":
-            panel.set_xlim(0, t[-1])
-        panel.set(xlabel=axis_label(symbol(over), units[over]), ylabel=_labelled(names, units))
-
-    def _path(self, panel: Axes) -> None:
-        positions, label = mass_positions(self.result), self.label
-        view = projected(positions)
-        for (x, y), colour in zip(view, self.colours, strict=False):
-            panel.plot(x, y, self.style, color=colour, linewidth=0.9, label=label)
-            panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
-            label = ""
-        for pair in links(self.result, positions):
-            ends = [np.zeros(2) if k < 0 else view[k, :, -1] for k in pair]
-            panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)
-
-
 def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
-    for n, (result, style) in enumerate(zip(results, STYLES * len(results), strict=False)):
+    width = 0.9 if picture in ("path", "energy") else 1.1
+    for n, (result, style) in enumerate(zip(results, cycle(STYLES), strict=False)):
         shift = 2 * n % len(COLOURS)  # two curves of a run have colours of their own
+        colours = COLOURS[shift:] + COLOURS[:shift]
         label = _plain(result.scene.label) if len(results) > 1 else ""
-        _Curve(result, COLOURS[shift:] + COLOURS[:shift], style, label).plot(panel, picture)
+        for (name, x, y), colour in zip(_curves(result, picture), colours, strict=False):
+            text = ", ".join(filter(None, [name, label]))
+            panel.plot(x, y, style, color=colour, linewidth=width, label=text)
+            if picture == "path":
+                panel.plot(x[-1], y[-1], "o", color=colour, markersize=5)
+                label = ""
+        if picture == "path":
+            _draw_links(panel, result)
+    _label_axes(panel, picture, results[0])
+
+
+def _curves(result: SceneResult, picture: str) -> list[tuple[str, Array, Array]]:
+    """The curves of a picture: names if there are several, horizontal and vertical values."""
     if picture == "path":
-        in_space = mass_positions(results[0]).shape[1] == 3
+        return [("", x, y) for x, y in projected(mass_positions(result))]
+    if picture == "energy":
+        return [("", result.t, np.maximum(np.abs(energy_errors(result)), LEAST))]
+    names, over = curves_of(picture)
+    columns = {"t": result.t, **dict(zip(result.scene.module.STATE, result.y, strict=True))}
+    return [(symbol(q) if len(names) > 1 else "", columns[over], columns[q]) for q in names]
+
+
+def _draw_links(panel: Axes, result: SceneResult) -> None:
+    """Rods and springs at the end of the motion."""
+    masses = projected(mass_positions(result))[:, :, -1]
+    for pair in chain(*rods_and_springs(result)):
+        ends = [np.zeros(2) if k < 0 else masses[k] for k in pair]
+        panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)
+
+
+def _label_axes(panel: Axes, picture: str, result: SceneResult) -> None:
+    module = result.scene.module
+    if picture == "path":
+        in_space = mass_positions(result).shape[1] == 3
         x, y = ("horizontal", "vertical, oblique view") if in_space else ("x", "y")
         panel.set(xlabel=f"{x} / m", ylabel=f"{y} / m")
         panel.set_aspect("equal", adjustable="datalim")
-        if "positions" not in results[0].scene.module.TIMED:  # else the pivot may move
+        if "positions" not in module.TIMED:  # else the pivot may move
             panel.plot(0, 0, "k+", markersize=8)
     elif picture == "energy":
-        panel.set(xlabel=f"{symbol('t')} / s", ylabel="energy error / energy above rest")
+        label = "energy error / energy above rest"
+        panel.set(yscale="log", xlabel=f"{symbol('t')} / s", ylabel=label)
+    else:
+        names, over = curves_of(picture)
+        units = {**module.UNITS, "t": "s"}
+        panel.set(xlabel=axis_label(symbol(over), units[over]), ylabel=_labelled(names, units))
+        if over == "t":
+            panel.set_xlim(0, result.t[-1])
 
 
 def _labelled(names: Sequence[str], units: Mapping[str, str]) -> str:

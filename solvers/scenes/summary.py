@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -16,29 +16,23 @@ def summary(result: SceneResult) -> Iterator[str]:
     scene, model, state = result.scene, result.selection.model, result.final_state
     label = "" if scene.label == scene.title else f": {scene.label}"
     yield f"{scene.title}{label}, {scene.duration:g} s"
-    yield f"model: {model.name}{integration(result)}"
+    yield f"model: {model.name}{_integration(result)}"
     yield f"  {model.why}"
     for name, reason in result.selection.declined.items():
         yield f"  not {name}: {reason}"
     met = "" if result.is_met else ": NOT MET, since the scene names the model or the step"
     yield f"error estimate {model.error_estimate:.1e}, requested {scene.accuracy:.0e}{met}"
-    digits, units = significant(result), scene.module.UNITS
-    values = ", ".join(f"{name} = {digits(value)} {units[name]}" for name, value in state.items())
+    error, units = max(model.error_estimate, 1e-16), scene.module.UNITS
+    decimals = int(np.clip(np.floor(-np.log10(error)), 0, 15)) if np.isfinite(error) else 0
+    values = ", ".join(f"{name} = {x:.{decimals}f} {units[name]}" for name, x in state.items())
     no_digit = " (none of these digits is significant)" if model.error_estimate > 1 else ""
     yield f"final state: {values}{no_digit}"
     if result.energy is not None:
         yield f"energy: {result.energy[0]:.9g} J, changes by {np.ptp(result.energy):.1e} J"
-    yield cost(result)
+    yield _cost(result)
 
 
-def significant(result: SceneResult) -> Callable[[float], str]:
-    """A function that formats a number with its significant digits."""
-    error = max(result.selection.model.error_estimate, 1e-16)
-    decimals = int(np.clip(np.floor(-np.log10(error)), 0, 15)) if np.isfinite(error) else 0
-    return lambda value: f"{value:.{decimals}f}"
-
-
-def integration(result: SceneResult) -> str:
+def _integration(result: SceneResult) -> str:
     """Method, form and setting; empty for a closed form."""
     run = result.selection.model.run
     if not run:
@@ -46,9 +40,8 @@ def integration(result: SceneResult) -> str:
     text = f" by {result.method}, {result.form} form, {run.setting_name} = {run.setting:.3g}"
     if not result.specialised_module:
         return text
-    form = run.method_choice.form
-    special = _operations(result.specialised_module, form)
-    general = _operations(result.scene.module, form)
+    modules = (result.specialised_module, result.scene.module)
+    special, general = (_operations(module, run.method_choice.form) for module in modules)
     ratio = result.general_code_seconds / result.work_seconds
     return (
         f"{text}, specialised code ({special} operations instead of {general}, general code takes "
@@ -60,14 +53,15 @@ def _operations(module: GeneratedModule, form: str) -> int:
     return operations_on_state(module, named("rhs", form))
 
 
-def cost(result: SceneResult) -> str:
+def _cost(result: SceneResult) -> str:
     """The time that the model takes, compared with the full equations."""
     seconds, full = result.work_seconds, result.full_equations_seconds
     text = f"cost: {_time(seconds)}, selected in {_time(result.selection_seconds)}"
     if result.method or full < seconds:
         return text
-    ratio = f"{full / seconds:.2g} times as long"
-    return f"{text}; the full equations take about {_time(full)}, {ratio}"
+    return (
+        f"{text}; the full equations take about {_time(full)}, {full / seconds:.2g} times as long"
+    )
 
 
 def _time(seconds: float) -> str:
