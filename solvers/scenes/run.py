@@ -110,45 +110,10 @@ def run_scene(
     specialiser: Specialiser | None = None,
     report: Callable[[str], None] = lambda _: None,
 ) -> SceneResult:
-    """Select the simplest sufficient model of a scene, and compute its motion.
+    """The motion of a scene by the simplest sufficient model.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    specialiser : callable, optional
-        ``specialiser(module, params, method_choice)`` returns the module for these parameters
-        alone; needed where ``scene.code`` is ``"specialised"``.
-    report : callable, optional
-        ``report(text)`` is called with the progress.
-
-    Returns
-    -------
-    SceneResult
-        Its ``is_met`` states whether the error estimate is below ``scene.accuracy``, which it need
-        not be where the scene names a model or a step.
-
-    Raises
-    ------
-    solvers.scenes.models.integration_run.NotAccurateError
-        When even the full equations do not reach the requested accuracy.
-    solvers.scenes.models.integration_run.TooLongError
-        When they take more steps than the limit.
-    solvers.scenes.models.motion.OutsideDomainError
-        When no model applies, since a coordinate has no inertia; or when the model that the scene
-        names does not apply.
-    ValueError
-        When the scene requests specialised code and there is no specialiser.
-
-    Examples
-    --------
-    >>> import generated.single_pendulum as sp
-    >>> from solvers.scenes.scene import Scene
-    >>> result = run_scene(Scene(sp, sp.DEFAULTS, (0.001, 0.0), 10.0, accuracy=1e-6))
-    >>> result.selection.model.name
-    'normal modes'
-    >>> result.is_met
-    True
+    `NotAccurateError` where no model reaches the accuracy, `TooLongError` above the limit of steps,
+    `OutsideDomainError` where no model applies, or the one that the scene names does not.
     """
 
     def specialise(motion: Motion, choice: MethodChoice) -> Motion:
@@ -167,11 +132,9 @@ def run_scene(
     y = model.states(t).T
     y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
     energy = energies(scene, t, y) if ENERGY in scene.outputs else None
-    seconds = model.seconds(scene.duration)
     full_seconds = cheapest(scene.module, scene.params, scene.accuracy).seconds * scene.duration
-    result = SceneResult(
-        scene, selection, t, y, energy, selection_seconds, seconds, full_seconds, nan
-    )
+    costs = (selection_seconds, model.seconds(scene.duration), full_seconds, nan)
+    result = SceneResult(scene, selection, t, y, energy, *costs)
     if result.specialised_module and model.run:
         general = replace(model.run, motion=motion_of(scene))
         return replace(result, general_code_seconds=general.seconds())

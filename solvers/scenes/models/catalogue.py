@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from inspect import isabstract
+from inspect import isabstract, isclass
 from pkgutil import iter_modules
 
 from solvers.scenes import models
@@ -12,14 +12,8 @@ from solvers.scenes.models.model import ClosedForm, Model
 
 def load() -> dict[str, type[Model]]:
     """All models by their names in scene files, in ascending order of complexity."""
-    names = sorted(module.name for module in iter_modules(models.__path__))
-    modules = [import_module(f"{models.__name__}.{name}") for name in names]
-    classes = [
-        value
-        for module in modules
-        for value in vars(module).values()
-        if isinstance(value, type) and value.__module__ == module.__name__
-    ]
+    names = sorted(f"{models.__name__}.{module.name}" for module in iter_modules(models.__path__))
+    classes = [c for name in names for c in vars(import_module(name)).values() if isclass(c)]
     concrete = [c for c in classes if issubclass(c, Model) and not isabstract(c)]
     return {model.key(): model for model in sorted(concrete, key=lambda model: model.complexity)}
 
@@ -31,8 +25,6 @@ def closed_forms() -> dict[str, type[ClosedForm]]:
 
 def markdown_table() -> str:
     """All models as a Markdown table, in ascending order of complexity."""
-    rows = [
-        f'| `"{key}"` | {model.applies_to} | {model.error_source} |'
-        for key, model in load().items()
-    ]
-    return "\n".join(["| `model` | applies to | error estimate |", "|---|---|---|", *rows]) + "\n"
+    head = "| `model` | applies to | error estimate |\n|---|---|---|\n"
+    row = '| `"{}"` | {.applies_to} | {.error_source} |\n'
+    return head + "".join(row.format(key, model, model) for key, model in load().items())

@@ -36,7 +36,7 @@ class Equilibrium(ClosedForm):
 
     @classmethod
     def not_applicable(cls, module: GeneratedModule) -> str:
-        """An equilibrium stays also without conserved energy."""
+        # an equilibrium stays also without conserved energy
         return "the equations depend on time" if depends_on_time(module) else ""
 
     @classmethod
@@ -64,7 +64,6 @@ class Equilibrium(ClosedForm):
         return cls(motion.y0, error_estimate=estimate, why=why)
 
     def states(self, t: Array) -> Array:
-        """The initial state at all times."""
         return np.tile(self.y0, (len(t), 1))
 
 

@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from solvers.equations.forms import fastest_form
+from solvers.runge_kutta.catalogue import load
 from solvers.scenes.models.integration_run import (
     MAX_STEPS,
     IntegrationRun,
@@ -35,17 +36,7 @@ LARGEST_ANGLE, MOST_TURNS = 1e6, 3000.0
 
 @dataclass(frozen=True)
 class FullEquations(Model):
-    """The full equations, integrated with one tolerance, step size or number of digits.
-
-    Attributes
-    ----------
-    run : IntegrationRun
-        The integration.
-    computed : pair of ndarray, optional
-        Times and states that are known already.
-    computing_seconds : float, optional
-        Time of that computation, where it is too long to be repeated.
-    """
+    """The full equations, integrated with one tolerance, step size or number of digits."""
 
     name: ClassVar[str] = "full equations"
     complexity: ClassVar[int] = 100
@@ -53,27 +44,24 @@ class FullEquations(Model):
     error_source: ClassVar[str] = "comparison with another method in another form of the equations"
 
     run: IntegrationRun = field(kw_only=True)
-    computed: tuple[Array, Array] | None = None
-    computing_seconds: float | None = None
+    computed: tuple[Array, Array] | None = None  # times and states that are known already
+    computing_seconds: float | None = None  # where it takes too long to be repeated
 
     @classmethod
     def key(cls) -> str:
-        """The value of ``model`` in a scene file."""
         return "full"
 
     @classmethod
     def of(cls, run: IntegrationRun, error_estimate: float) -> FullEquations:
-        """The model by one run."""
+        """The model of one run and its error estimate."""
         return cls(run=run, error_estimate=error_estimate, why=run.method_choice.why)
 
     def states(self, t: Array) -> Array:
-        """Integrated to these times, shape (n, state)."""
         if self.computed and np.array_equal(self.computed[0], t):
             return self.computed[1]
         return self.run.states(t)
 
     def seconds(self, duration: float) -> float:
-        """Seconds of an integration to the end, without preparations that are done once."""
         return self.computing_seconds or self.run.seconds()
 
 
@@ -86,8 +74,9 @@ def integrated(
     if choice.step is not None:
         run = IntegrationRun(motion, choice, choice.step)
         return FullEquations.of(run, estimated_error(run, checked))
-    is_fixed = choice.is_fixed
-    setting, power = (motion.duration / 200, choice.order) if is_fixed else (accuracy / 3, 1.0)
+    setting, power = accuracy / 3, 1.0
+    if choice.is_fixed:
+        setting, power = motion.duration / 200, float(load(choice.method).order)
     best = np.inf
     for _ in range(TRIES):
         run = IntegrationRun(motion, choice, setting)
@@ -95,7 +84,7 @@ def integrated(
         if error <= accuracy:
             return FullEquations.of(run, error)
         best = min(best, error)
-        if not is_fixed and setting <= FINEST:
+        if not choice.is_fixed and setting <= FINEST:
             break
         factor = (RESERVE * accuracy / error) ** (1 / power) if np.isfinite(error) else 0.1
         setting = max(setting * min(max(factor, 1e-4), 0.5), FINEST)
@@ -120,9 +109,7 @@ def estimated_error(run: IntegrationRun, checked: Motion) -> float:
     choice = run.method_choice
     method = next(name for name in CHECKS if name != choice.method)
     form = fastest_form(checked.module) if choice.form == "lagrangian" else "lagrangian"
-    tolerance = FINEST
-    if not choice.is_fixed:
-        tolerance = max(run.setting / TIGHTER, FINEST)
+    tolerance = FINEST if choice.is_fixed else max(run.setting / TIGHTER, FINEST)
     reference = IntegrationRun(checked, MethodChoice(method, form, ""), tolerance).states(times)
     # the check's own error counts where the run is more accurate than its tolerance
     return _difference(run.motion, states, reference) + tolerance * float(np.abs(reference).max())
@@ -149,9 +136,8 @@ def by_series(motion: Motion, choice: MethodChoice, accuracy: float, times: Arra
             model = FullEquations.of(run, error)
             return replace(model, computed=(times, fine), computing_seconds=seconds)
         coarse = fine
-    raise NotAccurateError(
-        f"{MOST_DIGITS} digits reach {error:.1g} where {accuracy:.1g} is requested"
-    )
+    text = f"{MOST_DIGITS} digits reach {error:.1g} where {accuracy:.1g} is requested"
+    raise NotAccurateError(text)
 
 
 def _check_length(motion: Motion, most: float) -> None:

@@ -33,21 +33,11 @@ class TooLongError(ArithmeticError):
 
 @dataclass(frozen=True)
 class IntegrationRun:
-    """One integration of the full equations.
+    """One integration of the full equations."""
 
-    Attributes
-    ----------
-    motion : Motion
-        The motion; its module may be a specialised one.
-    method_choice : MethodChoice
-        Method and form.
-    setting : float
-        Relative tolerance, or step size in s, or number of digits.
-    """
-
-    motion: Motion
+    motion: Motion  # its module may be a specialised one
     method_choice: MethodChoice
-    setting: float
+    setting: float  # relative tolerance, or step size in s, or number of digits
 
     @property
     def setting_name(self) -> str:
@@ -59,12 +49,12 @@ class IntegrationRun:
     @property
     def options(self) -> dict[str, Any]:
         """Arguments of the integrator."""
-        options = {"method": self.method_choice.method, "form": self.method_choice.form}
-        if self.method_choice.is_fixed:
-            return options | {"h": self.setting, "max_steps": MAX_STEPS}
+        choice = self.method_choice
+        options = {"method": choice.method, "form": choice.form, "max_steps": MAX_STEPS}
+        if choice.is_fixed:
+            return options | {"h": self.setting}
         # a component that starts small may grow, as next to the upright equilibrium
-        atol = SMALL_STATE * self.setting
-        return options | {"rtol": self.setting, "atol": atol, "max_steps": MAX_STEPS}
+        return options | {"rtol": self.setting, "atol": SMALL_STATE * self.setting}
 
     def states(self, t: Array) -> Array:
         """Coordinates and velocities at increasing times, shape (n, state)."""
@@ -76,11 +66,10 @@ class IntegrationRun:
 
     def integrate(self, t: Array | None) -> tuple[Array, Array]:
         """Times and states: at `t`, or at the end of every step."""
-        motion, options = self.motion, self.options
-        span = (0.0, motion.duration)
+        motion, method = self.motion, self.method_choice.method
+        arguments = motion.module, (0.0, motion.duration), motion.y0, motion.params
         with ignore_predictability():
-            solution = integrate(motion.module, span, motion.y0, motion.params, t_eval=t, **options)
-        method = self.method_choice.method
+            solution = integrate(*arguments, t_eval=t, **self.options)
         if solution.status is Status.STEP_LIMIT:
             raise TooLongError(
                 f"{method} needs more than {MAX_STEPS:.0e} steps: shorten the duration or request "
@@ -92,10 +81,9 @@ class IntegrationRun:
 
     def seconds(self) -> float:
         """Seconds of an integration to the end, without preparations that are done once."""
-        motion = self.motion
-        end = np.array([motion.duration])
+        motion, end = self.motion, self.motion.duration
         try:
             run = prepare(motion.module, motion.params, **self.options)
         except (ValueError, NoCompilerError):  # SciPy's methods, or no compiler
-            return median_seconds(lambda: self.states(end))
-        return median_seconds(lambda: run((0.0, motion.duration), motion.y0))
+            return median_seconds(lambda: self.states(np.array([end])))
+        return median_seconds(lambda: run((0.0, end), motion.y0))

@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import chain
 from math import log, nan
 from pathlib import Path
 from typing import Any
@@ -21,27 +22,13 @@ SERIES = "taylor"
 
 @dataclass(frozen=True)
 class MethodChoice:
-    """The method and form that the full equations are integrated with.
+    """The method and form that the full equations are integrated with."""
 
-    Attributes
-    ----------
-    method : str
-        A Runge–Kutta method, one of SciPy's, or ``taylor`` for series with many digits.
-    form : str
-        Form of the equations.
-    why : str
-        The reason for this choice.
-    seconds : float
-        Measured seconds per second of motion.
-    step : float or None
-        A fixed step size in s.
-    """
-
-    method: str
+    method: str  # a Runge–Kutta method, one of SciPy's, or "taylor" for series with many digits
     form: str
-    why: str
-    seconds: float = nan
-    step: float | None = None
+    why: str  # the reason for this choice
+    seconds: float = nan  # measured, per second of motion
+    step: float | None = None  # a fixed step size in s
 
     @property
     def is_series(self) -> bool:
@@ -55,16 +42,10 @@ class MethodChoice:
             return True
         return not self.is_series and self.method not in SCIPY and not load(self.method).b_hat
 
-    @property
-    def order(self) -> float:
-        """Order of the method."""
-        return float(load(self.method).order)
-
 
 def usual_form(module: GeneratedModule, method: str) -> str:
     """The fastest form; Lagrange's for SciPy's methods and those that need a Jacobian."""
-    is_ours = method in (SERIES, *names())
-    is_explicit = is_ours and (method == SERIES or load(method).is_explicit)
+    is_explicit = method == SERIES or (method in names() and load(method).is_explicit)
     return fastest_form(module) if is_explicit else "lagrangian"
 
 
@@ -80,11 +61,7 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
     Scenes of the same system are similar, and of these those with a similar spread of modes: a
     method that pays where the fastest mode is hundreds of times as fast as the slowest does not
     where both are alike. Of equally similar scenes the first in the record counts. Where nothing
-    recorded is as accurate, the choice with the smallest recorded error is returned.
-
-    Returns
-    -------
-    MethodChoice
+    recorded is as accurate, the choice has the smallest recorded error.
     """
     spread = mode_spread(module, params)
     scenes = [scene for scene in _record() if scene["system"] == module.SYSTEM] or _record()
@@ -92,11 +69,8 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
     rows: list[dict[str, Any]] = nearest["frontier"]
     best = next((row for row in rows if row["global_error"] <= accuracy), rows[-1])
     method, form, seconds = best["method"], best["form"], best["work_seconds"]
-    others = ", ".join(
-        f"{name} {factor:.2g} x"
-        for axis in ("method", "form")
-        for name, factor in list(best["cost_ratios"][axis].items())[:2]
-    )
+    ratios = [[*best["cost_ratios"][axis].items()][:2] for axis in ("method", "form")]
+    others = ", ".join(f"{name} {factor:.2g} x" for name, factor in chain(*ratios))
     why = (
         f"cheapest for {best['global_error']:.0e} as measured in scene {nearest['scene']!r}, the "
         f"most similar one: {seconds * 1e6:.3g} us for {nearest['duration']:g} s; others "

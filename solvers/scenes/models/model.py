@@ -23,31 +23,17 @@ class Model(ABC):
     """A model of a motion, with an estimate of its error.
 
     A model is one class in a file of its own in this folder; nothing else lists it.
-
-    Attributes
-    ----------
-    name : str
-        Its name in results and messages.
-    complexity : int
-        Models are tried in ascending order of this number.
-    applies_to, error_source : str
-        The motions to which it applies, and the origin of its error, for documentation.
-    error_estimate : float
-        Largest error of any requested component at any time, in rad, m, rad/s or m/s.
-    why : str
-        Why it applies to this motion.
-    run : IntegrationRun or None
-        The integration, for a model that integrates.
     """
 
-    name: ClassVar[str]
-    complexity: ClassVar[int]
-    applies_to: ClassVar[str]
-    error_source: ClassVar[str]
+    name: ClassVar[str]  # in results and messages
+    complexity: ClassVar[int]  # models are tried in ascending order of this number
+    applies_to: ClassVar[str]  # the motions to which it applies, for documentation
+    error_source: ClassVar[str]  # likewise
 
+    #: Largest error of any requested component at any time, in rad, m, rad/s or m/s.
     error_estimate: float
-    why: str
-    run: IntegrationRun | None = None
+    why: str  # why it applies to this motion
+    run: IntegrationRun | None = None  # the integration, for a model that integrates
 
     @classmethod
     def key(cls) -> str:
@@ -81,25 +67,15 @@ class ClosedForm(Model):
     @classmethod
     @abstractmethod
     def of(cls, motion: Motion) -> Self:
-        """The model of a motion.
-
-        Raises
-        ------
-        OutsideDomainError
-            When the model does not apply to the motion.
-        """
+        """The model of a motion; `OutsideDomainError` where it does not apply."""
 
 
 def rounding_error(
     states: Callable[[Array], Array], y0: Sequence[float], sizes: Sequence[float]
 ) -> Array:
-    """Rounding error of a closed form at some times, as the effect of rounding its initial state.
+    """Effect of rounding the initial state on a closed form at some times, shape (n, state).
 
     `states` takes an initial state; `sizes` are the magnitudes that are rounded.
-
-    Returns
-    -------
-    ndarray of shape (n, state)
     """
     start = np.array(y0, dtype=float)
     reference = states(start)

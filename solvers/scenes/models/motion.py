@@ -22,25 +22,13 @@ class OutsideDomainError(ValueError):
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion, and the components of its state that are requested.
-
-    Attributes
-    ----------
-    module : module
-        A generated module.
-    params, y0 : tuple of float
-        In the order of ``module.PARAMETERS`` and ``module.STATE``.
-    duration : float
-        In s.
-    requested : tuple of int
-        Indices of the requested components of the state.
-    """
+    """A motion, and the components of its state that are requested."""
 
     module: GeneratedModule
     params: tuple[float, ...]
     y0: tuple[float, ...]
-    duration: float
-    requested: tuple[int, ...]
+    duration: float  # in s
+    requested: tuple[int, ...]  # indices of components of the state
 
     @property
     def n_coordinates(self) -> int:

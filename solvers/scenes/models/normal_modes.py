@@ -59,7 +59,6 @@ class NormalModes(ClosedForm):
         return replace(model, error_estimate=estimate, why=why)
 
     def states(self, t: Array) -> Array:
-        """The equilibrium and the sum of all modes."""
         omega = self.modes.frequencies
         phase = np.multiply.outer(t, omega)
         cosine, sine = np.cos(phase), np.sin(phase)

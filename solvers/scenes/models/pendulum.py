@@ -55,7 +55,6 @@ class Pendulum(ClosedForm):
         return cls(*constants, error_estimate=float(error), why=why)
 
     def states(self, t: Array) -> Array:
-        """Angle and velocity; NaN for other coordinates."""
         states = np.full((len(t), 2 * self.n_coordinates), np.nan)
         start = (self.start[0] - self.bottom, self.start[1])
         columns = [self.coordinate, self.coordinate + self.n_coordinates]

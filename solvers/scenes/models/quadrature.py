@@ -20,15 +20,15 @@ from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm, rounding_err
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 
-#: Fewest and most points of a period, and points that are searched for turning points.
-FEWEST, MOST, SCAN = 32, 2048, 720
+#: Numbers of points of a period to try, and of points that are searched for turning points.
+POINTS, SCAN = (32, 64, 128, 256, 512, 1024, 2048), 720
 #: A series ends where its terms are below this part of the mean.
 END = 1e-14
 #: Part of a period over 2π: short enough for a derivative, long enough for its rounding.
 INSTANT = 1e-5
 #: Newton iterations from an interpolated phase.
 ITERATIONS = 5
-NO_SERIES = f"no Fourier series of {MOST} points converges"
+NO_SERIES = f"no Fourier series of {POINTS[-1]} points converges"
 
 
 @dataclass(frozen=True)
@@ -82,9 +82,7 @@ class Path:
 
     def du(self, phi: Array) -> Array:
         """Its derivative with respect to φ."""
-        if self.amplitude:
-            return self.amplitude * np.sin(phi)
-        return np.full_like(phi, self.direction)
+        return self.amplitude * np.sin(phi) if self.amplitude else np.full_like(phi, self.direction)
 
 
 @dataclass(frozen=True)
@@ -163,7 +161,6 @@ class Quadrature(ClosedForm):
         return cls(result, error_estimate=estimate, why=why)
 
     def states(self, t: Array) -> Array:
-        """Coordinates and velocities at times, shape (n, state)."""
         return self.orbit.states(t)
 
 
@@ -179,11 +176,9 @@ def orbit(reduced: ReducedMotion) -> Orbit:
         phase = float(np.arctan2(root, path.centre - u))
     else:
         path, phase = Path(0.0, 0.0, direction), direction * u
-    n = FEWEST
-    while n <= MOST:
+    for n in POINTS:
         if result := _converged(reduced, path, phase, n):
             return result
-        n *= 2
     raise OutsideDomainError(NO_SERIES)
 
 

@@ -21,15 +21,7 @@ USELESS = 1e3
 
 @dataclass(frozen=True)
 class ModelSelection:
-    """The selected model, and the reasons against simpler ones.
-
-    Attributes
-    ----------
-    model : Model
-        The selected model.
-    declined : dict of str to str
-        Simpler models, and the reason against each.
-    """
+    """The selected model, and the reason against each simpler one by its name."""
 
     model: Model
     declined: dict[str, str]
@@ -43,12 +35,7 @@ def select_model(
     """The simplest model whose error stays below the requested accuracy.
 
     A closed form that the scene names is selected whatever its error. `specialise` takes a motion
-    and a method choice, and returns the motion with the module to integrate; `report` is called
-    with the progress. The errors are those of `solvers.scenes.run.run_scene`.
-
-    Returns
-    -------
-    ModelSelection
+    and a method choice, and returns the motion with the module to integrate.
     """
     motion, models = motion_of(scene), closed_forms()
     if scene.model in models:
@@ -80,8 +67,8 @@ def select_model(
             raise
         declined["double precision"] = str(error)
     report("full equations by Taylor series")
-    form = usual_form(scene.module, SERIES)
-    choice = MethodChoice(SERIES, form, "the motion loses more digits than double precision has")
+    why = "the motion loses more digits than double precision has"
+    choice = MethodChoice(SERIES, usual_form(scene.module, SERIES), why)
     return ModelSelection(by_series(motion, choice, scene.accuracy, scene.times), declined)
 
 
