@@ -1,7 +1,5 @@
 """Pages without external resources: the player and the motions in one HTML file."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from base64 import b64encode

@@ -1,7 +1,5 @@
 """A run of a system for the page that plays it: sampled positions and energy errors."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import floor, log10

@@ -1,7 +1,5 @@
 """Checks of the numbers and names of a scene; each raises a ValueError that states the remedy."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Sequence

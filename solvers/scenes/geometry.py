@@ -1,7 +1,5 @@
 """Geometry of a result: positions of masses, rods and springs, and the energy error."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from solvers.equations.energy import energy_error, supplied_energy

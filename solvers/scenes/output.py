@@ -1,7 +1,5 @@
 """Files of a scene: tables, plots and a page that plays the motion."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

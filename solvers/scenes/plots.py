@@ -1,7 +1,5 @@
 """Plots of a scene: coordinates over time, phase curves, paths and the energy error."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import chain, cycle, groupby, pairwise
 from math import ceil

@@ -1,7 +1,5 @@
 """Scenes from TOML files; what is not valid is refused when the file is read."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product

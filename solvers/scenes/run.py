@@ -1,7 +1,5 @@
 """Run a scene: select a model, and compute the motion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import nan

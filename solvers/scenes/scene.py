@@ -1,7 +1,5 @@
 """A scene: a motion, its accuracy and its outputs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,7 +99,7 @@ class Scene:
     name: str = "scene"
     label: str = ""
     note: str = ""
-    beside: tuple[Scene, ...] = ()
+    beside: tuple["Scene", ...] = ()
 
     def __post_init__(self) -> None:
         state = self.module.STATE

@@ -1,7 +1,5 @@
 """Results of scenes as text, as JSON and as a table."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

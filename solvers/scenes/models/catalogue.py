@@ -1,7 +1,5 @@
 """All models of a motion: every class of a model in this folder."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from inspect import isabstract, isclass
 from pkgutil import iter_modules

@@ -1,7 +1,5 @@
 """An equilibrium: the state stays."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar, Self
 

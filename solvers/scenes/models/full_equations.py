@@ -1,10 +1,8 @@
 """The full equations, integrated by one method and checked by another."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -52,7 +50,7 @@ class FullEquations(Model):
         return "full"
 
     @classmethod
-    def of(cls, run: IntegrationRun, error_estimate: float) -> FullEquations:
+    def of(cls, run: IntegrationRun, error_estimate: float) -> Self:
         """The model of one run and its error estimate."""
         return cls(run=run, error_estimate=error_estimate, why=run.method_choice.why)
 

@@ -1,7 +1,5 @@
 """One integration of a motion: method, form, and tolerance, step size or digits."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A pendulum with other coordinates that are too light to act on it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar, Self
 

@@ -1,7 +1,5 @@
 """The method and form of an integration, chosen by recorded measurements."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass

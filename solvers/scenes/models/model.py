@@ -1,7 +1,5 @@
 """The base classes of all models of a motion."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

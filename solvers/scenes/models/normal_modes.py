@@ -1,7 +1,5 @@
 """Small motion about an equilibrium: normal modes in closed form."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 

@@ -6,8 +6,6 @@ changes no energy: then its angular momentum L = I s' + C u' is conserved, W = V
 rotation, for rotation and change of shape, and for change of shape.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Self
 

@@ -1,7 +1,5 @@
 """The single pendulum by Jacobi's elliptic functions, for every motion that is one."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar, Self
 

@@ -6,8 +6,6 @@ smooth and periodic, so that their Fourier series converge faster than any power
 rule integrates them to rounding.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Self

@@ -1,7 +1,5 @@
 """Selection of the simplest sufficient model."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
