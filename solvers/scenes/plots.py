@@ -15,7 +15,8 @@ from solvers.io.figures import COLOURS, panels
 from solvers.io.notation import axis_label, symbol
 from solvers.scenes.checks import curves_of
 from solvers.scenes.geometry import energy_errors, mass_positions, projected, rods_and_springs
-from solvers.scenes.run import Array, SceneResult
+from solvers.scenes.models.motion import Array
+from solvers.scenes.run import SceneResult
 
 STYLES = ("-", "--", ":", "-.")
 #: Smallest energy error on the logarithmic axis, and most panels in rows of three instead of four.

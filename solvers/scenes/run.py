@@ -6,15 +6,12 @@ from math import nan
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
 from solvers.scenes.models.method_choice import MethodChoice, cheapest
-from solvers.scenes.models.motion import Motion
+from solvers.scenes.models.motion import Array, Motion
 from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.scene import ENERGY, Scene
-
-Array = NDArray[np.float64]
 
 #: Takes a module, parameters and a method choice; returns the module for these parameters alone.
 Specialiser = Callable[[GeneratedModule, tuple[float, ...], MethodChoice], GeneratedModule]

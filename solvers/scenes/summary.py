@@ -57,9 +57,8 @@ def _cost(result: SceneResult) -> str:
     text = f"cost: {_time(seconds)}, selected in {_time(result.selection_seconds)}"
     if result.method or full < seconds:
         return text
-    return (
-        f"{text}; the full equations take about {_time(full)}, {full / seconds:.2g} times as long"
-    )
+    ratio = f"{full / seconds:.2g} times as long"
+    return f"{text}; the full equations take about {_time(full)}, {ratio}"
 
 
 def _time(seconds: float) -> str:

@@ -40,9 +40,8 @@ class IntegrationRun:
     @property
     def setting_name(self) -> str:
         """``rtol``, ``h`` or ``digits``."""
-        if self.method_choice.is_series:
-            return "digits"
-        return "h" if self.method_choice.is_fixed else "rtol"
+        choice = self.method_choice
+        return "digits" if choice.is_series else "h" if choice.is_fixed else "rtol"
 
     @property
     def options(self) -> dict[str, Any]:

@@ -36,9 +36,8 @@ class MethodChoice:
     @property
     def is_fixed(self) -> bool:
         """Whether the step size is fixed."""
-        if self.step is not None:
-            return True
-        return not self.is_series and self.method not in SCIPY and not load(self.method).b_hat
+        is_ours = not self.is_series and self.method not in SCIPY
+        return self.step is not None or (is_ours and not load(self.method).b_hat)
 
 
 def usual_form(module: GeneratedModule, method: str) -> str:
@@ -49,8 +48,7 @@ def usual_form(module: GeneratedModule, method: str) -> str:
 
 @cache
 def _record() -> list[dict[str, Any]]:
-    record: list[dict[str, Any]] = json.loads(RECORD.read_text(encoding="utf-8"))
-    return record
+    return json.loads(RECORD.read_text(encoding="utf-8"))
 
 
 def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) -> MethodChoice:
