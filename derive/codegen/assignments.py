@@ -5,8 +5,6 @@ would make a line long. A value of the parameters alone is always named where
 other values use it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """A target language: one file in `derive.codegen.backends` with one `Backend`."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from importlib import import_module

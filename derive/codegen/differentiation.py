@@ -1,7 +1,5 @@
 """Derivatives of nodes in their own graph, in which equal subexpressions are shared."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from fractions import Fraction
 

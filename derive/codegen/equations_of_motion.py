@@ -4,8 +4,6 @@ Nodes are differentiated. Derivatives of solutions use the factorisation of the 
 ∂(M⁻¹ b) = M⁻¹ (∂b - ∂M M⁻¹ b). Nothing is inverted or simplified.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cached_property
 

@@ -1,7 +1,5 @@
 """The functions of generated modules: arguments, results, and when they exist."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Literal

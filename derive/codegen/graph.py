@@ -11,8 +11,6 @@ built:
   and no cancellation where the cosine is near one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import reduce

@@ -1,7 +1,5 @@
 """Lagrange's form, M q̈ = f, its rational form and its variational equations."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property

@@ -6,8 +6,6 @@ reciprocal for the same reason. Then parts that several products or sums have in
 common (``a*b*c`` and ``a*b*d`` share ``a*b``) become separate operations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache, cached_property

@@ -1,7 +1,5 @@
 """Straight-line operations: each computes one value from earlier ones."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt

@@ -5,8 +5,6 @@ and cosines of the angles. Where equations depend on a coordinate in no other
 way, the pair (sin q, cos q) can replace it in the state.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Sequence
 from functools import cache
 

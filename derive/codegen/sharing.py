@@ -6,8 +6,6 @@ that the result depends on the operations alone. A queue with deferred
 corrections keeps the work nearly linear in the number of pairs.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from heapq import heapify, heappop, heappush

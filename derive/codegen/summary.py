@@ -1,7 +1,5 @@
 """The description of a system in the docstring of its generated module."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from textwrap import indent
 

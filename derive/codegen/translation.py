@@ -1,7 +1,5 @@
 """SymPy expressions as nodes of a graph."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from fractions import Fraction
 from types import MappingProxyType

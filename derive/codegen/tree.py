@@ -1,7 +1,5 @@
 """A folder of generated files: compared with the generator's texts, and written atomically."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import unified_diff

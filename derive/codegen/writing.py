@@ -1,7 +1,5 @@
 """The generated files of a system, one for each target language."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path

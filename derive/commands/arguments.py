@@ -1,7 +1,5 @@
 """Arguments of ``holonomic derive``; describing them loads no SymPy."""
 
-from __future__ import annotations
-
 from argparse import Action, ArgumentParser
 from pathlib import Path
 

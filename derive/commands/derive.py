@@ -1,7 +1,5 @@
 """``holonomic derive``: write the generated modules, or check that they are up to date."""
 
-from __future__ import annotations
-
 import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Iterable, Sequence

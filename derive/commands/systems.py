@@ -1,7 +1,5 @@
 """Descriptions of systems: drawings, coordinates, state and parameters."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from itertools import groupby

@@ -1,7 +1,5 @@
 """``holonomic verify EQUATIONS``: verdicts on the equations of files and systems."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict

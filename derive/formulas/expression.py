@@ -4,8 +4,6 @@ Of the syntax tree that Python's parser builds, only the nodes listed here becom
 values, with names from the caller's scope. Sizes are limited before anything is computed.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Mapping

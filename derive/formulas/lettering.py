@@ -1,7 +1,5 @@
 """MathML for names: Greek letters, dots for time derivatives, and indices."""
 
-from __future__ import annotations
-
 import re
 from html import escape
 

@@ -7,8 +7,6 @@ generates all relations between the sine and the cosine of independent angles:
 the expression is zero exactly when the polynomial is.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import cache, reduce

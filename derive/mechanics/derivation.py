@@ -8,8 +8,6 @@ Lifshitz, Mechanics, § 5 and § 40; C. Lanczos, The Variational Principles of
 Mechanics, chapter VI, for time as a coordinate).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property

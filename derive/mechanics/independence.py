@@ -1,7 +1,5 @@
 """Independence of the coordinates: each one moves a mass as no other does."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from derive.system.parts import SystemDefinitionError

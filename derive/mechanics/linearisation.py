@@ -1,7 +1,5 @@
 """Small oscillations about an equilibrium."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import TypeAlias
 

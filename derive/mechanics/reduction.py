@@ -6,8 +6,6 @@ cos(a - b), sin² a + cos² a is 1. Squares are tried in place of doubled angles
 since sin² a costs less than (1 - cos 2a)/2 and is accurate near a = 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import prod
 

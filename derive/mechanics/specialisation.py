@@ -1,7 +1,5 @@
 """Systems with numbers in place of parameters; terms that become zero vanish."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """A derivation step by step, in words and formulas, for notebooks and pages."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ A file whose name ends in ``_n`` holds a family: its ``system`` is a function of
 the system, as TOML text in the format of ``holonomic verify``.
 """
 
-from __future__ import annotations
-
 import re
 from importlib import import_module
 from os import PathLike, fspath

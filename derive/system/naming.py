@@ -1,7 +1,5 @@
 """Names that are valid in generated Python and C."""
 
-from __future__ import annotations
-
 import keyword
 import re
 from collections import Counter

@@ -1,7 +1,5 @@
 """Names of the systems that ship; listing them loads no system and no SymPy."""
 
-from __future__ import annotations
-
 import re
 from pkgutil import iter_modules
 

@@ -1,7 +1,5 @@
 """Symbols of velocities, accelerations and momenta, with names for code and LaTeX."""
 
-from __future__ import annotations
-
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 

@@ -1,7 +1,5 @@
 """A mechanical system: positions of masses as functions of generalized coordinates."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property

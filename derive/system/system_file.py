@@ -1,7 +1,5 @@
 """A system as a TOML file: positions as text, read and never executed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from math import isfinite

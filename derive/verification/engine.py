@@ -5,8 +5,6 @@ three, ``"a >= b"`` is an inequality, and ``"a = b; c = d"`` is two statements.
 A name that ends in ``_i`` stands for every index.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

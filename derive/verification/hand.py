@@ -1,7 +1,5 @@
 """Hand derivations in TOML: the equations of a source, its system and its notation."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A derivation with generic states, against which formulas about its system are judged."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Verdicts on formulas for quantities of a derivation, and on equations of motion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import partial

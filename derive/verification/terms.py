@@ -1,7 +1,5 @@
 """Term-by-term comparison of sums, to locate the first wrong term of a printed formula."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The verdict on one equation, and tables of verdicts as plain text."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from shutil import get_terminal_size

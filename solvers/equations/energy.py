@@ -1,7 +1,5 @@
 """Energy errors, relative to the energy of a motion above that of the system at rest."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ An ordinary state is (q, q̇); the state of a form may differ. In the variationa
 contain a variation, a small change of the state.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The contract between generated modules and solvers: what every generated module has."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol, cast

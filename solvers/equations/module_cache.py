@@ -1,7 +1,5 @@
 """Modules generated on demand, and kept in the cache."""
 
-from __future__ import annotations
-
 import hashlib
 import sys
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """Modules specialised for one scene: constant parameters, and only the functions it requires."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 from solvers.equations.module import GeneratedModule, named

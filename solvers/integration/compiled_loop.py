@@ -1,7 +1,5 @@
 """One motion in a compiled loop."""
 
-from __future__ import annotations
-
 from warnings import warn
 
 from solvers.equations.forms import fastest_form

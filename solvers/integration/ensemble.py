@@ -1,7 +1,5 @@
 """Many motions at once."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 

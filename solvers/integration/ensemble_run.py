@@ -1,7 +1,5 @@
 """The integration of many motions: in vector lanes over all cores, or one by one in Python."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Events of compiled loops: a component of the state crosses a value."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite

@@ -1,7 +1,5 @@
 """Integration of a generated module's equations of motion."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import inf
 from warnings import warn

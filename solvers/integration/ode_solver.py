@@ -1,7 +1,5 @@
 """Methods of `solvers.runge_kutta` as solver classes for SciPy's ``solve_ivp``."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How long a trajectory is predictable: in chaos, errors grow to the size of the motion."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Record the samples and events of the steps of an integration."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import takewhile
 

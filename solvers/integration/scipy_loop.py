@@ -1,7 +1,5 @@
 """Integration by SciPy's methods, with the samples, events and statuses of this package."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

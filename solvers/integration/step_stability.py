@@ -1,7 +1,5 @@
 """The stability of fixed steps: growth of small deviations by the stability function."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Timed runs: the end and the cost of an integration, and costs between runs."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Checks of the arguments of an integration, before anything runs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 

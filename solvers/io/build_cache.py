@@ -5,8 +5,6 @@ Concurrent processes share one result, and damaged, incomplete or foreign files 
 There are no locks.
 """
 
-from __future__ import annotations
-
 import atexit
 import hashlib
 import os

@@ -1,7 +1,5 @@
 """Figures: creation, style and files."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from io import BytesIO
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Results as values that JSON can represent."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from math import isfinite

@@ -1,7 +1,5 @@
 """Names and units in figures."""
 
-from __future__ import annotations
-
 GREEK = (
     "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi chi "
     "psi omega Gamma Delta Theta Lambda Pi Sigma Phi Psi Omega"

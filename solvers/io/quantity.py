@@ -4,8 +4,6 @@ Text is parsed by rule and never executed: an expression is numbers, ``pi``, ``+
 brackets, and a unit is a product of names from a table.
 """
 
-from __future__ import annotations
-
 import ast
 import operator
 import re

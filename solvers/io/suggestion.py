@@ -1,7 +1,5 @@
 """Suggestions and quotations in messages about wrong input."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from difflib import get_close_matches
 

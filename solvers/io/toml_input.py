@@ -1,7 +1,5 @@
 """TOML files, read strictly: a wrong entry is refused with its name, its value and the choices."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

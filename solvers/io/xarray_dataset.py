@@ -1,7 +1,5 @@
 """Datasets of xarray, an optional package."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from importlib import import_module
 from typing import Any

@@ -1,7 +1,5 @@
 """The single pendulum in closed form, by Jacobi's elliptic functions."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import elliprf

@@ -3,8 +3,6 @@
 The equations are in Lagrange's form: only the physics is that of `solvers.references.taylor`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 

@@ -4,8 +4,6 @@ The equations are a generated module's rational form, of sums, products and quot
 function accepts power series. Nothing numerical is shared with Runge–Kutta methods.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from decimal import Decimal, localcontext
 from functools import reduce

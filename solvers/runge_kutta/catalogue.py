@@ -1,7 +1,5 @@
 """The catalogue of methods: every file of the package `methods` is one."""
 
-from __future__ import annotations
-
 from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules

@@ -1,7 +1,5 @@
 """The table of methods in the README, derived from the catalogue."""
 
-from __future__ import annotations
-
 from math import inf
 
 from solvers.runge_kutta.catalogue import load, names

@@ -6,8 +6,6 @@ S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, theorem II
 exact coefficients, within the rounding of their last digits for published decimals.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from decimal import Decimal, localcontext
 from fractions import Fraction

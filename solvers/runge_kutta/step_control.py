@@ -1,7 +1,5 @@
 """Step size control: proportional-integral control of the local error."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import hypot
 

@@ -4,8 +4,6 @@ States between steps are those of a shorter step from the same start: they have 
 order and need no further coefficients.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The first interval on which a polynomial is not negative, by exact arithmetic."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise

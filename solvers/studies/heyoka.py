@@ -3,8 +3,6 @@
 A system is a list of pairs: a variable of heyoka and its time derivative.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any

@@ -1,7 +1,5 @@
 """Quantities that vary from motion to motion: on a grid, randomly, or as listed in a table."""
 
-from __future__ import annotations
-
 import hashlib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping

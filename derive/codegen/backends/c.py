@@ -1,7 +1,5 @@
 """C99 headers, with the same operations as the Python modules."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from textwrap import indent
 

@@ -1,7 +1,5 @@
 """Python modules: every function for one state, and for arrays of states."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import groupby
 from textwrap import indent, wrap

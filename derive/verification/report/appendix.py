@@ -1,7 +1,5 @@
 """Equations (91) to (128) and the unnumbered displays of Appendix A, as printed."""
 
-from __future__ import annotations
-
 from derive.verification.report.chapters import LAGRANGIAN, MOMENTUM_1, MOMENTUM_2
 from derive.verification.report.equation import Equation
 

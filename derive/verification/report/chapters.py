@@ -1,7 +1,5 @@
 """Equations (1) to (90) of chapters 1 to 3, as printed."""
 
-from __future__ import annotations
-
 from derive.verification.report.equation import Equation
 
 HAMILTON = "pdot_i = -d(H, q_i); qdot_i = d(H, p_i); -d(L, t) = d(H, t)"

@@ -1,7 +1,5 @@
 """The derivation beside the report: each step with the report's equations and their verdicts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from html import escape

@@ -4,8 +4,6 @@ Its y points downwards in vectors r (11)–(16) and upwards in positions (47)–
 θ and φ for the same angles, and P for the potential energy and for momenta.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any, TypeAlias

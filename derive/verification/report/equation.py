@@ -1,7 +1,5 @@
 """One equation of the report, and how it is judged."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

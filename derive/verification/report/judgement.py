@@ -1,7 +1,5 @@
 """Computed verdicts on the equations of the report."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from fractions import Fraction

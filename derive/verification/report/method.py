@@ -1,7 +1,5 @@
 """Coefficients of a Runge–Kutta method from its printed stages."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Sequence
 from fractions import Fraction

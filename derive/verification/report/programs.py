@@ -4,8 +4,6 @@ Formulas are retyped in the language of `derive.formulas.expression`; of the pro
 which character recognition can distort, only lines that show an error are quoted.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import asdict, dataclass
 

@@ -1,7 +1,5 @@
 """C code to shared libraries, by the first compiler that works, built once."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import platform

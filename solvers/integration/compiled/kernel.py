@@ -1,7 +1,5 @@
 """Compiled loops: many motions of one form by one method, called from Python."""
 
-from __future__ import annotations
-
 import ctypes
 from functools import cache
 from typing import Any, cast

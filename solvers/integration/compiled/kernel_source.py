@@ -4,8 +4,6 @@ It consists of the module's generated header, the method's stages written out fr
 tableau, and the handwritten files in the folder ``c``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Memory layouts that Python and C share: read from ``c/layout.h``, where they are written once."""
 
-from __future__ import annotations
-
 import ctypes
 import re
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """A module's right-hand side as machine code."""
 
-from __future__ import annotations
-
 import ctypes
 from dataclasses import dataclass
 from typing import Any

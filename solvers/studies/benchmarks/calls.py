@@ -1,7 +1,5 @@
 """Calls of compiled right-hand sides of chains of pendulums, for timing."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Sequence
 from importlib.resources import files

@@ -1,7 +1,5 @@
 """The benchmark of chains of pendulums: derived, called and integrated by several programs."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial

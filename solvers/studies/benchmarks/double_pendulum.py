@@ -1,7 +1,5 @@
 """The benchmark of the double pendulum: motions, calls, operations and preparation."""
 
-from __future__ import annotations
-
 import ctypes
 import platform
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The benchmark of the flip map: several programs at equal error, and the overhead of sweeps."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable, Iterator
 from functools import partial

@@ -5,8 +5,6 @@ integrates batches with terminal events on its own equations; numba compiles RK4
 and the generated right-hand side, and locates the time by cubic interpolation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any

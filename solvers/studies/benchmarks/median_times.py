@@ -1,7 +1,5 @@
 """Median times of several programs, called in turn, and of compilation."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping
 

@@ -5,8 +5,6 @@ at the same global error, interpolated on each program's own curve. Preparation 
 are left out and stated separately.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from math import isnan, pi

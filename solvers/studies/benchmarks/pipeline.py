@@ -4,8 +4,6 @@ Each program uses the equations that it derives itself, or those of SymPy's mech
 with the loosest tolerance of sufficient accuracy.
 """
 
-from __future__ import annotations
-
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping

@@ -1,7 +1,5 @@
 """Chaos: growth of errors, the predictability horizon, and means beyond it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial

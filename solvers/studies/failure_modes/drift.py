@@ -1,7 +1,5 @@
 """Energy in long runs: Runge–Kutta methods lose it, symplectic methods keep it bounded."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Growth of a small difference of two motions, and the predictability horizon."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Growing oscillations: by Euler's method with any step, by other methods beyond a limit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """The single pendulum near its upright equilibrium, compared with its exact solution."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass
 from functools import partial

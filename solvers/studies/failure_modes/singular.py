@@ -5,8 +5,6 @@ amplifies the rounding of p. Lagrange's form solves M q̈ = f: the weight of m2 
 the equation that remains for m1, and cancels.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass
 from decimal import Decimal, localcontext

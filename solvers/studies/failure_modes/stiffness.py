@@ -1,7 +1,5 @@
 """Stiff scenes: a fast mode at rest forces explicit methods to take short steps."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial

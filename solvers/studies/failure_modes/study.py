@@ -1,7 +1,5 @@
 """The contract of a study, and the studies of this package."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from importlib import import_module

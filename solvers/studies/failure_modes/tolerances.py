@@ -1,7 +1,5 @@
 """Tolerances and errors: the achieved error relative to the requested error."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial

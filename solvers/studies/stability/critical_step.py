@@ -5,8 +5,6 @@ with a fixed step, and its growth is recorded. The step is increased until the m
 limit is found by bisection.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Stability regions with the modes of a scene, and boundaries of stability regions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from math import inf
 

@@ -1,7 +1,5 @@
 """Work-precision curves, cost against global error, and the cheapest combinations."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite

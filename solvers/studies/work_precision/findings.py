@@ -1,7 +1,5 @@
 """Findings that follow from curves: where rounding dominates, and where energy misleads."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite, nan

@@ -1,7 +1,5 @@
 """Curves of combinations of method, form and backend on a scene."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import partial

@@ -5,8 +5,6 @@ and diffrax's methods take the right-hand side, called with their own numbers; n
 Python function into a loop of RK4 steps; numbalsoda's LSODA and DOP853 take its machine code.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from importlib import import_module

@@ -1,7 +1,5 @@
 """Work-precision diagrams, and diagrams of steps and of energy."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes
