@@ -6,8 +6,6 @@ of all entries. It runs from the last coordinate to the first, since in a chain
 the last mass moves with the fewest others: its entries are the shortest.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import reduce
@@ -25,7 +23,7 @@ LARGE = 16
 SHORT = 3
 
 
-def factorisation(graph: Graph, matrix: Rows) -> Loops | Factorisation:
+def factorisation(graph: Graph, matrix: Rows) -> "Loops | Factorisation":
     """The factorisation of a symmetric positive definite matrix; its size decides which."""
     return (Loops if len(matrix) >= LARGE else Factorisation)(graph, matrix)
 

@@ -5,8 +5,6 @@ printed form is preserved. Each side of an equation and each term of a sum is a
 separate element, so that a narrow screen can break the line between them.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -38,7 +36,7 @@ class Formula:
     text: str
 
     @staticmethod
-    def of(name: str, value: sp.Expr | sp.MatrixBase) -> Formula:
+    def of(name: str, value: sp.Expr | sp.MatrixBase) -> "Formula":
         """Return the formula ``name = value`` of a SymPy value."""
         plain = partial(sp.sstr, order="lex")
         if not isinstance(value, sp.MatrixBase):

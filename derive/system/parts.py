@@ -1,7 +1,5 @@
 """The parts of a system: coordinates, parameters, point masses and rigid bodies."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -162,7 +160,7 @@ class PointMass:
         """Mass and position."""
         return f"{self.mass} at ({', '.join(map(str, self.position))})"
 
-    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> PointMass:
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> "PointMass":
         """A copy with `function` applied to every expression."""
         return PointMass(function(self.mass), tuple(map(function, self.position)))
 
@@ -225,7 +223,7 @@ class RigidBody(PointMass):
         """Mass, position, moment of inertia and orientation."""
         return f"{super().words}, moment of inertia {self.inertia}, orientation {self.angle}"
 
-    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> RigidBody:
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> "RigidBody":
         """A copy with `function` applied to every expression."""
         mass, position = function(self.mass), tuple(map(function, self.position))
         return RigidBody(mass, position, function(self.inertia), function(self.angle))

@@ -1,7 +1,5 @@
 """Tables of TOML files, read strictly: unknown keys are refused."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
@@ -72,14 +70,14 @@ class Table:
             raise InputError(f"{key} = {shortened(value)} in {self.name} must be true or false")
         return value
 
-    def tables(self, key: str, known: Collection[str]) -> dict[str, Table]:
+    def tables(self, key: str, known: Collection[str]) -> "dict[str, Table]":
         """The tables of a table, by name."""
         inner = self.values.get(key, {})
         if not isinstance(inner, Mapping):
             raise InputError(f"{key} = {shortened(inner)} must be a table: write [{key}]")
         return {name: Table(f"{key}.{name}", values, known) for name, values in inner.items()}
 
-    def listed(self, key: str, known: Collection[str]) -> list[Table]:
+    def listed(self, key: str, known: Collection[str]) -> "list[Table]":
         """The tables of a list."""
         inner = self.values.get(key, [])
         if not isinstance(inner, list):

@@ -1,7 +1,5 @@
 """Generated modules of systems: shipped, or built and cached."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import import_module
@@ -18,7 +16,7 @@ if TYPE_CHECKING:
     from derive import System
 
 #: The systems of modules that were built in this process, by the module's name.
-_systems: dict[str, System] = {}
+_systems: "dict[str, System]" = {}
 
 
 def load(name: str) -> GeneratedModule:
@@ -64,7 +62,7 @@ def load(name: str) -> GeneratedModule:
         raise LookupError(str(error)) from error
 
 
-def build(system: System) -> GeneratedModule:
+def build(system: "System") -> GeneratedModule:
     """The generated module of a system, built in the user's cache if it is not there yet.
 
     Parameters

@@ -1,7 +1,5 @@
 """Normal modes about an equilibrium, and eigenvalues of the equations along a motion."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,7 +22,7 @@ class Modes:
     shapes: Array  # a column for each mode, with unit mass: shapesᵀ M₀ shapes = 1
 
     @classmethod
-    def at_rest(cls, module: GeneratedModule, params: Sequence[float]) -> Modes:
+    def at_rest(cls, module: GeneratedModule, params: Sequence[float]) -> "Modes":
         """The modes about the equilibrium of the module's function ``linear``.
 
         `ValueError` if the system has no known equilibrium, or it is not stable.

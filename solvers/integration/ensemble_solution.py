@@ -1,7 +1,5 @@
 """The result of an integration of many motions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -71,7 +69,7 @@ class Ensemble:
     t_eval: Array
 
     @classmethod
-    def empty(cls, problem: Problem, n: int, occurrences: int, backend: str) -> Ensemble:
+    def empty(cls, problem: Problem, n: int, occurrences: int, backend: str) -> "Ensemble":
         """An ensemble of `n` motions of `problem` without results."""
         t_eval, state, events = problem.samples, len(problem.units), len(problem.events)
         assert t_eval is not None

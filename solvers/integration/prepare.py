@@ -1,7 +1,5 @@
 """Compiled functions for one motion after another, with little overhead per call."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Mapping, Sequence
 from math import isfinite, ulp
@@ -40,7 +38,7 @@ def prepare(
     h: float | None = None,
     max_steps: int = 1_000_000,
     compensated: bool = False,
-) -> Prepared:
+) -> "Prepared":
     """Compile a function ``run((t0, t1), y0)`` that returns the state at t1.
 
     Parameters

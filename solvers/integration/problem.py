@@ -1,7 +1,5 @@
 """Options of an integration, the problem built from them, and its outcome."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -55,11 +53,11 @@ class Problem:
     max_steps: int
     options: Options  # as given
 
-    def with_form(self, name: str) -> Problem:
+    def with_form(self, name: str) -> "Problem":
         """The same problem in another form with the same ordinary state."""
         return replace(self, form=Form(self.form.module, name, self.form.params))
 
-    def with_params(self, params: Sequence[Any]) -> Problem:
+    def with_params(self, params: Sequence[Any]) -> "Problem":
         """The same problem with other parameters: numbers, or arrays for several motions."""
         return replace(self, form=Form(self.form.module, self.form.name, params))
 
@@ -103,7 +101,7 @@ class Outcome:
     backend: str = "python"
 
     @classmethod
-    def at_start(cls, problem: Problem) -> Outcome:
+    def at_start(cls, problem: Problem) -> "Outcome":
         """The outcome before the first step."""
         events = problem.events
         return cls((problem.span[0], problem.start), [[] for _ in events], [[] for _ in events])

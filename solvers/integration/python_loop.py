@@ -1,7 +1,5 @@
 """Integration in Python by the methods of `solvers.runge_kutta`; compiled loops agree with it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -34,7 +32,7 @@ class Point:
 class Accepted:
     """A step with a sufficiently small error; `norm` is that of its error."""
 
-    attempts: Attempts
+    attempts: "Attempts"
     start: Point
     end: Point
     norm: float

@@ -1,7 +1,5 @@
 """Progress: one line on a terminal, updated while a command runs."""
 
-from __future__ import annotations
-
 import sys
 import threading
 import time
@@ -27,7 +25,7 @@ class Progress:
         """Describe the current activity."""
         self._text = text
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> "Progress":
         if sys.stderr.isatty():
             self._thread = threading.Thread(target=self._report, daemon=True)
             self._thread.start()

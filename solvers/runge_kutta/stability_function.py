@@ -1,7 +1,5 @@
 """The stability function R: a step of y' = λy multiplies y by R(hλ). Its coefficients are exact."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
@@ -44,7 +42,7 @@ class StabilityFunction:
     denominator: Polynomial
 
     @classmethod
-    def of(cls, tableau: Tableau) -> StabilityFunction:
+    def of(cls, tableau: Tableau) -> "StabilityFunction":
         """The stability function of a method; the denominator of explicit methods is 1.
 
         Where coefficients are published as rounded decimals, those of R up to the

@@ -1,7 +1,5 @@
 """Butcher tableaus: the coefficients of a method, and the properties that follow from them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
@@ -45,7 +43,7 @@ class Tableau:
     @classmethod
     def explicit(
         cls, title: str, rows: str, b: str = "", b_hat: str = "", b_low: str = ""
-    ) -> Tableau:
+    ) -> "Tableau":
         """A tableau from text: numbers between spaces, rows between semicolons.
 
         The rows are those of A from the second stage on, each left of its diagonal. Numbers are

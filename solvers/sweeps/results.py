@@ -1,7 +1,5 @@
 """The maps of a sweep as NumPy arrays, with their axes and units."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,7 +48,7 @@ class Results:
     status: NDArray[np.int8]
 
     @classmethod
-    def of(cls, definition: Sweep, folder: Path) -> Results:
+    def of(cls, definition: Sweep, folder: Path) -> "Results":
         """Open the maps in a folder."""
         names = ("status", *definition.maps, *definition.axes.smallest)
         files = {name: np.load(folder / f"{name}.npy", mmap_mode="r") for name in names}

@@ -1,7 +1,5 @@
 """The definition of a sweep: many motions of one system, and maps of them."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -98,7 +96,7 @@ class Sweep:
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state, module=_module(*state["module"]))
 
-    def unchecked(self, **changes: Any) -> Sweep:
+    def unchecked(self, **changes: Any) -> "Sweep":
         """A copy with other values of some fields, which are not checked."""
         copy = object.__new__(Sweep)
         vars(copy).update(vars(self), **changes)

@@ -1,7 +1,7 @@
 """Equations (91) to (128) and the unnumbered displays of Appendix A, as printed."""
 
 from derive.verification.report.chapters import LAGRANGIAN, MOMENTUM_1, MOMENTUM_2
-from derive.verification.report.equation import Equation
+from derive.verification.report.equation import Equation, fourth_order_rule
 
 EQUATIONS: tuple[Equation, ...] = (
     Equation("A1", "x1 = l1*sin(theta1)"),
@@ -172,10 +172,5 @@ EQUATIONS: tuple[Equation, ...] = (
              "/(2*l1**2*l2**2*(m1 + m2*sin(theta1 - theta2)**2)**2)",
              check="Pdot_theta2 = -m2*g*l2*sin(theta2) + h1 - h2*sin(2*(theta1 - theta2))",
              using=("eq121",)),
-    Equation("eq123", "w_0 = alpha", exempt="definition", note="the initial value"),
-    Equation("eq124", "m_1 = h*f(t_i, w_i)", system="method"),
-    Equation("eq125", "m_2 = h*f(t_i + h/2, w_i + m_1/2)", system="method"),
-    Equation("eq126", "m_3 = h*f(t_i + h/2, w_i + m_2/2)", system="method"),
-    Equation("eq127", "m_4 = h*f(t_i + h, w_i + m_3)", system="method"),
-    Equation("eq128", "w_next = w_i + 1/6*(m_1 + 2*m_2 + 2*m_3 + m_4)", system="method"),
+    *fourth_order_rule(123),
 )  # fmt: skip

@@ -1,6 +1,6 @@
 """Equations (1) to (90) of chapters 1 to 3, as printed."""
 
-from derive.verification.report.equation import Equation
+from derive.verification.report.equation import Equation, fourth_order_rule
 
 HAMILTON = "pdot_i = -d(H, q_i); qdot_i = d(H, p_i); -d(L, t) = d(H, t)"
 LAGRANGIAN = (
@@ -54,12 +54,7 @@ EQUATIONS: tuple[Equation, ...] = (
     Equation("eq18", "ddt(d(L, qdot_i)) - d(L, q_i) = 0", measure="E_i"),
     Equation("eq19", "y' = f(t, y), y(t_0) = alpha", exempt="definition",
              note="the initial value problem"),
-    Equation("eq20", "w_0 = alpha", exempt="definition", note="the initial value"),
-    Equation("eq21", "m_1 = h*f(t_i, w_i)", system="method"),
-    Equation("eq22", "m_2 = h*f(t_i + h/2, w_i + m_1/2)", system="method"),
-    Equation("eq23", "m_3 = h*f(t_i + h/2, w_i + m_2/2)", system="method"),
-    Equation("eq24", "m_4 = h*f(t_i + h, w_i + m_3)", system="method"),
-    Equation("eq25", "w_next = w_i + 1/6*(m_1 + 2*m_2 + 2*m_3 + m_4)", system="method"),
+    *fourth_order_rule(20),
     Equation("eq26", HAMILTON),
     Equation("eq27", "Ixx*omega_x_dot + (Izz - Iyy)*omega_y*omega_x = tau_x", system="rigid",
              corrected="Ixx*omega_x_dot + (Izz - Iyy)*omega_y*omega_z = tau_x"),
@@ -82,12 +77,7 @@ EQUATIONS: tuple[Equation, ...] = (
              "m2*l2*(l2*theta2_ddot + l1*cos(theta1 - theta2)*theta1_ddot"
              " - l1*sin(theta1 - theta2)*theta1_dot**2 + g*sin(theta2)) = 0", measure="E2"),
     Equation("eq35", "L = K - P"),
-    Equation("eq36", "w_0 = alpha", exempt="definition", note="the initial value"),
-    Equation("eq37", "m_1 = h*f(t_i, w_i)", system="method"),
-    Equation("eq38", "m_2 = h*f(t_i + h/2, w_i + m_1/2)", system="method"),
-    Equation("eq39", "m_3 = h*f(t_i + h/2, w_i + m_2/2)", system="method"),
-    Equation("eq40", "m_4 = h*f(t_i + h, w_i + m_3)", system="method"),
-    Equation("eq41", "w_next = w_i + 1/6*(m_1 + 2*m_2 + 2*m_3 + m_4)", system="method"),
+    *fourth_order_rule(36),
     Equation("eq42", "pdot_i = -d(H, q_i)"),
     Equation("eq43", "qdot_i = d(H, p_i)"),
     Equation("eq44", "-d(L, t) = d(H, t)"),
@@ -184,10 +174,5 @@ EQUATIONS: tuple[Equation, ...] = (
              "/(2*l1**2*l2**2*(m1 + m2*sin(theta1 - theta2)**2)**2)",
              check="Pdot_theta2 = -m2*g*l2*sin(theta2) + h1 - h2*sin(2*(theta1 - theta2))",
              using=("eq83",)),
-    Equation("eq85", "w_0 = alpha", exempt="definition", note="the initial value"),
-    Equation("eq86", "m_1 = h*f(t_i, w_i)", system="method"),
-    Equation("eq87", "m_2 = h*f(t_i + h/2, w_i + m_1/2)", system="method"),
-    Equation("eq88", "m_3 = h*f(t_i + h/2, w_i + m_2/2)", system="method"),
-    Equation("eq89", "m_4 = h*f(t_i + h, w_i + m_3)", system="method"),
-    Equation("eq90", "w_next = w_i + 1/6*(m_1 + 2*m_2 + 2*m_3 + m_4)", system="method"),
+    *fourth_order_rule(85),
 )  # fmt: skip

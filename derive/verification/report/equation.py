@@ -20,3 +20,17 @@ class Equation:
     system: Literal["double", "single", "rigid", "method"] = "double"
     exempt: Literal["", "definition", "context"] = ""  # not judged by computation
     note: str = ""
+
+
+def fourth_order_rule(first: int) -> tuple[Equation, ...]:
+    """The six equations of the fourth-order method, which the report prints four times."""
+    initial = Equation(f"eq{first}", "w_0 = alpha", exempt="definition", note="the initial value")
+    lines = (
+        "m_1 = h*f(t_i, w_i)",
+        "m_2 = h*f(t_i + h/2, w_i + m_1/2)",
+        "m_3 = h*f(t_i + h/2, w_i + m_2/2)",
+        "m_4 = h*f(t_i + h, w_i + m_3)",
+        "w_next = w_i + 1/6*(m_1 + 2*m_2 + 2*m_3 + m_4)",
+    )
+    stages = (Equation(f"eq{n}", line, system="method") for n, line in enumerate(lines, first + 1))
+    return (initial, *stages)

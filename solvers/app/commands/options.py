@@ -1,7 +1,5 @@
 """Arguments, output and optional packages that several commands share."""
 
-from __future__ import annotations
-
 import json
 from argparse import Action, ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
@@ -68,7 +66,7 @@ def add_examples(parser: ArgumentParser, *examples: str, scenes: bool = False) -
     parser.epilog = f"{listed}{title}:\n" + "\n".join(f"  {line}" for line in examples)
 
 
-def selected_scenes(arguments: Namespace, default: Sequence[str]) -> list[Scene]:
+def selected_scenes(arguments: Namespace, default: Sequence[str]) -> "list[Scene]":
     """The requested scenes, each once, or the default ones; the output folder is created."""
     from solvers.app.modules import load
     from solvers.scenes.reading import find

@@ -1,7 +1,5 @@
 """``holonomic stability``."""
 
-from __future__ import annotations
-
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
@@ -67,7 +65,7 @@ def _failure_modes() -> Iterable[Any]:
 
 
 def _show(
-    arguments: Namespace, plots: list[str], name: str, lines: Iterable[str], figure: Figure
+    arguments: Namespace, plots: list[str], name: str, lines: Iterable[str], figure: "Figure"
 ) -> None:
     from solvers.io.figures import save
 

@@ -1,7 +1,5 @@
 """``holonomic sweep``."""
 
-from __future__ import annotations
-
 import sys
 import time
 from argparse import ArgumentParser, Namespace
@@ -84,7 +82,7 @@ def run(arguments: Namespace) -> int:
 
 
 @contextmanager
-def _pool(arguments: Namespace) -> Iterator[Pool]:
+def _pool(arguments: Namespace) -> "Iterator[Pool]":
     """Threads of this process, or the cluster behind a scheduler."""
     from solvers.sweeps.pool import Pool
 

@@ -1,7 +1,5 @@
 """The largest Lyapunov exponent of a motion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -35,7 +33,7 @@ class Mean:
         return f"{self.value:.4g} ± {self.error:.1g}"
 
     @classmethod
-    def of(cls, values: Array, duration: float) -> Mean:
+    def of(cls, values: Array, duration: float) -> "Mean":
         """The mean of correlated values, with the error from the means of blocks."""
         count = int(np.clip(duration / INDEPENDENT, FEWEST, MOST))
         blocks = np.array([part.mean() for part in np.array_split(values, count)])
@@ -44,7 +42,7 @@ class Mean:
 
 def lyapunov(
     module: GeneratedModule, params: Sequence[float], y0: Sequence[float], duration: float
-) -> Mean:
+) -> "Mean":
     """The largest Lyapunov exponent in 1/s, along the motion from `y0`.
 
     The variational equations carry a small change along, which is scaled back to length 1

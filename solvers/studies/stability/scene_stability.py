@@ -1,7 +1,5 @@
 """The stability study of a scene: critical steps of every method."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -29,7 +27,7 @@ class SceneStability:
     steps: list[CriticalStep]
 
     @classmethod
-    def of(cls, scene: Scene, report: Callable[[str], None] = lambda _: None) -> SceneStability:
+    def of(cls, scene: Scene, report: Callable[[str], None] = lambda _: None) -> "SceneStability":
         """The critical steps of all methods, each reported before it is computed."""
         steps = []
         for method in names():

@@ -1,7 +1,5 @@
 """Reference solutions of scenes, and their errors."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 
@@ -43,24 +41,11 @@ class Reference:
     METHOD = f"Taylor series, {DIGITS} digits"
 
     @classmethod
-    def of(cls, scene: Scene) -> Reference:
-        """The reference of a scene, compared with up to two other families of methods.
+    def of(cls, scene: Scene) -> "Reference":
+        """The reference of a scene whose equations do not depend on time.
 
-        Parameters
-        ----------
-        scene : Scene
-            Its equations must not depend on time.
-
-        Returns
-        -------
-        Reference
-            It is compared with the extrapolated midpoint rule unless a mode is `STIFF` times as
-            fast as another, and with elliptic functions if the scene is a single pendulum.
-
-        Raises
-        ------
-        TypeError
-            When the equations call functions other than sines and cosines of angles.
+        It is compared with the extrapolated midpoint rule unless a mode is `STIFF` times as fast
+        as another, and with elliptic functions if the scene is a single pendulum.
         """
         module, params, span = scene.module, scene.params, (0.0, scene.duration)
         solve = partial(taylor, module, params, scene.y0, span)

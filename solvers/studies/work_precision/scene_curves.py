@@ -1,7 +1,5 @@
 """The work-precision study of a scene: curves, frontiers and findings."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -42,7 +40,7 @@ class SceneCurves:
     misleading_energy: MisleadingEnergy | None
 
     @classmethod
-    def of(cls, scene: Scene, reference: Reference, curves: list[Curve]) -> SceneCurves:
+    def of(cls, scene: Scene, reference: Reference, curves: list[Curve]) -> "SceneCurves":
         """Findings that follow from curves."""
         frontiers = frontier(curves), frontier(curves, "work_rhs")
         misleading = misleading_energy(curves, scene, reference)

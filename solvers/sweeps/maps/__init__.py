@@ -1,7 +1,5 @@
 """Map kinds: the numbers that a sweep stores for each motion. Every module here is one kind."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Self, TypeAlias
@@ -128,7 +126,7 @@ class Map:
         """The numbers, one entry of the map's shape for each motion; NaN where there are none."""
         raise NotImplementedError
 
-    def panels(self, name: str, results: Results) -> Panels:
+    def panels(self, name: str, results: "Results") -> Panels:
         """Panels of a figure, as pairs of a title and a function that draws on axes."""
         from solvers.sweeps.plots.figure import PANELS
 
