@@ -46,7 +46,9 @@ def test_the_exponent_and_the_horizons_are_true() -> None:
     exponent, error = map(float, re.findall(r"is (0\.\d+) ± (0\.\d+) per s", PROSE)[0])
     found = lyapunov(dp, dp.DEFAULTS, CHAOTIC, 5000)
     assert abs(found.value - exponent) < 4 * np.hypot(found.error, error)
-    horizons = re.findall(r"(1e-\d+) (?:therefore )?means (\d+) s", PROSE)
+    horizons = re.findall(
+        r"(1e-\d+) (?:therefore gives an accurate trajectory )?for (\d+) s", PROSE
+    )
     assert len(horizons) == 2
     for tolerance, horizon in horizons:
         assert round(log(1 / float(tolerance)) / exponent) == int(horizon)

@@ -1,4 +1,4 @@
-r"""A cart on a rail, and N point masses on rigid massless rods below it, one below the other.
+r"""A chain of N pendulums on a cart.
 
     ─┤ m0 ├─── x       Wikipedia, Inverted pendulum, for n = 1
         \ l1
