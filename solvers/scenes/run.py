@@ -105,7 +105,7 @@ def run_scene(
     specialiser: Specialiser | None = None,
     report: Callable[[str], None] = lambda _: None,
 ) -> SceneResult:
-    """The motion of a scene by the simplest sufficient model.
+    """The motion of a scene by the smallest sufficient model.
 
     `NotAccurateError` where no model reaches the accuracy, `TooLongError` above the limit of steps,
     `OutsideDomainError` where no model applies, or the one that the scene names does not.

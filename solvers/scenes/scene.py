@@ -40,7 +40,7 @@ class Scene:
         Number of times, evenly spaced over the duration, both ends included; 0 for a hundred a
         second, within `FEWEST` and `MOST`.
     model : str or None
-        A key of `solvers.scenes.models.catalogue.load`; by default the simplest sufficient model.
+        A key of `solvers.scenes.models.catalogue.load`; by default the smallest sufficient model.
     method, form : str or None
         A method of this package or of SciPy's ``solve_ivp``, and form of the equations,
         ``lagrangian``, ``hamiltonian`` or ``rational``; by default the cheapest.

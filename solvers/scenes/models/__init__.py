@@ -1,1 +1,1 @@
-"""Models of a motion, one class in one file each, and the selection of the simplest."""
+"""Models of a motion, one class in one file each, and the selection of the smallest."""

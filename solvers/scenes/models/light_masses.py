@@ -17,7 +17,7 @@ MARGIN, UNBOUNDED = 2.0, 1e6
 
 @dataclass(frozen=True)
 class PendulumAndLightMasses(Pendulum):
-    """The closed form for the one angle that is requested, if the others hardly act on it.
+    """The closed form for the one angle that is requested, if the others barely affect it.
 
     The accelerations of the others act no longer than the motion lasts, which bounds their
     velocities; over all states within the bound the defect is the largest difference between the
@@ -27,7 +27,7 @@ class PendulumAndLightMasses(Pendulum):
 
     name: ClassVar[str] = "pendulum and light masses"
     complexity: ClassVar[int] = 40
-    applies_to: ClassVar[str] = "one requested angle, on which lighter masses hardly act"
+    applies_to: ClassVar[str] = "one requested angle, which lighter masses barely affect"
     error_source: ClassVar[str] = "accelerations caused by the light masses; rounding"
 
     @classmethod

@@ -129,7 +129,9 @@ class Quadrature(ClosedForm):
 
     name: ClassVar[str] = "quadrature"
     complexity: ClassVar[int] = 50
-    applies_to: ClassVar[str] = "one degree of freedom, as without gravity: Fourier series"
+    applies_to: ClassVar[str] = (
+        "reducible to one degree of freedom, for example without gravity: Fourier series"
+    )
     error_source: ClassVar[str] = "last terms of the series; rounding"
 
     orbit: Orbit

@@ -1,4 +1,4 @@
-"""Selection of the simplest sufficient model."""
+"""Selection of the smallest sufficient model."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -30,7 +30,7 @@ def select_model(
     specialise: Callable[[Motion, MethodChoice], Motion],
     report: Callable[[str], None],
 ) -> ModelSelection:
-    """The simplest model whose error stays below the requested accuracy.
+    """The smallest sufficient model: the first whose error stays below the requested accuracy.
 
     A closed form that the scene names is selected whatever its error. `specialise` takes a motion
     and a method choice, and returns the motion with the module to integrate.

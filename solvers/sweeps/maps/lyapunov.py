@@ -10,7 +10,7 @@ from solvers.sweeps.maps import Map, Motions
 class Lyapunov(Map):
     """Lyapunov exponent ln(norm(δ(t))/norm(δ(0)))/t in 1/s over the duration of the motion.
 
-    The components of the initial small change δ₀ of the state are all equal, in m, rad and s. In
+    The components of the initial perturbation δ₀ of the state are all equal, in m, rad and s. In
     regular motion the exponent decreases as ln t/t.
 
     Notes

@@ -19,7 +19,7 @@ DIRECTIONS = {"both": 0, "up": 1, "down": -1}
 class Section(CountedMap):
     """Poincaré section: components at the first `count` crossings of `where` = `value`.
 
-    The start of a motion is no crossing.
+    The start of a motion does not count as a crossing.
 
     Parameters
     ----------
