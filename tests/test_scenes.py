@@ -145,10 +145,10 @@ def test_a_file_that_is_no_scene_is_refused_within_a_second(tmp_path: Path) -> N
     path = tmp_path / "scene.toml"
     cases = {
         b"x" * 50_000_000: "more than",
-        b"a = " + b"[" * 40_000: "no TOML file",
-        b"\xff\xfe": "no TOML file",
+        b"a = " + b"[" * 40_000: "is not valid TOML",
+        b"\xff\xfe": "is not valid TOML",
         b'system = "double_pendulum"\n': "'duration' is missing",
-        b"system = ": "no TOML file",
+        b"system = ": "is not valid TOML",
     }
     for content, words in cases.items():
         path.write_bytes(content)
@@ -221,7 +221,7 @@ def test_degrees_without_a_unit_cause_a_warning() -> None:
 
 def test_a_scene_beside_another_is_labelled_by_the_differences() -> None:
     (one,) = scene_from(beside=[{"method": "rk4", "step": "1 ms", "initial": {"theta1": 2}}]).beside
-    assert one.label == "rk4, step = 1 ms, theta1 = 2"
+    assert (one.title, one.label) == ("Double pendulum", "rk4, step = 1 ms, theta1 = 2")
     assert scene_from().title == "Double pendulum"
 
 

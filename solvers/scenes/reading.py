@@ -71,9 +71,10 @@ def scene(name: str, table: Mapping[str, Any], load: Callable[[str], GeneratedMo
         raise InputError(f"[[beside]] are {len(others)}: up to {MOST} can be shown")
     for key, each in product(TABLES, (table, *others)):
         toml_input.table(key, each.get(key, {}))
-    beside = tuple(_beside(module, name, table, other) for other in others)
     title = str(module.__doc__).partition(":")[0].partition(".")[0]
-    return _scene(module, name, {"title": title, **table}, beside)
+    table = {"title": title, **table}
+    beside = tuple(_beside(module, name, table, other) for other in others)
+    return _scene(module, name, table, beside)
 
 
 def _beside(
