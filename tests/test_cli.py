@@ -101,7 +101,9 @@ def test_completion_without_its_extra_names_the_extra(
 def test_an_unknown_command_or_option_is_invalid_input(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match="2"):
         main(["verifi"])
-    assert "invalid choice: 'verifi'" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert "invalid choice: 'verifi'" in error
+    assert error.endswith("(did you mean 'verify'?)\n")
     with pytest.raises(SystemExit, match="2"):
         main(["verify", "--yaml"])
     assert main(["bench", "chain"]) == 2

@@ -1,20 +1,33 @@
 """The command ``holonomic``: parser, exit codes and warnings."""
 
 import os
+import re
 import sys
 import warnings
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
+from typing import NoReturn
 
 from solvers.app.commands.options import Formatter, required_package
+from solvers.io.suggestion import did_you_mean
 
 #: Modules of `solvers.app.commands`, in the order of the help text.
 COMMANDS = "systems derive verify demo run sweep chart stability bench".split()
 
 #: Invalid input, numerical failure, and files or environment.
 EXIT_CODES = {ValueError: 2, ArithmeticError: 3, MemoryError: 3, OSError: 4}
+
+
+class Parser(ArgumentParser):
+    """A parser that suggests the closest choice for an unknown one."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the message and a suggestion; exit with code 2."""
+        if choice := re.search(r"invalid choice: '(.*)' \(choose from (.*)\)$", message):
+            message += did_you_mean(choice[1], re.findall(r"[\w-]+", choice[2]))
+        super().error(message)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -40,7 +53,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def command_parser() -> ArgumentParser:
     """The parser of all commands."""
-    parser = ArgumentParser(
+    parser = Parser(
         "holonomic",
         description="Derive, verify, generate and integrate equations of motion.",
         epilog="holonomic COMMAND --help shows the options of a command and an example.",
