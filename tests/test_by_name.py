@@ -118,3 +118,15 @@ def test_a_prepared_hamiltonian_run_enters_with_the_parameters_of_the_call() -> 
     run = prepare(dp, dp.DEFAULTS, form="hamiltonian", rtol=1e-11)
     lagrangian = prepare(dp, PARAMS, form="lagrangian", rtol=1e-11)
     assert np.abs(np.subtract(run((0, 2), Y0, PARAMS), lagrangian((0, 2), Y0))).max() < 1e-8
+
+
+def test_the_name_of_a_system_is_no_module() -> None:
+    name: Any = "double_pendulum"
+    calls = (
+        lambda: integrate(name, (0, 1), Y0, {}),
+        lambda: ensemble(name, (0, 1), Y0, {}),
+        lambda: prepare(name, {}),
+    )
+    for call in calls:
+        with pytest.raises(ValueError, match=r"such as solvers\.load\('double_pendulum'\) returns"):
+            call()

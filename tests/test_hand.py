@@ -164,7 +164,7 @@ def test_the_command_reports_errors_and_exits_with_a_code(
     ('system = "single_pendulum"\nlagrangian = 3\n[names]\nx = "y"\n', "names.x: unknown name 'y'"),
     ('system = "single_pendulum"\nlagrangian = 3\n[equal]\nk = "1"\n', "parameters are m, l, g"),
     ('lagrangian = "1"\n', "'system' is missing"),
-    (f'system = {"1" * 5000}\n', "is no TOML file"),
+    (f'system = {"1" * 5000}\n', "is not valid TOML"),
 ])  # fmt: skip
 def test_invalid_files_are_rejected(text: str, words: str, tmp_path: Path) -> None:
     path = tmp_path / "hand.toml"

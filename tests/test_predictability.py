@@ -42,6 +42,7 @@ def test_a_step_beyond_the_stability_limit_is_unstable(
     assert stable.status is Status.FINISHED
     assert np.abs(stable.y).max() < 0.03
     assert broken.status is Status.UNSTABLE
+    assert broken.message in repr(broken)
     assert np.abs(broken.y).max() > 0.1
     assert not broken.success
     times = re.search(r"good up to t = (\S+);.* at most (\S+)\)", broken.message)

@@ -29,7 +29,7 @@ def test_a_solution_shows_status_steps_method_and_final_state() -> None:
     assert lines[3] == "  final state: " + ", ".join(f"{n} = {y:.6g} {u}" for n, y, u in expected)
     nothing = integrate(ep, (0, 2), Y0, {}, t_eval=[], max_steps=1)
     assert "maximum number of steps" in repr(nothing)
-    assert "0 times, 1 steps" in repr(nothing)
+    assert "0 times, 1 step, 0 rejected" in repr(nothing)
 
 
 def test_a_table_of_a_solution_has_a_column_for_each_component() -> None:

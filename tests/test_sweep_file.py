@@ -51,7 +51,7 @@ from solvers.sweeps.reading import find
     (("[axes]", "random = { count = 5 }\n[axes]"), "axes.theta1 has no key 'count'"),
     (("[axes]", "[initial]\ntheta1 = 1\n[axes]"), "theta1 varies and has the value 1"),
     (("[axes]", "[parameters]\nl9 = 1\n[axes]"), "no key 'l9'; known are m1"),
-    (("system", "system = [[["), "is no TOML file"),
+    (("system", "system = [[["), "is not valid TOML"),
 ])  # fmt: skip
 def test_a_mistake_in_a_sweep_file_is_reported(
     change: tuple[str, str], words: str, tmp_path: Path

@@ -209,12 +209,12 @@ def test_a_damaged_chunk_is_repeated(
 
 
 @pytest.mark.parametrize(("change", "words"), [
-    ({"duration": 4.0}, "duration is 3.0 there and 4.0 here"),
-    ({"rtol": 1e-8}, "rtol is 1e-09 there"),
-    ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES + 1})}, "axes.axes.1.first is -3.0"),
-    ({"axes": Grid({"theta2": ANGLES, "theta1": ANGLES})}, "axes.axes.0.name is 'theta1' there"),
-    ({"axes": Random({"theta1": (0, 1), "theta2": (0, 1)}, 1600, 1)}, "axes.kind is 'grid'"),
-    ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES[1:]})}, "motions is 1600 there"),
+    ({"duration": 4.0}, "duration 3.0, not 4.0"),
+    ({"rtol": 1e-8}, "rtol 1e-09, not "),
+    ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES + 1})}, "axes.axes.1.first -3.0, not "),
+    ({"axes": Grid({"theta2": ANGLES, "theta1": ANGLES})}, "axes.axes.0.name 'theta1', not 'theta2'"),
+    ({"axes": Random({"theta1": (0, 1), "theta2": (0, 1)}, 1600, 1)}, "axes.kind 'grid', not 'random'"),
+    ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES[1:]})}, "motions 1600, not 1560"),
     ({"maps": {"end": Final(("theta1",))}}, "maps.flip is in the folder only"),
     ({"values": {"l1": 2.0}}, "values.l1 is in the definition only"),
 ])  # fmt: skip
@@ -248,7 +248,7 @@ def test_a_changed_manifest_is_refused(
     (tmp_path / "sweep.json").write_text(changed)
     with pytest.raises(
         FolderError,
-        match=r"is no manifest of a sweep|holds another sweep|in format 1, .* reads format 2",
+        match=r"is no manifest of a sweep|contains another sweep|in format 1, .* reads format 2",
     ):
         sweep(DEFINITION, tmp_path)
     assert files(tmp_path) == expected | {"sweep.json": changed.encode()}

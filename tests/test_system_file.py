@@ -174,7 +174,7 @@ def test_a_scene_runs_a_system_file(tmp_path: Path) -> None:
     (('"x", "height"', '"x"'), "1 components"),
     (('["x", "height"]', '"x"'), "must be a list"),
     (("[[masses]]", "[masses]"), "must be tables: write .*masses"),
-    (("title", "title = [[["), "is no TOML file"),
+    (("title", "title = [[["), "is not valid TOML"),
     (('mass = "m"', 'mass = "-m"'), "mass -m is not positive"),
     (("c*x_dot**2/2", "c*x**2"), "depends on no velocity"),
     (('"1/2"', '"50 cm"'), "its unit is given by unit"),

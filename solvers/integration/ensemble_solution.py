@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from solvers.integration.problem import Problem
 from solvers.integration.solution import Array, Status
+from solvers.io.suggestion import counted
 from solvers.io.xarray_dataset import dataset
 
 
@@ -101,9 +102,9 @@ class Ensemble:
         counts = {status.name: int((self.status == status).sum()) for status in Status}
         ends = "".join(f", {number} {name}" for name, number in counts.items() if number)
         return (
-            f"Ensemble: {n} motions{ends}\n"
-            f"  {len(self.t_eval)} times, {events} event{'s' * (events != 1)}, "
-            f"{self.steps.sum()} steps, {self.rejected.sum()} rejected\n"
+            f"Ensemble: {counted(n, 'motion')}{ends}\n"
+            f"  {counted(len(self.t_eval), 'time')}, {counted(events, 'event')}, "
+            f"{counted(self.steps.sum(), 'step')}, {self.rejected.sum()} rejected\n"
             f"  {self.run}\n"
             f"  state: {', '.join(self.units)}"
         )

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.io.suggestion import counted
 from solvers.io.xarray_dataset import dataset
 
 Array = NDArray[np.float64]
@@ -103,10 +104,11 @@ class Solution:
         t_start = f"{self.t[0]:.6g} to " if len(self.t) else ""
         components = zip(self.units.items(), y_end, strict=True)
         state = [f"{name} = {y:.6g} {unit}".rstrip() for (name, unit), y in components]
+        headline = self.message if self.status is Status.UNSTABLE else self.status.value
+        times, steps = counted(len(self.t), "time"), counted(self.steps, "step")
         return (
-            f"Solution: {self.status.value}\n"
-            f"  t = {t_start}{t_end:.6g} s, {len(self.t)} times, {self.steps} steps, "
-            f"{self.rejected} rejected\n"
+            f"Solution: {headline}\n"
+            f"  t = {t_start}{t_end:.6g} s, {times}, {steps}, {self.rejected} rejected\n"
             f"  {self.run}\n"
             f"  final state: {', '.join(state)}"
         )

@@ -10,7 +10,7 @@ from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, state_names
 from solvers.integration.problem import Options, Problem, shortest_step
 from solvers.integration.solution import Array
-from solvers.io.suggestion import did_you_mean
+from solvers.io.suggestion import counted, did_you_mean
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.runge_kutta.tableau import Tableau
 
@@ -20,10 +20,18 @@ Values: TypeAlias = ArrayLike | Mapping[str, Any]
 MOST = 2**53
 
 
+def check_module(module: object) -> None:
+    """Refuse the name of a system in the place of its module."""
+    if isinstance(module, str):
+        known = f"such as solvers.load({module[:50]!r}) returns"
+        raise ValueError(f"module = {module[:50]!r} must be a generated module, {known}")
+
+
 def problem(
     module: GeneratedModule, t_span: ArrayLike, y0: Values, params: Values, options: Options
 ) -> Problem:
     """The problem that `integrate` solves, from its arguments, all of which are checked."""
+    check_module(module)
     if options.backend not in (None, "compiled", "python"):
         raise ValueError(f"backend {options.backend!r} must be 'compiled' or 'python'")
     if options.compensated and options.backend == "python":
@@ -49,6 +57,7 @@ def problem_at_rest(
     module: GeneratedModule, t_span: ArrayLike, options: Options, params: Values | None = None
 ) -> Problem:
     """The problem of motions whose initial states are given later; default parameters if None."""
+    check_module(module)
     rest = np.zeros(len(state_names(module, options.form or "lagrangian")))
     return problem(module, t_span, rest, module.DEFAULTS if params is None else params, options)
 
@@ -70,7 +79,7 @@ def parameter_rows(module: GeneratedModule, values: Values, motions: int) -> Arr
     rows = _rows("params", columns, module.PARAMETERS)
     if len(rows) not in (1, motions):
         raise ValueError(
-            f"params has {len(rows)} columns: give one, or one for each of {motions} motions"
+            f"params holds values for {counted(len(rows), 'motion')}, but y0 has {motions}"
         )
     return rows
 

@@ -1,14 +1,24 @@
-"""Suggestions and quotations in messages about wrong input."""
+"""Suggestions, quotations and counts in messages."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+#: Characters of the shortest beginning of a name for which the whole name is suggested.
+SHORTEST = 3
+
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """The closest known name, ignoring case, as the end of a message; empty if none is close."""
+    """The closest known name, or the first that begins with `name`, as the end of a message."""
     by_lower = {other.lower(): other for other in known}
-    close = get_close_matches(name.lower(), by_lower, n=1)
+    lower = name.lower()
+    longer = [other for other in by_lower if len(lower) >= SHORTEST and other.startswith(lower)]
+    close = get_close_matches(lower, by_lower, n=1) or longer
     return f" (did you mean {by_lower[close[0]]!r}?)" if close else ""
+
+
+def counted(number: int, noun: str) -> str:
+    """A number and a noun, which is in the plural unless the number is 1."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def shortened(value: object) -> str:

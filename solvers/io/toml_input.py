@@ -11,7 +11,7 @@ from solvers.io.suggestion import did_you_mean, shortened
 #: Bytes of the largest input file, and characters of the longest text.
 MAX_BYTES, MAX_TEXT = 500_000, 2000
 #: How messages about TOML end for files of quantities.
-QUANTITY_HINT = "a number with a unit stands in quotes, and a decimal point is a point"
+QUANTITY_HINT = "quote numbers with units, and use a point as decimal separator"
 
 T = TypeVar("T")
 
@@ -48,7 +48,7 @@ def read_table(path: Path, hint: str) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_bytes().decode())
     except (ValueError, RecursionError) as error:  # also a number of thousands of digits
-        raise InputError(f"{path} is no TOML file: {error}; {hint}") from error
+        raise InputError(f"{path} is not valid TOML: {error}; {hint}") from error
 
 
 def read(path: Path, interpret: Callable[[Mapping[str, Any]], T]) -> T:

@@ -99,7 +99,8 @@ class Folder:
         )
         if different := _difference(there, here):
             raise FolderError(
-                f"{self.path} holds another sweep: {different}; give another --output, or remove it"
+                f"{self.path} contains another sweep ({different}): "
+                "choose another --output, or delete it"
             )
         self._length = manifest["chunk"]
 
@@ -207,4 +208,4 @@ def _difference(other: Any, own: Any, path: str = "") -> str:
             if inner := _difference(other[key], own[key], f"{path}{key}."):
                 return inner
         return ""
-    return "" if other == own else f"{path.rstrip('.')} is {other!r} there and {own!r} here"
+    return "" if other == own else f"{path.rstrip('.')} {other!r}, not {own!r}"

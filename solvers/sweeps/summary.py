@@ -37,8 +37,10 @@ def summary(
             continue
         low, middle, high = values["smallest"], values["median"], values["largest"]
         unit = values["unit"] and f" {values['unit']}"
+        map_name, *parts = name.split(" ")  # `parts`: component, then extreme
+        label = f"{map_name}, {' '.join(reversed(parts))}" if parts else map_name
         yield (
-            f"{name}: {low:.6g} to {high:.6g}{unit}, median {middle:.6g}{unit}; "
+            f"{label}: {low:.6g} to {high:.6g}{unit}, median {middle:.6g}{unit}; "
             f"{values['known']:.1%} of the map has values"
         )
     for name, change in changes.items():

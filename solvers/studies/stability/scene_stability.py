@@ -42,7 +42,7 @@ class SceneStability:
         columns |= {"predicted": ".5g", "linear": ".5g", "nonlinear": ".5g"}
         columns |= {"at h": ".3g", "ln growth/step": ".1e", "predicted ln": ".1e"}
         yield from text_table(columns, map(_cells, self.steps))
-        yield "0: oscillations grow with every step; inf: with none"
+        yield "0: unstable at every step size; inf: stable at every step size"
 
     def plot(self) -> Figure:
         """Stability regions of all methods with the scene's modes."""
