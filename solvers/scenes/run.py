@@ -26,7 +26,7 @@ class SceneResult:
     scene : Scene
         The scene.
     selection : ModelSelection
-        The selected model, and the reasons against simpler ones.
+        The selected model, and the reasons against smaller ones.
     t : ndarray of shape (samples,)
         Times in s.
     y : ndarray of shape (state, samples)

@@ -138,5 +138,5 @@ class Scene:
 
     @property
     def prescribes_integration(self) -> bool:
-        """Whether it names a model or a method, so that no simpler model is considered."""
+        """Whether it names a model or a method, so that no smaller model is considered."""
         return bool(self.model or self.method or self.form or self.step)

@@ -10,7 +10,7 @@ from solvers.scenes.run import SceneResult
 
 
 def summary(result: SceneResult) -> Iterator[str]:
-    """Lines on the selected model, the reasons against simpler ones, and the final state."""
+    """Lines on the selected model, the reasons against smaller ones, and the final state."""
     scene, model, state = result.scene, result.selection.model, result.final_state
     label = "" if scene.label == scene.title else f": {scene.label}"
     yield f"{scene.title}{label}, {scene.duration:g} s"

@@ -19,7 +19,7 @@ USELESS = 1e3
 
 @dataclass(frozen=True)
 class ModelSelection:
-    """The selected model, and the reason against each simpler one by its name."""
+    """The selected model, and the reason against each smaller one by its name."""
 
     model: Model
     declined: dict[str, str]
