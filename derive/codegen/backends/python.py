@@ -24,6 +24,8 @@ shape ({length}, ...), each parameter a number or an array of shape (...). In it
 of a single result come first.
 """
 
+from __future__ import annotations
+
 {imports}from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
