@@ -131,7 +131,7 @@ def sweep(
     Raises
     ------
     ValueError
-        If there is no such sweep, its file has a mistake, or the folder holds another sweep.
+        If there is no such sweep, its file has a mistake, or the folder contains another sweep.
     OSError
         If a file cannot be written.
     KeyboardInterrupt

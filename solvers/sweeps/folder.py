@@ -36,7 +36,7 @@ TEMPORARY = re.compile(r"\.\w[\w-]*\.(npy|json|png)\.\d+")
 
 
 class FolderError(ValueError):
-    """The folder holds another sweep, or another process works in it."""
+    """The folder contains another sweep, or another process works in it."""
 
 
 class Folder:

@@ -68,7 +68,7 @@ class Oscillation(Study[list[Growth]]):
         yield from text_table(specs, map(astuple, results))
 
     def plot(self, results: list[Growth]) -> Figure:
-        title = "Small oscillations grow with every step of Euler's method and of RK2"
+        title = "Small oscillations grow at any step size of Euler's method and of RK2"
         figure, (axes,) = panels(title, size=(7, 4.5))
         for method, colour in coloured(("rk1", "midpoint")):
             rows = [row for row in results if row.method == method]
