@@ -3,15 +3,26 @@
 from types import ModuleType
 
 
-def handwritten(name: str, state: tuple[str, ...], parameters: tuple[str, ...] = ("p",),
-                **attributes: object) -> ModuleType:  # fmt: skip
+def handwritten(
+    name: str, state: tuple[str, ...], parameters: tuple[str, ...] = ("p",), **attributes: object
+) -> ModuleType:
     """A module with one form of equations, Lagrange's, and the attributes that are given."""
     module = ModuleType(name)
     contract = {
-        "__file__": None, "SYSTEM": name, "COORDINATES": (), "STATE": state,
-        "FORMS": ("lagrangian",), "STATES": {"lagrangian": state}, "PARAMETERS": parameters,
-        "DEFAULTS": (1.0,) * len(parameters), "POSITIVE": (), "TIMED": (), "CALLS_FUNCTIONS": (),
-        "OPERATIONS": {"rhs": (0, 0)}, "UNITS": dict.fromkeys(state, "1"), "rhs": None,
-    }  # fmt: skip
+        "__file__": None,
+        "SYSTEM": name,
+        "COORDINATES": (),
+        "STATE": state,
+        "FORMS": ("lagrangian",),
+        "STATES": {"lagrangian": state},
+        "PARAMETERS": parameters,
+        "DEFAULTS": (1.0,) * len(parameters),
+        "POSITIVE": (),
+        "TIMED": (),
+        "CALLS_FUNCTIONS": (),
+        "OPERATIONS": {"rhs": (0, 0)},
+        "UNITS": dict.fromkeys(state, "1"),
+        "rhs": None,
+    }
     vars(module).update(contract | attributes)
     return module

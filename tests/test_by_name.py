@@ -54,13 +54,20 @@ def test_states_of_ensembles_have_the_axes_of_generated_functions() -> None:
     motions = ensemble(dp, (0, 2), y0, params, t_eval=times, rtol=1e-11)
     in_order = validation.parameter_rows(dp, params | {"m1": np.ones(7)}, 7).T
     energies = dp.energy_many(0.0, motions.y, in_order)
-    start = dp.energy_many(0.0, np.stack([*np.broadcast_arrays(*y0.values()), *np.zeros((2, 7))]),
-                           in_order)  # fmt: skip
+    start = dp.energy_many(
+        0.0, np.stack([*np.broadcast_arrays(*y0.values()), *np.zeros((2, 7))]), in_order
+    )
     assert np.abs(energies - start).max() < 1e-8
     assert motions.samples.shape == (4, 7, 3)
     assert_array_equal(motions.samples[:, :, -1], motions.y)
-    one = integrate(dp, (0, 2), {"theta1": 1.0, "theta2": 0.1}, (*dp.DEFAULTS[:4], 9.0),
-                    t_eval=times, rtol=1e-11)  # fmt: skip
+    one = integrate(
+        dp,
+        (0, 2),
+        {"theta1": 1.0, "theta2": 0.1},
+        (*dp.DEFAULTS[:4], 9.0),
+        t_eval=times,
+        rtol=1e-11,
+    )
     assert np.abs(motions.samples[:, -1] - one.y).max() < 1e-8
 
 

@@ -274,10 +274,15 @@ def test_a_listing_contains_the_names_that_a_user_needs(capsys: pytest.CaptureFi
     assert all(f"{name}: {load(name).title}" in whole for name in names())
 
 
-@pytest.mark.parametrize(("asked", "words"), [
-    ("chian_4", "did you mean"), ("chain_n", "known are"), ("chain_1000", "any number up to 100"),
-    ("../systems", "no system is called"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ("chian_4", "did you mean"),
+        ("chain_n", "known are"),
+        ("chain_1000", "any number up to 100"),
+        ("../systems", "no system is called"),
+    ],
+)
 def test_an_unknown_system_is_refused(
     asked: str, words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

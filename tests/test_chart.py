@@ -69,8 +69,12 @@ def test_the_error_of_the_reference_is_estimated_with_fewer_digits(
 
 
 def test_curves_contain_the_error_relative_to_the_reference(truth: Reference) -> None:
-    wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
-              ("dp54", "hamiltonian", "python"), ("DOP853", "lagrangian", "scipy")]  # fmt: skip
+    wanted = [
+        ("rk4", "lagrangian", "compiled"),
+        ("verner87", "rational", "compiled"),
+        ("dp54", "hamiltonian", "python"),
+        ("DOP853", "lagrangian", "scipy"),
+    ]
     found = curves(find("report", load_module), truth, wanted)
     assert [(c.method, c.form, c.backend) for c in found] == wanted
     for c in found:
@@ -88,8 +92,16 @@ def test_curves_contain_the_error_relative_to_the_reference(truth: Reference) ->
         late[0].setting["h"] / late[-1].setting["h"]
     )
     assert order == pytest.approx(4, abs=0.5)
-    run = timed_run(dp, dp.DEFAULTS, REPORT.y0, 5.0, method="rk4", form="lagrangian",
-                   backend="compiled", h=rk4[-1].setting["h"])  # fmt: skip
+    run = timed_run(
+        dp,
+        dp.DEFAULTS,
+        REPORT.y0,
+        5.0,
+        method="rk4",
+        form="lagrangian",
+        backend="compiled",
+        h=rk4[-1].setting["h"],
+    )
     assert run
     assert np.abs(run.end - truth.end).max() == rk4[-1].global_error
     assert 4 * run.steps <= rk4[-1].work_rhs == run.work_rhs <= 4 * run.steps + 1
@@ -146,9 +158,10 @@ def test_the_frontier_contains_the_cheapest_and_the_cost_of_alternatives() -> No
     assert [b.global_error for b in found] == [1e-1, 1e-2, 1e-3]
     assert (rough.method, rough.form, rough.backend) == ("a", "x", "c")
     assert rough.cost_ratios == {
-        "method": {"b": pytest.approx(2)}, "form": {"y": pytest.approx(2)},
+        "method": {"b": pytest.approx(2)},
+        "form": {"y": pytest.approx(2)},
         "backend": {"p": pytest.approx(100)},
-    }  # fmt: skip
+    }
     assert (fine.method, fine.work_seconds, fine.work_rhs) == ("b", 6, 600)
     assert fine.cost_ratios["method"] == {"a": pytest.approx(10 / 6)}
     assert middle.method == "a"  # 10^(1/2) against 18^(1/2)
@@ -231,8 +244,12 @@ def test_installed_programs_have_curves(truth: Reference) -> None:
 
 
 def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Path) -> None:
-    wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled"),
-              ("verner87", "rational", "python"), ("DOP853", "rational", "scipy")]  # fmt: skip
+    wanted = [
+        ("rk4", "lagrangian", "compiled"),
+        ("verner87", "rational", "compiled"),
+        ("verner87", "rational", "python"),
+        ("DOP853", "rational", "scipy"),
+    ]
     found = curves(find("report", load_module), truth, wanted)
     study = SceneCurves.of(find("report", load_module), truth, found)
     plots = study.plots()

@@ -28,15 +28,31 @@ def evidence() -> Evidence:
 def test_each_claim_has_its_verdict_and_a_number_or_a_reason(evidence: Evidence) -> None:
     found = [*objectives(evidence, EQUATIONS), *claims(evidence), *recommendations(evidence)]
     assert {claim.id: claim.verdict for claim in found} == {
-        "1.6-1": "supported", "1.6-2": "contradicted", "1.6-3": "contradicted",
-        "3.1a": "contradicted", "3.1b": "untestable", "3.1c": "untestable",
-        "3.2a": "contradicted", "3.2b": "untestable", "3.3a": "contradicted",
-        "3.3b": "contradicted", "3.3c": "untestable", "3.3d": "untestable",
-        "4.1": "untestable", "4.2": "supported", "4.3": "contradicted",
-        "5a": "supported", "5b": "supported", "5c": "untestable", "5d": "supported",
-        "5e": "supported", "B3": "supported", "5f": "supported", "5g": "supported",
+        "1.6-1": "supported",
+        "1.6-2": "contradicted",
+        "1.6-3": "contradicted",
+        "3.1a": "contradicted",
+        "3.1b": "untestable",
+        "3.1c": "untestable",
+        "3.2a": "contradicted",
+        "3.2b": "untestable",
+        "3.3a": "contradicted",
+        "3.3b": "contradicted",
+        "3.3c": "untestable",
+        "3.3d": "untestable",
+        "4.1": "untestable",
+        "4.2": "supported",
+        "4.3": "contradicted",
+        "5a": "supported",
+        "5b": "supported",
+        "5c": "untestable",
+        "5d": "supported",
+        "5e": "supported",
+        "B3": "supported",
+        "5f": "supported",
+        "5g": "supported",
         "5h": "supported",
-    }  # fmt: skip
+    }
     assert all(
         any(letter.isdigit() for letter in claim.number)
         for claim in found
@@ -48,10 +64,13 @@ def test_figures_that_verdicts_name_are_drawn_by_the_commands_they_name(
     evidence: Evidence,
 ) -> None:
     drawn = {
-        "chart": {f"{kind}_{name}.png" for kind in ("work_precision", "steps", "energy")
-                  for name in DEFAULT},
+        "chart": {
+            f"{kind}_{name}.png"
+            for kind in ("work_precision", "steps", "energy")
+            for name in DEFAULT
+        },
         "stability": {f"failures_{study.name}.png" for study in studies()},
-    }  # fmt: skip
+    }
     shown = {claim.figure for claim in claims(evidence) if claim.figure}
     assert len(shown) >= 4
     for figure in shown:

@@ -70,10 +70,16 @@ def test_a_shipped_system_runs_without_sympy(tmp_path: Path) -> None:
     assert run.stderr == "False\n"
 
 
-@pytest.mark.parametrize(("words", "completions"), [
-    (["ve"], ["verify"]), (["run", "sepa"], ["separatrix"]), (["sweep", "fl"], ["flips"]),
-    (["derive", "double_p"], ["double_pendulum"]), (["run", "report", "--j"], ["--json"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "completions"),
+    [
+        (["ve"], ["verify"]),
+        (["run", "sepa"], ["separatrix"]),
+        (["sweep", "fl"], ["flips"]),
+        (["derive", "double_p"], ["double_pendulum"]),
+        (["run", "report", "--j"], ["--json"]),
+    ],
+)
 def test_a_shell_completes_commands_options_and_names(
     words: list[str], completions: list[str], capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -191,10 +197,16 @@ def test_a_broken_system_ends_with_2_and_is_named(
         assert f"{name}.py does not define a system: {message}" in shown
 
 
-@pytest.mark.parametrize(("error", "code"), [
-    (KeyboardInterrupt(), 130), (ValueError("v"), 2), (ArithmeticError("a"), 3),
-    (MemoryError("m"), 3), (OSError("o"), 4),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (KeyboardInterrupt(), 130),
+        (ValueError("v"), 2),
+        (ArithmeticError("a"), 3),
+        (MemoryError("m"), 3),
+        (OSError("o"), 4),
+    ],
+)
 def test_the_exit_code_states_the_kind_of_error(
     error: BaseException,
     code: int,
@@ -214,9 +226,14 @@ def test_the_exit_code_states_the_kind_of_error(
 def test_a_closed_pipe_causes_no_traceback() -> None:
     run = subprocess.run(
         f"{Path(sys.executable).parent}/holonomic derive --check | true; echo ${{PIPESTATUS[0]}}",
-        shell=True, executable="/bin/bash", capture_output=True, text=True, cwd=ROOT, check=False,
+        shell=True,
+        executable="/bin/bash",
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        check=False,
         env=os.environ | {"PYTHONUNBUFFERED": "1"},
-    )  # fmt: skip
+    )
     assert "Traceback" not in run.stderr
     assert run.stdout in ("0\n", "141\n")
 

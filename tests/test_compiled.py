@@ -38,10 +38,13 @@ def scatter(n: int, seed: int = 1) -> np.ndarray:
     return np.random.default_rng(seed).uniform(-3, 3, (n, 4))
 
 
-@pytest.mark.parametrize(("method", "form"), [
-    *product(["rk1", "rk4", "dp54", "verner87", "verner98"], FORMS),
-    *product(["gauss2", "radau3"], ["lagrangian", "hamiltonian"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("method", "form"),
+    [
+        *product(["rk1", "rk4", "dp54", "verner87", "verner98"], FORMS),
+        *product(["gauss2", "radau3"], ["lagrangian", "hamiltonian"]),
+    ],
+)
 def test_loops_agree_to_rounding_times_the_condition_of_the_run(method: str, form: str) -> None:
     # the condition is observed: what becomes of a change of 1e-10 in the start
     starts, params, span, h = scatter(40), dp.DEFAULTS, (0.0, 2.0), 0.02
@@ -73,8 +76,15 @@ def test_compiled_implicit_steps_converge_where_fixed_point_iteration_does_not()
     assert compiled.y[1::2, -1] == pytest.approx(pendulum, abs=1e-4)
     # and stages that cannot be solved end with a status
     for backend in ("python", "compiled"):
-        lost = integrate(dp, (0, 4), (1.0, 2.0, 90.0, -80.0), dp.DEFAULTS, method="gauss3", h=1.0,
-                         backend=backend)  # fmt: skip
+        lost = integrate(
+            dp,
+            (0, 4),
+            (1.0, 2.0, 90.0, -80.0),
+            dp.DEFAULTS,
+            method="gauss3",
+            h=1.0,
+            backend=backend,
+        )
         assert lost.status is Status.NO_CONVERGENCE
 
 
@@ -84,16 +94,22 @@ def test_a_motion_depends_on_no_other_motion_and_no_thread() -> None:
     params = (dp.DEFAULTS * rng.uniform(0.5, 1.5, (n, 5))).T
     options = {
         "events": [Event(dp, "theta1", pi), Event(dp, "theta2", -pi, terminal=True)],
-        "t_eval": np.linspace(0, 3, 7), "occurrences": 2,
-    }  # fmt: skip
+        "t_eval": np.linspace(0, 3, 7),
+        "occurrences": 2,
+    }
     for method in ("verner87", "tsit54"):
         first = ensemble(dp, (0, 3), starts, params, method=method, workers=1, **options)
         for workers in (2, 5):
             order = rng.permutation(n)
             again = ensemble(
-                dp, (0, 3), starts[:, order], params[:, order], method=method, workers=workers,
+                dp,
+                (0, 3),
+                starts[:, order],
+                params[:, order],
+                method=method,
+                workers=workers,
                 **options,
-            )  # fmt: skip
+            )
             assert (first.status[order] == again.status).all()
             for name in ("t", "growth", "t_events", "occurred", "steps", "rejected", "nfev"):
                 ordered, result = getattr(first, name)[order], getattr(again, name)
@@ -130,8 +146,9 @@ def test_lanes_give_the_events_and_samples_of_the_reference(form: str) -> None:
 def test_a_single_motion_and_one_in_lanes_have_the_same_events() -> None:
     events = [Event(sp, "theta", 0.0)]
     alone = integrate(sp, (0, 30), (2.0, 0.0), sp.DEFAULTS, events=events, rtol=1e-10)
-    many = ensemble(sp, (0, 30), [[2.0] * 3, [0.0] * 3], sp.DEFAULTS, events=events, rtol=1e-10,
-                    occurrences=50)  # fmt: skip
+    many = ensemble(
+        sp, (0, 30), [[2.0] * 3, [0.0] * 3], sp.DEFAULTS, events=events, rtol=1e-10, occurrences=50
+    )
     assert alone.backend == "compiled"
     assert many.occurred.tolist() == [[len(alone.t_events[0])]] * 3
     kept = many.t_events[2, 0, : len(alone.t_events[0])]
@@ -242,12 +259,20 @@ def test_compensated_sums_reduce_rounding_errors() -> None:
         errors = [
             abs(
                 integrate(
-                    sp, (0, 40), (2.0, 0.0), sp.DEFAULTS, method="verner98", h=1e-3,
-                    t_eval=[40.0], form=form, compensated=compensated,
-                ).y[0, 0] - exact
+                    sp,
+                    (0, 40),
+                    (2.0, 0.0),
+                    sp.DEFAULTS,
+                    method="verner98",
+                    h=1e-3,
+                    t_eval=[40.0],
+                    form=form,
+                    compensated=compensated,
+                ).y[0, 0]
+                - exact
             )
             for compensated in (False, True)
-        ]  # fmt: skip
+        ]
         assert errors[1] < 1e-14, form
         assert errors[1] < errors[0] / 3, form
 
@@ -255,9 +280,15 @@ def test_compensated_sums_reduce_rounding_errors() -> None:
 def test_time_does_not_drift_over_a_million_steps() -> None:
     run = prepare(sp, sp.DEFAULTS, method="rk1", h=0.1, max_steps=10**7)
     found = integrate(
-        sp, (0, 1e5), (0.0, 0.0), sp.DEFAULTS, method="rk1", h=0.1,
-        t_eval=[5e4, 1e5 - 0.1, 1e5], max_steps=10**7,
-    )  # fmt: skip
+        sp,
+        (0, 1e5),
+        (0.0, 0.0),
+        sp.DEFAULTS,
+        method="rk1",
+        h=0.1,
+        t_eval=[5e4, 1e5 - 0.1, 1e5],
+        max_steps=10**7,
+    )
     assert found.steps == 10**6
     assert found.nfev == 10**6 + 1  # one to begin with; the samples are ends of steps
     assert run((0.0, 1e5), (0.0, 0.0)) == (0.0, 0.0)

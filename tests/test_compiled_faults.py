@@ -38,9 +38,14 @@ def interrupted_after(seconds: float, run: Callable[[], object]) -> Interrupted:
 def test_an_interrupted_integration_returns_its_results_so_far(backend: str) -> None:
     def endless() -> Solution:
         return integrate(
-            sp, (0, 1e12), (1.0, 0.0), sp.DEFAULTS, backend=backend, max_steps=10**12,
+            sp,
+            (0, 1e12),
+            (1.0, 0.0),
+            sp.DEFAULTS,
+            backend=backend,
+            max_steps=10**12,
             t_eval=[0.0, 1.0, 1e12],
-        )  # fmt: skip
+        )
 
     kept = interrupted_after(0.3, endless).solution
     assert isinstance(kept, Solution)

@@ -44,9 +44,7 @@ def test_a_step_in_vain_leaves_no_trace_in_the_memory() -> None:
 def test_the_first_step_is_within_the_run_and_finite() -> None:
     def first(y: float, rate: float, duration: float) -> float:
         state = np.array([y])
-        return controller().initial_step(
-            lambda t, y: rate * y, 0.0, state, rate * state, duration
-        )  # fmt: skip
+        return controller().initial_step(lambda t, y: rate * y, 0.0, state, rate * state, duration)
 
     # y' = -y: bend and speed are 1 in parts of the state, 1/rtol in parts of what is allowed
     assert first(1.0, -1.0, 1e-3) == 1e-3

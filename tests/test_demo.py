@@ -33,12 +33,23 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
 def opened(driver: Any, demo: tuple[str, Path], request: pytest.FixtureRequest) -> Iterator[Any]:
     driver.get("about:blank")
     driver.get_log("browser")
-    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-        "width": request.param, "height": 800, "deviceScaleFactor": 1, "mobile": False,
-    })  # fmt: skip
-    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
-        {"name": "prefers-reduced-motion", "value": "reduce"},
-    ]})  # fmt: skip
+    driver.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {
+            "width": request.param,
+            "height": 800,
+            "deviceScaleFactor": 1,
+            "mobile": False,
+        },
+    )
+    driver.execute_cdp_cmd(
+        "Emulation.setEmulatedMedia",
+        {
+            "features": [
+                {"name": "prefers-reduced-motion", "value": "reduce"},
+            ]
+        },
+    )
     driver.get(demo[1].as_uri())
     yield driver
     assert driver.get_log("browser") == []
@@ -116,8 +127,12 @@ def test_every_misprint_is_followed_by_its_correction(demo: tuple[str, Path]) ->
     lines = re.findall(r'<div class="line misprint">', verdict)
     assert len(lines) == verdict.count("<p>should be</p>") == 23
     assert len(EQUATIONS) == 150
-    for words in ("119</strong> hold as printed", "23</strong> are misprints",
-                  "6</strong> are definitions", "7</strong> cannot be tested"):  # fmt: skip
+    for words in (
+        "119</strong> hold as printed",
+        "23</strong> are misprints",
+        "6</strong> are definitions",
+        "7</strong> cannot be tested",
+    ):
         assert page.count(f"<strong>{words}") == 1
 
 
@@ -144,9 +159,13 @@ def test_every_number_states_its_method_and_command(demo: tuple[str, Path]) -> N
 
 def test_operation_counts_equal_those_of_the_generated_module() -> None:
     assert {name: dp.OPERATIONS[name][0] for name in FUNCTIONS} == {
-        "rhs": 32, "rhs_hamiltonian": 35, "rhs_rational": 39, "rhs_variational": 77,
-        "jacobian": 85, "energy": 26,
-    }  # fmt: skip
+        "rhs": 32,
+        "rhs_hamiltonian": 35,
+        "rhs_rational": 39,
+        "rhs_variational": 77,
+        "jacobian": 85,
+        "energy": 26,
+    }
     assert operations_on_state(dp, "rhs_rational") == 34
 
 

@@ -71,8 +71,11 @@ def test_flat_and_discontinuous_events_are_located() -> None:
     module = handwritten(
         "hand", ("x", "x_dot"), COORDINATES=("x",), rhs=lambda t, y, params: (1.0, 0.0)
     )
-    for event in (lambda t, y: (t - 0.35) ** 5, lambda t, y: 1.0 if t > 0.35 else -1.0,
-                  lambda t, y: 1e-170 * (t - 0.35)):  # fmt: skip
+    for event in (
+        lambda t, y: (t - 0.35) ** 5,
+        lambda t, y: 1.0 if t > 0.35 else -1.0,
+        lambda t, y: 1e-170 * (t - 0.35),
+    ):
         found = integrate(module, (0, 1), (0.0, 0.0), (1.0,), method="rk4", h=0.3, events=event)
         assert found.t_events[0] == pytest.approx([0.35], abs=1e-3)
 
@@ -92,10 +95,18 @@ def test_states_at_events_use_the_parameters_of_their_motion() -> None:
     starts = np.array([[0.1, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0], [1.5, 1.0, 0.0, 0.0]])
     params = np.array([[1.0, m, 1.0, 1.0, 9.81] for m in (0.3, 1.0, 3.0)])
     found = [
-        ensemble(dp, (0, 2), starts.T, params.T, form=form, rtol=1e-11,
-                 events=Event(dp, "theta1", -0.5), t_eval=[1.0])
+        ensemble(
+            dp,
+            (0, 2),
+            starts.T,
+            params.T,
+            form=form,
+            rtol=1e-11,
+            events=Event(dp, "theta1", -0.5),
+            t_eval=[1.0],
+        )
         for form in ("hamiltonian", "lagrangian")
-    ]  # fmt: skip
+    ]
     assert found[0].occurred[:, 0].tolist()[0] == 0
     assert (found[0].occurred[1:, 0] > 0).all()
     for name in ("y_events", "t_events", "samples", "y"):
@@ -105,10 +116,18 @@ def test_states_at_events_use_the_parameters_of_their_motion() -> None:
 def test_extremes_have_two_occurrences_whatever_other_events_have() -> None:
     events = [Extremum(dp, "theta1_dot"), Event(dp, "theta1", 0.0)]
     found = [
-        ensemble(dp, (0, 12), {"theta1": [1.0], "theta2": 0.5}, {}, events=events, occurrences=5,
-                 rtol=1e-11, backend=backend)
+        ensemble(
+            dp,
+            (0, 12),
+            {"theta1": [1.0], "theta2": 0.5},
+            {},
+            events=events,
+            occurrences=5,
+            rtol=1e-11,
+            backend=backend,
+        )
         for backend in ("compiled", "python")
-    ]  # fmt: skip
+    ]
     assert (found[0].occurred > 4).all()
     for one in found:
         assert np.isnan(one.t_events[0, 0]).tolist() == [False, False, True, True, True]

@@ -20,8 +20,15 @@ from solvers.studies.failure_modes.study import studies
 
 def test_each_file_that_defines_a_study_is_found() -> None:
     names = [study.name for study in studies()]
-    assert names == ["chaos", "drift", "oscillation", "separatrix", "singular", "stiffness",
-                     "tolerances"]  # fmt: skip
+    assert names == [
+        "chaos",
+        "drift",
+        "oscillation",
+        "separatrix",
+        "singular",
+        "stiffness",
+        "tolerances",
+    ]
     full, small = studies(), studies(small=True)
     assert sum(a != b for a, b in zip(full, small, strict=True)) == 5
 
@@ -59,8 +66,13 @@ def test_stiff_scenes_shorten_the_steps_of_explicit_methods_only() -> None:
     methods = ("rk4", "verner87", "gauss2", "radau3")
     costs = stiffness.Stiffness((30.0, 300.0), methods).run(load)
     for family in ("short second rod", "light first mass", "stiff spring"):
-        steps = {(c.method, k): c.steps for c in costs if c.family == family
-                 for k in (0, 1) if (c.ratio > 150) == bool(k)}  # fmt: skip
+        steps = {
+            (c.method, k): c.steps
+            for c in costs
+            if c.family == family
+            for k in (0, 1)
+            if (c.ratio > 150) == bool(k)
+        }
         for method in ("rk4", "verner87"):  # ten times as fast, ten times the steps, about
             assert 6 < steps[method, 1] / steps[method, 0] < 16, (family, method)
         for method in ("gauss2", "radau3"):
@@ -77,14 +89,22 @@ def test_the_crossover_is_where_costs_are_equal() -> None:
     costs = [
         cost
         for ratio in (1.0, 10.0, 100.0, 1000.0)
-        for cost in (replace(base, ratio=ratio, work_seconds=ratio),
-                     replace(base, method="radau3", ratio=ratio, work_seconds=30.0))
-    ]  # fmt: skip
+        for cost in (
+            replace(base, ratio=ratio, work_seconds=ratio),
+            replace(base, method="radau3", ratio=ratio, work_seconds=30.0),
+        )
+    ]
     assert stiffness.crossover(costs, "family", "work_seconds") == pytest.approx(30.0)
-    assert stiffness.crossover([
-        replace(cost, ratio=60.0, work_seconds=60.0 if cost.method == "rk4" else 30.0)
-        if cost.ratio == 100 else cost for cost in costs[:6]
-    ], "family", "work_seconds") == pytest.approx(30.0)  # fmt: skip
+    assert stiffness.crossover(
+        [
+            replace(cost, ratio=60.0, work_seconds=60.0 if cost.method == "rk4" else 30.0)
+            if cost.ratio == 100
+            else cost
+            for cost in costs[:6]
+        ],
+        "family",
+        "work_seconds",
+    ) == pytest.approx(30.0)
     assert np.isnan(stiffness.crossover(costs[:4], "family", "work_seconds"))
 
 

@@ -32,11 +32,14 @@ def test_importing_and_completing_load_no_numerical_package(package: str) -> Non
     assert loaded(f"import {package}; dir({package}); {package}.__all__") == set()
 
 
-@pytest.mark.parametrize(("statement", "packages"), [
-    ("from solvers import integrate, ensemble, prepare, ode_solver, Event", {"numpy", "scipy"}),
-    ("from holonomic import Scene, Sweep, run_scene, sweep, load", {"numpy", "scipy"}),
-    ("from derive import System, PointMass, Derivation, load, write", {"sympy"}),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("statement", "packages"),
+    [
+        ("from solvers import integrate, ensemble, prepare, ode_solver, Event", {"numpy", "scipy"}),
+        ("from holonomic import Scene, Sweep, run_scene, sweep, load", {"numpy", "scipy"}),
+        ("from derive import System, PointMass, Derivation, load, write", {"sympy"}),
+    ],
+)
 def test_a_name_loads_only_the_packages_that_it_needs(statement: str, packages: set[str]) -> None:
     assert loaded(statement) <= packages
 

@@ -44,18 +44,36 @@ def test_the_exact_solution_is_that_of_the_pendulum() -> None:
 
 def pendulum_error(method: str, form: str, steps: int, backend: str = "python") -> float:
     solution = integrate(
-        sp, (0, 2), (2.0, 0.0), sp.DEFAULTS,
-        method=method, form=form, h=2 / steps, t_eval=[2.0], backend=backend,
-    )  # fmt: skip
+        sp,
+        (0, 2),
+        (2.0, 0.0),
+        sp.DEFAULTS,
+        method=method,
+        form=form,
+        h=2 / steps,
+        t_eval=[2.0],
+        backend=backend,
+    )
     return float(np.abs(solution.y[:, 0] - exact_pendulum(2.0, 2.0)).max())
 
 
 #: Steps with which each method has converged, in double precision, to the exact solution's order.
 CONVERGED = {
-    "rk1": 640, "midpoint": 640, "ralston": 640, "heun": 10_000, "gauss1": 160, "rk3": 160,
-    "bs32": 160, "radau2": 160, "rk4": 320, "rk4_38": 320, "gauss2": 80, "dp54": 160,
-    "radau3": 80, "gauss3": 40,
-}  # fmt: skip
+    "rk1": 640,
+    "midpoint": 640,
+    "ralston": 640,
+    "heun": 10_000,
+    "gauss1": 160,
+    "rk3": 160,
+    "bs32": 160,
+    "radau2": 160,
+    "rk4": 320,
+    "rk4_38": 320,
+    "gauss2": 80,
+    "dp54": 160,
+    "radau3": 80,
+    "gauss3": 40,
+}
 
 
 @pytest.mark.parametrize("backend", ["python", "compiled"])
@@ -95,9 +113,17 @@ def test_tolerances_bring_the_report_s_scene_to_its_known_end(
     errors = []
     for rtol in (1e-6, 1e-9):
         solution = integrate(
-            dp, (0, 5), REPORT, dp.DEFAULTS, method=method, form=form, rtol=rtol, atol=rtol,
-            max_steps=10_000_000, backend=backend,
-        )  # fmt: skip
+            dp,
+            (0, 5),
+            REPORT,
+            dp.DEFAULTS,
+            method=method,
+            form=form,
+            rtol=rtol,
+            atol=rtol,
+            max_steps=10_000_000,
+            backend=backend,
+        )
         assert solution.status is Status.FINISHED
         assert solution.t[-1] == 5.0
         errors.append(np.abs(solution.y[:, -1] - END).max())
@@ -215,10 +241,13 @@ def test_the_rational_form_keeps_sine_and_cosine_together() -> None:
 def test_implicit_methods_converge_where_fixed_point_iteration_does_not(method: str) -> None:
     # x' = -1e4 (x - cos t): steps a thousand times those of any explicit method
     module = handwritten(
-        "hand", ("x", "x_dot"), COORDINATES=("x",), OPERATIONS={"rhs": (0, 0), "jacobian": (0, 0)},
+        "hand",
+        ("x", "x_dot"),
+        COORDINATES=("x",),
+        OPERATIONS={"rhs": (0, 0), "jacobian": (0, 0)},
         rhs=lambda t, y, params: (-1e4 * (y[0] - np.cos(t)), 0.0),
         jacobian=lambda t, y, params: ((-1e4, 0.0), (0.0, 0.0)),
-    )  # fmt: skip
+    )
     solution = integrate(module, (0, 2), (1.0, 0.0), (1.0,), method=method, h=0.1)
     assert solution.status is Status.FINISHED
     assert solution.njev == solution.steps == 20
@@ -263,9 +292,15 @@ def test_small_motions_of_implicit_methods_are_solved_as_well_as_large_ones() ->
 @pytest.mark.parametrize("method", EXPLICIT_PAIRS)
 def test_every_embedded_pair_runs_in_solve_ivp(method: str) -> None:
     solution = solve_ivp(
-        dp.rhs, (0, 5), REPORT, method=ode_solver(method), rtol=1e-8, atol=1e-8,
-        t_eval=[1.0, 2.5, 5.0], args=(dp.DEFAULTS,),
-    )  # fmt: skip
+        dp.rhs,
+        (0, 5),
+        REPORT,
+        method=ode_solver(method),
+        rtol=1e-8,
+        atol=1e-8,
+        t_eval=[1.0, 2.5, 5.0],
+        args=(dp.DEFAULTS,),
+    )
     assert solution.success
     assert np.abs(solution.y[:, -1] - END).max() < 1e-4
     reference = solve_ivp(
@@ -278,8 +313,16 @@ def test_solve_ivp_runs_our_methods_backwards_with_events_and_refuses_unknown_op
     def bottom(t: float, y: np.ndarray, params: object) -> float:
         return float(y[0])
 
-    back = solve_ivp(sp.rhs, (2, 0), exact_pendulum(2.0, 2.0), method=ode_solver("tsit54"),
-                     rtol=1e-10, atol=1e-10, events=bottom, args=(sp.DEFAULTS,))  # fmt: skip
+    back = solve_ivp(
+        sp.rhs,
+        (2, 0),
+        exact_pendulum(2.0, 2.0),
+        method=ode_solver("tsit54"),
+        rtol=1e-10,
+        atol=1e-10,
+        events=bottom,
+        args=(sp.DEFAULTS,),
+    )
     assert back.y[:, -1] == pytest.approx([2.0, 0.0], abs=1e-7)
     assert len(back.t_events[0]) == 1
     with pytest.raises(ValueError, match="no option lband"):

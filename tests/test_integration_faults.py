@@ -46,12 +46,14 @@ def test_no_evaluation_exceeds_those_of_the_last_step() -> None:
     assert solution.status is Status.FINISHED
 
 
-@pytest.mark.parametrize("options", [{"first_step": np.nan}, {"first_step": -0.1},
-                                     {"max_step": -1}, {"rtol": -1}])  # fmt: skip
+@pytest.mark.parametrize(
+    "options", [{"first_step": np.nan}, {"first_step": -0.1}, {"max_step": -1}, {"rtol": -1}]
+)
 def test_invalid_options_of_solve_ivp_are_refused(options: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must"):
-        solve_ivp(sp.rhs, (0, 1), (1, 0), method=ode_solver("verner87"), args=(sp.DEFAULTS,),
-                  **options)  # fmt: skip
+        solve_ivp(
+            sp.rhs, (0, 1), (1, 0), method=ode_solver("verner87"), args=(sp.DEFAULTS,), **options
+        )
 
 
 def test_arguments_are_not_modified() -> None:

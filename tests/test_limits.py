@@ -59,8 +59,14 @@ def test_a_stiff_spring_becomes_a_rod() -> None:
     rod = integrate(sp, (0, 3), start, (1.0, length, G), rtol=1e-11, t_eval=[3.0]).y[:, -1]
     apart = []
     for k in (1e4, 1e5, 1e6):
-        spring = integrate(ep, (0, 3), (length + G * cos(0.9) / k, 0.9, 0, 0), (1.0, k, length, G),
-                           rtol=1e-10, t_eval=[3.0]).y[:, -1]  # fmt: skip
+        spring = integrate(
+            ep,
+            (0, 3),
+            (length + G * cos(0.9) / k, 0.9, 0, 0),
+            (1.0, k, length, G),
+            rtol=1e-10,
+            t_eval=[3.0],
+        ).y[:, -1]
         apart.append(abs(spring[1] - rod[0]))
     assert apart[0] > 5 * apart[1] > 25 * apart[2]
 
@@ -118,8 +124,12 @@ def test_foucault_s_pendulum_turns_with_the_sine_of_the_latitude() -> None:
     params, end = (m, length, G, turning, latitude), 600.0
     times = np.linspace(0, end, 6001)
     motion = integrate(foucault, (0, end), (0.1, 0, 0, 0), params, rtol=1e-11, t_eval=times)
-    far = [k for k in range(1, 6000) if abs(motion.y[0, k] + 1j * motion.y[1, k]) >= max(
-        abs(motion.y[0, k + d] + 1j * motion.y[1, k + d]) for d in (-1, 1))]  # fmt: skip
+    far = [
+        k
+        for k in range(1, 6000)
+        if abs(motion.y[0, k] + 1j * motion.y[1, k])
+        >= max(abs(motion.y[0, k + d] + 1j * motion.y[1, k + d]) for d in (-1, 1))
+    ]
     angles = np.unwrap(2 * np.arctan2(motion.y[1, far], motion.y[0, far])) / 2
     rate = np.polyfit(times[far], angles, 1)[0]
     assert rate == pytest.approx(-turning * sin(latitude), rel=2e-3)

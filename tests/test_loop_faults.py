@@ -83,9 +83,14 @@ def test_a_motion_that_starts_at_an_event_has_not_crossed_it(backend: str) -> No
     for angle in np.linspace(-3, 3, 61):
         for velocity in (1.0, -1.0):
             solution = integrate(
-                sp, (0, 0.01), (angle, velocity), sp.DEFAULTS, backend=backend, form="rational",
+                sp,
+                (0, 0.01),
+                (angle, velocity),
+                sp.DEFAULTS,
+                backend=backend,
+                form="rational",
                 events=Event(sp, "theta", angle, terminal=True),
-            )  # fmt: skip
+            )
             assert solution.status is Status.FINISHED, (angle, velocity)
 
 
@@ -94,14 +99,26 @@ def test_an_event_at_the_end_of_a_step_is_located_once(tmp_path: Path) -> None:
     module = handwritten_module(tmp_path, "params[0]")
     for direction in (0, 1):
         solution = integrate(
-            module, (0, 1), [0.0], (1.0,), method="midpoint", h=0.25, backend="compiled",
+            module,
+            (0, 1),
+            [0.0],
+            (1.0,),
+            method="midpoint",
+            h=0.25,
+            backend="compiled",
             events=Event(module, "y", 0.5, direction),
-        )  # fmt: skip
+        )
         assert solution.t_events[0] == pytest.approx([0.5], abs=1e-14)
     down = integrate(
-        module, (0, 1), [0.0], (1.0,), method="midpoint", h=0.25, backend="compiled",
+        module,
+        (0, 1),
+        [0.0],
+        (1.0,),
+        method="midpoint",
+        h=0.25,
+        backend="compiled",
         events=Event(module, "y", 0.5, -1),
-    )  # fmt: skip
+    )
     assert not down.t_events[0].size
 
 
@@ -114,9 +131,16 @@ def test_events_after_a_terminal_event_within_its_step_do_not_count(
         for value, end in ((0.7, True), (0.6, True), (0.8, True), (0.65, False), (0.55, False))
     ]
     solution = integrate(
-        module, (0, 1), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", events=events,
+        module,
+        (0, 1),
+        [0.0],
+        (1.0,),
+        method="rk4",
+        h=0.5,
+        backend="compiled",
+        events=events,
         t_eval=[0.52, 0.58, 0.62],
-    )  # fmt: skip
+    )
     assert solution.status is Status.EVENT
     assert solution.end[0] == pytest.approx(0.6, abs=1e-14)
     assert [len(times) for times in solution.t_events] == [0, 1, 0, 0, 1]
@@ -148,9 +172,16 @@ def test_a_step_whose_inner_states_fail_is_discarded_whole(tmp_path: Path) -> No
     hole = "(*(const double *)&t > 0.2099 && *(const double *)&t < 0.2101) ? 0.0/0.0 : params[0]"
     module = handwritten_module(tmp_path, hole)
     solution = integrate(
-        module, (0, 5), [0.0], (1.0,), method="rk4", h=0.5, backend="compiled", t_eval=[0.1, 0.21],
+        module,
+        (0, 5),
+        [0.0],
+        (1.0,),
+        method="rk4",
+        h=0.5,
+        backend="compiled",
+        t_eval=[0.1, 0.21],
         events=Event(module, "y", 0.4, terminal=True),
-    )  # fmt: skip
+    )
     assert solution.status is Status.NOT_FINITE
     assert (solution.t.size, solution.t_events[0].size, solution.end[0]) == (0, 0, 0.0)
 
@@ -158,10 +189,17 @@ def test_a_step_whose_inner_states_fail_is_discarded_whole(tmp_path: Path) -> No
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_an_event_is_located_where_rounding_blurs_its_sign(backend: str) -> None:
     solution = integrate(
-        sp, (-1, -3), (17.880152717337147, -0.3221897508884375), sp.DEFAULTS, t_eval=[],
-        form="lagrangian", rtol=1e-8, atol=1e-10, backend=backend,
+        sp,
+        (-1, -3),
+        (17.880152717337147, -0.3221897508884375),
+        sp.DEFAULTS,
+        t_eval=[],
+        form="lagrangian",
+        rtol=1e-8,
+        atol=1e-10,
+        backend=backend,
         events=Event(sp, "theta_dot", -1.3767516817975083),
-    )  # fmt: skip
+    )
     assert solution.t_events[0] == pytest.approx([-1.28150329, -2.06916657], abs=1e-8)
 
 
@@ -169,8 +207,9 @@ def test_an_event_is_located_where_rounding_blurs_its_sign(backend: str) -> None
 def test_of_events_at_the_same_time_the_first_in_the_list_counts(backend: str) -> None:
     stops, passes = (Event(sp, "theta", 0.2, terminal=end) for end in (True, False))
     for events, expected in (
-        ([stops, stops, passes], [1, 0, 0]), ([passes, stops, passes], [1, 1, 0]),
-    ):  # fmt: skip
+        ([stops, stops, passes], [1, 0, 0]),
+        ([passes, stops, passes], [1, 1, 0]),
+    ):
         solution = integrate(sp, (0, 5), (1.0, 0.0), sp.DEFAULTS, events=events, backend=backend)
         assert [len(times) for times in solution.t_events] == expected
 
@@ -241,9 +280,10 @@ def test_an_interruption_leaves_times_and_states_of_the_same_length() -> None:
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_samples_have_the_requested_times(backend: str) -> None:
     for span, times in (
-        ((-1.0, 1.0), [1e-20]), ((10.0, 0.0), np.linspace(0, 10, 3001)[::-1]),
+        ((-1.0, 1.0), [1e-20]),
+        ((10.0, 0.0), np.linspace(0, 10, 3001)[::-1]),
         ((0.0, 1.0), [0.0, 5e-324, 1.0]),
-    ):  # fmt: skip
+    ):
         start = (1e6 + 0.1, 1.0, 0.0, 0.0)
         solution = integrate(dp, span, start, dp.DEFAULTS, t_eval=times, backend=backend)
         assert np.array_equal(solution.t, times)
@@ -259,11 +299,12 @@ def test_ensembles_of_no_motions_or_over_no_time_are_valid() -> None:
     starts = np.random.default_rng(5).uniform(-9, 9, (2, 50))
     assert np.array_equal(ensemble(sp, (2, 2), starts, sp.DEFAULTS).y, starts)
     for arguments, message in (
-        ({"workers": 1.5}, "workers = 1.5"), ({"workers": "2"}, "workers = '2'"),
+        ({"workers": 1.5}, "workers = 1.5"),
+        ({"workers": "2"}, "workers = '2'"),
         ({"occurrences": 1.5}, "occurrences = 1.5"),
         ({"events": Event(dp, "theta1", 0.0)}, "is not of generated.single_pendulum"),
         ({"method": None}, "no method is called 'None'"),
-    ):  # fmt: skip
+    ):
         with pytest.raises(ValueError, match=message):
             ensemble(sp, (0, 1), [[1.0], [0.0]], sp.DEFAULTS, **arguments)
     with pytest.raises(ValueError, match="must be a finite number"):
@@ -292,7 +333,11 @@ def test_a_prepared_run_names_the_invalid_argument() -> None:
 
 def test_angles_of_pi_are_events_on_either_side() -> None:
     spinning = ensemble(
-        sp, (0, 3), [[0.0, 0.0], [9.0, -9.0]], sp.DEFAULTS, occurrences=9,
+        sp,
+        (0, 3),
+        [[0.0, 0.0], [9.0, -9.0]],
+        sp.DEFAULTS,
+        occurrences=9,
         events=[Event(sp, "theta", turn * pi) for turn in (-3, -1, 1, 3)],
-    )  # fmt: skip
+    )
     assert spinning.occurred.tolist() == [[0, 0, 1, 1], [1, 1, 0, 0]]

@@ -52,8 +52,15 @@ def test_there_are_as_many_rooted_trees_as_published() -> None:
 def test_densities_are_those_of_the_textbook() -> None:
     # Hairer, Nørsett and Wanner, table II.2.2, up to order 4
     assert sorted(density(tree) for n in range(1, 5) for tree in trees(n)) == [
-        1, 2, 3, 4, 6, 8, 12, 24,
-    ]  # fmt: skip
+        1,
+        2,
+        3,
+        4,
+        6,
+        8,
+        12,
+        24,
+    ]
 
 
 @pytest.mark.parametrize("name", names())
@@ -94,8 +101,10 @@ def test_a_mistake_in_any_coefficient_loses_the_order(name: str) -> None:
     low = order(method.A, method.b_low) if method.b_low else 0
     assert low == stated(name)["second"]
     for weights, expected in (
-        (method.b, method.order), (method.b_hat, method.embedded_order), (method.b_low, low),
-    ):  # fmt: skip
+        (method.b, method.order),
+        (method.b_hat, method.embedded_order),
+        (method.b_low, low),
+    ):
         for j, b in enumerate(weights):
             if b != 0:
                 changed = [*weights[:j], b + abs(b) / 10**15, *weights[j + 1 :]]

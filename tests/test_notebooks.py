@@ -37,8 +37,12 @@ def executed(path: Path) -> list[Any]:
     strict = "import warnings\nwarnings.simplefilter('error')"
     notebook.cells.insert(0, nbformat.v4.new_code_cell(strict))
     notebook.cells.append(nbformat.v4.new_code_cell("warnings.resetwarnings()"))
-    client = NotebookClient(notebook, timeout=600, kernel_name="python3",
-                            resources={"metadata": {"path": str(path.parent)}})  # fmt: skip
+    client = NotebookClient(
+        notebook,
+        timeout=600,
+        kernel_name="python3",
+        resources={"metadata": {"path": str(path.parent)}},
+    )
     client.execute()
     return [out for cell in notebook.cells for out in cell.get("outputs", [])]
 
@@ -70,8 +74,9 @@ def test_a_notebook_runs_and_proves_its_claim(path: Path) -> None:
 def test_derivations_and_pictures_are_shown_as_such() -> None:
     kinds = {
         path.stem: [kind for out in executed(path) for kind in out.get("data", {})]
-        for path in NOTEBOOKS if path.stem in ("01_derivation", "06_your_own_system")
-    }  # fmt: skip
+        for path in NOTEBOOKS
+        if path.stem in ("01_derivation", "06_your_own_system")
+    }
     assert kinds["01_derivation"].count("text/html") == 9
     assert kinds["06_your_own_system"].count("text/html") == 3
     assert "image/png" in kinds["06_your_own_system"]

@@ -20,8 +20,13 @@ def run(*argv: str | Path, folder: Path) -> str:
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     done = subprocess.run(
         list(map(str, argv)),
-        cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=100,
-    )  # fmt: skip
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=100,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -100,5 +105,7 @@ def test_the_installed_commands_derive_and_run(environment: Path, tmp_path: Path
     assert "Double pendulum" in run(command, "systems", folder=tmp_path)
     assert "model: full equations" in run(command, "run", "report", folder=tmp_path)
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
-        "report.csv", "report.html", "report.png",
-    }  # fmt: skip
+        "report.csv",
+        "report.html",
+        "report.png",
+    }

@@ -67,8 +67,9 @@ def test_a_chaotic_run_beyond_its_predictable_time_warns() -> None:
         rough = integrate(dp, (0, 60), start, dp.DEFAULTS, rtol=1e-6, atol=1e-6, t_eval=TIMES)
     limit = reported_time(caught[0].message)
     with pytest.warns(PredictabilityWarning) as again:
-        fine = integrate(dp, (0, 60), start, dp.DEFAULTS, rtol=1e-13, atol=1e-13, t_eval=TIMES,
-                         method="verner98")  # fmt: skip
+        fine = integrate(
+            dp, (0, 60), start, dp.DEFAULTS, rtol=1e-13, atol=1e-13, t_eval=TIMES, method="verner98"
+        )
     # errors grow at about one rate
     later = reported_time(again[0].message)
     assert later == pytest.approx(limit * 13 / 6, rel=0.5)
@@ -84,13 +85,28 @@ def test_the_predictable_time_does_not_depend_on_the_duration_of_the_run(toleran
     limits = []
     for duration in (50.0, 300.0, 2000.0, 3e4):
         with pytest.warns(PredictabilityWarning) as caught:
-            integrate(dp, (0, duration), REPORT, dp.DEFAULTS, rtol=tolerance, atol=tolerance,
-                      t_eval=[duration], max_steps=10**8)  # fmt: skip
+            integrate(
+                dp,
+                (0, duration),
+                REPORT,
+                dp.DEFAULTS,
+                rtol=tolerance,
+                atol=tolerance,
+                t_eval=[duration],
+                max_steps=10**8,
+            )
         limits.append(reported_time(caught[0].message))
     assert max(limits) == pytest.approx(min(limits), rel=0.01)
     truth = taylor(dp, dp.DEFAULTS, REPORT, TIMES[TIMES < 40], digits=30)
-    run = ensemble(dp, (0, 40), np.transpose([REPORT]), dp.DEFAULTS, rtol=tolerance, atol=tolerance,
-                   t_eval=TIMES[TIMES < 40])  # fmt: skip
+    run = ensemble(
+        dp,
+        (0, 40),
+        np.transpose([REPORT]),
+        dp.DEFAULTS,
+        rtol=tolerance,
+        atol=tolerance,
+        t_eval=TIMES[TIMES < 40],
+    )
     apart = np.abs(run.samples[:, 0].T - truth).max(axis=1)
     observed = TIMES[np.argmax(apart > 1)]
     assert limits[0] == pytest.approx(observed, rel=0.3)

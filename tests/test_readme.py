@@ -50,8 +50,11 @@ def test_the_picture_is_what_the_sweep_draws(tmp_path: Path) -> None:
 def test_every_link_exists() -> None:
     links = re.findall(r"\]\((?!https?:)(.*?)\)", README)
     assert [link for link in links if not (ROOT / link).exists()] == []
-    packages = {str(path.relative_to(ROOT)) for package in ("derive", "solvers")
-                for path in (ROOT / package).rglob("README.md")}  # fmt: skip
+    packages = {
+        str(path.relative_to(ROOT))
+        for package in ("derive", "solvers")
+        for path in (ROOT / package).rglob("README.md")
+    }
     assert packages <= {*links}
 
 

@@ -20,9 +20,15 @@ REPORT = (pi / 2, pi, 0.0, 0.0)
 EXTENDED = np.finfo(np.longdouble).nmant > 60
 
 
-@pytest.mark.parametrize(("module", "start"), [
-    (dp, REPORT), (dp, (0.02, 0.01, 0.0, 0.0)), (dp, (-4.0, 9.0, 2.0, -1.0)), (sp, (2.0, 1.0)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("module", "start"),
+    [
+        (dp, REPORT),
+        (dp, (0.02, 0.01, 0.0, 0.0)),
+        (dp, (-4.0, 9.0, 2.0, -1.0)),
+        (sp, (2.0, 1.0)),
+    ],
+)
 def test_taylor_and_extrapolation_agree_to_rounding(module: ModuleType, start: tuple) -> None:
     times = [0.0, 1.5, 5.0]
     series = taylor(module, module.DEFAULTS, start, times)
@@ -81,8 +87,9 @@ def test_jacobis_functions_keep_their_digits_close_to_the_separatrix(complement:
         quarter = float(mpmath.ellipk(m))
         for part in (0.1, 0.4, 0.6, 0.97, 1.2, 2.7, -0.8):
             u = part * quarter
-            for value, name in zip(jacobi(np.array(u), complement), ("sn", "cn", "dn"),
-                                   strict=False):  # fmt: skip
+            for value, name in zip(
+                jacobi(np.array(u), complement), ("sn", "cn", "dn"), strict=False
+            ):
                 expected = float(mpmath.ellipfun(name, u, m=m))
                 # what rounding u does, and a few roundings where sn turns into cn
                 assert value == pytest.approx(

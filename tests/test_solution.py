@@ -57,8 +57,9 @@ def test_a_table_of_an_ensemble_has_a_row_for_each_motion() -> None:
     lines = repr(motions).splitlines()
     assert lines[0] == "Ensemble: 3 motions, 1 FINISHED, 2 EVENT"
     assert lines[1].startswith("  2 times, 1 event, ")
-    changes = ensemble(sp, (0, 2), {"theta": [0.5, 1.0], "delta_theta": 1.0}, {},
-                       form="variational")  # fmt: skip
+    changes = ensemble(
+        sp, (0, 2), {"theta": [0.5, 1.0], "delta_theta": 1.0}, {}, form="variational"
+    )
     assert np.isfinite(changes.to_table()["growth"]).all()
 
 
@@ -71,12 +72,23 @@ def test_datasets_have_names_and_units() -> None:
     assert {name: dataset[name].attrs["units"] for name in units} == units
     assert_array_equal(dataset["theta"], solution.y[1])
     assert dataset.attrs["status"] == "FINISHED"
-    motions = ensemble(sp, (0, 2), {"theta": [0.5, 1.0, 2.0]}, {}, t_eval=[0, 1.5],
-                       events=Event(sp, "theta", 0.0), occurrences=2)  # fmt: skip
+    motions = ensemble(
+        sp,
+        (0, 2),
+        {"theta": [0.5, 1.0, 2.0]},
+        {},
+        t_eval=[0, 1.5],
+        events=Event(sp, "theta", 0.0),
+        occurrences=2,
+    )
     dataset = motions.to_xarray()
     assert dict(dataset.sizes) == {
-        "motion": 3, "component": 2, "time": 2, "event": 1, "occurrence": 2
-    }  # fmt: skip
+        "motion": 3,
+        "component": 2,
+        "time": 2,
+        "event": 1,
+        "occurrence": 2,
+    }
     assert_array_equal(dataset["y"].sel(component="theta_dot"), motions.y[1])
     assert_array_equal(
         dataset["samples"].sel(component="theta", time=1.5), motions.samples[0, :, 1]

@@ -42,10 +42,17 @@ def operations(name: str, function: str, **values: float) -> int:
     return total - constant
 
 
-@pytest.mark.parametrize(("module", "params"), [
-    (dp, dp.DEFAULTS), (dp, (1.3, 0.7, 1.1, 0.9, 9.81)), (dp, (1.0, 3.0, 2.0, 0.5, 0.0)),
-    (sp, sp.DEFAULTS), (ep, ep.DEFAULTS), (ep, (0.7, 33.3, 1.21, 0.0)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("module", "params"),
+    [
+        (dp, dp.DEFAULTS),
+        (dp, (1.3, 0.7, 1.1, 0.9, 9.81)),
+        (dp, (1.0, 3.0, 2.0, 0.5, 0.0)),
+        (sp, sp.DEFAULTS),
+        (ep, ep.DEFAULTS),
+        (ep, (0.7, 33.3, 1.21, 0.0)),
+    ],
+)
 @pytest.mark.parametrize("form", ["lagrangian", "hamiltonian", "rational"])
 def test_specialised_code_has_the_same_values(
     module: ModuleType, params: tuple[float, ...], form: str
@@ -132,9 +139,14 @@ def test_only_functions_that_a_scene_needs_exist() -> None:
     assert not any("jacobian" in f or "energy" in f or "positions" in f for f in functions)
 
 
-@pytest.mark.parametrize(("method", "form", "h"), [
-    ("verner87", "rational", None), ("dop853", "hamiltonian", None), ("gauss2", "lagrangian", 1e-3),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("method", "form", "h"),
+    [
+        ("verner87", "rational", None),
+        ("dop853", "hamiltonian", None),
+        ("gauss2", "lagrangian", 1e-3),
+    ],
+)
 def test_a_specialised_motion_equals_the_general_one(
     method: str, form: str, h: float | None
 ) -> None:

@@ -68,14 +68,30 @@ def test_intervals_are_those_of_the_textbooks() -> None:
     # imaginary: E. Hairer, G. Wanner, section IV.2 and exercises; sqrt(3) and 2 sqrt(2) by hand
     found = {name: StabilityFunction.of(load(name)) for name in names()}
     for name, interval in {
-        "rk1": 0.0, "midpoint": 0.0, "heun": 0.0, "ralston": 0.0, "rk3": sqrt(3), "bs32": sqrt(3),
-        "rk4": 2 * sqrt(2), "rk4_38": 2 * sqrt(2), "gauss1": inf, "gauss2": inf, "gauss3": inf,
-        "radau2": inf, "radau3": inf,
-    }.items():  # fmt: skip
+        "rk1": 0.0,
+        "midpoint": 0.0,
+        "heun": 0.0,
+        "ralston": 0.0,
+        "rk3": sqrt(3),
+        "bs32": sqrt(3),
+        "rk4": 2 * sqrt(2),
+        "rk4_38": 2 * sqrt(2),
+        "gauss1": inf,
+        "gauss2": inf,
+        "gauss3": inf,
+        "radau2": inf,
+        "radau3": inf,
+    }.items():
         assert found[name].imaginary_stability_interval == pytest.approx(interval, rel=1e-14), name
-    for name, interval in {"rk1": 2.0, "midpoint": 2.0, "rk3": 2.5127453266183286,
-                           "rk4": 2.7852935634052817, "dp54": 3.3065678926, "gauss3": inf,
-                           "radau3": inf}.items():  # fmt: skip
+    for name, interval in {
+        "rk1": 2.0,
+        "midpoint": 2.0,
+        "rk3": 2.5127453266183286,
+        "rk4": 2.7852935634052817,
+        "dp54": 3.3065678926,
+        "gauss3": inf,
+        "radau3": inf,
+    }.items():
         assert found[name].real_stability_interval == pytest.approx(interval, rel=1e-10), name
 
 
@@ -83,8 +99,9 @@ def test_intervals_are_those_of_the_textbooks() -> None:
 def test_intervals_end_where_the_stability_function_leaves_the_unit_circle(method: str) -> None:
     function = StabilityFunction.of(load(method))
     for direction, interval in (
-        (1j, function.imaginary_stability_interval), (-1.0, function.real_stability_interval),
-    ):  # fmt: skip
+        (1j, function.imaginary_stability_interval),
+        (-1.0, function.real_stability_interval),
+    ):
         inside = np.linspace(0, min(interval, 100.0), 2001)
         assert np.abs(function(inside * direction)).max() <= 1 + 1e-13
         if interval < inf:
@@ -148,9 +165,15 @@ def test_without_a_scene_the_command_studies_where_methods_fail(
     monkeypatch.setattr(study, "studies", partial(study.studies, small=True))
     assert main(["stability", "--output", str(tmp_path)]) == 0
     text = capsys.readouterr().out
-    for line in ("Longest stable steps of the report's scene", "largest Lyapunov exponent 0.8",
-                 "implicit methods cost less from a ratio of", "Relative energy error",
-                 "Aligned rods", "released upright", "Achieved over requested"):  # fmt: skip
+    for line in (
+        "Longest stable steps of the report's scene",
+        "largest Lyapunov exponent 0.8",
+        "implicit methods cost less from a ratio of",
+        "Relative energy error",
+        "Aligned rods",
+        "released upright",
+        "Achieved over requested",
+    ):
         assert line in text
     drawn = {path.name for path in tmp_path.iterdir()}
     plots = {f"failures_{name}.png" for name in ("drift", "chaos", "tolerances")}
@@ -175,9 +198,11 @@ def test_another_system_has_other_critical_steps(monkeypatch: pytest.MonkeyPatch
     found = critical_step("rk4", ep, stiff)
     assert found.measured == pytest.approx(2 * sqrt(2) / 100, rel=1e-3)
     # a method that is not the one of the prediction would be found out
-    monkeypatch.setattr(critical_step_module, "integrate", lambda *args, **options: integrate(
-        *args, **(options | {"method": "rk3"})
-    ))  # fmt: skip
+    monkeypatch.setattr(
+        critical_step_module,
+        "integrate",
+        lambda *args, **options: integrate(*args, **(options | {"method": "rk3"})),
+    )
     other = critical_step("rk4", ep, stiff)
     assert other.linear == pytest.approx(other.predicted, rel=1e-3)
     assert other.measured == pytest.approx(sqrt(3) / 100, rel=1e-3)
@@ -205,8 +230,9 @@ def test_modes_are_those_of_the_textbook() -> None:
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 def test_motion_damped_to_nothing_is_still_a_motion(backend: str) -> None:
     # Radau's method damps fast oscillations: after 250 steps a number has lost its digits
-    run = integrate(sp, (0, 4000), (1e-7, 0.0), sp.DEFAULTS, method="radau2", h=8.0,
-                    backend=backend)  # fmt: skip
+    run = integrate(
+        sp, (0, 4000), (1e-7, 0.0), sp.DEFAULTS, method="radau2", h=8.0, backend=backend
+    )
     assert run.status is Status.FINISHED
     size = np.abs(run.y).max(axis=0)
     assert size[size < 1e-290][0] > 1e-300

@@ -234,10 +234,20 @@ def test_a_folder_of_another_sweep_is_refused(
     assert files(tmp_path) == expected
 
 
-@pytest.mark.parametrize("change", [
-    "{}", "[]", "\0", '"chunk": 7.5', '"chunk": true', '"chunk": 0', '"chunk": 1e400',
-    '"format": 1', '"motions": 5',
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "change",
+    [
+        "{}",
+        "[]",
+        "\0",
+        '"chunk": 7.5',
+        '"chunk": true',
+        '"chunk": 0',
+        '"chunk": 1e400',
+        '"format": 1',
+        '"motions": 5',
+    ],
+)
 def test_a_changed_manifest_is_refused(
     change: str, tmp_path: Path, expected: dict[str, bytes]
 ) -> None:

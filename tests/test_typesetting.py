@@ -17,19 +17,55 @@ from derive.verification.report.judgement import EQUATIONS
 
 #: Names of the report, and their handwritten form: letter, dots, indices.
 LETTERS = {
-    "theta1": "θ1", "theta2": "θ2", "theta1_dot": "θ.1", "theta2_dot": "θ.2",
-    "theta1_ddot": "θ..1", "theta2_ddot": "θ..2", "phi1": "φ1", "phi2": "φ2", "phi1_dot": "φ.1",
-    "phi2_dot": "φ.2", "phi1_ddot": "φ..1", "phi2_ddot": "φ..2", "alpha1": "α1", "alpha2": "α2",
-    "p_theta1": "pθ1", "p_theta2": "pθ2", "P_theta1": "Pθ1", "P_theta2": "Pθ2",
-    "Pdot_theta1": "P.θ1", "Pdot_theta2": "P.θ2", "pdot_theta1": "p.θ1", "pdot_theta2": "p.θ2",
-    "omega_x": "ωx", "omega_y": "ωy", "omega_z": "ωz", "omega_x_dot": "ω.x", "omega_y_dot": "ω.y",
-    "omega_z_dot": "ω.z", "tau_x": "τx", "tau_y": "τy", "tau_z": "τz", "theta_ddot": "θ..",
-    "theta": "θ", "theta0": "θ0", "omega": "ω", "psi": "ψ", "w_i": "wi", "w_next": "wi+1",
-    "x1_dot": "x.1", "y1_dot": "y.1", "x2_dot": "x.2", "y2_dot": "y.2",
+    "theta1": "θ1",
+    "theta2": "θ2",
+    "theta1_dot": "θ.1",
+    "theta2_dot": "θ.2",
+    "theta1_ddot": "θ..1",
+    "theta2_ddot": "θ..2",
+    "phi1": "φ1",
+    "phi2": "φ2",
+    "phi1_dot": "φ.1",
+    "phi2_dot": "φ.2",
+    "phi1_ddot": "φ..1",
+    "phi2_ddot": "φ..2",
+    "alpha1": "α1",
+    "alpha2": "α2",
+    "p_theta1": "pθ1",
+    "p_theta2": "pθ2",
+    "P_theta1": "Pθ1",
+    "P_theta2": "Pθ2",
+    "Pdot_theta1": "P.θ1",
+    "Pdot_theta2": "P.θ2",
+    "pdot_theta1": "p.θ1",
+    "pdot_theta2": "p.θ2",
+    "omega_x": "ωx",
+    "omega_y": "ωy",
+    "omega_z": "ωz",
+    "omega_x_dot": "ω.x",
+    "omega_y_dot": "ω.y",
+    "omega_z_dot": "ω.z",
+    "tau_x": "τx",
+    "tau_y": "τy",
+    "tau_z": "τz",
+    "theta_ddot": "θ..",
+    "theta": "θ",
+    "theta0": "θ0",
+    "omega": "ω",
+    "psi": "ψ",
+    "w_i": "wi",
+    "w_next": "wi+1",
+    "x1_dot": "x.1",
+    "y1_dot": "y.1",
+    "x2_dot": "x.2",
+    "y2_dot": "y.2",
     **{f"m_{k}": f"m{k}" for k in range(1, 5)},
-    **{name: name for name in "x1 y1 x2 y2 m1 m2 l1 l2 g l t h h1 h2 f1 f2 g1 g2 K P L H v z "
-                              "Ixx Iyy Izz".split()},
-}  # fmt: skip
+    **{
+        name: name
+        for name in "x1 y1 x2 y2 m1 m2 l1 l2 g l t h h1 h2 f1 f2 g1 g2 K P L H v z "
+        "Ixx Iyy Izz".split()
+    },
+}
 
 
 class Power:
@@ -121,10 +157,19 @@ def test_necessary_brackets_are_present(text: str) -> None:
     assert all(isclose(plain, shown, rel_tol=1e-12) for plain, shown in values(text))
 
 
-@pytest.mark.parametrize(("text", "count"), [
-    ("a*b + c*d/e - f**2", 0), ("(a + b)*c", 1), ("a*(b*c)*d/(e + f)", 0), ("-(a*b)", 0),
-    ("sin(a)**2", 1), ("(a/b)**2", 1), ("(a + b)/2", 1), ("f(a, b)", 1),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [
+        ("a*b + c*d/e - f**2", 0),
+        ("(a + b)*c", 1),
+        ("a*(b*c)*d/(e + f)", 0),
+        ("-(a*b)", 0),
+        ("sin(a)**2", 1),
+        ("(a/b)**2", 1),
+        ("(a + b)/2", 1),
+        ("f(a, b)", 1),
+    ],
+)
 def test_unnecessary_brackets_are_absent(text: str, count: int) -> None:
     assert Formula(text).html.count(">(<") == count
 
