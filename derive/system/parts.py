@@ -2,8 +2,9 @@
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
+from typing import Self
 
 import sympy as sp
 
@@ -160,9 +161,10 @@ class PointMass:
         """Mass and position."""
         return f"{self.mass} at ({', '.join(map(str, self.position))})"
 
-    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> "PointMass":
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> Self:
         """A copy with `function` applied to every expression."""
-        return PointMass(function(self.mass), tuple(map(function, self.position)))
+        values = {name: function(value) for name, value in vars(self).items() if name != "position"}
+        return replace(self, position=tuple(map(function, self.position)), **values)
 
 
 @dataclass(frozen=True)
@@ -222,8 +224,3 @@ class RigidBody(PointMass):
     def words(self) -> str:
         """Mass, position, moment of inertia and orientation."""
         return f"{super().words}, moment of inertia {self.inertia}, orientation {self.angle}"
-
-    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> "RigidBody":
-        """A copy with `function` applied to every expression."""
-        mass, position = function(self.mass), tuple(map(function, self.position))
-        return RigidBody(mass, position, function(self.inertia), function(self.angle))

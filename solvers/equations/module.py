@@ -17,32 +17,7 @@ class GeneratedModule(Protocol):
 
     Functions take ``(t, y, params)``; those of the parameters alone take ``(params)``. With
     ``_many`` after its name a function takes arrays whose first axis is the state. The functions
-    below exist for every system; for others see `has_function`.
-
-    Attributes
-    ----------
-    SYSTEM : str
-        Name of the system.
-    COORDINATES, STATE, PARAMETERS : tuple of str
-        Names of the coordinates, of the components of a state (q, q̇), and of the parameters.
-    STATES : dict of str to tuple of str
-        Names of the components of ``y`` in each form of the equations.
-    FORMS : tuple of str
-        The forms that exist: ``lagrangian`` and maybe ``hamiltonian``, ``rational``,
-        ``variational``.
-    DEFAULTS : tuple of float
-        Default values of the parameters.
-    POSITIVE : tuple of str
-        Parameters that must be positive.
-    UNITS : dict of str to str
-        Unit of every coordinate, state component and parameter.
-    OPERATIONS : dict of str to pair of int
-        For every function the operations of a call, and how many of these depend on parameters
-        alone. Its keys are the functions that exist.
-    CALLS_FUNCTIONS : tuple of str
-        Functions that call the mathematical library, and so cannot take vectors in C.
-    TIMED : tuple of str
-        Functions whose value depends on time.
+    below exist for every system, others where they are keys of ``OPERATIONS``.
     """
 
     __name__: str
@@ -54,25 +29,25 @@ class GeneratedModule(Protocol):
     @property
     def COORDINATES(self) -> tuple[str, ...]: ...
     @property
-    def STATE(self) -> tuple[str, ...]: ...
+    def STATE(self) -> tuple[str, ...]: ...  # names of the components of (q, q̇)
     @property
-    def STATES(self) -> Mapping[str, tuple[str, ...]]: ...
+    def STATES(self) -> Mapping[str, tuple[str, ...]]: ...  # of ``y`` in each form
     @property
-    def FORMS(self) -> tuple[str, ...]: ...
+    def FORMS(self) -> tuple[str, ...]: ...  # of the equations of motion
     @property
     def PARAMETERS(self) -> tuple[str, ...]: ...
     @property
     def DEFAULTS(self) -> tuple[float, ...]: ...
     @property
-    def POSITIVE(self) -> tuple[str, ...]: ...
+    def POSITIVE(self) -> tuple[str, ...]: ...  # parameters that must be positive
     @property
     def UNITS(self) -> Mapping[str, str]: ...
     @property
-    def OPERATIONS(self) -> Mapping[str, tuple[int, int]]: ...
+    def OPERATIONS(self) -> Mapping[str, tuple[int, int]]: ...  # of a call, and on parameters alone
     @property
-    def CALLS_FUNCTIONS(self) -> tuple[str, ...]: ...
+    def CALLS_FUNCTIONS(self) -> tuple[str, ...]: ...  # that call the mathematical library
     @property
-    def TIMED(self) -> tuple[str, ...]: ...
+    def TIMED(self) -> tuple[str, ...]: ...  # functions that depend on time
 
     def rhs(self, t: float, y: Numbers, params: Numbers) -> tuple[float, ...]: ...
     def rhs_many(self, t: ArrayLike, y: Arrays, params: Arrays) -> Array: ...

@@ -4,8 +4,6 @@ A function of sums, products and quotients, called once with series, records a t
 each order follows from the lower ones (A. Griewank, A. Walther, Evaluating Derivatives, 13.2).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
@@ -31,7 +29,7 @@ class Series:
             self.tape.append(self)
 
     @classmethod
-    def number(cls, tape: Tape, value: Decimal | float) -> Series:
+    def number(cls, tape: Tape, value: Decimal | float) -> "Series":
         """A constant."""
         return cls(tape, [Decimal(value)], constant=True)
 
@@ -44,29 +42,29 @@ class Series:
         """A computed coefficient."""
         return ZERO if self.constant and order else self.coefficients[order]
 
-    def _series(self, other: Series | float) -> Series:
+    def _series(self, other: "Series | float") -> "Series":
         return other if isinstance(other, Series) else Series.number(self.tape, other)
 
-    def __add__(self, other: Series | float) -> Series:
+    def __add__(self, other: "Series | float") -> "Series":
         return self._combined(self._series(other), 1)
 
-    def __sub__(self, other: Series | float) -> Series:
+    def __sub__(self, other: "Series | float") -> "Series":
         return self._combined(self._series(other), -1)
 
-    def _combined(self, other: Series, sign: int) -> Series:
+    def _combined(self, other: "Series", sign: int) -> "Series":
         if self.constant and other.constant:
             return Series.number(self.tape, self.at(0) + sign * other.at(0))
         return Series(self.tape, [], lambda k: self.at(k) + sign * other.at(k))
 
     __radd__ = __add__
 
-    def __rsub__(self, other: float) -> Series:
+    def __rsub__(self, other: float) -> "Series":
         return self._series(other) - self
 
-    def __neg__(self) -> Series:
+    def __neg__(self) -> "Series":
         return 0 - self
 
-    def __mul__(self, other: Series | float) -> Series:
+    def __mul__(self, other: "Series | float") -> "Series":
         other = self._series(other)
         if self.constant and other.constant:
             return Series.number(self.tape, self.at(0) * other.at(0))
@@ -80,7 +78,7 @@ class Series:
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Series | float) -> Series:
+    def __truediv__(self, other: "Series | float") -> "Series":
         other = self._series(other)
         if other.constant:
             return self * Series.number(self.tape, 1 / other.at(0))
@@ -93,5 +91,5 @@ class Series:
         self.tape.append(quotient)
         return quotient
 
-    def __rtruediv__(self, other: float) -> Series:
+    def __rtruediv__(self, other: float) -> "Series":
         return self._series(other) / self

@@ -1,7 +1,5 @@
 """Exact numbers a + b√d, in which the coefficients of Gauss and Radau methods are written."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from math import sqrt
@@ -16,18 +14,18 @@ class Surd:
     d: int
 
     @classmethod
-    def root(cls, d: int) -> Surd:
+    def root(cls, d: int) -> "Surd":
         """√d."""
         return cls(Fraction(0), Fraction(1), d)
 
-    def _surd(self, other: Surd | Fraction | int) -> Surd:
+    def _surd(self, other: "Surd | Fraction | int") -> "Surd":
         return other if isinstance(other, Surd) else Surd(Fraction(other), Fraction(0), self.d)
 
-    def __add__(self, other: Surd | Fraction | int) -> Surd:
+    def __add__(self, other: "Surd | Fraction | int") -> "Surd":
         other = self._surd(other)
         return Surd(self.a + other.a, self.b + other.b, self.d)
 
-    def __mul__(self, other: Surd | Fraction | int) -> Surd:
+    def __mul__(self, other: "Surd | Fraction | int") -> "Surd":
         other = self._surd(other)
         product = self.a * other.a + self.d * self.b * other.b
         return Surd(product, self.a * other.b + self.b * other.a, self.d)
@@ -35,16 +33,16 @@ class Surd:
     __radd__ = __add__
     __rmul__ = __mul__
 
-    def __neg__(self) -> Surd:
+    def __neg__(self) -> "Surd":
         return Surd(-self.a, -self.b, self.d)
 
-    def __sub__(self, other: Surd | Fraction | int) -> Surd:
+    def __sub__(self, other: "Surd | Fraction | int") -> "Surd":
         return self + -self._surd(other)
 
-    def __rsub__(self, other: Surd | Fraction | int) -> Surd:
+    def __rsub__(self, other: "Surd | Fraction | int") -> "Surd":
         return -self + other
 
-    def __truediv__(self, other: Fraction | int) -> Surd:
+    def __truediv__(self, other: Fraction | int) -> "Surd":
         return Surd(self.a / other, self.b / other, self.d)
 
     def __eq__(self, other: object) -> bool:
@@ -62,5 +60,5 @@ class Surd:
             root = (root + self.d / root) / 2
         return float(self.a + self.b * root)
 
-    def __abs__(self) -> Surd:
+    def __abs__(self) -> "Surd":
         return self if float(self) >= 0 else -self
