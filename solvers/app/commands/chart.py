@@ -1,7 +1,5 @@
 """``holonomic chart``."""
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -58,7 +56,7 @@ def run(arguments: Namespace) -> int:
     return 0
 
 
-def _measured(scene: Scene, *, compiled_only: bool) -> SceneCurves:
+def _measured(scene: "Scene", *, compiled_only: bool) -> "SceneCurves":
     from solvers.io.progress import Progress
     from solvers.studies.work_precision import peers
     from solvers.studies.work_precision.measurement import combinations, curves
@@ -72,7 +70,7 @@ def _measured(scene: Scene, *, compiled_only: bool) -> SceneCurves:
         if compiled_only:
             selected = [combination for combination in selected if combination[2] == "compiled"]
 
-        def reported() -> Iterator[Combination]:
+        def reported() -> "Iterator[Combination]":
             for n, combination in enumerate(selected, 1):
                 report(f"{scene.name}: {', '.join(combination)} ({n} of {len(selected)})")
                 yield combination
@@ -84,7 +82,7 @@ def _measured(scene: Scene, *, compiled_only: bool) -> SceneCurves:
         return SceneCurves.of(scene, reference, measured)
 
 
-def _as_json(results: Sequence[SceneCurves], plots: Sequence[str]) -> dict[str, Any]:
+def _as_json(results: "Sequence[SceneCurves]", plots: Sequence[str]) -> dict[str, Any]:
     from solvers.studies.work_precision.reference import Reference
 
     return {
