@@ -157,6 +157,8 @@ def test_finals_samples_and_extremes_equal_those_of_single_motions(tmp_path: Pat
 def test_the_extremes_of_a_swing_are_its_initial_angle(tmp_path: Path) -> None:
     axes = Grid({"theta": np.linspace(0.1, 3.1, 20)})
     reach = run(tmp_path, single, axes, 30.0, {"reach": Extremes(("theta",))}).maps["reach"]
+    assert Extremes(("theta",)).labels[1] == ("smallest", "largest")
+    assert (reach[..., 0] < reach[..., 1]).all()
     assert_allclose(reach[:, 0, 1], axes.values["theta"], rtol=1e-8)
     assert_allclose(reach[:, 0, 0], -axes.values["theta"], rtol=1e-7)
 
