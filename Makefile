@@ -8,7 +8,7 @@ BIN := .venv/bin
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
-demo: .venv/base  ## set up and run the main job: derive, verify, generate, integrate
+demo: .venv/base  ## set up and run the demonstration: derive, verify, generate, integrate
 	$(BIN)/holonomic demo
 
 test: .venv/ready  ## set up and run the tests
@@ -39,7 +39,7 @@ check: lint types test docs  ## everything that decides whether a change lands
 clean:  ## remove the environment and what the tools left behind
 	rm -rf .venv out build dist .mypy_cache .pytest_cache .ruff_cache
 
-# The environment, in three sizes. Versions are those that are known to work together.
+# The environment, in four sizes. Versions are those that are known to work together.
 PIP := PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install \
 	--quiet --disable-pip-version-check --editable
 

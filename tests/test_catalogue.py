@@ -275,7 +275,7 @@ def test_a_listing_contains_the_names_that_a_user_needs(capsys: pytest.CaptureFi
 
 
 @pytest.mark.parametrize(
-    ("asked", "words"),
+    ("name", "words"),
     [
         ("chian_4", "did you mean"),
         ("chain_n", "known are"),
@@ -284,7 +284,7 @@ def test_a_listing_contains_the_names_that_a_user_needs(capsys: pytest.CaptureFi
     ],
 )
 def test_an_unknown_system_is_refused(
-    asked: str, words: str, capsys: pytest.CaptureFixture[str]
+    name: str, words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["systems", asked]) == 2
+    assert main(["systems", name]) == 2
     assert words in capsys.readouterr().err

@@ -15,7 +15,7 @@ from solvers.runge_kutta.catalogue import load, names
 
 EXPLICIT = [name for name in names() if load(name).is_explicit]
 
-#: A right-hand side that notes where it is asked, and answers with one chosen number.
+#: A right-hand side that records its arguments and returns unit vectors.
 PROBE = """
 double probe_states[64][64], probe_times[64];
 int probe_calls;

@@ -17,7 +17,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Write or check the files; with the whole package, also the tables of READMEs beside it."""
     from derive.commands.derive import run
+
+    if arguments.systems or arguments.output:
+        return run(arguments)
     from solvers.app.readme_tables import readmes
 
-    is_package = not arguments.systems and arguments.output is None
-    return run(arguments, readmes() if is_package else [])
+    return run(arguments, readmes())

@@ -30,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     options.complete_with(action, "sweeps", names)
     options.add_output(parser, "the sweep", "out/SWEEP")
-    parser.set_defaults(output=None)
+    parser.set_defaults(output=None)  # the name of the sweep is not known yet
     workers = "number of concurrent chunks (default: one for each processor)"
     parser.add_argument("--workers", type=int, metavar="N", help=workers)
     scheduler = "address of a Dask scheduler that runs the chunks, such as tcp://host:8786"
