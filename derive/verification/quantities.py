@@ -1,7 +1,6 @@
 """Verdicts on formulas for quantities of a derivation, and on equations of motion."""
 
 from collections.abc import Callable, Iterable
-from contextlib import suppress
 from functools import partial
 from itertools import chain
 
@@ -9,15 +8,9 @@ import sympy as sp
 
 from derive.formulas.expression import ExpressionError, parse
 from derive.mechanics.derivation import Derivation
+from derive.verification.advice import advised, closest_equation
 from derive.verification.model import Model, depends_on, time_derivative, variables
-from derive.verification.terms import (
-    Term,
-    WrongTerm,
-    common_factor,
-    differing_functions,
-    first_wrong_term,
-    split_terms,
-)
+from derive.verification.terms import terms_of_equation
 from derive.verification.verdict import Verdict
 
 
@@ -45,6 +38,15 @@ UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")
 
 def judge_formula(model: Model, label: str, text: str, kind: str, coordinate: str = "") -> Verdict:
     """Judge a formula for a key of `QUANTITIES`, or an equation of motion, ``euler_lagrange``."""
+    verdict = _judged(model, label, text, kind, coordinate)
+    if not verdict.correction:
+        return verdict
+    derived = QUANTITIES[kind](model.derivation, coordinate) if kind in QUANTITIES else None
+    return advised(verdict, model, derived)
+
+
+def _judged(model: Model, label: str, text: str, kind: str, coordinate: str) -> Verdict:
+    """Judge a formula without advice; if it is wrong, the correction is the derived one."""
     try:
         if kind == "euler_lagrange":
             return _judge_equation_of_motion(label, text, model)
@@ -74,8 +76,7 @@ def _judge_quantity(label: str, text: str, model: Model, kind: str, derived: sp.
         return verdict(verdict="verified", note=note)
     if kind in UP_TO_A_CONSTANT and all(is_zero(difference.diff(s)) for s in variables(system)):
         return verdict(verdict="equivalent", note="it differs by a constant")
-    evidence = _evidence(model, value, derived, _wrong_term_of_quotient(text, model, derived))
-    return verdict(verdict="wrong", correction=str(derived), **evidence)
+    return verdict(verdict="wrong", correction=str(derived))
 
 
 def _is_gauge_term(difference: sp.Expr, model: Model) -> bool:
@@ -87,56 +88,21 @@ def _is_gauge_term(difference: sp.Expr, model: Model) -> bool:
     )
 
 
-def _wrong_term_of_quotient(text: str, model: Model, derived: sp.Expr) -> WrongTerm | None:
-    """Return the first wrong term of a sum, or of a quotient: its denominator comes first."""
-    scope, state = model.context.scope, variables(model.derivation.system)
-    terms = split_terms(text, scope)
-    if len(terms) == 1:
-        numerator, denominator = sp.fraction(sp.together(terms[0].value))
-        derived_numerator, derived_denominator = sp.fraction(sp.together(derived))
-        if depends_on(denominator, state):
-            ratio = common_factor([Term("", denominator)], derived_denominator, state)
-            if not model.context.is_zero(denominator - ratio * derived_denominator):
-                return WrongTerm(str(denominator), sp.expand(ratio * derived_denominator))
-            terms, derived = [Term(text, numerator)], derived_numerator * ratio
-            printed = text.rpartition("/")[0].strip()
-            if printed[:1] == "(" and printed[-1:] == ")":
-                with suppress(ExpressionError):  # the brackets can belong to two factors
-                    terms = split_terms(printed[1:-1], scope)
-    return first_wrong_term(terms, derived, state)
-
-
 def _judge_equation_of_motion(label: str, text: str, model: Model) -> Verdict:
     """Judge an equation that must hold along every motion, and depend on accelerations."""
     if text.count("=") > 1:
         raise ExpressionError(f"an equation has one equals sign, not {text.count('=')}")
-    left, _, right = text.partition("=")
-    terms = split_terms(left, model.context.scope)
-    terms += split_terms(right, model.context.scope, -1) if "=" in text else []
-    system, verdict = model.derivation.system, partial(Verdict, label, printed=text)
-    state, accelerations = variables(system), system.qddot
+    terms = terms_of_equation(text, model.context.scope)
+    accelerations = model.derivation.system.qddot
+    verdict = partial(Verdict, label, printed=text)
     value = sp.Add(*(term.value for term in terms))
     if not depends_on(value, accelerations):
         return verdict(verdict="wrong", note="it contains no acceleration")
-    equations = model.derivation.euler_lagrange
-    candidates = [e * common_factor(terms, e, state, accelerations) for e in equations]
-    derived = min(candidates, key=lambda e: len(differing_functions(terms, e, state)))
+    derived = closest_equation(terms, model)
     if model.context.is_zero(value - derived):
         return verdict(verdict="verified")
     if not all(value.diff(a, b).equals(0) for a in accelerations for b in accelerations):
         return verdict(verdict="wrong", note="it is not linear in the accelerations")
     if model.holds_along_motions(value):
         return verdict(verdict="verified", note="it is a combination of the equations of motion")
-    evidence = _evidence(model, value, derived, first_wrong_term(terms, derived, state))
-    return verdict(verdict="wrong", correction=f"{derived} = 0", **evidence)
-
-
-def _evidence(
-    model: Model, value: sp.Expr, derived: sp.Expr, wrong_term: WrongTerm | None
-) -> dict[str, str]:
-    """Fields of the verdict on a wrong formula; in unusual quotients no term is identified."""
-    values = [x.evalf(8, subs=model.context.states[0]) for x in (value, derived)]
-    fields = {"witness": " instead of ".join(map(sp.sstr, values))}
-    if wrong_term:
-        fields |= {"wrong_term": wrong_term.text, "correct_term": str(wrong_term.correct)}
-    return fields
+    return verdict(verdict="wrong", correction=f"{derived} = 0")

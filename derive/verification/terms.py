@@ -47,6 +47,12 @@ def split_terms(text: str, scope: Scope, side: int = 1) -> list[Term]:
     return terms
 
 
+def terms_of_equation(text: str, scope: Scope) -> list[Term]:
+    """Split the difference of the sides of an equation; without an equals sign, a formula."""
+    left, equals, right = text.partition("=")
+    return split_terms(left, scope) + (split_terms(right, scope, -1) if equals else [])
+
+
 def _summands(node: ast.expr, sign: int) -> Iterator[tuple[int, ast.expr]]:
     match node:
         case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as operator, right=right):
