@@ -84,17 +84,23 @@ def test_every_marked_table_is_generated() -> None:
     assert titles == {(name, title) for name, title, _ in TABLES}
 
 
-def test_the_command_checks_and_mends_a_table(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.fixture
+def copied_readmes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a checkout that has READMEs, and no generated modules."""
     for path in READMES:
         (tmp_path / path.relative_to(ROOT)).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(path, tmp_path / path.relative_to(ROOT))
-    page = tmp_path / "derive" / "README.md"
-    page.write_text(page.read_text(encoding="utf-8").replace("| `foucault_", "| `faucault_"))
     generated = Tree(tmp_path, {}, complete=False)
     monkeypatch.setattr("derive.commands.derive.planned", lambda *_: generated)
     monkeypatch.setattr("solvers.app.readme_tables.ROOT", tmp_path)
+    return tmp_path
+
+
+def test_the_command_checks_and_mends_a_table(
+    copied_readmes: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = copied_readmes / "derive" / "README.md"
+    page.write_text(page.read_text(encoding="utf-8").replace("| `foucault_", "| `faucault_"))
     assert main(["derive", "--check"]) == 1
     assert f"{page}: differs" in (output := capsys.readouterr().out)
     assert "+| `foucault_pendulum`" in output
@@ -102,6 +108,20 @@ def test_the_command_checks_and_mends_a_table(
     assert main(["derive"]) == 0
     assert page.read_text(encoding="utf-8") == DERIVE.read_text(encoding="utf-8")
     assert main(["derive", "--check"]) == 0
+
+
+@pytest.mark.parametrize("marker", ["<!-- methods -->\n", "<!-- end of methods -->"])
+def test_the_command_refuses_a_page_without_a_marker(
+    copied_readmes: Path, marker: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = copied_readmes / "solvers" / "runge_kutta" / "README.md"
+    changed = page.read_text(encoding="utf-8").replace(marker, "")
+    page.write_text(changed, encoding="utf-8")
+    assert main(["derive"]) == 2
+    message = capsys.readouterr().err
+    assert f"{page} has no table of methods" in message
+    assert marker.strip() in message
+    assert page.read_text(encoding="utf-8") == changed
 
 
 def test_the_operations_of_the_readme_are_those_of_the_module() -> None:

@@ -30,12 +30,21 @@ TABLES: tuple[tuple[str, str, Callable[[], str]], ...] = (
 
 
 def readmes() -> list[Tree]:
-    """The READMEs beside the packages, with current tables; none in an installation."""
+    """The READMEs beside the packages, with current tables; none in an installation.
+
+    A `ValueError` names a README without the markers of its table.
+    """
     texts: dict[str, str] = {}
     for name, title, table in TABLES:
         if (ROOT / name).is_file():
             text = texts.get(name) or (ROOT / name).read_text(encoding="utf-8")
             start, end = f"<!-- {title} -->\n", f"<!-- end of {title} -->"
-            before, after = text.partition(start)[0], text.partition(end)[2]
+            before, _, rest = text.partition(start)
+            _, found, after = rest.partition(end)
+            if not found:
+                raise ValueError(
+                    f"{ROOT / name} has no table of {title}: write the lines {start.strip()!r} and "
+                    f"{end!r} where it belongs"
+                )
             texts[name] = f"{before}{start}{table()}{end}{after}"
     return [Tree(ROOT, texts, complete=False)] if texts else []
