@@ -26,10 +26,28 @@ def test_a_solution_shows_status_steps_method_and_final_state() -> None:
     assert "Classical fourth order, rational form, h = 0.01, compiled by" in lines[2]
     end = solution.y[:, -1]
     expected = zip(ep.STATE, end, ("m", "rad", "m/s", "rad/s"), strict=True)
-    assert lines[3] == "  final state: " + ", ".join(f"{n} = {y:.6g} {u}" for n, y, u in expected)
+    state = ", ".join(f"{n} = {y:.6g} {u}" for n, y, u in expected)
+    assert lines[3] == f"  final state, t = 2 s: {state}"
     nothing = integrate(ep, (0, 2), Y0, {}, t_eval=[], max_steps=1)
     assert "maximum number of steps" in repr(nothing)
-    assert "0 times, 1 step, 0 rejected" in repr(nothing)
+    assert "\n  0 times, 1 step, 0 rejected" in repr(nothing)
+
+
+@pytest.mark.parametrize(
+    ("t_eval", "text"),
+    [
+        ([2], "t = 2 s, 1 time, "),
+        ([1], "t = 1 s, 1 time, "),
+        ([0.5, 1, 1.5], "t = 0.5 to 1.5 s, 3 times, "),
+    ],
+)
+def test_a_solution_shows_requested_times_apart_from_its_end(
+    t_eval: list[float], text: str
+) -> None:
+    solution = integrate(ep, (0, 2), Y0, {}, t_eval=t_eval)
+    lines = repr(solution).splitlines()
+    assert lines[1].startswith(f"  {text}")
+    assert lines[3].startswith("  final state, t = 2 s: r = ")
 
 
 def test_a_table_of_a_solution_has_a_column_for_each_component() -> None:

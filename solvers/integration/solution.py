@@ -75,7 +75,7 @@ class Solution:
     Solution: the integration reached the end of the time span
       t = 0 to 1 s, 101 times, 100 steps, 0 rejected
       Classical fourth order, lagrangian form, h = 0.01, python
-      final state: theta = -0.0599313 rad, theta_dot = -0.177191 rad/s
+      final state, t = 1 s: theta = -0.0599313 rad, theta_dot = -0.177191 rad/s
     """
 
     t: Array
@@ -101,16 +101,17 @@ class Solution:
 
     def __repr__(self) -> str:
         t_end, y_end = self.end
-        t_start = f"{self.t[0]:.6g} to " if len(self.t) else ""
+        # requested times need contain neither the start nor the end
+        t = " to ".join(dict.fromkeys(f"{t:.6g}" for t in (*self.t[:1], *self.t[-1:])))
         components = zip(self.units.items(), y_end, strict=True)
         state = [f"{name} = {y:.6g} {unit}".rstrip() for (name, unit), y in components]
         headline = self.message if self.status is Status.UNSTABLE else self.status.value
         times, steps = counted(len(self.t), "time"), counted(self.steps, "step")
         return (
             f"Solution: {headline}\n"
-            f"  t = {t_start}{t_end:.6g} s, {times}, {steps}, {self.rejected} rejected\n"
+            f"  {t and f't = {t} s, '}{times}, {steps}, {self.rejected} rejected\n"
             f"  {self.run}\n"
-            f"  final state: {', '.join(state)}"
+            f"  final state, t = {t_end:.6g} s: {', '.join(state)}"
         )
 
     def to_table(self) -> dict[str, Array]:
