@@ -41,7 +41,7 @@
        theta2_dot [rad/s]
        theta3_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        x [m]
        sin_theta1 [1]
        cos_theta1 [1]
@@ -1206,9 +1206,9 @@ static inline void cart_3_rhs_rational(
     (void)t;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    279 operations, 13 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void cart_3_rhs_variational(
     cart_3_real t, const cart_3_real *state, const cart_3_real *params, cart_3_real *result)
 {

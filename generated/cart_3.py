@@ -41,7 +41,7 @@ State y in functions of the rational form:
     theta2_dot [rad/s]
     theta3_dot [rad/s]
 
-State y of `rhs_variational`: a motion and a small change of it:
+State y of `rhs_variational`: a motion and its linear perturbation:
     x [m]
     sin_theta1 [1]
     cos_theta1 [1]
@@ -2156,7 +2156,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
     279 operations, 13 of them on parameters alone.
 
@@ -2175,7 +2175,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: of the motion, then of the change, to first order.
+        Time derivative of y: of the motion, then of the perturbation.
     """
     # inputs
     _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y.tolist() if hasattr(y, "tolist") else y

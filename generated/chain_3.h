@@ -34,7 +34,7 @@
        theta2_dot [rad/s]
        theta3_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        sin_theta1 [1]
        cos_theta1 [1]
        sin_theta2 [1]
@@ -931,9 +931,9 @@ static inline void chain_3_rhs_rational(
     (void)t;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    193 operations, 11 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void chain_3_rhs_variational(
     chain_3_real t, const chain_3_real *state,
     const chain_3_real *params, chain_3_real *result)

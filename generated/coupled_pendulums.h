@@ -26,7 +26,7 @@
        theta1_dot [rad/s]
        theta2_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        sin_theta1 [1]
        cos_theta1 [1]
        sin_theta2 [1]
@@ -642,9 +642,9 @@ static inline void coupled_pendulums_rhs_rational(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    123 operations, 8 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void coupled_pendulums_rhs_variational(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
     const coupled_pendulums_real *params, coupled_pendulums_real *result)

@@ -26,7 +26,7 @@ State y in functions of the rational form:
     theta1_dot [rad/s]
     theta2_dot [rad/s]
 
-State y of `rhs_variational`: a motion and a small change of it:
+State y of `rhs_variational`: a motion and its linear perturbation:
     sin_theta1 [1]
     cos_theta1 [1]
     sin_theta2 [1]
@@ -1146,7 +1146,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
     123 operations, 8 of them on parameters alone.
 
@@ -1164,7 +1164,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: of the motion, then of the change, to first order.
+        Time derivative of y: of the motion, then of the perturbation.
     """
     # inputs
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y

@@ -26,7 +26,7 @@
        theta1_dot [rad/s]
        theta2_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        sin_theta1 [1]
        cos_theta1 [1]
        sin_theta2 [1]
@@ -623,9 +623,9 @@ static inline void double_pendulum_rhs_rational(
     (void)t;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    77 operations, 5 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void double_pendulum_rhs_variational(
     double_pendulum_real t, const double_pendulum_real *state,
     const double_pendulum_real *params, double_pendulum_real *result)

@@ -25,7 +25,7 @@
        r_dot [m/s]
        theta_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        r [m]
        sin_theta [1]
        cos_theta [1]
@@ -438,9 +438,9 @@ static inline void elastic_pendulum_rhs_rational(
     (void)t;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    46 operations, 3 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void elastic_pendulum_rhs_variational(
     elastic_pendulum_real t, const elastic_pendulum_real *state,
     const elastic_pendulum_real *params, elastic_pendulum_real *result)

@@ -25,7 +25,7 @@ State y in functions of the rational form:
     r_dot [m/s]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and a small change of it:
+State y of `rhs_variational`: a motion and its linear perturbation:
     r [m]
     sin_theta [1]
     cos_theta [1]
@@ -784,7 +784,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
     46 operations, 3 of them on parameters alone.
 
@@ -801,7 +801,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: of the motion, then of the change, to first order.
+        Time derivative of y: of the motion, then of the perturbation.
     """
     # inputs
     r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y

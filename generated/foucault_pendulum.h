@@ -18,7 +18,7 @@
        p_x [kg m/s]
        p_y [kg m/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        x [m]
        y [m]
        x_dot [m/s]
@@ -749,9 +749,9 @@ static inline void foucault_pendulum_lagrangian_state(
 #endif
 
 #ifndef HOLONOMIC_VECTOR
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    370 operations, 10 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void foucault_pendulum_rhs_variational(
     foucault_pendulum_real t, const foucault_pendulum_real *state,
     const foucault_pendulum_real *params, foucault_pendulum_real *result)

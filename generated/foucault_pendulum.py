@@ -18,7 +18,7 @@ State y = (q, p), in functions of the Hamiltonian form:
     p_x [kg m/s]
     p_y [kg m/s]
 
-State y of `rhs_variational`: a motion and a small change of it:
+State y of `rhs_variational`: a motion and its linear perturbation:
     x [m]
     y [m]
     x_dot [m/s]
@@ -1371,7 +1371,7 @@ def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
     370 operations, 10 of them on parameters alone.
 
@@ -1388,7 +1388,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: of the motion, then of the change, to first order.
+        Time derivative of y: of the motion, then of the perturbation.
     """
     # inputs
     x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y.tolist() if hasattr(y, "tolist") else y

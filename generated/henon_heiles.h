@@ -18,7 +18,7 @@
        p_x [kg m/s]
        p_y [kg m/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        x [m]
        y [m]
        x_dot [m/s]
@@ -306,9 +306,9 @@ static inline void henon_heiles_lagrangian_state(
     (void)params;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    21 operations, 0 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void henon_heiles_rhs_variational(
     henon_heiles_real t, const henon_heiles_real *state,
     const henon_heiles_real *params, henon_heiles_real *result)

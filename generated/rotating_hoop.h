@@ -18,7 +18,7 @@
        cos_theta [1]
        theta_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        sin_theta [1]
        cos_theta [1]
        theta_dot [rad/s]
@@ -368,9 +368,9 @@ static inline void rotating_hoop_rhs_rational(
     (void)t;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    18 operations, 3 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void rotating_hoop_rhs_variational(
     rotating_hoop_real t, const rotating_hoop_real *state,
     const rotating_hoop_real *params, rotating_hoop_real *result)

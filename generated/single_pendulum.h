@@ -18,7 +18,7 @@
        cos_theta [1]
        theta_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        sin_theta [1]
        cos_theta [1]
        theta_dot [rad/s]
@@ -355,9 +355,9 @@ static inline void single_pendulum_rhs_rational(
     (void)t;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    11 operations, 1 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void single_pendulum_rhs_variational(
     single_pendulum_real t, const single_pendulum_real *state,
     const single_pendulum_real *params, single_pendulum_real *result)

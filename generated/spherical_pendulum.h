@@ -26,7 +26,7 @@
        theta_dot [rad/s]
        phi_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        sin_theta [1]
        cos_theta [1]
        sin_phi [1]
@@ -459,9 +459,9 @@ static inline void spherical_pendulum_rhs_rational(
     (void)t;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    49 operations, 1 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void spherical_pendulum_rhs_variational(
     spherical_pendulum_real t, const spherical_pendulum_real *state,
     const spherical_pendulum_real *params, spherical_pendulum_real *result)

@@ -26,7 +26,7 @@ State y in functions of the rational form:
     theta_dot [rad/s]
     phi_dot [rad/s]
 
-State y of `rhs_variational`: a motion and a small change of it:
+State y of `rhs_variational`: a motion and its linear perturbation:
     sin_theta [1]
     cos_theta [1]
     sin_phi [1]
@@ -873,7 +873,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
     49 operations, 1 of them on parameters alone.
 
@@ -890,7 +890,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     Returns
     -------
     Vector
-        Time derivative of y: of the motion, then of the change, to first order.
+        Time derivative of y: of the motion, then of the perturbation.
     """
     # inputs
     sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot, delta_theta, _, delta_theta_dot, delta_phi_dot = y.tolist() if hasattr(y, "tolist") else y

@@ -25,7 +25,7 @@
        r_dot [m/s]
        theta_dot [rad/s]
 
-   State y of `rhs_variational`: a motion and a small change of it:
+   State y of `rhs_variational`: a motion and its linear perturbation:
        r [m]
        sin_theta [1]
        cos_theta [1]
@@ -434,9 +434,9 @@ static inline void swinging_atwood_rhs_rational(
     (void)t;
 }
 
-/* Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.
+/* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
    42 operations, 3 of them on parameters alone.
-   Time derivative of y: of the motion, then of the change, to first order. */
+   Time derivative of y: of the motion, then of the perturbation. */
 static inline void swinging_atwood_rhs_variational(
     swinging_atwood_real t, const swinging_atwood_real *state,
     const swinging_atwood_real *params, swinging_atwood_real *result)

@@ -184,7 +184,9 @@ def test_jacobians_agree_with_complex_steps(module: ModuleType, name: str) -> No
         assert_allclose(jacobian(0.0, y, params), expected, rtol=1e-9, atol=1e-11 * scale)
 
 
-def test_variational_equations_propagate_a_small_change(module: ModuleType) -> None:
+def test_variational_equations_propagate_a_linear_perturbation(module: ModuleType) -> None:
+    meaning = " ".join(module.rhs_variational.__doc__.split())
+    assert "a motion and its linear perturbation" in meaning
     n, generator = len(module.STATE), np.random.default_rng(4)
     for y, params in states(module):
         change = generator.normal(size=n)

@@ -190,7 +190,7 @@ def test_the_lyapunov_exponent_equals_the_divergence_of_neighbours(tmp_path: Pat
         assert exponent == pytest.approx(np.log(apart) / t, abs=1e-4)
 
 
-def test_small_changes_grow_beyond_the_range_of_floats(tmp_path: Path) -> None:
+def test_perturbations_grow_beyond_the_range_of_floats(tmp_path: Path) -> None:
     # at rest on a saddle, x = 0, y = 1, where V'' is -1 along y and 3 along x: of δ₀ = (½, ½, ½, ½)
     # the part along y becomes ½ (1, 1) e^t, the other part oscillates
     start = [[x] for x in (0, 1, 0, 0, *[0.5] * 4)]

@@ -91,8 +91,9 @@ SPECS = (
         "Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.",
         "Time derivative of y."),
     FunctionSpec("rhs_variational", "variational", "variational",
-        "Right-hand side of y' = rhs_variational(t, y, params): a motion and a small change of it.",
-        "Time derivative of y: of the motion, then of the change, to first order."),
+        "Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear "
+        "perturbation.",
+        "Time derivative of y: of the motion, then of the perturbation."),
     FunctionSpec("equilibrium", "parameters", "q",
         "Coordinates at the equilibrium.",
         "{}.", _equilibrium, lambda derivation: derivation.equilibrium is not None),

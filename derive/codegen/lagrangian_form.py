@@ -14,7 +14,7 @@ HALF = Fraction(1, 2)
 
 
 class LagrangianForm(EquationsOfMotion):
-    """Derivatives of (q, q̇), of (sin q, cos q, q̇), and of small changes of these."""
+    """Derivatives of (q, q̇), of (sin q, cos q, q̇), and of linear perturbations of these."""
 
     @cached_property
     def _forcing(self) -> list[Node]:

@@ -18,7 +18,7 @@ STATES: dict[Form, str] = {
     "lagrangian": "State y = (q, qdot)",
     "hamiltonian": "State y = (q, p), in functions of the Hamiltonian form",
     "rational": "State y in functions of the rational form",
-    "variational": "State y of `rhs_variational`: a motion and a small change of it",
+    "variational": "State y of `rhs_variational`: a motion and its linear perturbation",
 }
 
 

@@ -58,7 +58,7 @@ def acceleration(coordinate: sp.Symbol) -> Rate:
 
 
 def variation(variable: sp.Symbol) -> sp.Symbol:
-    """The symbol of a small change of a coordinate or velocity."""
+    """The symbol of a linear perturbation of a coordinate or velocity."""
     return sp.Symbol(f"delta_{variable.name}", real=True)
 
 

@@ -136,7 +136,7 @@ class System:
 
     @cached_property
     def variations(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of small changes of the coordinates, then of the velocities."""
+        """Symbols of linear perturbations of the coordinates, then of the velocities."""
         return tuple(variation(s) for s in self.q + self.qdot)
 
     @cached_property

@@ -1,7 +1,7 @@
 """Forms of the equations of motion, and conversion of their states.
 
 An ordinary state is (q, q̇); the state of a form may differ. In the variational form, both also
-contain a variation, a small change of the state.
+contain a linear perturbation of the state.
 """
 
 from collections.abc import Sequence

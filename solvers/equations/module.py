@@ -107,6 +107,6 @@ def header(module: GeneratedModule) -> Path | None:
 
 
 def state_names(module: GeneratedModule, form: str) -> tuple[str, ...]:
-    """Names of an ordinary state: (q, q̇), and of the variational form a small change of it."""
+    """Names of an ordinary state: (q, q̇), in the variational form also of a perturbation."""
     changes = [f"delta_{name}" for name in module.STATE if form == "variational"]
     return (*module.STATE, *changes)

@@ -149,7 +149,7 @@ def _stored(event: EventFunction, states: Sequence[Array]) -> Sequence[int]:
 
 
 def _log_length(changes: Array, scale: ArrayLike = 0.0) -> Array:
-    """Natural logarithms of the lengths of small changes in rows, times powers of two."""
+    """Natural logarithms of the lengths of perturbations in rows, times powers of two."""
     largest = np.abs(changes).max(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         length = np.log(largest) + np.log(np.linalg.norm(changes.T / largest, axis=0))

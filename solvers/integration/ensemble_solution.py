@@ -26,8 +26,8 @@ class Ensemble:
     t, y : ndarray of shape (n,) and (state, n)
         Time in s at which each motion ended, coordinates and velocities there.
     growth : ndarray of shape (n,)
-        In the variational form, natural logarithms of the ratio of the length of the small change
-        at the end to that at the start, of any size; else NaN.
+        In the variational form, natural logarithms of the ratio of the length of the
+        linear perturbation at the end to that at the start, of any size; else NaN.
     samples : ndarray of shape (state, n, times)
         States at the requested times; NaN after a motion's end.
     t_events : ndarray of shape (n, events, occurrences)

@@ -53,7 +53,7 @@ def integrate(
     form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
         The form of the equations; by default the rational form, where it exists, in a compiled
         loop of an explicit method, and Lagrange's form otherwise. The variational form
-        integrates a small change, too: `y0` is then the state, followed by its change.
+        integrates a linear perturbation, too: `y0` is then the state, followed by it.
     rtol, atol : float, optional
         The error of a step in a component may be atol + rtol * abs(y); in Lagrange's form `atol`
         may be an array of shape (state,). They are unused with fixed steps.

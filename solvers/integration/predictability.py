@@ -15,7 +15,7 @@ from solvers.integration.compiled_loop import loop, obstacle
 from solvers.integration.problem import Options, Problem
 from solvers.runge_kutta.catalogue import load
 
-#: Method and tolerance for small changes, most steps, and steps per call.
+#: Method and tolerance for linear perturbations, most steps, and steps per call.
 METHOD, TOLERANCE, MOST_STEPS, CHUNK = "verner87", 1e-9, 20_000, 500
 #: In the first steps every change grows, at once where a mode is fast.
 FIRST_STEPS = 10
@@ -47,7 +47,7 @@ def ignore_predictability() -> Iterator[None]:
 def predictable_until(problem: Problem, end: float) -> float:
     """The time in s from which on usual errors are as large as the motion.
 
-    There a small change of the initial state, by the variational equations, has grown by
+    There a linear perturbation of the initial state, by the variational equations, has grown by
     1/(10 tolerances) since the first few steps, and faster than in regular motion. A change that
     is not integrated to the end is extrapolated. The result is infinity if there is no such time
     before `end`, or if it is unknown: for fixed steps, and without a compiled loop.

@@ -45,7 +45,7 @@ class Solution:
         Times in s: those requested, or the start and every step's end.
     y : ndarray of shape (state, n)
         Coordinates and velocities at these times, whatever the form; in the variational form with
-        their small changes below.
+        their linear perturbations below.
     t_events, y_events : list of ndarray
         Times in s and states, the latter of shape (occurrences, state), of each event.
     nfev, njev : int

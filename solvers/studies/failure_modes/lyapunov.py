@@ -15,7 +15,7 @@ from solvers.integration.prepare import prepare
 
 Array = NDArray[np.float64]
 
-#: Time in s after which a small change is scaled back to length 1; intervals left out at first.
+#: Time in s after which a perturbation is scaled back to length 1; intervals left out at first.
 INTERVAL, TRANSIENT = 1.0, 100
 TOLERANCE = 1e-9
 #: Parts of a run of this duration in s count as independent; the least and largest number of parts.
@@ -45,7 +45,7 @@ def lyapunov(
 ) -> "Mean":
     """The largest Lyapunov exponent in 1/s, along the motion from `y0`.
 
-    The variational equations carry a small change along, which is scaled back to length 1
+    The variational equations carry a linear perturbation along, which is scaled back to length 1
     every second. The exponent is the mean of the logarithms of its growth (G. Benettin,
     L. Galgani, J.-M. Strelcyn, Physical Review A 14, 2338, 1976).
 
@@ -88,7 +88,7 @@ def lyapunov(
 def _advance(
     module: GeneratedModule, params: Sequence[float]
 ) -> Callable[[list[float]], ArrayLike]:
-    """A function that advances a motion and a small change by one interval."""
+    """A function that advances a motion and a linear perturbation by one interval."""
     span, tol = (0.0, INTERVAL), TOLERANCE
     try:
         return partial(prepare(module, params, form="variational", rtol=tol, atol=tol), span)

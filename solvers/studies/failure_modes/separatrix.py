@@ -30,7 +30,7 @@ class Sensitivity:
     """Growth of small errors near the upright equilibrium."""
 
     distance: float  # initial distance from upright in rad
-    predicted: float  # growth of a small change of the start during one fall
+    predicted: float  # growth of a linear perturbation of the start during one fall
     amplification: float  # largest growth, from the variational equations
     error: float  # largest error of a run, in rad and rad/s
 

@@ -59,7 +59,7 @@ class Map:
     is_logarithmic: ClassVar[bool] = False
     #: Whether plots show angles modulo 2π.
     wraps_angles: ClassVar[bool] = False
-    #: Whether a small change of the state is integrated, too.
+    #: Whether a linear perturbation is integrated, too.
     is_variational: ClassVar[bool] = False
     #: Whether the first event of the map may end the motion.
     ends_motion: ClassVar[bool] = False
