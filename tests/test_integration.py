@@ -1,5 +1,6 @@
 """Integrations against exact solutions, in every form; samples and time spans."""
 
+from functools import partial
 from math import asin, log2, pi, sin, sqrt
 
 import numpy as np
@@ -329,6 +330,42 @@ def test_solve_ivp_runs_our_methods_backwards_with_events_and_refuses_unknown_op
         solve_ivp(sp.rhs, (0, 1), (1, 0), method=ode_solver("dp54"), args=(sp.DEFAULTS,), lband=1)
     with pytest.raises(ValueError, match="does not estimate"):
         ode_solver("rk4")
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_solve_ivp_runs_our_methods_without_end_up_to_a_terminal_event(direction: int) -> None:
+    def bottom(t: float, y: np.ndarray, params: object) -> float:
+        return float(y[0])
+
+    bottom.terminal = True  # type: ignore[attr-defined]
+    run = partial(solve_ivp, sp.rhs, (0, direction * np.inf), (1.0, 0.0), args=(sp.DEFAULTS,))
+    ours, scipys = (run(method=m, events=bottom) for m in (ode_solver("dp54"), "RK45"))
+    assert ours.status == scipys.status == 1
+    assert ours.t_events[0] == pytest.approx(scipys.t_events[0], rel=1e-2)
+    endless = solve_ivp(lambda t, y: 0 * y, (0, np.inf), [1.0], method=ode_solver("dp54"))
+    assert not endless.success
+    assert "infinite" in endless.message
+
+
+def test_solve_ivp_runs_our_methods_over_no_time() -> None:
+    still = solve_ivp(lambda t, y: -y, (1, 1), [2.0], method=ode_solver("dp54"))
+    assert still.success
+    assert still.y[0].tolist() == [2.0] * len(still.t)
+
+
+@pytest.mark.parametrize(
+    ("span", "options", "message"),
+    [
+        ((0, 1), {"first_step": 1.5}, "first_step = 1.5 must be at most 1.0"),
+        ((0, np.nan), {}, "t_span = .*nan"),
+        ((np.inf, 1), {}, "t_span = .*inf"),
+    ],
+)
+def test_solve_ivp_refuses_spans_and_first_steps_that_our_methods_cannot_take(
+    span: tuple[float, float], options: dict[str, float], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        solve_ivp(lambda t, y: -y, span, [1.0], method=ode_solver("verner87"), **options)
 
 
 def test_small_angles_have_the_textbook_period() -> None:

@@ -3,6 +3,7 @@
 import os
 import signal
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from math import pi
 from pathlib import Path
@@ -329,6 +330,27 @@ def test_a_prepared_run_names_the_invalid_argument() -> None:
     with pytest.raises(NotFinishedError) as stopped:
         prepare(sp, (0.0, 1.0, 9.8), form="hamiltonian")((0, 1), (1.0, 0.0))
     assert stopped.value.status is Status.NOT_FINITE
+
+
+def test_a_prepared_run_refuses_a_second_thread_during_a_call() -> None:
+    run = prepare(dp, dp.DEFAULTS, method="rk4", h=2e-6, max_steps=10**8)
+    alone = run((0, 10), (1.0, 2.0, 0.0, 0.0))
+    barrier = threading.Barrier(2)
+
+    def call(start: tuple[float, ...]) -> tuple[float, ...] | str:
+        barrier.wait()
+        try:
+            return run((0, 10), start)
+        except RuntimeError as error:
+            return str(error)
+
+    with ThreadPoolExecutor(2) as pool:
+        results = list(pool.map(call, [(1.0, 2.0, 0.0, 0.0)] * 2))
+    assert sum(result == alone for result in results) == 1
+    assert sum("one function for each thread" in str(result) for result in results) == 1
+    with pytest.raises(ValueError, match="y0"):
+        run((0, 10), (1.0,))
+    assert run((0, 10), (1.0, 2.0, 0.0, 0.0)) == alone  # it is free again, also after an error
 
 
 def test_angles_of_pi_are_events_on_either_side() -> None:

@@ -67,23 +67,36 @@ class _Method(OdeSolver):
             raise ValueError(f"method {self.name!r} has no option {', '.join(unknown)}")
         super().__init__(fun, t0, y0, t_bound, vectorized)
         options: dict[str, Any] = OPTIONS | given
+        duration, first_step = abs(t_bound - t0), options["first_step"]
+        if not np.isfinite(t0) or np.isnan(t_bound):
+            raise ValueError(f"t_span = {(t0, t_bound)} must be numbers, with a finite start")
         for name in ("max_step", "first_step"):
             if options[name] is not None and not options[name] > 0:
                 raise ValueError(f"{name} = {options[name]} must be positive")
+        if first_step is not None and first_step > duration:
+            raise ValueError(f"first_step = {first_step} must be at most {duration}, all of t_span")
         limits = tolerances(options["rtol"], options["atol"], self.n)
         self._controller = Controller(self.tableau.error_order, *limits)
         stepper = Stepper(self.tableau, self.fun)
         self._attempts = Attempts(stepper, self._controller)
         self._point = Point(self.t, self.y, stepper.derivative(self.t, self.y))
-        self._max_step, self._shortest = options["max_step"], shortest_step(t0, t_bound)
-        guess = self._attempts.first_step_size
-        self._h = options["first_step"] or guess(self._point, t_bound, self._shortest)
+        self._max_step, self._h = options["max_step"], first_step or 0.0
+        if first_step is None and duration:
+            guess = self._attempts.first_step_size
+            self._h = guess(self._point, t_bound, self._shortest_step)
+
+    @property
+    def _shortest_step(self) -> float:
+        """The shortest step up to the end of the time span, or from now on if that is infinite."""
+        return shortest_step(self.t, self.t_bound if np.isfinite(self.t_bound) else self.t)
 
     def _step_impl(self) -> tuple[bool, str | None]:
         while True:
             h = min(self._h, self._max_step, abs(self.t_bound - self.t))
-            t = self.t + h * self.direction
-            if abs(t - self.t) < self._shortest and t != self.t_bound:
+            t = float(self.t) + float(h * self.direction)
+            if not np.isfinite(t):
+                return False, "The time span is infinite, and no event ended the motion."
+            if abs(t - self.t) < self._shortest_step and t != self.t_bound:
                 return False, self.TOO_SMALL_STEP
             trial = self._attempts.attempt(self._point, t, h, is_last=False)
             if isinstance(trial, Rejected):

@@ -83,7 +83,8 @@ class Prepared:
     """A function that integrates one motion after another: ``run((t0, t1), y0, params=None)``.
 
     Times are in s; `y0` and `params` are in order or by name. It raises `ValueError` for invalid
-    arguments, and `NotFinishedError` where the motion does not reach the end of the time span.
+    arguments, `NotFinishedError` where the motion does not reach the end of the time span, and
+    `RuntimeError` in a thread that calls it during a call of another thread.
     """
 
     def __init__(self, single: Any, batch: Batch, problem: Problem) -> None:
@@ -98,11 +99,27 @@ class Prepared:
         batch.task.time_limit = compiled_loop.TIME_LIMIT
         self._single, self._task = single, ctypes.addressof(batch.task)
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
+        self._idle = [True]  # empty during a call; faster than a lock, and as atomic
 
     def __call__(
         self, t_span: tuple[float, float], y0: Numbers, params: Numbers | None = None
     ) -> tuple[float, ...]:
         """The state at the end of `t_span`."""
+        try:
+            self._idle.pop()
+        except IndexError:
+            raise RuntimeError(
+                "this prepared function is running in another thread, and its calls share memory: "
+                "prepare one function for each thread"
+            ) from None
+        try:
+            return self._run(t_span, y0, params)
+        finally:
+            self._idle.append(True)
+
+    def _run(
+        self, t_span: tuple[float, float], y0: Numbers, params: Numbers | None
+    ) -> tuple[float, ...]:
         if params is not None or not self._has_defaults:
             self._has_defaults = False
             self._set_params(self._defaults if params is None else params)

@@ -280,6 +280,10 @@ static int must_return(const Task *task, clock_t started)
    threads may run one task. */
 void run(Task *task)
 {
+#ifdef __AVX__
+    /* upper halves of registers that Python left in use slow down functions of libm without AVX */
+    __builtin_ia32_vzeroupper();
+#endif
     Lanes lanes = {.task = task};
     const clock_t started = clock();
     int returning = 0, busy = 0;
