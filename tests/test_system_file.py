@@ -160,7 +160,7 @@ def test_a_scene_runs_a_system_file(tmp_path: Path) -> None:
     (('"m*g*height"', '"9**9**9"'), "only numbers up to 100"),
     (('"m*g*height"', '"m*g^2"'), r"write powers with \*\*, not \^"),
     (('"m*g*height"', '"m*g*hight"'), "unknown name 'hight' .did you mean 'height'"),
-    (('"m*g*height"', '"m*g*x_dot"'), "the potential contains unknown symbols: x_dot"),
+    (('"m*g*height"', '"m*g*x_dot"'), "the potential depends on x_dot: it must be a function"),
     (('"m*g*height"', "true"), "must be a text in quotes"),
     (('"m*g*height"', '"' + "(" * 9000 + "m" + ")" * 9000 + '"'), "cannot parse|nested too deeply"),
     (("potential", "potentail"), "unknown key 'potentail' in .*did you mean 'potential'"),

@@ -20,7 +20,7 @@ from derive.mechanics.linearisation import Energies, Linearisation
 from derive.mechanics.reduction import collected, reduced
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.symbols import TIME
-from derive.system.system import System
+from derive.system.system import System, as_system
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
 HALF = sp.Rational(1, 2)
@@ -38,8 +38,8 @@ class Derivation:
     Raises
     ------
     SystemDefinitionError
-        When a coordinate moves no mass, or moves the masses only as others do, or has no
-        inertia that is a positive number.
+        When `system` is not a `System`; when a coordinate moves no mass, or moves the masses only
+        as others do, or has no inertia that is a positive number.
 
     Notes
     -----
@@ -59,6 +59,7 @@ class Derivation:
     system: System
 
     def __post_init__(self) -> None:
+        as_system(self.system)
         check_independence(self.system, self.mass_matrix)
 
     @cached_property

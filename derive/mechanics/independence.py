@@ -15,7 +15,7 @@ def check_independence(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> 
     rows = _generic_values(system, mass_matrix)
     diagonal = [row[k] for k, row in enumerate(rows)]
     for k, q in enumerate(system.q):
-        if not rows[k][k] > diagonal[k] * TINY:
+        if not rows[k][k].is_real or not rows[k][k] > diagonal[k] * TINY:
             reason = "has no inertia that is a positive number"
             if mass_matrix[k, k] == 0:
                 reason = "moves no mass"

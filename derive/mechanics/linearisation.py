@@ -47,13 +47,13 @@ class Energies:
 
     def linearised(self, equilibrium: tuple[sp.Expr, ...]) -> Linearisation:
         """M₀ and K at `equilibrium`; an error if it is none, or if these are not sufficient."""
-        values = self.check_equilibrium(equilibrium)
         for problem, exists in self.other_terms().items():
             if exists:
                 raise SystemDefinitionError(
                     f"small motions of {self.system.name!r} {problem}: a mass and a stiffness "
                     "matrix do not describe them; use eigenvalues of the generated jacobian"
                 )
+        values = self.check_equilibrium(equilibrium)
         gradient = [self.potential.diff(q) for q in self.system.q]
         stiffness = Matrix([[force.diff(q) for q in self.system.q] for force in gradient])
         return Linearisation(equilibrium, self.mass_matrix.subs(values), stiffness.subs(values))
@@ -70,8 +70,14 @@ class Energies:
         still = dict.fromkeys(system.qdot, 0)
         for i, q in enumerate(system.q):
             gradient = self.potential.diff(q) + self.drift[i].diff(TIME)
-            force = sp.simplify((system.applied[i].subs(still) - gradient).subs(values))
+            everywhere = system.applied[i].subs(still) - gradient
+            force = sp.simplify(everywhere.subs(values))
             if force != 0:
+                if not sp.simplify(everywhere).free_symbols & {*system.q}:
+                    raise SystemDefinitionError(
+                        f"{system.name!r} has no equilibrium: the force along {q.name} is {force} "
+                        "for all coordinates"
+                    )
                 raise SystemDefinitionError(
                     f"{system.name!r} has no equilibrium at {q.name} = {values[q]}: the force "
                     f"along {q.name} is {force} there; give equilibrium= coordinates where it is 0"

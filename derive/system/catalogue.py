@@ -8,7 +8,6 @@ the system, as TOML text in the format of ``holonomic verify``.
 import re
 from importlib import import_module
 from os import PathLike, fspath
-from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
 
@@ -57,7 +56,7 @@ def load(name: str | PathLike[str]) -> System:
     """
     name = fspath(name)
     if name.endswith(".toml"):
-        return read_system(Path(name))
+        return read_system(name)
     stem, n = _file(name)
     try:
         system = _module(stem).system

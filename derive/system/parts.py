@@ -3,10 +3,14 @@
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from math import isfinite
 from numbers import Real
-from typing import Self
+from typing import Any, Self
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from solvers.io.suggestion import shortened
 
 
 class SystemDefinitionError(ValueError):
@@ -14,24 +18,45 @@ class SystemDefinitionError(ValueError):
 
 
 def formula(value: sp.Expr | float) -> sp.Expr:
-    """`value` as an exact expression; decimals become fractions, and text is refused."""
-    if isinstance(value, sp.Expr):
+    """`value` as an exact real expression; decimals become fractions, and text is refused."""
+    if isinstance(value, sp.Expr) and not value.has(sp.I, sp.oo, -sp.oo, sp.zoo, sp.nan):
+        if value.has(AppliedUndef):
+            raise SystemDefinitionError(
+                f"{str(value)[:50]!r} contains a function of time: a coordinate is a symbol x, its "
+                "velocity is derive.velocity(x), and time is derive.TIME"
+            )
         return value.xreplace({n: sp.Rational(str(n)) for n in value.atoms(sp.Float)})
     if isinstance(value, Real) and not isinstance(value, bool):
         with suppress(TypeError, ValueError):
             return sp.Rational(str(value))
     raise SystemDefinitionError(
-        f"{str(value)[:50]!r} is not a formula: use finite numbers and SymPy expressions"
+        f"{str(value)[:50]!r} is not a formula: use finite real numbers and SymPy expressions"
     )
 
 
-def _position(position: object) -> tuple[sp.Expr, ...]:
-    if not isinstance(position, Iterable) or isinstance(position, str):
+def formulas(name: str, values: object, contents: str) -> tuple[sp.Expr, ...]:
+    """Each of `values` as a formula; a message calls them by `name` and requests `contents`."""
+    return tuple(map(formula, items(name, values, contents)))
+
+
+def items(name: str, values: object, contents: str, kind: type = object) -> tuple[Any, ...]:
+    """`values` as a tuple; refused if they are no sequence, or one is not of the given kind."""
+    if not isinstance(values, Iterable) or isinstance(values, str):
+        given = shortened(values)
+        raise SystemDefinitionError(f"{name} = {given} is not a sequence: give {contents}")
+    values = tuple(values)
+    for value in values:
+        if not isinstance(value, kind):
+            raise SystemDefinitionError(f"{name} contains {shortened(value)}: give {contents}")
+    return values
+
+
+def _check_symbol(symbol: object) -> None:
+    if not isinstance(symbol, sp.Symbol) or symbol.is_extended_real is False:
         raise SystemDefinitionError(
-            f"position {str(position)[:50]!r} is not a sequence: give the components (x, up) or "
-            "(x, y, up)"
+            f"{shortened(symbol)} is not a real symbol: declare Symbol(..., real=True), or "
+            "positive=True, for a coordinate or parameter"
         )
-    return tuple(map(formula, position))
 
 
 def check_text(name: str, text: str) -> None:
@@ -59,7 +84,8 @@ class Coordinate:
     Raises
     ------
     SystemDefinitionError
-        When `unit` or `meaning` is not one line that generated files can contain.
+        When `symbol` is not a real symbol; when `unit` or `meaning` is not one line that generated
+        files can contain.
 
     Examples
     --------
@@ -73,6 +99,7 @@ class Coordinate:
     meaning: str
 
     def __post_init__(self) -> None:
+        _check_symbol(self.symbol)
         check_text(f"the unit of {self.symbol}", self.unit)
         check_text(f"the meaning of {self.symbol}", self.meaning)
 
@@ -96,7 +123,9 @@ class Parameter:
     Raises
     ------
     SystemDefinitionError
-        When `unit` or `meaning` is not one line that generated files can contain.
+        When `symbol` is not a real symbol; when `default` is not a finite number, or not positive
+        for a positive symbol; when `unit` or `meaning` is not one line that generated files can
+        contain.
 
     Examples
     --------
@@ -111,8 +140,16 @@ class Parameter:
     meaning: str
 
     def __post_init__(self) -> None:
+        _check_symbol(self.symbol)
         check_text(f"the unit of {self.symbol}", self.unit)
         check_text(f"the meaning of {self.symbol}", self.meaning)
+        number, positive = self.default, self.symbol.is_positive
+        is_real = isinstance(number, Real) and not isinstance(number, bool) and isfinite(number)
+        if not is_real or (positive and number <= 0):
+            raise SystemDefinitionError(
+                f"the default of {self.symbol} is {shortened(number)}: give a "
+                f"{'positive' if positive else 'finite'} number in {self.unit}"
+            )
 
 
 @dataclass(frozen=True)
@@ -129,7 +166,7 @@ class PointMass:
     Raises
     ------
     SystemDefinitionError
-        When the mass is not positive, or a value is neither an expression nor a number.
+        When the mass is not positive, or a value is neither a real expression nor a finite number.
 
     Examples
     --------
@@ -144,7 +181,8 @@ class PointMass:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mass", formula(self.mass))
-        object.__setattr__(self, "position", _position(self.position))
+        components = "the components (x, up) or (x, y, up)"
+        object.__setattr__(self, "position", formulas("position", self.position, components))
         if self.mass.is_nonpositive:
             raise SystemDefinitionError(
                 f"mass {self.mass} is not positive: give a positive number or symbol, or omit the "
@@ -186,7 +224,7 @@ class RigidBody(PointMass):
     ------
     SystemDefinitionError
         When the mass is not positive, or the moment of inertia is negative; when the position
-        does not have two components, or a value is neither an expression nor a number.
+        does not have two components, or a value is neither a real expression nor a finite number.
 
     Examples
     --------

@@ -1,11 +1,12 @@
 """A mechanical system: positions of masses as functions of generalized coordinates."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
 
+from derive.system.checks import check
 from derive.system.naming import check_name, check_unique
 from derive.system.parts import (
     Coordinate,
@@ -14,8 +15,19 @@ from derive.system.parts import (
     SystemDefinitionError,
     check_text,
     formula,
+    formulas,
+    items,
 )
-from derive.system.symbols import TIME, acceleration, momentum, variation, velocity
+from derive.system.symbols import acceleration, momentum, variation, velocity
+from solvers.io.suggestion import shortened
+
+#: Types of the parts of a system.
+KINDS = {
+    "coordinates": Coordinate,
+    "parameters": Parameter,
+    "masses": PointMass,
+    "reactions": sp.Symbol,
+}
 
 
 @dataclass(frozen=True)
@@ -55,12 +67,13 @@ class System:
     Raises
     ------
     SystemDefinitionError
-        When there is no coordinate or no mass; when `title` is not one line that generated
-        files can contain; when a name is no identifier, reserved or used twice; when a value
-        is neither an expression nor a number, or contains an unknown symbol; when positions
-        do not all have two or all three components; when `gravity` or `forces` has a wrong
-        number of components, or weight needs a parameter named ``g``; when `dissipation`
-        depends on no velocity; when `reactions` are combined with applied forces.
+        When coordinates, parameters or masses are not a list of these, or there is no coordinate
+        or no mass; when `title` is not one line that generated files can contain; when a name is
+        no identifier, reserved or used twice; when a value is neither a real expression nor a
+        finite number, or contains an unknown symbol; when positions do not all have two or all
+        three components; when `gravity` or `forces` has a wrong number of components, or weight
+        needs a parameter named ``g``; when `dissipation` depends on no velocity; when `reactions`
+        are combined with applied forces.
 
     Examples
     --------
@@ -90,11 +103,13 @@ class System:
     reactions: Sequence[sp.Symbol] = ()
 
     def __post_init__(self) -> None:
-        for field in ("coordinates", "parameters", "masses", "reactions"):
-            object.__setattr__(self, field, tuple(getattr(self, field)))
+        for field, kind in KINDS.items():
+            contents = f"a list of {kind.__name__} objects"
+            object.__setattr__(self, field, items(field, getattr(self, field), contents, kind))
         for field in ("gravity", "forces", "equilibrium"):
             if getattr(self, field) is not None:
-                object.__setattr__(self, field, tuple(map(formula, getattr(self, field))))
+                contents = "one formula for each component"
+                object.__setattr__(self, field, formulas(field, getattr(self, field), contents))
         for field in ("potential", "dissipation"):
             if getattr(self, field) is not None:
                 object.__setattr__(self, field, formula(getattr(self, field)))
@@ -105,9 +120,7 @@ class System:
             )
         check_text(f"the title of system {self.name!r}", self.title)
         self._check_names()
-        self._check_counts()
-        self._check_symbols()
-        self._check_weight()
+        check(self)
 
     @property
     def dimension(self) -> int:
@@ -181,59 +194,11 @@ class System:
         waves = (f"{wave}_{q.name}" for q in self.q for wave in ("sin", "cos"))
         check_unique([*declared, *(s.name for s in derived), *waves], self.name)
 
-    def _check_counts(self) -> None:
-        if len({len(mass.position) for mass in self.masses}) > 1 or not 2 <= self.dimension <= 3:
-            counts = ", ".join(str(len(mass.position)) for mass in self.masses)
-            raise SystemDefinitionError(
-                f"positions of system {self.name!r} have {counts} components: give all two "
-                "(x, up) or all three (x, y, up)"
-            )
-        for field, count in (("gravity", self.dimension), ("forces", len(self.q))):
-            given = getattr(self, field) or ()
-            if len(given) not in (0, count):
-                raise SystemDefinitionError(
-                    f"{field} of system {self.name!r} has {len(given)} components: give {count}"
-                )
 
-    def _expressions(self) -> Iterator[tuple[str, sp.Basic, set[sp.Symbol]]]:
-        """Every expression: its name, itself, and the symbols that it may depend on."""
-        constants, moving = {*self.params}, {*self.q, *self.params, TIME}
-        for mass in self.masses:
-            for inertia, position in mass.motions:
-                yield f"mass {inertia}", inertia, constants
-                yield f"the position of mass {inertia}", sp.Tuple(*position), moving
-        yield "the potential", self.potential_energy, moving
-        yield "the equilibrium", sp.Tuple(*(self.equilibrium or ())), constants
-        yield "the list of forces", sp.Tuple(self.dissipation, *self.forces), {*self.qdot, *moving}
-        yield "the list of reactions", sp.Tuple(*self.reactions), constants
-
-    def _check_weight(self) -> None:
-        used = set().union(*(expression.free_symbols for _, expression, _ in self._expressions()))
-        weightless = self.potential is not None and self.gravity is None
-        if weightless and any(s.name == "g" and s not in used for s in self.params):
-            down = ", ".join(["0"] * (self.dimension - 1) + ["-g"])
-            raise SystemDefinitionError(
-                f"parameter 'g' of system {self.name!r} is not used: a system with a potential has "
-                f"weight only if gravity is given; give gravity=({down}), the acceleration of free "
-                "fall, or omit g"
-            )
-
-    def _check_symbols(self) -> None:
-        for name, expression, known in self._expressions():
-            unknown = sorted(str(s) for s in expression.free_symbols - known)
-            if unknown:
-                raise SystemDefinitionError(
-                    f"{name} contains unknown symbols: {', '.join(unknown)}; known are "
-                    f"{', '.join(sorted(s.name for s in known))}; declare them as coordinates or "
-                    "parameters (a symbol of the same name with other assumptions is different)"
-                )
-        if self.dissipation and not self.dissipation.free_symbols & {*self.qdot}:
-            raise SystemDefinitionError(
-                f"the dissipation of system {self.name!r} is {self.dissipation}, which depends on "
-                "no velocity: give Rayleigh's function, such as c*theta_dot**2/2"
-            )
-        if self.reactions and any(self.applied):
-            raise SystemDefinitionError(
-                f"system {self.name!r} has reactions and applied forces: the components of applied "
-                "forces along a constant length are not known; omit one of them"
-            )
+def as_system(value: object) -> System:
+    """`value`, refused if it is not a `System`, such as the name of one."""
+    if isinstance(value, System):
+        return value
+    raise SystemDefinitionError(
+        f"{shortened(value)} is not a System: derive.load returns that of a name or a system file"
+    )

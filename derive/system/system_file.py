@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from math import isfinite
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +26,9 @@ POSITIVE_UNITS = ("kg", "m")
 Scope = Mapping[str, Any]
 
 
-def read_system(path: Path) -> System:
+def read_system(file: str | PathLike[str]) -> System:
     """The system in a TOML file; its default name is the file's name without ``.toml``."""
+    path = Path(file)
     try:
         return _system(path.stem, Table(str(path), read(path), KEYS))
     except (InputError, ExpressionError, SystemDefinitionError) as error:

@@ -77,6 +77,8 @@ def build(system: "System") -> GeneratedModule:
 
     Raises
     ------
+    ValueError
+        If `system` is not a system, such as the path of a system file.
     derive.codegen.translation.UnsupportedFunctionError
         If its equations contain an unsupported power.
     OSError
@@ -91,8 +93,10 @@ def build(system: "System") -> GeneratedModule:
     """
     from derive import Derivation
     from derive.codegen.writing import texts
+    from derive.system.system import as_system
 
     # symbols of one name may differ in their assumptions
+    system = as_system(system)
     assumptions = [(s.name, sorted(s.assumptions0.items())) for s in (*system.q, *system.params)]
     key = f"{system!r}{assumptions}{generator_text()}"
     module = cached_module(system.name, key, lambda: texts(Derivation(system)))

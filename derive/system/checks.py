@@ -1,0 +1,113 @@
+"""Checks of a system: numbers of components, and the symbols that its expressions contain."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from derive.system.parts import SystemDefinitionError
+from derive.system.symbols import TIME
+
+if TYPE_CHECKING:
+    from derive.system.system import System
+
+
+@dataclass(frozen=True)
+class Part:
+    """An expression of a system, and the symbols that it may contain."""
+
+    name: str
+    expression: sp.Basic
+    known: frozenset[sp.Symbol]
+    variables: str  # `known` in words, and the remedy for others that exist in the system
+
+
+def check(system: "System") -> None:
+    """Raise `SystemDefinitionError` if components or symbols do not fit each other."""
+    _check_counts(system)
+    parts = [*_parts(system)]
+    for part in parts:
+        _check_symbols(system, part)
+    _check_forces(system)
+    _check_weight(system, parts)
+
+
+def _check_counts(system: "System") -> None:
+    if len({len(mass.position) for mass in system.masses}) > 1 or not 2 <= system.dimension <= 3:
+        counts = ", ".join(str(len(mass.position)) for mass in system.masses)
+        raise SystemDefinitionError(
+            f"positions of system {system.name!r} have {counts} components: give all two "
+            "(x, up) or all three (x, y, up)"
+        )
+    for field, count in (("gravity", system.dimension), ("forces", len(system.q))):
+        given = getattr(system, field) or ()
+        if len(given) not in (0, count):
+            raise SystemDefinitionError(
+                f"{field} of system {system.name!r} has {len(given)} components: give {count}"
+            )
+
+
+def _parts(system: "System") -> Iterator[Part]:
+    """Every expression of a system."""
+    constants = frozenset(system.params)
+    moving = constants | {*system.q, TIME}
+    fixed = "parameters"
+    place = "coordinates, parameters and t; forces and dissipation can depend on velocities"
+    for mass in system.masses:
+        for inertia, position in mass.motions:
+            remedy = f"{fixed}; inertia that varies follows from positions of constant masses"
+            yield Part(f"mass {inertia}", inertia, constants, remedy)
+            yield Part(f"the position of mass {inertia}", sp.Tuple(*position), moving, place)
+    yield Part("the potential", system.potential_energy, moving, place)
+    yield Part("the equilibrium", sp.Tuple(*(system.equilibrium or ())), constants, fixed)
+    forces = sp.Tuple(system.dissipation, *system.forces)
+    state = "coordinates, velocities, parameters and t"
+    yield Part("the list of forces", forces, moving | {*system.qdot}, state)
+    yield Part("the list of reactions", sp.Tuple(*system.reactions), constants, fixed)
+
+
+def _check_symbols(system: "System", part: Part) -> None:
+    unknown = sorted({symbol.name for symbol in part.expression.free_symbols - part.known})
+    if not unknown:
+        return
+    known, names = {symbol.name for symbol in part.known}, ", ".join(unknown)
+    if same := ", ".join(name for name in unknown if name in known):
+        raise SystemDefinitionError(
+            f"{part.name} contains {same} as a symbol with other assumptions than the declared "
+            "one: use the same object; time is derive.TIME, the velocity of x derive.velocity(x)"
+        )
+    variables = {*system.q, *system.qdot, *system.qddot, *system.p, TIME}
+    if {*unknown} <= {symbol.name for symbol in variables}:
+        raise SystemDefinitionError(
+            f"{part.name} depends on {names}: it must be a function of {part.variables}"
+        )
+    raise SystemDefinitionError(
+        f"{part.name} contains unknown symbols: {names}; known are {', '.join(sorted(known))}; "
+        "declare them as coordinates or parameters"
+    )
+
+
+def _check_forces(system: "System") -> None:
+    if system.dissipation and not system.dissipation.free_symbols & {*system.qdot}:
+        raise SystemDefinitionError(
+            f"the dissipation of system {system.name!r} is {system.dissipation}, which depends on "
+            "no velocity: give Rayleigh's function, such as c*theta_dot**2/2"
+        )
+    if system.reactions and any(system.applied):
+        raise SystemDefinitionError(
+            f"system {system.name!r} has reactions and applied forces: the components of applied "
+            "forces along a constant length are not known; omit one of them"
+        )
+
+
+def _check_weight(system: "System", parts: list[Part]) -> None:
+    used = set().union(*(part.expression.free_symbols for part in parts))
+    weightless = system.potential is not None and system.gravity is None
+    if weightless and any(s.name == "g" and s not in used for s in system.params):
+        down = ", ".join(["0"] * (system.dimension - 1) + ["-g"])
+        raise SystemDefinitionError(
+            f"parameter 'g' of system {system.name!r} is not used: a system with a potential has "
+            f"weight only if gravity is given; give gravity=({down}), the acceleration of free "
+            "fall, or omit g"
+        )
