@@ -5,7 +5,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from solvers.equations.module import function
+from solvers.equations.module import GeneratedModule, function, has_function
 from solvers.equations.normal_modes import Modes
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError, golden_points
@@ -39,11 +39,22 @@ class NormalModes(ClosedForm):
     sines: Array
 
     @classmethod
+    def not_applicable(cls, module: GeneratedModule) -> str:
+        if reason := super().not_applicable(module):
+            return reason
+        if not has_function(module, "equilibrium"):
+            return "no equilibrium is known"
+        return "" if has_function(module, "linear") else "gyroscopic forces act on small motions"
+
+    @classmethod
     def of(cls, motion: Motion) -> Self:
         """The normal modes, with the error caused by the nonlinear terms."""
         motion.require_inertia()
         try:
             modes = Modes.at_rest(motion.module, motion.params)
+        except np.linalg.LinAlgError as error:
+            reason = "the mass matrix is not positive definite at the equilibrium"
+            raise OutsideDomainError(reason) from error
         except ValueError as error:
             raise OutsideDomainError(str(error)) from error
         equilibrium = np.array(function(motion.module, "equilibrium")(motion.params))

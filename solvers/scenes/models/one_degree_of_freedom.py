@@ -1,8 +1,8 @@
 """Motions with one degree of freedom: ½ μ(u) u'² + W(u) = E.
 
-One remains where there is one coordinate, and where of two one rotates the whole system, which
-changes no energy: then its angular momentum L = I s' + C u' is conserved, W = V + L²/2I, and
-μ = B - C²/I, with the system's rotation s and its shape u, and I, C, B the mass matrix for
+One remains where there is one coordinate, and where of two one is cyclic, or a rotation of the
+whole system changes no energy: then the momentum L = I s' + C u' is conserved, W = V + L²/2I, and
+μ = B - C²/I, with the cyclic coordinate or rotation s, the shape u, and I, C, B the mass matrix for
 rotation, for rotation and change of shape, and for change of shape.
 """
 
@@ -11,6 +11,7 @@ from typing import Self
 
 import numpy as np
 
+from solvers.equations.module import has_function
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
 
 #: Largest relative difference of equal energies, and number of random states to compare.
@@ -83,27 +84,55 @@ class ReducedMotion:
 
 
 def _directions(motion: Motion) -> tuple[Array, Array]:
-    """The directions of the shape and of the rotation of the whole system."""
+    """The directions of the shape, and of a rotation or shift that changes no energy."""
     n, inertial, module = motion.n_coordinates, motion.inertial, motion.module
     unit = np.eye(n)
     if len(inertial) == 1:
         return unit[inertial[0]], np.zeros(n)
-    angles = [k for k in inertial if module.UNITS[module.COORDINATES[k]] == "rad"]
-    rotation = unit[angles].sum(axis=0)
-    if len(inertial) != 2 or not angles:
+    if len(inertial) != 2:
         raise OutsideDomainError(f"{len(inertial)} coordinates have inertia")
-    if not _conserves_energy(motion, rotation):
-        raise OutsideDomainError("rotating the whole system changes its energy")
-    shapes = [k for k in inertial if k not in angles] or [inertial[-1]]
-    return unit[shapes[0]], rotation
+    if not has_function(module, "linear") and not _is_reversible(motion):
+        raise OutsideDomainError("gyroscopic forces act")
+    angles = [k for k in inertial if module.UNITS[module.COORDINATES[k]] == "rad"]
+    for rotation in (*unit[list(inertial)], unit[angles].sum(axis=0)):
+        if rotation.any() and _is_symmetry(motion, rotation):
+            shapes = [k for k in inertial if not rotation[k]] or [inertial[-1]]
+            return unit[shapes[0]], rotation
+    raise OutsideDomainError(
+        "no coordinate is cyclic, and rotating the whole system changes its energy"
+    )
 
 
-def _conserves_energy(motion: Motion, rotation: Array) -> bool:
-    """Whether the energy of random states is the same after a rotation."""
-    random = np.random.default_rng(1)
-    y = random.uniform(0.2, 3.0, (2 * motion.n_coordinates, STATES))
-    rotated = y.copy()
-    rotated[: len(rotation)] += np.outer(rotation, random.uniform(-3, 3, STATES))
-    before = motion.module.energy_many(0.0, y, motion.params)
-    after = motion.module.energy_many(0.0, rotated, motion.params)
-    return bool(np.all(np.abs(before - after) <= SAME * np.abs(before).max()))
+def _random_states(motion: Motion) -> Array:
+    return np.random.default_rng(1).uniform(0.2, 3.0, (2 * motion.n_coordinates, STATES))
+
+
+def _is_symmetry(motion: Motion, direction: Array) -> bool:
+    """Whether random states have the same energies and accelerations after a shift."""
+    module, y = motion.module, _random_states(motion)
+    shifted = y.copy()
+    shifted[: len(direction)] += np.outer(
+        direction, np.random.default_rng(2).uniform(-3, 3, STATES)
+    )
+    energies, rates = (
+        [np.atleast_2d(function(0.0, x, motion.params)) for x in (y, shifted)]
+        for function in (module.energy_many, module.rhs_many)
+    )
+    # a light mass has little energy of its own, but accelerations of any size
+    return bool(np.isfinite(energies[0]).any()) and _are_same(*energies) and _are_same(*rates)
+
+
+def _is_reversible(motion: Motion) -> bool:
+    """Whether accelerations of random states stay the same when velocities are reversed."""
+    n, y = motion.n_coordinates, _random_states(motion)
+    reversed_ = np.vstack([y[:n], -y[n:]])
+    rates = [motion.module.rhs_many(0.0, x, motion.params)[n:] for x in (y, reversed_)]
+    return bool(np.isfinite(rates[0]).any()) and _are_same(*rates)
+
+
+def _are_same(before: Array, after: Array) -> bool:
+    """Whether rows agree to rounding wherever numbers exist: not without inertia."""
+    exists = np.isfinite(before) & np.isfinite(after)
+    change = np.where(exists, np.abs(before - after), 0.0)
+    size = np.where(exists, np.abs(before), 0.0).max(axis=1, keepdims=True)
+    return bool(np.all(change <= SAME * size))

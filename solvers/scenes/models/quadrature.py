@@ -12,7 +12,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm, rounding_error
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
@@ -26,6 +26,8 @@ END = 1e-14
 INSTANT = 1e-5
 #: Newton iterations from an interpolated phase.
 ITERATIONS = 5
+#: An inertia below this part of its largest value vanishes; energies in J above this are infinite.
+VANISHING, LARGEST = 1e-12, 1e300
 NO_SERIES = f"no Fourier series of {POINTS[-1]} points converges"
 
 
@@ -130,7 +132,7 @@ class Quadrature(ClosedForm):
     name: ClassVar[str] = "quadrature"
     complexity: ClassVar[int] = 50
     applies_to: ClassVar[str] = (
-        "reducible to one degree of freedom, for example without gravity: Fourier series"
+        "reducible to one degree of freedom, by a cyclic coordinate or rotation: Fourier series"
     )
     error_source: ClassVar[str] = "last terms of the series; rounding"
 
@@ -145,8 +147,11 @@ class Quadrature(ClosedForm):
         def states(y0: Array) -> Array:
             return orbit(ReducedMotion.of(replace(motion, y0=tuple(y0)))).states(times)
 
-        sizes = [max(abs(component), 1.0) for component in motion.y0]
-        error = rounding_error(states, motion.y0, sizes)
+        sizes = np.maximum(np.abs(motion.y0), 1.0)
+        if not result.reduced.momentum:  # it is 0 exactly: next to it, poles are no barriers
+            at_rest = np.array([*np.zeros(motion.n_coordinates), *result.reduced.rotation]) != 0
+            sizes[at_rest & (np.array(motion.y0) == 0)] = 0.0
+        error = rounding_error(states, motion.y0, sizes.tolist())
         # an error of the period is an error of the time
         later = INSTANT * result.time.mean
         change = np.abs(result.states(times + later) - result.states(times))
@@ -155,7 +160,7 @@ class Quadrature(ClosedForm):
         largest_rate = max(1.0, 1 / result.time.mean)
         error += ROUNDINGS * (result.turning_point_error * largest_rate + result.rate_error)
         rotates = result.reduced.rotation.any()
-        conserved = "angular momentum and energy are" if rotates else "energy is"
+        conserved = "a momentum and the energy are" if rotates else "energy is"
         why = f"{conserved} conserved, which leaves one degree of freedom"
         estimate = float(error[list(motion.requested)].max())
         return cls(result, error_estimate=estimate, why=why)
@@ -215,13 +220,13 @@ def _turning_points(reduced: ReducedMotion) -> tuple[float, float] | None:
     u, u_dot, _ = reduced.start
 
     def kinetic(u: float) -> float:
-        return float(reduced.energy - reduced.parts(np.array(u))[1])
+        return float(np.clip(reduced.energy - reduced.parts(np.array(u))[1], -LARGEST, LARGEST))
 
     reach = 2 * np.pi if reduced.is_angle else 4 * max(abs(u), 1.0)
     steps = np.linspace(0, reach, SCAN + 1)[1:]
     ends = []
     for side in (-1.0, 1.0):
-        points = u + side * steps
+        points = _with_barriers(reduced, u + side * np.array([0.0, *steps]))[1:]
         values = reduced.energy - reduced.parts(points)[1]
         forbidden = np.flatnonzero(~(values > 0))
         if not u_dot and forbidden.size and forbidden[0] == 0:
@@ -229,7 +234,7 @@ def _turning_points(reduced: ReducedMotion) -> tuple[float, float] | None:
         elif forbidden.size:
             outer = forbidden[0]
             inner = points[outer - 1] if outer else u
-            if not np.isfinite(values[outer]):
+            if np.isnan(values[outer]):
                 raise OutsideDomainError("the motion approaches a singularity")
             ends.append(float(brentq(kinetic, inner, points[outer], xtol=1e-300, rtol=4 * EPS)))
         elif not reduced.is_angle:
@@ -239,3 +244,27 @@ def _turning_points(reduced: ReducedMotion) -> tuple[float, float] | None:
     if len(ends) < 2 or ends[0] == ends[1]:
         raise OutsideDomainError("the shape is at rest")
     return ends[0], ends[1]
+
+
+def _with_barriers(reduced: ReducedMotion, points: Array) -> Array:
+    """`points`, and between them those where the inertia of the rotation vanishes.
+
+    There W is infinite, however small L is: a barrier that may be narrower than the distance of the
+    points.
+    """
+    if not reduced.momentum:
+        return points
+
+    def inertia(u: float | Array) -> Array:
+        return np.abs(reduced.momentum / reduced.parts(np.array(u))[2])
+
+    values, barriers = inertia(points), []
+    for k in np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] < values[2:])) + 1:
+        bounds = np.sort(points[[k - 1, k + 1]])
+        lowest = minimize_scalar(inertia, bounds=bounds, method="bounded", options={"xatol": 1e-12})
+        if lowest.fun < VANISHING * values.max():
+            if reduced.energy - reduced.parts(np.array(lowest.x))[1] > 0:
+                raise OutsideDomainError("the motion passes too close to a pole of its coordinates")
+            barriers.append(float(lowest.x))
+    order = np.sign(points[-1] - points[0])
+    return np.array(sorted([*points, *barriers], key=lambda point: order * point))

@@ -46,8 +46,11 @@ def select_model(
         except OutsideDomainError as error:
             declined[name] = str(error)
             continue
-        except (ArithmeticError, np.linalg.LinAlgError) as error:
+        except ArithmeticError as error:
             declined[name] = f"its numbers are not finite: {error}"
+            continue
+        except np.linalg.LinAlgError:  # the message is LAPACK's
+            declined[name] = "its matrices are singular or not finite"
             continue
         if model.error_estimate <= scene.accuracy:
             return ModelSelection(model, declined)
