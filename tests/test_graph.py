@@ -13,6 +13,7 @@ from derive.codegen.lowering import Lowering
 from derive.codegen.node import Node
 from derive.codegen.translation import Translation, UnsupportedFunctionError
 
+pi = sp.pi
 a, b, c, d, x = sp.symbols("a b c d x", positive=True)
 FUNCTIONS = {"sin": math.sin, "cos": math.cos, "sqrt": math.sqrt, "exp": math.exp}
 
@@ -186,3 +187,20 @@ def test_a_sum_that_is_its_own_common_factor_keeps_all_its_powers(expression: sp
     (result,) = evaluated(lowered(expression), values)
     exact = expression.subs({sp.Symbol(k, positive=True): v for k, v in values.items()})
     assert result == pytest.approx(float(exact), rel=1e-13)
+
+
+@pytest.mark.parametrize("number", [
+    pi, pi / 3, 2 * pi, -pi / 7, pi**2, 1 / pi, sp.sqrt(2), 3 * sp.sqrt(5) / 7, sp.exp(1),
+    sp.sqrt(pi), 1 + pi / 2, sp.cos(2), sp.log(2) - sp.Rational(1, 3),
+])  # fmt: skip
+def test_numbers_are_one_literal_right_to_the_last_bit(number: sp.Expr) -> None:
+    lowering = lowered(number, number * a)
+    exact = float(number.evalf(40))
+    assert evaluated(lowering, {"a": 1.0}) == [exact, exact]
+    assert lowered(abs(number), abs(number) * a).cost == (1, 0)
+
+
+def test_irrational_factors_cancel() -> None:
+    assert lowered(pi * a / (pi * b)).cost[0] == 1
+    assert lowered(pi * a - pi * a + b).cost[0] == 0
+    assert evaluated(lowered(pi * a + pi * b), {"a": 1.5, "b": 2.5}) == [4 * math.pi]

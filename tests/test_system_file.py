@@ -219,7 +219,7 @@ def test_deeply_nested_definitions_are_not_expanded(tmp_path: Path) -> None:
 def test_every_command_reports_functions_without_generated_code(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    written(tmp_path, BEAD.replace('"m*g*height"', '"m*g*height**(5/4)"'), "odd")
+    written(tmp_path, BEAD.replace('"m*g*height"', '"m*g*height**(5/3)"'), "odd")
     scene = written(tmp_path, 'system = "odd.toml"\nduration = 1\ninitial = { x = 1 }\n', "scene")
     assert holonomic(["run", str(scene)]) == 2
     assert "no generated code for" in capsys.readouterr().err

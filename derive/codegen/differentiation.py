@@ -1,20 +1,13 @@
 """Derivatives of nodes in their own graph, in which equal subexpressions are shared."""
 
-from collections.abc import Callable
-from fractions import Fraction
+import sympy as sp
 
 from derive.codegen.graph import Graph
 from derive.codegen.node import Call, Leaf, Let, Node, Powers, Product, Sum, operands
+from derive.codegen.translation import Translation
+from derive.formulas.functions import FUNCTIONS
 
-#: The derivative of each function by its argument, from the node of the call and the argument.
-OUTER: dict[str, Callable[[Node, Node], Node]] = {
-    "sin": lambda call, x: call.graph.call("cos", x),
-    "cos": lambda call, x: -call.graph.call("sin", x),
-    "tan": lambda call, x: call.graph.node(1) + call * call,
-    "exp": lambda call, x: call,
-    "log": lambda call, x: call.graph.power(x, -1),
-    "sqrt": lambda call, x: call.graph.node(Fraction(1, 2)) / call,
-}
+X = sp.Symbol("x", real=True)
 
 
 class Differentiation:
@@ -48,7 +41,8 @@ class Differentiation:
             case Let(value):
                 return self(value, leaf)
             case Call(function, argument):
-                return OUTER[function](node, argument) * self(argument, leaf)
+                outer = Translation(graph, {X.name: argument})(FUNCTIONS[function](X).diff(X))
+                return outer * self(argument, leaf)
             case Sum(terms):
                 return graph.sum([(self(term, leaf), number) for term, number in terms])
             case Product(powers):

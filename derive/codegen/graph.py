@@ -22,6 +22,7 @@ from derive.codegen.node import (
     Component,
     Constant,
     Factorised,
+    Irrational,
     Leaf,
     Let,
     Node,
@@ -57,6 +58,10 @@ class Graph:
     def node(self, value: Operand) -> Node:
         """`value` as a node."""
         return value if isinstance(value, Node) else self._intern(Constant, Fraction(value))
+
+    def irrational(self, value: Fraction) -> Node:
+        """The irrational number that is `value` to some 50 digits."""
+        return self._intern(Irrational, value)
 
     def let(self, value: Node) -> Node:
         """`value` with its own name: sums and products are not merged with it."""

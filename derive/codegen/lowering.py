@@ -9,6 +9,7 @@ common (``a*b*c`` and ``a*b*d`` share ``a*b``) become separate operations.
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache, cached_property
+from math import prod
 from typing import Any, TypeVar
 
 from derive.codegen import operation as op
@@ -17,12 +18,14 @@ from derive.codegen.node import (
     Component,
     Constant,
     Factorised,
+    Irrational,
     Leaf,
     Let,
     Node,
     Product,
     Solution,
     Sum,
+    Terms,
     operands,
 )
 from derive.codegen.sharing import share_pairs
@@ -83,7 +86,7 @@ class Lowering:
         match node:
             case Leaf(name):
                 return self._register(op.Leaf((), name in self._parameters, name))
-            case Constant(value):
+            case Constant(value) | Irrational(value):
                 return self._constant(value)
             case Let(inner):
                 return self._lower(inner)
@@ -96,10 +99,10 @@ class Lowering:
             case Component(solution, index):
                 return self._add(op.Component, [self._lower(solution)], index)
             case Sum(terms):
-                merged = _merged([self._term(term, c) for term, c in terms])
+                merged = _merged(list(self._terms(terms)))
                 return self._sum(merged) if merged else self._constant(0)
-            case Product(powers):
-                factors = _merged([(self._lower(factor), p) for factor, p in powers])
+            case Product():
+                factors = _merged(list(self._powers(*_numeric(node))))
                 return self._product(factors) if factors else self._constant(1)
             case _:
                 raise NotImplementedError(f"no operation for a {type(node).__name__} node")
@@ -107,12 +110,28 @@ class Lowering:
     def _constant(self, value: Fraction | int) -> int:
         return self._add(op.Constant, (), Fraction(value))
 
-    def _term(self, node: Node, coefficient: Fraction) -> Term:
-        """A term of a sum; a number is a term itself, not a multiple of 1."""
-        if isinstance(node, Constant):
-            value = node.value * coefficient
-            return self._constant(abs(value)), ONE if value > 0 else -ONE
-        return self._lower(node), coefficient
+    def _terms(self, terms: Terms) -> Iterator[Term]:
+        """Terms of a sum; numbers are one term, and irrational factors include coefficients."""
+        parts = [(*_numeric(node), coefficient) for node, coefficient in terms]
+        numbers = (number * c for number, rest, c in parts if rest is None)
+        total = sum(numbers, start=Fraction(0))
+        for number, rest, coefficient in parts:
+            value = total if rest is None else number * coefficient
+            sign = ONE if value > 0 else -ONE
+            if rest is None and value:
+                yield self._constant(abs(value)), sign
+                total = Fraction(0)
+            elif rest is not None and number == 1:
+                yield self._lower(rest), coefficient
+            elif rest is not None:
+                yield self._product(_merged(list(self._powers(abs(value), rest)))), sign
+
+    def _powers(self, number: Fraction, rest: Node | None) -> Iterator[tuple[int, int]]:
+        """Factors of a product, of which a number other than 1 is the first."""
+        if number != 1:
+            yield self._constant(number), 1
+        for factor, power in rest.factors() if rest else ():
+            yield self._lower(factor), power
 
     def _sum(self, terms: list[Term]) -> int:
         for part in self._parts(terms):
@@ -153,6 +172,19 @@ class Lowering:
 
     def _quotient(self, above: int | None, below: int) -> int:
         return self._add(op.Quotient, (below,) if above is None else (above, below))
+
+
+def _numeric(node: Node) -> tuple[Fraction, Node | None]:
+    """The number among the factors of a node, and the rest; exact factors are coefficients."""
+    match node:
+        case Constant(value) | Irrational(value):
+            return value, None
+        case Product(powers):
+            numbers = [(n.value, p) for n, p in powers if isinstance(n, Irrational)]
+            others = [(n, p) for n, p in powers if not isinstance(n, Irrational)]
+            number = prod((value**power for value, power in numbers), start=ONE)
+            return number, node.graph.product(others) if others else None
+    return ONE, node
 
 
 def _merged(parts: list[tuple[int, Count]]) -> list[tuple[int, Count]]:

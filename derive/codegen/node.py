@@ -76,6 +76,13 @@ class Constant(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Irrational(Node):
+    """A number such as pi, which cancels as inputs do."""
+
+    value: Fraction  # to some 50 digits
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Sum(Node):
     """Σ coefficient · node; a single term is a multiple."""
 

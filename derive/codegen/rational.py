@@ -14,6 +14,7 @@ from derive.codegen.node import (
     Component,
     Constant,
     Factorised,
+    Irrational,
     Leaf,
     Let,
     Node,
@@ -100,6 +101,8 @@ class _Rewriting:
                 return graph.leaf(name)
             case Constant(value):
                 return graph.node(value)
+            case Irrational(value):
+                return graph.irrational(value)
             case Let(value):
                 return graph.let(self.node(value))
             case Call(function, argument):

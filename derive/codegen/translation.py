@@ -8,9 +8,12 @@ import sympy as sp
 
 from derive.codegen.graph import Graph
 from derive.codegen.node import Node
+from derive.formulas.functions import FUNCTIONS
 
-#: Functions that generated code can call, by their names in ``math`` and C99.
-FUNCTIONS = {sp.sin: "sin", sp.cos: "cos", sp.tan: "tan", sp.exp: "exp", sp.log: "log"}
+#: Digits of irrational numbers, more than any number type has.
+DIGITS = 50
+
+NAMES = {function: name for name, function in FUNCTIONS.items()}
 
 
 class UnsupportedFunctionError(ValueError):
@@ -25,7 +28,7 @@ class Translation:
         self._nodes: dict[sp.Expr, Node] = {}
 
     def __call__(self, expression: sp.Expr) -> Node:
-        """The node of an expression of symbols, exact numbers and `FUNCTIONS`."""
+        """The node of an expression of symbols, real numbers and `FUNCTIONS`."""
         if expression not in self._nodes:
             self._nodes[expression] = self._translated(expression)
         return self._nodes[expression]
@@ -35,20 +38,51 @@ class Translation:
         if expression.is_Symbol:
             return self._known.get(expression.name) or graph.leaf(expression.name)
         if expression.is_Rational:
-            return graph.node(Fraction(int(expression.p), int(expression.q)))
-        if expression.is_Add:
+            return graph.node(_fraction(expression))
+        if expression.is_Add and not expression.is_number:
             return graph.sum([(self(term), 1) for term in expression.args])
         if expression.is_Mul:
             return graph.product([(self(factor), 1) for factor in expression.args])
-        if type(expression) in FUNCTIONS:
-            return graph.call(FUNCTIONS[type(expression)], self(expression.args[0]))
-        if expression.is_Pow:
-            base, exponent = expression.as_base_exp()
-            if exponent.is_Integer:
-                return graph.power(self(base), int(exponent))
-            if (2 * exponent).is_Integer:
-                return graph.power(graph.call("sqrt", self(base)), int(2 * exponent))
-        raise UnsupportedFunctionError(
-            f"no generated code for {str(expression)[:80]!r}: use sums, products, integer and "
-            f"half powers, and {', '.join(FUNCTIONS.values())}"
+        if expression.is_Pow and expression.exp.is_Integer:
+            return graph.power(self(expression.base), int(expression.exp))
+        if expression.is_number:
+            return self._number(expression)
+        if type(expression) in NAMES:
+            return graph.call(NAMES[type(expression)], self(expression.args[0]))
+        if expression.is_Pow and expression.exp.is_Rational:
+            return self._root(expression)
+        raise _unsupported(expression)
+
+    def _number(self, expression: sp.Expr) -> Node:
+        """A real number such as pi or sqrt(2)."""
+        value = expression.evalf(DIGITS)
+        if not (value.is_Float and value.is_finite):
+            raise _unsupported(expression)
+        magnitude = self.graph.irrational(_fraction(sp.Rational(abs(value))))
+        return magnitude if value > 0 else -magnitude
+
+    def _root(self, expression: sp.Expr) -> Node:
+        """A power whose exponent is a fraction with denominator 2, 4, 8 …, by square roots."""
+        base, exponent = self(expression.base), expression.exp
+        while exponent.q % 2 == 0:
+            base, exponent = self.graph.call("sqrt", base), 2 * exponent
+        if not exponent.is_Integer:
+            raise _unsupported(expression)
+        return self.graph.power(base, int(exponent))
+
+
+def _fraction(number: sp.Rational) -> Fraction:
+    return Fraction(int(number.p), int(number.q))
+
+
+def _unsupported(expression: sp.Expr) -> UnsupportedFunctionError:
+    known = ", ".join(FUNCTIONS)
+    reason = f"use finite real numbers, sums, products, powers and {known}"
+    if expression.is_Function:
+        reason = f"the function {expression.func} is unknown; use {known}"
+    elif expression.is_Pow:
+        reason = (
+            f"the exponent is {expression.exp}; use multiples of 1/2 or 1/4 as exponents, or write "
+            "a**b as exp(b*log(a)) if b is a parameter"
         )
+    return UnsupportedFunctionError(f"no generated code for {str(expression)[:80]!r}: {reason}")

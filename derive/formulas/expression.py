@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
+from derive.formulas import functions
 from solvers.io.suggestion import did_you_mean
 
 Value: TypeAlias = sp.Expr | sp.MatrixBase
@@ -21,9 +22,7 @@ Scope = Mapping[str, Any]
 RELATION = re.compile(r"(>=|<=|=|>|<)")
 
 #: The functions and constants available in every formula.
-FUNCTIONS: dict[str, Any] = {
-    f.__name__: f for f in (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.sqrt)
-} | {"pi": sp.pi}
+FUNCTIONS: dict[str, Any] = functions.FUNCTIONS | {"pi": sp.pi}
 
 #: Limits: characters of a formula, absolute value of an exponent, bits of a number.
 MAX_LENGTH, MAX_EXPONENT, MAX_BITS = 20_000, 100, 256

@@ -263,15 +263,24 @@ class Derivation:
         """Small oscillations about an equilibrium, by default the system's own, or zeros.
 
         A `SystemDefinitionError` states that a force is not 0 there, or that small motions depend
-        on time, or have applied or gyroscopic forces.
+        on time, have applied or gyroscopic forces, or no finite mass and stiffness matrix.
         """
-        given = self._default_equilibrium if equilibrium is None else map(formula, equilibrium)
-        return self._energies.linearised(tuple(given))
+        if equilibrium is None:
+            return self._default_linearisation
+        return self._energies.linearised(tuple(map(formula, equilibrium)))
+
+    @cached_property
+    def _default_linearisation(self) -> Linearisation:
+        return self._energies.linearised(self._default_equilibrium)
 
     @cached_property
     def is_linearisable(self) -> bool:
         """Whether masses and springs alone describe small motions."""
-        return not any(self._energies.other_terms().values())
+        try:
+            self.linearisation()
+        except SystemDefinitionError:
+            return False
+        return True
 
     @cached_property
     def equilibrium(self) -> tuple[sp.Expr, ...] | None:

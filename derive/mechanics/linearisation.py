@@ -10,6 +10,7 @@ from derive.system.symbols import TIME
 from derive.system.system import System
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
+INFINITE = (sp.zoo, sp.oo, sp.nan)
 
 
 @dataclass(frozen=True)
@@ -47,16 +48,21 @@ class Energies:
 
     def linearised(self, equilibrium: tuple[sp.Expr, ...]) -> Linearisation:
         """M₀ and K at `equilibrium`; an error if it is none, or if these are not sufficient."""
-        for problem, exists in self.other_terms().items():
+        self._refuse(self._other_terms())
+        values = self.check_equilibrium(equilibrium)
+        gradient = [self.potential.diff(q) for q in self.system.q]
+        stiffness = Matrix([[force.diff(q) for q in self.system.q] for force in gradient])
+        matrices = self.mass_matrix.subs(values), stiffness.subs(values)
+        self._refuse({"have infinite terms": any(matrix.has(*INFINITE) for matrix in matrices)})
+        return Linearisation(equilibrium, *matrices)
+
+    def _refuse(self, problems: dict[str, bool]) -> None:
+        for problem, exists in problems.items():
             if exists:
                 raise SystemDefinitionError(
                     f"small motions of {self.system.name!r} {problem}: a mass and a stiffness "
                     "matrix do not describe them; use eigenvalues of the generated jacobian"
                 )
-        values = self.check_equilibrium(equilibrium)
-        gradient = [self.potential.diff(q) for q in self.system.q]
-        stiffness = Matrix([[force.diff(q) for q in self.system.q] for force in gradient])
-        return Linearisation(equilibrium, self.mass_matrix.subs(values), stiffness.subs(values))
 
     def check_equilibrium(self, equilibrium: tuple[sp.Expr, ...]) -> dict[sp.Symbol, sp.Expr]:
         """`equilibrium` by coordinate; an error if a force is not 0 there."""
@@ -72,19 +78,24 @@ class Energies:
             gradient = self.potential.diff(q) + self.drift[i].diff(TIME)
             everywhere = system.applied[i].subs(still) - gradient
             force = sp.simplify(everywhere.subs(values))
-            if force != 0:
-                if not sp.simplify(everywhere).free_symbols & {*system.q}:
-                    raise SystemDefinitionError(
-                        f"{system.name!r} has no equilibrium: the force along {q.name} is {force} "
-                        "for all coordinates"
-                    )
+            reason = f"the force along {q.name} is {force} there" if force != 0 else ""
+            if force.has(*INFINITE):
+                reason = f"the force along {q.name} is not finite there"
+            elif q.is_positive and values[q].is_nonpositive:
+                reason = f"{q.name} is positive"
+            elif force != 0 and not sp.simplify(everywhere).free_symbols & {*system.q}:
                 raise SystemDefinitionError(
-                    f"{system.name!r} has no equilibrium at {q.name} = {values[q]}: the force "
-                    f"along {q.name} is {force} there; give equilibrium= coordinates where it is 0"
+                    f"{system.name!r} has no equilibrium: the force along {q.name} is {force} "
+                    "for all coordinates"
+                )
+            if reason:
+                raise SystemDefinitionError(
+                    f"{system.name!r} has no equilibrium at {q.name} = {values[q]}: {reason}; give "
+                    "equilibrium= coordinates where all forces are 0"
                 )
         return values
 
-    def other_terms(self) -> dict[str, bool]:
+    def _other_terms(self) -> dict[str, bool]:
         """Terms of small motions beside those of masses and springs, and whether they exist."""
         rotation = self.drift.jacobian(self.system.q)
         parts = (self.mass_matrix, self.potential, self.drift)

@@ -5,6 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable
 
+from derive.formulas.functions import FUNCTIONS
 from derive.system.parts import SystemDefinitionError
 
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}\Z")
@@ -15,7 +16,8 @@ RESERVED = {
     *keyword.softkwlist,
     *"auto char const default do double enum extern float goto inline int long register".split(),
     *"restrict short signed sizeof static struct switch typedef union unsigned void".split(),
-    *"volatile NULL NAN INFINITY sin cos tan exp log sqrt pi".split(),
+    *"volatile NULL NAN INFINITY pi".split(),
+    *FUNCTIONS,
     *"t params state result numpy math hasattr".split(),
     # keywords of C++, and macros that compilers may define
     *"asm bool catch class delete dynamic_cast explicit export friend mutable namespace".split(),

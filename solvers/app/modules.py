@@ -40,7 +40,7 @@ def load(name: str) -> GeneratedModule:
     ValueError
         If the file does not exist or does not describe a system.
     derive.codegen.translation.UnsupportedFunctionError
-        If its equations contain an unsupported power, such as ``x**(5/4)``.
+        If its equations contain an unsupported power, such as ``x**(5/3)``.
     OSError
         If the module cannot be written to the cache.
 
