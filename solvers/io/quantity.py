@@ -1,45 +1,19 @@
 """Numbers with units from text: ``90 deg``, ``pi/2``, ``-1.5 m/s``.
 
 Text is parsed by rule and never executed: an expression is numbers, ``pi``, ``+ - * / **`` and
-brackets, and a unit is a product of names from a table.
+brackets; `solvers.io.units` describes units.
 """
 
 import ast
 import operator
-import re
 from collections.abc import Callable
 from math import pi
 
 from solvers.io.suggestion import shortened
-
-Dimension = tuple[int, ...]  # powers of m, kg, s, rad
+from solvers.io.units import KNOWN, UNIT, UnitError, dimension
 
 #: Characters of the longest number.
 MAX_LENGTH = 100
-#: Units by name: the factor to SI units, and powers of m, kg, s, rad.
-UNITS: dict[str, tuple[float, Dimension]] = {
-    "1": (1.0, (0, 0, 0, 0)),
-    "m": (1.0, (1, 0, 0, 0)),
-    "cm": (0.01, (1, 0, 0, 0)),
-    "mm": (0.001, (1, 0, 0, 0)),
-    "km": (1000.0, (1, 0, 0, 0)),
-    "kg": (1.0, (0, 1, 0, 0)),
-    "g": (0.001, (0, 1, 0, 0)),
-    "s": (1.0, (0, 0, 1, 0)),
-    "ms": (0.001, (0, 0, 1, 0)),
-    "min": (60.0, (0, 0, 1, 0)),
-    "rad": (1.0, (0, 0, 0, 1)),
-    "deg": (pi / 180, (0, 0, 0, 1)),
-    "turn": (2 * pi, (0, 0, 0, 1)),
-    "rpm": (2 * pi / 60, (0, 0, -1, 1)),
-    "N": (1.0, (1, 1, -2, 0)),
-    "J": (1.0, (2, 1, -2, 0)),
-}
-KNOWN = ", ".join(name for name in UNITS if name != "1")
-#: A unit at the end of a text: names with whole powers, joined by * and /.
-NAME = r"[A-Za-z]+(?:(?:\^|\*\*)-?\d)?"
-UNIT = re.compile(rf"(?<![\w.])((?:1/)?{NAME}(?:[*/]{NAME})*)\Z")
-PART = re.compile(r"([*/]?)([A-Za-z]+|1)(?:(?:\^|\*\*)(-?\d))?")
 OPERATORS: dict[type[ast.AST], Callable[[float, float], float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -68,15 +42,11 @@ def _parsed(text: str, unit: str) -> float:
     if len(text) > MAX_LENGTH:
         raise QuantityError(f"{text[:20]!r}... is longer than a number: {len(text)} characters")
     text = text.strip().replace("°", " deg")
-    match = UNIT.search(text)
-    factor = 1.0
-    if match and match[1] != "pi":
-        scale, dimension = _unit(match[1])
-        own, expected = _unit(unit)
-        if dimension != expected:
-            kind = "a number without a unit" if unit == "1" else f"{unit} or a unit of that kind"
-            raise QuantityError(f"{text!r} has another unit: give {kind}")
-        factor, text = scale / own, text[: match.start()].strip()
+    factor, number = 1.0, text.removesuffix(f" {unit}")
+    if not UNIT.search(number):  # a number, perhaps in the expected unit, which may be any text
+        text = number
+    elif match := UNIT.search(text):
+        factor, text = _factor(text, match[1], unit), text[: match.start()].strip()
     try:
         return factor * _value(ast.parse(text, mode="eval").body)
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
@@ -84,10 +54,22 @@ def _parsed(text: str, unit: str) -> float:
         hint += " (a decimal point is a point)" if "," in text else ""
         raise QuantityError(
             f"{text!r} is no number{hint}: use digits, pi, + - * / ** and brackets, and then one "
-            f"of the units {KNOWN}, or their products such as m/s^2"
+            f"of the units {KNOWN}, or their products such as m/s^2 or N s/m"
         ) from error
     except ArithmeticError as error:
         raise QuantityError(f"{text!r} has no value: {error}") from error
+
+
+def _factor(text: str, given: str, unit: str) -> float:
+    """The size of the given unit in the expected one."""
+    try:
+        (scale, own), (expected, required) = dimension(given), dimension(unit)
+    except UnitError as error:
+        raise QuantityError(str(error)) from error
+    if own != required:
+        kind = "a number without a unit" if unit == "1" else f"{unit} or a unit of that kind"
+        raise QuantityError(f"{text!r} has another unit: give {kind}")
+    return scale / expected
 
 
 def _value(node: ast.AST) -> float:
@@ -104,17 +86,3 @@ def _value(node: ast.AST) -> float:
                 raise ValueError("a root of a negative number")
             return result
     raise ValueError(f"{type(node).__name__} is not allowed")
-
-
-def _unit(text: str) -> tuple[float, Dimension]:
-    """The factor to SI units, and the dimension."""
-    scale = 1.0
-    dimension: Dimension = (0, 0, 0, 0)
-    for sign, name, power in PART.findall(text):
-        if name not in UNITS:
-            raise QuantityError(f"unit {name!r} is not known: use {KNOWN}")
-        size, powers = UNITS[name]
-        count = int(power or 1) * (-1 if sign == "/" else 1)
-        scale *= size**count
-        dimension = tuple(a + count * b for a, b in zip(dimension, powers, strict=True))
-    return scale, dimension
