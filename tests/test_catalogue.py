@@ -10,8 +10,10 @@ from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
+from operator import mul
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ import strange
 import sympy as sp
 from mpmath import diff, fdot, mpf, workdps
 from numpy.testing import assert_allclose
+from scipy.optimize import minimize
 
 from derive import TIME, System, load, names, systems, write
 from derive.system.catalogue import drawing
@@ -185,6 +188,33 @@ def test_hamilton_s_form_is_the_same_motion(module: ModuleType) -> None:
             module.energy_hamiltonian(t, z, params),
         )
         assert energies[0] == pytest.approx(energies[1], rel=1e-11)
+
+
+def test_the_hamiltonian_is_the_maximum_of_p_v_minus_the_lagrangian_over_velocities(
+    system: System, module: ModuleType
+) -> None:
+    # the definition of Legendre's transform, with rates of the positions by the chain rule
+    n, symbols = len(system.q), (TIME, *system.q, *system.qdot, *system.params)
+    kinetic = sum(
+        inertia * (r.diff(TIME) + sum(map(mul, map(r.diff, system.q), system.qdot))) ** 2 / 2
+        for mass in system.masses
+        for inertia, place in mass.motions
+        for r in map(sp.sympify, place)
+    )
+    lagrangian = sp.lambdify(symbols, kinetic - system.potential_energy, "numpy")
+
+    def negative(v: np.ndarray, t: float, q: np.ndarray, p: np.ndarray, params: Any) -> float:
+        return float(lagrangian(t, *q, *v, *params) - p @ v)
+
+    for t, y, params in cases(module)[:3]:
+        q, p = np.split(np.array(y), 2)  # any numbers are momenta
+        start, options = np.zeros(n), {"gtol": 1e-7}
+        found = minimize(negative, start, (t, q, p, params), "BFGS", options=options)
+        scale = abs(p @ found.x) + abs(negative(start, t, q, p, params)) + 1e-3
+        energy = module.energy_hamiltonian(t, y, params)
+        assert -found.fun == pytest.approx(energy, abs=1e-9 * scale)
+        velocities = module.lagrangian_state(t, y, params)[n:]
+        assert_allclose(found.x, velocities, atol=1e-4 * np.abs(velocities).max())
 
 
 @pytest.mark.parametrize("form", ["", "_hamiltonian"])

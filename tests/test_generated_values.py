@@ -262,21 +262,15 @@ def test_the_mass_matrix_is_symmetric_and_positive_definite(module: ModuleType) 
         assert np.linalg.eigvalsh(M / np.outer(scale, scale))[0] > 0
 
 
-def test_the_hamiltonian_form_is_the_legendre_transform_of_the_lagrangian(
-    derivation: Derivation, module: ModuleType
+def test_momenta_are_those_of_the_mass_matrix_and_lead_back_to_the_state(
+    module: ModuleType,
 ) -> None:
-    system = derivation.system
-    symbols = [[*system.q, *system.qdot], [*system.params]]
-    lagrangian = sp.lambdify(symbols, derivation.lagrangian, "math")
     for y, params in list(states(module))[:20]:
         canonical = module.hamiltonian_state(0.0, y, params)
         assert_allclose(module.lagrangian_state(0.0, canonical, params), y, rtol=1e-11)
         n = len(y) // 2
-        M, p = np.array(module.mass_matrix(0.0, y, params)), np.array(canonical[n:])
-        legendre = p @ y[n:] - lagrangian(y, params)
-        assert_allclose(p, M @ y[n:], rtol=1e-12, atol=1e-12)
-        scale = abs(p @ y[n:]) + abs(module.energy(0.0, y, params))
-        assert abs(module.energy_hamiltonian(0.0, canonical, params) - legendre) < 1e-12 * scale
+        M = np.array(module.mass_matrix(0.0, y, params))
+        assert_allclose(canonical[n:], M @ y[n:], rtol=1e-12, atol=1e-12)
 
 
 def test_energy_does_not_change_along_either_right_hand_side(module: ModuleType) -> None:
