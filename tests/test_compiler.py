@@ -15,7 +15,7 @@ from handwritten import handwritten
 
 import generated.double_pendulum as dp
 from solvers.integration.compiled import compiler
-from solvers.integration.compiled.compiler import LIBRARY, NoCompilerError, build
+from solvers.integration.compiled.compiler import LIBRARY, TIME_LIMIT, NoCompilerError, build
 from solvers.integration.compiled.native import native_rhs
 from solvers.io.build_cache import DIGESTS, cache_folder
 
@@ -111,15 +111,14 @@ def test_nothing_is_left_beside_finished_libraries(own_cache: Path) -> None:
         assert {path.name for path in entry.iterdir()} == {LIBRARY, DIGESTS}
 
 
-def test_old_remains_of_killed_builds_are_removed(own_cache: Path) -> None:
+def test_remains_of_killed_builds_are_removed_and_running_builds_are_not(own_cache: Path) -> None:
     build(SOURCE)
-    old, new = own_cache / "build-old", own_cache / "build-new"
-    old.mkdir()
-    new.mkdir()
-    os.utime(old, (0, 0))
+    ages = {"running": 2 * TIME_LIMIT, "killed": 11 * TIME_LIMIT}  # a build tries two compilers
+    for name, age in ages.items():
+        (own_cache / f"build-{name}").mkdir()
+        os.utime(own_cache / f"build-{name}", (time.time() - age,) * 2)
     build(SOURCE + "\n")
-    assert not old.exists()
-    assert new.exists()
+    assert [path.name for path in own_cache.glob("build-*")] == ["build-running"]
 
 
 def unusable(cache: Path, kind: str, tmp_path: Path) -> None:
