@@ -2,9 +2,11 @@
 
 import re
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
+import pytest
 import yaml
 
 ROOT = Path(__file__).parent.parent
@@ -51,3 +53,20 @@ def test_the_base_install_needs_four_packages() -> None:
     needed = tomllib.loads(read("pyproject.toml"))["project"]["dependencies"]
     names = [re.split(r"[<>=]", one)[0] for one in needed]
     assert names == ["sympy", "numpy", "scipy", "matplotlib"]
+
+
+@pytest.mark.parametrize("library", ["CDLL", "PyDLL"])  # without and with Python's lock
+def test_a_hang_in_compiled_code_fails(library: str, tmp_path: Path) -> None:
+    file = tmp_path / "test_hang.py"
+    file.write_text(f"import ctypes\n\ndef test_hang():\n    ctypes.{library}(None).sleep(60)\n")
+    command = [sys.executable, "-m", "pytest", "-c", str(ROOT / "pyproject.toml"), str(file)]
+    watchdog = ["-o", "faulthandler_timeout=1", "-p", "no:cacheprovider"]
+    run = subprocess.run([*command, *watchdog], capture_output=True, text=True, timeout=50)
+    assert run.returncode == 1
+    assert "Timeout" in run.stderr
+    assert "in test_hang" in run.stderr
+
+
+def test_the_watchdog_ends_a_test_after_its_timeout(pytestconfig: pytest.Config) -> None:
+    limits = [float(pytestconfig.getini(name)) for name in ("timeout", "faulthandler_timeout")]
+    assert 0 < limits[0] < limits[1] <= 300
