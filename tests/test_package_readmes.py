@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
+from snippets import assert_is_printed, run_snippet
 
 import generated.double_pendulum as dp
 from derive.codegen.tree import Tree
@@ -44,7 +45,7 @@ def snippets() -> Iterator[object]:
 
 
 @pytest.mark.parametrize(("path", "snippet"), [*snippets()])
-def test_a_snippet_runs(
+def test_a_snippet_prints_its_comments(
     path: Path, snippet: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -52,7 +53,16 @@ def test_a_snippet_runs(
     for file in blocks(path, "toml"):
         if name := re.match(r"# (\w+\.toml)\n", file):
             (tmp_path / name[1]).write_text(file)
-    exec(compile(snippet, str(path), "exec"), {"__name__": "__main__"})
+    run_snippet(snippet, str(path), {"__name__": "__main__"})
+
+
+def test_a_comment_that_is_not_printed_is_an_error(tmp_path: Path) -> None:
+    assert_is_printed("FINISHED, 2.228 -0.27 nan", "FINISHED [ 2.22806 -0.267045     nan]\n")
+    for comment in ("2.229", "2.22806 rad", "-2.228", "2", "nan"):
+        with pytest.raises(AssertionError, match="instead of"):
+            assert_is_printed(comment, "2.22806\n")
+    with pytest.raises(AssertionError, match="'2\\\\n' instead of '3'"):
+        run_snippet("x = 1\nprint(\n    x + 1,\n)  # 3\n", "snippet", {})
 
 
 @pytest.mark.parametrize("path", READMES, ids=lambda path: str(path.parent.relative_to(ROOT)))
