@@ -1,5 +1,6 @@
 """References agree with each other: three families of methods that share only the physics."""
 
+from decimal import Decimal, localcontext
 from math import pi, sqrt
 from types import ModuleType
 
@@ -7,14 +8,19 @@ import numpy as np
 import pytest
 from mpmath import mp
 from scipy.special import ellipk
+from sympy import symbols
 
+import generated.coupled_pendulums as coupled
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.foucault_pendulum as foucault
 import generated.single_pendulum as sp
+from holonomic import Coordinate, Parameter, PointMass, System, build
 from solvers.references.elliptic import jacobi, pendulum
 from solvers.references.extrapolation import extrapolated
-from solvers.references.taylor import NoSeriesError, sine_and_cosine, taylor
+from solvers.references.series import Series
+from solvers.references.series_functions import series_functions, sine_and_cosine
+from solvers.references.taylor import taylor
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
 EXTENDED = np.finfo(np.longdouble).nmant > 60
@@ -104,21 +110,65 @@ def test_the_period_is_the_complete_elliptic_integral() -> None:
     assert end == pytest.approx([amplitude, 0.0], abs=1e-14)
 
 
-def test_equations_that_have_no_series_are_refused() -> None:
-    with pytest.raises(NoSeriesError, match=r"driven_pendulum .* depend on time"):
-        taylor(driven, driven.DEFAULTS, (1.0, 0.0), [0, 1])
-    with pytest.raises(NoSeriesError, match=r"foucault_pendulum .* call a function"):
-        taylor(foucault, foucault.DEFAULTS, (30.0, 10.0, 0.0, 0.0), [0, 1])
+DRIVEN = [
+    (driven, (1.0, 0.0)),  # sine and cosine of time
+    (foucault, (30.0, 10.0, 0.0, 0.0)),  # functions of parameters, and roots
+    (coupled, (0.3, -0.2, 0.0, 0.0)),  # roots
+]
+
+
+@pytest.mark.parametrize(("module", "start"), DRIVEN)
+def test_references_of_driven_systems_agree(module: ModuleType, start: tuple) -> None:
+    times = [0.3, 0.5, 0.8]
+    series = taylor(module, module.DEFAULTS, start, times)
+    midpoints = extrapolated(module, module.DEFAULTS, start, times, h=0.004)
+    assert np.abs(series - midpoints).max() < (1e-14 if EXTENDED else 1e-10)
+    # from the middle on, at its own time
+    rest = taylor(module, module.DEFAULTS, series[1], times[1:])
+    assert np.abs(rest[-1] - series[-1]).max() < 1e-13
+
+
+def test_a_reference_of_a_state_of_zeros_that_a_force_moves() -> None:
+    x, t = symbols("x t", real=True)
+    m, k = symbols("m k", positive=True)
+    pivot = System(
+        name="pivot",
+        title="A mass on a spring whose pivot moves",
+        coordinates=[Coordinate(x, "m", "length")],
+        parameters=[Parameter(m, "kg", 1.0, "mass"), Parameter(k, "N/m", 4.0, "stiffness")],
+        masses=[PointMass(m, (x + t**3, 0))],
+        potential=k * x**2 / 2,
+    )
+    module = build(pivot)
+    (end,) = taylor(module, module.DEFAULTS, (0.0, 0.0), [0, 1])[1:]
+    # x'' + 4 x = -6 t
+    assert end == pytest.approx([-1.5 + 0.75 * np.sin(2), -1.5 + 1.5 * np.cos(2)], abs=1e-15)
+
+
+@pytest.mark.parametrize("name", ["sin", "cos", "tan", "exp", "log", "sqrt"])
+def test_functions_of_series_have_the_coefficients_of_taylor(name: str) -> None:
+    tape: list[Series] = []
+    x = Series(tape, [])
+    y = series_functions(tape)[name](1 + x * x / 3)
+    order = 8
+    with localcontext(prec=40), mp.workdps(40):
+        for k in range(order):
+            x.coefficients.append({0: Decimal("0.5"), 1: Decimal(1)}.get(k, Decimal(0)))
+            for series in tape:
+                series.extend(k)
+        expected = mp.taylor(lambda t: getattr(mp, name)(1 + t * t / 3), 0.5, order - 1)
+        for k, coefficient in enumerate(expected):
+            assert abs(mp.mpf(str(y.at(k))) - coefficient) < mp.mpf("1e-20")
+        constant = series_functions(tape)[name](0.7)
+        assert abs(mp.mpf(str(constant.at(0))) - getattr(mp, name)(mp.mpf(0.7))) < mp.mpf("1e-38")
 
 
 def test_decimal_sine_and_cosine() -> None:
-    from decimal import Decimal, localcontext
-
     import mpmath
 
     with localcontext() as context, mpmath.workdps(60):
         context.prec = 50
-        for x in (0.0, 1e-30, 0.5, -3.25, 40.0):
+        for x in (0.0, 1e-30, 0.5, -3.25, 40.0, 1e9):
             sine, cosine = sine_and_cosine(Decimal(x))
             assert abs(mpmath.mpf(str(sine)) - mpmath.sin(x)) < 1e-48
             assert abs(mpmath.mpf(str(cosine)) - mpmath.cos(x)) < 1e-48

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from types import FunctionType
 from typing import Any, Protocol, cast
 
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +11,9 @@ Numbers = Iterable[float]
 Arrays = Sequence[Any] | NDArray[Any]
 Array = NDArray[Any]
 Rows = tuple[tuple[float, ...], ...]
+
+#: The functions of `math` that generated functions call.
+ELEMENTARY = ("sin", "cos", "tan", "exp", "log", "sqrt")
 
 
 class GeneratedModule(Protocol):
@@ -80,6 +84,15 @@ def function(module: GeneratedModule, name: str) -> Callable[..., Any]:
         known = ", ".join(module.OPERATIONS)
         raise ValueError(f"{module.SYSTEM} has no function {name!r}; it has {known}")
     return cast("Callable[..., Any]", getattr(module, name))
+
+
+def with_functions(
+    function: Callable[..., Any], functions: Mapping[str, Callable[..., Any]]
+) -> Callable[..., Any]:
+    """A generated function that calls these functions in place of those of `math`, by name."""
+    # the same code in another namespace, so that the function takes numbers of any kind
+    original = cast("FunctionType", function)
+    return FunctionType(original.__code__, {**original.__globals__, **functions})
 
 
 def named(stem: str, form: str) -> str:

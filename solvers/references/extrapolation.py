@@ -13,6 +13,7 @@ from solvers.equations.module import GeneratedModule
 
 Array = NDArray[np.float64]
 Long = NDArray[np.longdouble]
+Rhs = Callable[[np.longdouble, Long], Long]
 
 #: Midpoint rules with 2, 4, … 2·COLUMNS substeps are extrapolated: order 2·COLUMNS.
 COLUMNS = 9
@@ -34,35 +35,36 @@ def extrapolated(
     """
     constants = np.array(params, dtype=np.longdouble)
 
-    def rhs(y: Long) -> Long:
-        return np.asarray(module.rhs_many(0.0, y, constants), dtype=np.longdouble)
+    def rhs(t: np.longdouble, y: Long) -> Long:
+        return np.asarray(module.rhs_many(t, y, constants), dtype=np.longdouble)
 
     y = np.array(y0, dtype=np.longdouble)
     states = [y]
     for begin, end in pairwise(np.asarray(times, dtype=float)):
         count = int(np.ceil(abs(end - begin) / h))
-        length = (np.longdouble(end) - np.longdouble(begin)) / count
-        for _ in range(count):
-            y = _extrapolated_step(rhs, y, length)
+        t = np.longdouble(begin)
+        length = (np.longdouble(end) - t) / count
+        for k in range(count):
+            y = _extrapolated_step(rhs, t + k * length, y, length)
         states.append(y)
     return np.array(states, dtype=float)
 
 
-def _extrapolated_step(rhs: Callable[[Long], Long], y: Long, h: np.longdouble) -> Long:
+def _extrapolated_step(rhs: Rhs, t: np.longdouble, y: Long, h: np.longdouble) -> Long:
     """The state after a step, by the rule with more and more substeps, extrapolated."""
     row: list[Long] = []
     for j in range(1, COLUMNS + 1):
-        above, row = row, [_midpoint_rule(rhs, y, h, 2 * j)]
+        above, row = row, [_midpoint_rule(rhs, t, y, h, 2 * j)]
         for k, older in enumerate(above, start=1):
             ratio = np.longdouble(j) / np.longdouble(j - k)
             row.append(row[-1] + (row[-1] - older) / (ratio * ratio - 1))
     return y + row[-1]
 
 
-def _midpoint_rule(rhs: Callable[[Long], Long], y: Long, h: np.longdouble, count: int) -> Long:
+def _midpoint_rule(rhs: Rhs, t: np.longdouble, y: Long, h: np.longdouble, count: int) -> Long:
     """The change over `count` substeps, an even number; apart from y it keeps its digits."""
     part = h / count
-    before, now = np.zeros_like(y), part * rhs(y)
-    for _ in range(count - 1):
-        before, now = now, before + 2 * part * rhs(y + now)
+    before, now = np.zeros_like(y), part * rhs(t, y)
+    for k in range(1, count):
+        before, now = now, before + 2 * part * rhs(t + k * part, y + now)
     return now

@@ -1,7 +1,8 @@
 """Motions by Taylor series in decimal numbers of any length.
 
-The equations are a generated module's rational form, of sums, products and quotients, so that its
-function accepts power series. Nothing numerical is shared with Runge–Kutta methods.
+A generated module's right-hand side accepts power series: sums, products and quotients are theirs,
+and elementary functions are replaced by those of series. Nothing numerical is shared with
+Runge–Kutta methods.
 """
 
 from collections.abc import Sequence
@@ -12,17 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.forms import Form, fastest_form
-from solvers.equations.module import GeneratedModule, named
+from solvers.equations.module import GeneratedModule, with_functions
 from solvers.references.series import Series
+from solvers.references.series_functions import series_functions, sine_and_cosine
 
 Array = NDArray[np.float64]
 
 #: Digits computed in addition to those requested.
 GUARD = 6
-NO_SERIES = (
-    "{} has no Taylor series, since its equations {}: ordinary numbers have to do; ask for less "
-    "accuracy or a shorter duration"
-)
 
 
 def taylor(
@@ -37,8 +35,7 @@ def taylor(
     Parameters
     ----------
     module : module
-        A generated module whose equations are rational in sines, cosines and other
-        coordinates, and free of time.
+        A generated module.
     params, y0 : sequence of float
         In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact.
     times : array_like of shape (n,)
@@ -53,8 +50,8 @@ def taylor(
 
     Raises
     ------
-    NoSeriesError
-        When the equations call a function, even of parameters only, or depend on time.
+    ArithmeticError
+        When the equations are not finite at a state, such as the logarithm of a negative number.
 
     Notes
     -----
@@ -64,85 +61,81 @@ def taylor(
     """
     samples = [Decimal(float(t)) for t in np.asarray(times, dtype=float)]
     with localcontext(prec=digits + GUARD):
-        motion = _Motion(module, params, y0)
+        motion = _Motion(module, params, y0, samples[0])
         order = int(digits * 2.302585 / 2) + 2
-        states, t = [], samples[0]
+        t, h, states = samples[0], Decimal(0), []
         for sample in samples:
-            while t != sample:
+            while abs(sample - t) > h:
+                if h:
+                    step = h.copy_sign(sample - t)
+                    t += step
+                    motion.restart(t, motion.state_after(step))
                 h = motion.expand(order)
-                left = sample - t
-                is_last = abs(left) <= h
-                step = left if is_last else h if left > 0 else -h
-                t = sample if is_last else t + step
-                motion.restart(motion.state_after(step))
-            states.append([float(x) for x in motion.ordinary])
+            states.append([float(x) for x in motion.ordinary_after(sample - t)])
     return np.array(states)
-
-
-class NoSeriesError(ArithmeticError):
-    """The equations are not sums, products and quotients of the state alone."""
 
 
 class _Motion:
     """A motion as power series of its state about the current time.
 
     The state is that of the fastest form, followed by the angles, whose derivatives are velocities
-    in that state.
+    in that state. Time is a series, too: t₀ + x.
     """
 
     def __init__(
-        self, module: GeneratedModule, params: Sequence[float], y0: Sequence[float]
+        self, module: GeneratedModule, params: Sequence[float], y0: Sequence[float], start: Decimal
     ) -> None:
         form = Form(module, fastest_form(module), (0.0,) * len(module.PARAMETERS))
         half, self._tape = len(module.COORDINATES), list[Series]()
+        self._time = Series(self._tape, [])
         self._state = [Series(self._tape, []) for _ in form.state]
         constants = [Series.number(self._tape, p) for p in params]
-        if named("rhs", form.name) in module.TIMED:
-            raise NoSeriesError(NO_SERIES.format(module.SYSTEM, "depend on time"))
-        try:
-            rates = form.function(0.0, self._state, constants)
-        except TypeError:  # of the function, which takes numbers only
-            raise NoSeriesError(NO_SERIES.format(module.SYSTEM, "call a function")) from None
+        function = with_functions(form.function, series_functions(self._tape))
+        rates = function(self._time, self._state, constants)
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
         columns = dict(form.shared_columns)
         ordinary = [Decimal(float(y)) for y in y0]
-        start = [Decimal(0)] * len(form.state)
+        state = [Decimal(0)] * len(form.state)
         for k, i in form.shared_columns:
-            start[i] = ordinary[k]
+            state[i] = ordinary[k]
         for k, i in form.angle_columns:
-            start[i], start[i + 1] = sine_and_cosine(ordinary[k])
-            columns[k] = len(start)
-            start.append(ordinary[k])
+            state[i], state[i + 1] = sine_and_cosine(ordinary[k])
+            columns[k] = len(state)
+            state.append(ordinary[k])
             self._rates.append(self._state[columns[half + k]])
             self._state.append(Series(self._tape, []))
         self._columns = [columns[k] for k in range(2 * half)]
-        self.restart(start)
+        self.restart(start, state)
 
-    def restart(self, state: Sequence[Decimal]) -> None:
-        """Discard all coefficients and continue from this state."""
+    def restart(self, t: Decimal, state: Sequence[Decimal]) -> None:
+        """Discard all coefficients and continue from this time and state."""
         for series in self._tape:
             series.coefficients.clear()
+        self._time.coefficients[:] = [t]
         for series, value in zip(self._state, state, strict=True):
             series.coefficients[:] = [value]
 
-    @property
-    def ordinary(self) -> list[Decimal]:
-        """Coordinates and velocities at the current time."""
-        return [self._state[k].at(0) for k in self._columns]
+    def ordinary_after(self, h: Decimal) -> list[Decimal]:
+        """Coordinates and velocities after `h`, at most a step."""
+        state = self.state_after(h)
+        return [state[k] for k in self._columns]
 
     def expand(self, order: int) -> Decimal:
         """Compute the series up to `order`; return the length of a step."""
         for k in range(order):
             for series in self._tape:
                 series.extend(k)
+            self._time.coefficients.append(Decimal(0 if k else 1))
             for series, rate in zip(self._state, self._rates, strict=True):
                 series.coefficients.append(rate.at(k) / (k + 1))
 
-        def largest(k: int) -> Decimal:
-            return max(abs(series.at(k)) for series in self._state)
-
+        sizes = [max(abs(s.at(k)) for s in self._state) for k in range(order + 1)]
+        # a state of zeros may leave it: the first coefficient that is not zero counts
+        first = next((k for k, size in enumerate(sizes) if size), order)
         radii = [
-            ((largest(0) / last).ln() / k).exp() if (last := largest(k)) else Decimal(1)
+            ((sizes[first] / sizes[k]).ln() / (k - first)).exp()
+            if first < k and sizes[k]
+            else Decimal(1)
             for k in (order - 1, order)
         ]
         return min(radii) / Decimal(2).exp()
@@ -152,18 +145,3 @@ class _Motion:
         zero = Decimal(0)
         coefficients = (reversed(series.coefficients) for series in self._state)
         return [reduce(lambda value, c: value * h + c, each, zero) for each in coefficients]
-
-
-def sine_and_cosine(x: Decimal) -> tuple[Decimal, Decimal]:
-    """Sine and cosine to the digits of the current context, by the exponential series."""
-    with localcontext() as context:
-        # terms grow up to eˣ before they decrease
-        context.prec += int(abs(x) * Decimal("0.4343")) + 5
-        smallest = Decimal(10) ** -context.prec
-        sums, term, k = [Decimal(0), Decimal(0)], Decimal(1), 0
-        while abs(term) > smallest or k < abs(x):
-            sums[k % 2] += term if k % 4 < 2 else -term
-            k += 1
-            term *= x / k
-    cosine, sine = sums
-    return +sine, +cosine

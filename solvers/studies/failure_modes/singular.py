@@ -20,7 +20,8 @@ from solvers.integration.timing import timed_run
 from solvers.io.figures import COLOURS, panels
 from solvers.io.text_table import text_table
 from solvers.references.series import Series
-from solvers.references.taylor import sine_and_cosine, taylor
+from solvers.references.series_functions import sine_and_cosine
+from solvers.references.taylor import taylor
 from solvers.studies.failure_modes.study import Load, Study
 
 Array = NDArray[np.float64]
