@@ -1,6 +1,9 @@
 """Work-precision curves, their frontier, and the findings that follow from them."""
 
 import json
+import math
+import operator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from math import inf, isnan, nan
@@ -13,12 +16,13 @@ import pytest
 import generated.double_pendulum as dp
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
-from solvers.equations.forms import Form
+from solvers.equations.forms import Form, fastest_form
 from solvers.integration.timing import timed_run, work_at
 from solvers.io.figures import save
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.scenes.reading import find
-from solvers.studies.work_precision import measurement, peers
+from solvers.studies import heyoka
+from solvers.studies.work_precision import measurement, peers, plots
 from solvers.studies.work_precision.curve import Curve, Point, frontier
 from solvers.studies.work_precision.findings import misleading_energy, rounding_limits, wrong_above
 from solvers.studies.work_precision.measurement import combinations, curves
@@ -243,6 +247,128 @@ def test_installed_programs_have_curves(truth: Reference) -> None:
     assert peers.curves(find("report", load_module), truth, lambda _: None) == []
 
 
+class Expression:
+    """A number in another program's arithmetic, which the functions of ``math`` refuse."""
+
+    def __init__(self, value: float) -> None:
+        self.value = value
+
+    def __neg__(self) -> "Expression":
+        return Expression(-self.value)
+
+
+def arithmetic(operation: Callable[[float, float], float]) -> Callable[..., Expression]:
+    def combined(one: Expression, other: "Expression | float") -> Expression:
+        return Expression(operation(one.value, getattr(other, "value", other)))
+
+    return combined
+
+
+for name in ("add", "sub", "mul", "truediv"):
+    setattr(Expression, f"__{name}__", arithmetic(getattr(operator, name)))
+    reflected = arithmetic(lambda a, b, name=name: getattr(operator, name)(b, a))
+    setattr(Expression, f"__r{name}__", reflected)
+
+
+@pytest.mark.parametrize("system", ["henon_heiles", "foucault_pendulum", "driven_pendulum"])
+def test_heyoka_gets_the_equations_of_every_system(system: str) -> None:
+    module, t = load_module(system), 0.3
+    form = Form(module, fastest_form(module), module.DEFAULTS)
+    state = form.from_ordinary(t, np.linspace(0.2, 0.9, len(module.STATE)))
+
+    def elementary(name: str) -> Callable[[Expression], Expression]:
+        return lambda x: Expression(getattr(math, name)(x.value))
+
+    functions = {name: staticmethod(elementary(name)) for name in ("sin", "cos", "sqrt")}
+    values = dict(zip(form.state, state, strict=True))
+    hy = type("Heyoka", (), {
+        "expression": Expression,
+        "time": Expression(t),
+        "par": [*map(Expression, module.DEFAULTS)],
+        "make_vars": staticmethod(lambda *names: [Expression(values[name]) for name in names]),
+        **functions,
+    })  # fmt: skip
+    variables, rates = zip(*heyoka.generated(hy, module), strict=True)
+    assert [x.value for x in variables] == state.tolist()
+    expected = form.rhs(t, state)
+    assert np.array([rate.value for rate in rates]) == pytest.approx(expected, rel=1e-14)
+
+
+def test_a_program_that_fails_loses_no_other_curve(
+    truth: Reference, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
+
+    def right(*_: object) -> Iterator[peers.Method]:
+        yield "right", lambda _: lambda: (end, None)
+
+    def fails_at_once(*_: object) -> Iterator[peers.Method]:
+        raise AttributeError("no attribute 'STATE_RATIONAL'")
+        yield
+
+    def fails_later(*_: object) -> Iterator[peers.Method]:
+        def run(tolerance: float) -> peers.Run:
+            if tolerance < 1e-3:
+                raise RuntimeError("out of memory")
+            return lambda: (end, None)
+
+        yield "first", run
+        yield "second", lambda _: lambda: (end, None)
+
+    programs = {"broken": fails_at_once, "partly": fails_later, "good": right}
+    monkeypatch.setattr(peers, "PEERS", programs)
+    monkeypatch.setattr("solvers.studies.work_precision.plots.PEERS", programs)
+    one = find("report", load_module)
+    broken, first, second, good = peers.curves(one, truth, ModuleType)
+    assert broken.failure == "AttributeError: no attribute 'STATE_RATIONAL'"
+    assert first.failure == "RuntimeError: out of memory"
+    assert 1 <= len(first.points) < len(second.points) == len(good.points)
+    assert not second.failure
+    study = SceneCurves.of(one, truth, [broken, first, second, good])
+    text = "\n".join(study.summary())
+    assert "broken failed: AttributeError: no attribute" in text
+    assert "partly first failed: RuntimeError: out of memory" in text
+    panel = study.plots()["work_precision_report"].axes[-1]
+    labels = [line.get_label() for line in panel.lines]
+    assert labels == ["broken (failed)", "partly first (failed)", "partly second", "good right"]
+
+
+SCENES = {
+    "driven_pendulum": "theta = '1 rad'",
+    "henon_heiles": "x = '0.1 m'\ny = '0.2 m'\nx_dot = '0.3 m/s'",
+    "rotating_hoop": "theta = '1 rad'",
+    "swinging_atwood": "r = '1 m'\ntheta = '1 rad'",
+}
+
+
+@pytest.mark.parametrize("system", SCENES)
+def test_systems_of_every_kind_are_charted(
+    system: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # driven, without an angle, the state of the single pendulum, no known equilibrium
+    wanted = [("dop853", "lagrangian", "compiled"), ("gauss2", "hamiltonian", "compiled")]
+    monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
+    monkeypatch.setattr(peers, "PEERS", {})
+    path = tmp_path / f"{system}.toml"
+    path.write_text(f"system = '{system}'\nduration = '0.2 s'\n[initial]\n{SCENES[system]}\n")
+    assert main(["chart", str(path), "--json", "--output", str(tmp_path)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    one = found["reference"]["scenes"][system]
+    assert one["global_error"] < 1e-14
+    assert max(one["differences"].values()) < 1e-12
+    assert [c["method"] for c in found["curves"]] == ["dop853", "gauss2"]
+    for c in found["curves"]:
+        last = c["points"][-1]
+        assert last["global_error"] < 1e-7
+        assert last["energy_error"] < 100 * last["global_error"]  # of 1 m or 1 rad, and in J
+    # the hoop starts below its equilibrium at the bottom, which is unstable
+    unit = "J" if system in ("swinging_atwood", "rotating_hoop") else "energy above rest"
+    assert found["energy_error_units"] == {system: unit}
+    runs = [curve("dop853", "lagrangian", "compiled", point(1.0, 1e-3))]
+    figure = plots.energy("", runs, 0.1, measurement.unit_of_energy(find(str(path), load_module)))
+    assert figure.axes[0].get_xlabel() == f"energy error at the end / {unit}"
+
+
 def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Path) -> None:
     wanted = [
         ("rk4", "lagrangian", "compiled"),
@@ -252,9 +378,9 @@ def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Pat
     ]
     found = curves(find("report", load_module), truth, wanted)
     study = SceneCurves.of(find("report", load_module), truth, found)
-    plots = study.plots()
-    assert [*plots] == ["work_precision_report", "steps_report", "energy_report"]
-    for name, figure in plots.items():
+    figures = study.plots()
+    assert [*figures] == ["work_precision_report", "steps_report", "energy_report"]
+    for name, figure in figures.items():
         assert sum(len(axes.lines) for axes in figure.axes) >= 1
         save(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000

@@ -1,12 +1,43 @@
 """Energy errors, relative to the energy of a motion above that of the system at rest."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import cumulative_simpson
 
 from solvers.equations.module import GeneratedModule, function, has_function
+
+#: The unit of relative energy errors.
+ABOVE_REST = "energy above rest"
+
+#: Share of an energy below which a difference from it is rounding.
+ROUNDING = 32 * float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class EnergyUnit:
+    """The unit of the energy errors of a motion: its energy above rest, or 1 J."""
+
+    name: str  # `ABOVE_REST` or "J"
+    joules: float
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether errors are relative to the energy above rest."""
+        return self.name == ABOVE_REST
+
+
+def energy_unit(module: GeneratedModule, params: Sequence[float], first: float) -> EnergyUnit:
+    """The unit of the energy errors of a motion that starts with the energy `first` in J.
+
+    It is J where no equilibrium is known, or the motion does not start above it.
+    """
+    rest = energy_at_rest(module, params)
+    if rest is not None and first - rest > ROUNDING * max(abs(first), abs(rest)):
+        return EnergyUnit(ABOVE_REST, first - rest)
+    return EnergyUnit("J", 1.0)
 
 
 def energy_at_rest(module: GeneratedModule, params: Sequence[float]) -> float | None:
@@ -20,9 +51,10 @@ def energy_at_rest(module: GeneratedModule, params: Sequence[float]) -> float | 
 def energy_error(
     module: GeneratedModule, params: Sequence[float], energy: ArrayLike
 ) -> NDArray[np.float64]:
-    """Differences of energies from the first one, relative to that one above rest.
+    """Differences of energies from the first one, in the unit of `energy_unit`.
 
-    In J where the motion starts at rest or no equilibrium is known.
+    Relative to the first one above rest; in J where no equilibrium is known, or the motion does not
+    start above it.
 
     Parameters
     ----------
@@ -38,9 +70,8 @@ def energy_error(
     ndarray of shape (n,)
         Positive for a gain of energy; the first is 0.
     """
-    values, rest = np.asarray(energy, dtype=float), energy_at_rest(module, params)
-    scale = values[0] - rest if rest is not None else 0.0
-    return (values - values[0]) / (scale or 1.0)
+    values = np.asarray(energy, dtype=float)
+    return (values - values[0]) / energy_unit(module, params, float(values[0])).joules
 
 
 def supplied_energy(

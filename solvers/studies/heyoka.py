@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, function
+from solvers.equations.forms import fastest_form
+from solvers.equations.module import ELEMENTARY, GeneratedModule, function, named, with_functions
 
 Array = NDArray[np.float64]
 System = list[tuple[Any, Any]]
@@ -56,10 +57,20 @@ def chain(hy: Any, n: int) -> tuple[list[Any], list[Any], System]:
 
 
 def generated(hy: Any, module: GeneratedModule) -> System:
-    """A module's rational equations: the generated function, called with heyoka's variables."""
-    state = hy.make_vars(*module.STATES["rational"])
+    """A module's fastest equations: the generated function, called with heyoka's expressions."""
+
+    def expression(x: Any) -> Any:
+        return x if isinstance(x, hy.expression) else hy.expression(x)
+
+    def elementary(name: str) -> Callable[[Any], Any]:
+        return lambda x: getattr(hy, name)(expression(x))
+
+    form = fastest_form(module)
+    functions = {name: elementary(name) for name in ELEMENTARY}
+    rhs = with_functions(function(module, named("rhs", form)), functions)
+    state = hy.make_vars(*module.STATES[form])
     params = [hy.par[k] for k in range(len(module.PARAMETERS))]
-    return list(zip(state, function(module, "rhs_rational")(0.0, state, params), strict=True))
+    return list(zip(state, map(expression, rhs(hy.time, state, params)), strict=True))
 
 
 @contextmanager

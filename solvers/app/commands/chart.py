@@ -83,9 +83,11 @@ def _measured(scene: "Scene", *, compiled_only: bool) -> "SceneCurves":
 
 
 def _as_json(results: "Sequence[SceneCurves]", plots: Sequence[str]) -> dict[str, Any]:
+    from solvers.studies.work_precision.measurement import unit_of_energy
     from solvers.studies.work_precision.reference import Reference
 
     return {
+        "energy_error_units": {r.scene.name: unit_of_energy(r.scene).name for r in results},
         "curves": [curve for r in results for curve in r.curves],
         "frontier": [best for r in results for best in (*r.frontier, *r.frontier_rhs)],
         "rounding_limits": {r.scene.name: r.rounding_limits for r in results},

@@ -21,7 +21,7 @@ class Point:
     work_seconds: float  # without preparation
     work_rhs: int | None  # evaluations of the right-hand side, where they are known
     global_error: float  # largest component of the final state's error, in rad and rad/s
-    energy_error: float  # at the end, relative
+    energy_error: float  # of the final state, in the unit of `measurement.unit_of_energy`
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,17 @@ class Curve:
     form: str
     backend: str
     points: list[Point]
+    failure: str = ""  # the exception that ended the runs of another program
 
     @property
     def combination(self) -> Combination:
         """Method, form and backend."""
         return self.method, self.form, self.backend
+
+    @property
+    def program(self) -> str:
+        """Backend and method, as another program is called."""
+        return f"{self.backend} {self.method}".rstrip()
 
     def costs(self, work: str) -> list[list[float]]:
         """Work and global errors of the runs whose work is known."""

@@ -7,14 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from solvers.equations.energy import energy_error
+from solvers.equations.energy import ABOVE_REST, energy_error
+from solvers.equations.module import has_function
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
 from solvers.integration.timing import least_pair
 from solvers.runge_kutta.catalogue import load
 from solvers.scenes.scene import Scene
 from solvers.studies.work_precision.curve import Curve, select
-from solvers.studies.work_precision.measurement import REPORT_METHODS
+from solvers.studies.work_precision.measurement import REPORT_METHODS, unit_of_energy
 from solvers.studies.work_precision.reference import Reference
 
 #: Largest difference between an observed order and the method's order.
@@ -88,21 +89,27 @@ class MisleadingEnergy:
     method: str
     form: str
     setting: dict[str, float]  # its step or tolerance
-    energy_error: float  # largest over the whole run, relative
+    energy_error: float  # largest over the whole run, relative to the energy above rest
     global_error: float  # of the final state
 
     def __str__(self) -> str:
         setting = ", ".join(f"{name} = {value:.2g}" for name, value in self.setting.items())
         return (
             f"misleading energy: {self.method}, {self.form}, {setting}: energy error "
-            f"{self.energy_error:.0e}, error of the final state {self.global_error:.2g}"
+            f"{self.energy_error:.0e} of the {ABOVE_REST}, error of the final state "
+            f"{self.global_error:.2g}"
         )
 
 
 def misleading_energy(
     curves: Sequence[Curve], scene: Scene, reference: Reference
 ) -> MisleadingEnergy | None:
-    """The run with the least energy error among those with a wrong trajectory, if it is kept."""
+    """The run with the least energy error among those with a wrong trajectory, if it is kept.
+
+    None where forces change the energy, or where no error is relative to the energy above rest.
+    """
+    if has_function(scene.module, "power") or not unit_of_energy(scene).is_relative:
+        return None
     limit = wrong_above(scene, reference)
     compiled = [curve for curve in curves if curve.backend == "compiled"]
     runs = [(curve, p) for curve in compiled for p in curve.points if p.global_error > limit]

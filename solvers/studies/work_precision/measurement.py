@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.energy import energy_error
+from solvers.equations.energy import EnergyUnit, energy_unit
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import NoCompilerError
@@ -113,7 +113,15 @@ def point(
     error = float(np.abs(end - reference.end).max())
     if not error < LARGEST_ERROR:
         return None
-    energies = [module.energy(0.0, y, params) for y in (scene.y0, end.tolist())]
-    energy = float(abs(energy_error(module, params, energies)[1]))
+    # the energy of the reference, since that at the start may not be kept
+    ends = end.tolist(), reference.end.tolist()
+    energy, right = (module.energy(scene.duration, y, params) for y in ends)
+    energy_error = abs(energy - right) / unit_of_energy(scene).joules
     # an error below that of the reference is not known
-    return Point(setting, seconds, calls, max(error, reference.global_error), energy)
+    return Point(setting, seconds, calls, max(error, reference.global_error), energy_error)
+
+
+def unit_of_energy(scene: Scene) -> EnergyUnit:
+    """The unit of the energy errors of a scene's points."""
+    first = scene.module.energy(0.0, scene.y0, scene.params)
+    return energy_unit(scene.module, scene.params, first)

@@ -6,16 +6,15 @@ Python function into a loop of RK4 steps; numbalsoda's LSODA and DOP853 take its
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from importlib import import_module
 from types import ModuleType
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.forms import Form, fastest_form
-from solvers.integration.compiled.compiler import NoCompilerError
+from solvers.equations.module import ELEMENTARY, with_functions
 from solvers.integration.compiled.native import native_rhs
 from solvers.integration.timing import median_seconds
 from solvers.scenes.scene import Scene
@@ -25,6 +24,7 @@ from solvers.studies.work_precision.measurement import LONGEST, STEPS, TOLERANCE
 from solvers.studies.work_precision.reference import Reference
 
 Array = NDArray[np.float64]
+Item = TypeVar("Item")
 #: Returns the final state, and the number of right-hand sides if it is known.
 Run = Callable[[], tuple[Array, int | None]]
 #: A method of a program, and its run with a tolerance or a step.
@@ -41,17 +41,38 @@ FINEST_OF_LSODA = 5e-13
 def curves(
     scene: Scene, reference: Reference, package: Callable[[str], ModuleType | None]
 ) -> list[Curve]:
-    """A curve for each method of the packages that are installed."""
+    """A curve for each method of the packages that are installed.
+
+    A program that fails loses neither its earlier runs nor those of others: its curve states the
+    failure.
+    """
     form = Form(scene.module, fastest_form(scene.module), scene.params)
     start = form.from_ordinary(0.0, np.array(scene.y0))
     results = []
-    installed = {name: found for name in PEERS if (found := package(name))}
-    for name, found in installed.items():
-        with suppress(NoCompilerError):
-            for method, run in PEERS[name](found, scene, form, start):
-                points = list(_points(scene, reference, form, method, run))
-                results.append(Curve(scene.name, method, form.name, name, points))
+
+    def methods_of(name: str) -> Iterator[Method]:
+        if found := package(name):
+            yield from PEERS[name](found, scene, form, start)
+
+    for name in PEERS:
+        methods, failure = _collected(methods_of(name))
+        for method, run in methods:
+            collected = _collected(_points(scene, reference, form, method, run))
+            results.append(Curve(scene.name, method, form.name, name, *collected))
+        if failure:
+            results.append(Curve(scene.name, "", form.name, name, [], failure))
     return results
+
+
+def _collected(items: Iterator[Item]) -> tuple[list[Item], str]:
+    """The items, and the exception that ended them; empty if none did."""
+    collected = []
+    try:
+        for item in items:
+            collected.append(item)  # noqa: PERF402  those before a failure count
+    except Exception as error:  # another program may raise anything
+        return collected, f"{type(error).__name__}: {error}"
+    return collected, ""
 
 
 def _points(
@@ -68,7 +89,7 @@ def _points(
         if np.isfinite(state).all():
             seconds = median_seconds(ready)
             # angles are known up to whole turns: those next to the reference are taken
-            end = form.to_ordinary(0.0, state, reference.end, 0.0)
+            end = form.to_ordinary(scene.duration, state, reference.end, 0.0)
             if new := point(scene, reference, {key: setting}, seconds, calls, end):
                 yield new
             if seconds > LONGEST["compiled"] / 2:
@@ -89,8 +110,10 @@ def _diffrax(diffrax: Any, scene: Scene, form: Form, start: Array) -> Iterator[M
     jax: Any = import_module("jax")
     jax.config.update("jax_enable_x64", True)
 
+    rhs = with_functions(form.function, {name: getattr(jax.numpy, name) for name in ELEMENTARY})
+
     def field(t: Any, y: Any, args: Any) -> Any:
-        rates = form.function(t, tuple(y), form.params)
+        rates = rhs(t, tuple(y), form.params)
         return jax.numpy.stack([jax.numpy.asarray(rate) for rate in rates])
 
     for method in ("Tsit5", "Dopri8"):
@@ -117,11 +140,11 @@ def _numba(numba: Any, scene: Scene, form: Form, start: Array) -> Iterator[Metho
     @numba.njit  # type: ignore[untyped-decorator]
     def steps(y0: Any, h: float, count: int) -> Any:
         y, stage, k = y0.copy(), np.empty(size), np.empty((4, size))
-        for _ in range(count):
+        for step in range(count):
             for i, part in enumerate((0.0, 0.5, 0.5, 1.0)):
                 for n in range(size):
                     stage[n] = y[n] + part * h * k[i - 1, n] if i else y[n]
-                rates = rhs(0.0, to_fixed_tuple(stage, size), params)
+                rates = rhs((step + part) * h, to_fixed_tuple(stage, size), params)
                 for n in range(size):
                     k[i, n] = rates[n]
             for n in range(size):

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from solvers.equations.energy import EnergyUnit
 from solvers.io.figures import COLOURS, coloured, columns, panels
+from solvers.io.notation import axis_label
 from solvers.studies.work_precision.curve import Curve, select
 from solvers.studies.work_precision.measurement import FORMS, REPORT_METHODS
 from solvers.studies.work_precision.peers import PEERS
@@ -71,7 +73,8 @@ def _plot_peers(panel: Axes, curves: Sequence[Curve]) -> None:
         _plot(panel, curve, f"holonomic {EXAMPLE}", color="black")
     for n, curve in enumerate(others):
         style = {"color": COLOURS[n % 6], "linestyle": STYLES[n // 6]}
-        _plot(panel, curve, f"{curve.backend} {curve.method}", **style)
+        failed = " (failed)" if curve.failure else ""
+        _plot(panel, curve, f"{curve.program}{failed}", **style)
 
 
 def _plot(panel: Axes, curve: Curve, label: str, work: str = "work_seconds", **style: str) -> None:
@@ -105,7 +108,7 @@ def steps(title: str, curves: Sequence[Curve]) -> Figure:
     return figure
 
 
-def energy(title: str, curves: Sequence[Curve], wrong: float) -> Figure:
+def energy(title: str, curves: Sequence[Curve], wrong: float, unit: EnergyUnit) -> Figure:
     """Global error over energy error of every run, with the error above which a state is wrong."""
     figure, (axes,) = panels(title, size=(7.5, 5))
     for backend, colour in coloured(BACKENDS):
@@ -113,6 +116,6 @@ def energy(title: str, curves: Sequence[Curve], wrong: float) -> Figure:
         errors = columns(points, "energy_error", "global_error")
         axes.loglog(*errors, ".", color=colour, markersize=4, label=backend)
     axes.axhline(wrong, color="#888888", label="above: no digit is right")
-    axes.set(xlabel="energy error, relative", ylabel=ERROR)
+    axes.set(xlabel=axis_label("energy error at the end", unit.name), ylabel=ERROR)
     axes.legend(frameon=False)
     return figure

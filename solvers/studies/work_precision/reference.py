@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 DIGITS, FEWER = 32, 24
 #: Step of the extrapolated midpoint rule in s, and the ratio of frequencies that it cannot resolve.
 STEP, STIFF = 0.01, 100.0
+#: The system that elliptic functions solve, and its parameters.
+PENDULUM = "single_pendulum", ("m", "l", "g")
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ class Reference:
 
     @classmethod
     def of(cls, scene: Scene) -> "Reference":
-        """The reference of a scene whose equations do not depend on time.
+        """The reference of a scene.
 
         It is compared with the extrapolated midpoint rule unless a mode is `STIFF` times as fast
         as another, and with elliptic functions if the scene is a single pendulum.
@@ -55,7 +57,7 @@ class Reference:
         if mode_spread(module, params) < STIFF:
             solution = extrapolated(module, params, scene.y0, span, STEP)
             others["extrapolated midpoint rule"] = solution[-1]
-        if module.STATE == ("theta", "theta_dot"):
+        if (module.SYSTEM, module.PARAMETERS) == PENDULUM:
             _, length, gravity = params
             start = (scene.y0[0], scene.y0[1])
             others["elliptic functions"] = pendulum(length, gravity, start, scene.duration)

@@ -19,6 +19,7 @@ from solvers.studies.work_precision.findings import (
     rounding_limits,
     wrong_above,
 )
+from solvers.studies.work_precision.measurement import unit_of_energy
 from solvers.studies.work_precision.reference import Reference
 
 #: Choices with which the frontier is compared.
@@ -59,6 +60,9 @@ class SceneCurves:
         columns = {"error": ".0e", "time/us": ".1f", "calls": ".0f", "cheapest": ""}
         columns |= {value: ".3g" for _, value in shown}
         yield from text_table(columns, (_row(row, shown) for row in self.frontier))
+        for curve in self.curves:
+            if curve.failure:
+                yield f"{curve.program} failed: {curve.failure}"
         calls = [row for row in self.frontier_rhs if row.backend != "numba"]
         yield "in calls of the right-hand side: " + ", ".join(
             f"{row.global_error:.0e}: {row.work_rhs:.0f} ({row.method})" for row in calls[::3]
@@ -70,11 +74,11 @@ class SceneCurves:
     def plots(self) -> dict[str, Figure]:
         """Figures by the names of their files."""
         title, name, curves = self.scene.title, self.scene.name, self.curves
-        wrong = wrong_above(self.scene, self.reference)
+        wrong, unit = wrong_above(self.scene, self.reference), unit_of_energy(self.scene)
         return {
             f"work_precision_{name}": plots.work_precision(f"Cost of accuracy: {title}", curves),
             f"steps_{name}": plots.steps(f"Shorter steps: {title}", curves),
-            f"energy_{name}": plots.energy(f"Energy and trajectory: {title}", curves, wrong),
+            f"energy_{name}": plots.energy(f"Energy and trajectory: {title}", curves, wrong, unit),
         }
 
 
