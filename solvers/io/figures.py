@@ -1,18 +1,24 @@
 """Figures: creation, style and files."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
 
 from solvers.io.atomic_write import write_text
 
 #: Wong's palette for colour-blind readers (Nature Methods 8, 441, 2011).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+#: Paper, and text on a dark page.
+WHITE, LIGHT = (1.0, 1.0, 1.0), "#e7e9eb"
 
 Value = TypeVar("Value")
 
@@ -67,7 +73,7 @@ def legend_beside(axes: Axes, **options: Any) -> None:
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as a PNG file.
+    """Write a figure as a PDF, PNG or SVG file, by the suffix of its name.
 
     Parameters
     ----------
@@ -78,6 +84,8 @@ def save(figure: Figure, path: str | Path) -> None:
 
     Raises
     ------
+    ValueError
+        When the name ends in no suffix of `FORMATS`.
     OSError
         When it cannot be written; an existing file is unchanged.
 
@@ -85,9 +93,19 @@ def save(figure: Figure, path: str | Path) -> None:
     --------
     >>> figure, (panel,) = panels("A line")
     >>> line = panel.plot([0, 1], [0, 1])
-    >>> save(figure, "line.png")
+    >>> save(figure, "line.pdf")
     """
-    write_text(Path(path), png(figure))
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS:
+        known = ", ".join(FORMATS)
+        raise ValueError(f"figure file {str(path)!r}: its name must end in one of {known}")
+    write_text(Path(path), FORMATS[suffix](figure))
+
+
+def pdf(figure: Figure) -> bytes:
+    """A figure as the content of a PDF file."""
+    dates = {"CreationDate": None, "Creator": None, "Producer": None}
+    return _rendered(figure, format="pdf", metadata=dates)
 
 
 def png(figure: Figure) -> bytes:
@@ -99,6 +117,27 @@ def svg(figure: Figure) -> str:
     """A figure as SVG, with text in the reader's fonts."""
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "holonomic"}):
         return _rendered(figure, format="svg", metadata={"Date": None, "Creator": None}).decode()
+
+
+#: Writers of a figure, by the suffix of a file's name.
+FORMATS: dict[str, Callable[[Figure], str | bytes]] = {".pdf": pdf, ".png": png, ".svg": svg}
+
+
+def darken(figure: Figure) -> None:
+    """Let a figure suit a dark page: dark grey text and lines become light, paper transparent."""
+    for axes in figure.axes:
+        axes.tick_params(which="both", colors=LIGHT)
+        for spine in axes.spines.values():
+            spine.set_edgecolor(LIGHT)
+    for artist in figure.findobj():
+        if isinstance(artist, Text | Line2D):
+            red, green, blue = to_rgb(artist.get_color())
+            if red == green == blue < 0.5:
+                artist.set_color(LIGHT)
+    legends = (legend.get_frame() for legend in figure.findobj(Legend))
+    for paper in (figure.patch, *(axes.patch for axes in figure.axes), *legends):
+        if to_rgb(paper.get_facecolor()) == WHITE:
+            paper.set_facecolor("none")
 
 
 def _rendered(figure: Figure, **options: Any) -> bytes:
