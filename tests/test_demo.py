@@ -83,6 +83,47 @@ def test_the_page_fits_every_screen_without_console_messages(opened: Any) -> Non
     assert hidden == []
 
 
+def test_no_formula_is_cut_on_a_wide_screen(opened: Any) -> None:
+    cut, width = opened.execute_script("""
+        for (const one of document.querySelectorAll('details')) one.open = true;
+        return [[...document.querySelectorAll('.formula')]
+          .filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => one.textContent),
+          innerWidth]""")
+    assert cut == [] or width < 1280
+
+
+def test_charts_follow_the_colours_of_the_page(opened: Any) -> None:
+    corner = """
+        const done = arguments[0], images = [...document.querySelectorAll('img')];
+        Promise.all(images.map((one) => one.decode())).then(() => done(images.map((one) => {
+          const canvas = new OffscreenCanvas(one.naturalWidth, one.naturalHeight);
+          const context = canvas.getContext('2d');
+          context.drawImage(one, 0, 0);
+          const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
+          let light = 0, dark = 0;  // opaque pixels of text and lines
+          for (let k = 0; k < pixels.length; k += 4) {
+            const [red, green, blue, alpha] = pixels.slice(k, k + 4);
+            if (alpha > 200 && red === green && green === blue && red < 100) dark += 1;
+            if (alpha > 200 && red === 0xe7 && green === 0xe9 && blue === 0xeb) light += 1;
+          }
+          return [[...pixels.slice(0, 4)], light, dark];
+        })))"""
+    for scheme in ("light", "dark"):
+        features = [{"name": "prefers-color-scheme", "value": scheme}]
+        opened.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+        opened.refresh()
+        charts = opened.execute_async_script(corner)
+        assert len(charts) == 3
+        for pixel, light, dark in charts:
+            if scheme == "light":
+                assert pixel == [255, 255, 255, 255]
+                assert dark > 100 > light
+            else:
+                assert pixel[3] == 0  # the page shows through
+                assert light > 100
+                assert dark == 0
+
+
 def test_formulas_charts_and_motion_are_rendered(opened: Any) -> None:
     sizes = opened.execute_script(
         "for (const one of document.querySelectorAll('details')) one.open = true;"

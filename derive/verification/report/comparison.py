@@ -24,8 +24,9 @@ EQUATIONS_OF_STEP = {
 
 #: Style of steps and verdicts; a page can override the colours.
 STYLE = """\
-.step { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 30rem), 1fr));
-  gap: 0.25rem 2.5rem; }
+.step { display: flex; flex-wrap: wrap; gap: 0.25rem 2.5rem; }
+/* columns are as wide as their formulas at least: below each other where both do not fit */
+.step > div { flex: 1 1 30rem; max-width: 100%; }
 .formula { margin: 0.3rem 0; padding-left: 1.5rem; text-indent: -1.5rem; line-height: 1.9;
   overflow-x: auto; overflow-y: hidden; }
 .formula math { text-indent: 0; padding: 0.15em 0;

@@ -41,9 +41,9 @@ def cost(scene: Scene) -> Stage:
     seconds = {COMPARED[curve.combination]: curve.at(ERROR) for curve in measured}
     seconds = {name: cost for name, cost in seconds.items() if isfinite(cost)}
     best, *others = sorted(seconds, key=seconds.__getitem__)
-    least = f"{best} {seconds[best] * 1e6:.0f} us"
-    ratios = [(name, f"{seconds[name] / seconds[best]:.3g}") for name in others]
-    compared = ", ".join(f"{name} {ratio} x" for name, ratio in ratios)
+    least = f"{best} {seconds[best] * 1e6:.0f} µs"
+    ratios = [(name, _ratio(seconds[name] / seconds[best])) for name in others]
+    compared = ", ".join(f"{name} {ratio} ×" for name, ratio in ratios)
     method = (
         f"medians of runs on this machine; errors against {reference.METHOD}, "
         f"own error {reference.global_error:.0e}"
@@ -56,6 +56,10 @@ def cost(scene: Scene) -> Stage:
         pair(svg_image(_work_precision(measured), description), times),
         (Number(quantity, f"{least}; {compared}", method, command),),
     )
+
+
+def _ratio(value: float) -> str:
+    return f"{value:.3g}" if value < 100 else f"{value:.0f}"
 
 
 def _work_precision(measured: Sequence[Curve]) -> Figure:

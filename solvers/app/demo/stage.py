@@ -1,14 +1,14 @@
 """The results of a stage of the demonstration, and the elements of its HTML."""
 
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
-from solvers.io.figures import png, svg
+from solvers.io.figures import darken, png, svg
 
 #: On a narrow screen the cells of a table with so many columns are stacked.
 STACKED = 4
@@ -48,18 +48,26 @@ def pair(left: str, right: str) -> str:
 
 
 def svg_image(figure: Figure, alternative: str) -> str:
-    """A chart as vector graphics."""
-    return _image("svg+xml", svg(figure).encode(), alternative)
+    """A chart as vector graphics; `figure` is dark afterwards."""
+    return _image("svg+xml", lambda: svg(figure).encode(), figure, alternative)
 
 
 def png_image(figure: Figure, alternative: str) -> str:
-    """A chart as pixels."""
-    return _image("png", png(figure), alternative)
+    """A chart as pixels; `figure` is dark afterwards."""
+    return _image("png", lambda: png(figure), figure, alternative)
 
 
-def _image(kind: str, data: bytes, alternative: str) -> str:
-    source = f"data:image/{kind};base64,{b64encode(data).decode()}"
-    return f'<img class="chart" src="{source}" alt="{escape(alternative)}">'
+def _image(kind: str, content: Callable[[], bytes], figure: Figure, alternative: str) -> str:
+    """A light and a dark variant, between which the reader's settings decide."""
+
+    def source() -> str:
+        return f"data:image/{kind};base64,{b64encode(content()).decode()}"
+
+    light = source()
+    darken(figure)
+    dark = f'<source media="(prefers-color-scheme: dark)" srcset="{source()}">'
+    image = f'<img class="chart" src="{light}" alt="{escape(alternative)}">'
+    return f"<picture>{dark}{image}</picture>"
 
 
 def details(summary: str, html: str) -> str:
