@@ -63,7 +63,7 @@ def _cost(result: SceneResult) -> str:
 
 def _time(seconds: float) -> str:
     if seconds < 1e-3:
-        return f"{seconds * 1e6:.3g} us"
+        return f"{seconds * 1e6:.3g} µs"
     return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
 
 

@@ -69,7 +69,7 @@ def cheapest(module: GeneratedModule, params: Sequence[float], accuracy: float) 
     others = ", ".join(f"{name} {factor:.2g} x" for name, factor in chain(*ratios))
     why = (
         f"cheapest for {best['global_error']:.0e} as measured in scene {nearest['scene']!r}, the "
-        f"most similar one: {seconds * 1e6:.3g} us for {nearest['duration']:g} s; others "
+        f"most similar one: {seconds * 1e6:.3g} µs for {nearest['duration']:g} s; others "
         f"there: {others}"
     )
     form = form if form in module.FORMS else usual_form(module, method)

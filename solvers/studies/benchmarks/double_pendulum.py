@@ -129,14 +129,14 @@ def summary(results: Mapping[str, Any]) -> Iterator[str]:
         yield f"{title}. Times relative to holonomic, at equal global error:"
         rows = results[part]
         names = dict.fromkeys(name for row in rows for name in row["ratios"])
-        columns = {"error": ".0e", "time/us": ".1f", "method": ""} | dict.fromkeys(names, ".3g")
+        columns = {"error": ".0e", "time/µs": ".1f", "method": ""} | dict.fromkeys(names, ".3g")
         first = ((row["global_error"], 1e6 * row["seconds"], row["method"]) for row in rows)
         ratios = (map(row["ratios"].get, names) for row in rows)
         yield from text_table(columns, ((*a, *b) for a, b in zip(first, ratios, strict=True)))
         yield ""
     call = results["right-hand side in Python"]
     yield (
-        f"Right-hand side in Python, one state: {call['holonomic'] * 1e6:.2f} us; "
+        f"Right-hand side in Python, one state: {call['holonomic'] * 1e6:.2f} µs; "
         f"lambdify with NumPy takes {call['lambdify'] / call['holonomic']:.1f} times as long."
     )
     speeds = dict(results["operations a second"])

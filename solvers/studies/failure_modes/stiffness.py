@@ -137,7 +137,7 @@ class Stiffness(Study[list[Cost]]):
             for kind in (EXPLICIT, IMPLICIT):
                 best = min(_select(results, family, ratio, kind), key=lambda c: c.work_seconds)
                 microseconds = 1e6 * best.work_seconds
-                cells.append(f"{best.steps} steps, {microseconds:.0f} us, {best.method}")
+                cells.append(f"{best.steps} steps, {microseconds:.0f} µs, {best.method}")
             rows.append((family, ratio, *cells))
         specs = {"family": "", "fast/slow": ".4g", " explicit": "", " implicit": ""}
         yield from text_table(specs, rows)

@@ -57,7 +57,7 @@ class SceneCurves:
         yield "the cheapest combination for each error, and the relative time of the best with ...:"
         ratios = [row.cost_ratios for row in self.frontier]
         shown = [pair for pair in COMPARED if any(pair[1] in each[pair[0]] for each in ratios)]
-        columns = {"error": ".0e", "time/us": ".1f", "calls": ".0f", "cheapest": ""}
+        columns = {"error": ".0e", "time/µs": ".1f", "calls": ".0f", "cheapest": ""}
         columns |= {value: ".3g" for _, value in shown}
         yield from text_table(columns, (_row(row, shown) for row in self.frontier))
         for curve in self.curves:
