@@ -115,10 +115,12 @@
        double state[8] = {...}, rate[8], params[8] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81};
        cart_3_rhs(0.0, state, params, rate);
 
+   Indices have names: state[CART_3_LAGRANGIAN_x].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_CART_3_H
 #define HOLONOMIC_CART_3_H
@@ -131,12 +133,6 @@
 
 typedef HOLONOMIC_REAL cart_3_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define CART_3_NUMBER(x) ((cart_3_real){0} + (x))
-#else
-#define CART_3_NUMBER(x) (x)
-#endif
-
 enum {
     CART_3_LAGRANGIAN_STATE = 8,
     CART_3_HAMILTONIAN_STATE = 8,
@@ -144,6 +140,71 @@ enum {
     CART_3_VARIATIONAL_STATE = 19,
     CART_3_PARAMETERS = 8,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    CART_3_PARAMETER_m0, CART_3_PARAMETER_m1, CART_3_PARAMETER_m2, CART_3_PARAMETER_m3,
+    CART_3_PARAMETER_l1, CART_3_PARAMETER_l2, CART_3_PARAMETER_l3, CART_3_PARAMETER_g
+};
+enum {
+    CART_3_LAGRANGIAN_x, CART_3_LAGRANGIAN_theta1, CART_3_LAGRANGIAN_theta2,
+    CART_3_LAGRANGIAN_theta3, CART_3_LAGRANGIAN_x_dot, CART_3_LAGRANGIAN_theta1_dot,
+    CART_3_LAGRANGIAN_theta2_dot, CART_3_LAGRANGIAN_theta3_dot
+};
+enum {
+    CART_3_HAMILTONIAN_x, CART_3_HAMILTONIAN_theta1, CART_3_HAMILTONIAN_theta2,
+    CART_3_HAMILTONIAN_theta3, CART_3_HAMILTONIAN_p_x, CART_3_HAMILTONIAN_p_theta1,
+    CART_3_HAMILTONIAN_p_theta2, CART_3_HAMILTONIAN_p_theta3
+};
+enum {
+    CART_3_RATIONAL_x, CART_3_RATIONAL_sin_theta1, CART_3_RATIONAL_cos_theta1,
+    CART_3_RATIONAL_sin_theta2, CART_3_RATIONAL_cos_theta2, CART_3_RATIONAL_sin_theta3,
+    CART_3_RATIONAL_cos_theta3, CART_3_RATIONAL_x_dot, CART_3_RATIONAL_theta1_dot,
+    CART_3_RATIONAL_theta2_dot, CART_3_RATIONAL_theta3_dot
+};
+enum {
+    CART_3_VARIATIONAL_x, CART_3_VARIATIONAL_sin_theta1, CART_3_VARIATIONAL_cos_theta1,
+    CART_3_VARIATIONAL_sin_theta2, CART_3_VARIATIONAL_cos_theta2,
+    CART_3_VARIATIONAL_sin_theta3, CART_3_VARIATIONAL_cos_theta3, CART_3_VARIATIONAL_x_dot,
+    CART_3_VARIATIONAL_theta1_dot, CART_3_VARIATIONAL_theta2_dot,
+    CART_3_VARIATIONAL_theta3_dot, CART_3_VARIATIONAL_delta_x,
+    CART_3_VARIATIONAL_delta_theta1, CART_3_VARIATIONAL_delta_theta2,
+    CART_3_VARIATIONAL_delta_theta3, CART_3_VARIATIONAL_delta_x_dot,
+    CART_3_VARIATIONAL_delta_theta1_dot, CART_3_VARIATIONAL_delta_theta2_dot,
+    CART_3_VARIATIONAL_delta_theta3_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(cart_3_real *)0)[0]) cart_3_number;
+static inline cart_3_real cart_3_splat(cart_3_number x)
+{
+    const cart_3_real zero = {0};
+    return zero + x;
+}
+#define CART_3_NUMBER(x) cart_3_splat((cart_3_number)x)
+#else
+typedef cart_3_real cart_3_number;
+#define CART_3_NUMBER(x) \
+    (sizeof(cart_3_number) > sizeof(double) ? (cart_3_number)x##L \
+        : (cart_3_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline cart_3_real cart_3_cos(cart_3_real x)
+{
+    return sizeof(x) > sizeof(double) ? (cart_3_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (cart_3_real)cos((double)x)
+        : (cart_3_real)cosf((float)x);
+}
+static inline cart_3_real cart_3_sin(cart_3_real x)
+{
+    return sizeof(x) > sizeof(double) ? (cart_3_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (cart_3_real)sin((double)x)
+        : (cart_3_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -179,21 +240,21 @@ static inline void cart_3_rhs(
     const cart_3_real c7 = c3*g;
     const cart_3_real c8 = c1*g;
     const cart_3_real c9 = m0 + c0;
-    const cart_3_real c10 = 1.0/l1;
-    const cart_3_real c11 = 1.0/l2;
-    const cart_3_real c12 = 1.0/l3;
+    const cart_3_real c10 = CART_3_NUMBER(1.0)/l1;
+    const cart_3_real c11 = CART_3_NUMBER(1.0)/l2;
+    const cart_3_real c12 = CART_3_NUMBER(1.0)/l3;
     /* intermediate terms */
-    const cart_3_real sin_theta1 = sin(theta1);
+    const cart_3_real sin_theta1 = cart_3_sin(theta1);
     const cart_3_real x0 = theta1_dot*theta1_dot;
-    const cart_3_real sin_theta2 = sin(theta2);
+    const cart_3_real sin_theta2 = cart_3_sin(theta2);
     const cart_3_real x1 = theta2_dot*theta2_dot;
     const cart_3_real x2 = c4*x1;
-    const cart_3_real sin_theta3 = sin(theta3);
+    const cart_3_real sin_theta3 = cart_3_sin(theta3);
     const cart_3_real x3 = c5*(theta3_dot*theta3_dot);
-    const cart_3_real cos_theta3 = cos(theta3);
-    const cart_3_real cos_theta1 = cos(theta1);
+    const cart_3_real cos_theta3 = cart_3_cos(theta3);
+    const cart_3_real cos_theta1 = cart_3_cos(theta1);
     const cart_3_real x4 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1;
-    const cart_3_real cos_theta2 = cos(theta2);
+    const cart_3_real cos_theta2 = cart_3_cos(theta2);
     const cart_3_real x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
     const cart_3_real x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3;
     const cart_3_real x7 = m3*cos_theta3;
@@ -203,7 +264,7 @@ static inline void cart_3_rhs(
     const cart_3_real x11 = m3*x10;
     const cart_3_real x12 = c6*x9*x0 - x5*x3 - c7*sin_theta2 - x6*x11;
     const cart_3_real x13 = c3*cos_theta2 - x10*x7;
-    const cart_3_real x14 = 1.0/(m2 + m3*x5*x5);
+    const cart_3_real x14 = CART_3_NUMBER(1.0)/(m2 + m3*x5*x5);
     const cart_3_real x15 = x13*x14;
     const cart_3_real x16 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1;
     const cart_3_real x17 = c3*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1);
@@ -211,7 +272,7 @@ static inline void cart_3_rhs(
     const cart_3_real x19 = x14*x18;
     const cart_3_real x20 = x9*x2 + x4*x3 + c8*sin_theta1 + m3*x16*x6 + x12*x19;
     const cart_3_real x21 = c1*cos_theta1 - x16*x7 - x18*x15;
-    const cart_3_real x22 = 1.0/(c0 + m3*x4*x4 - x18*x19);
+    const cart_3_real x22 = CART_3_NUMBER(1.0)/(c0 + m3*x4*x4 - x18*x19);
     const cart_3_real x23 = x21*x22;
     const cart_3_real x24 = c9 + m3*sin_theta3*sin_theta3 - x13*x15 - x21*x23;
     const cart_3_real x25 = (x8 - x12*x15 + x20*x23)/x24;
@@ -263,21 +324,21 @@ static inline void cart_3_jacobian(
     const cart_3_real c7 = c2*g;
     const cart_3_real c8 = c1*l1;
     const cart_3_real c9 = m0 + c0;
-    const cart_3_real c10 = 1.0/l1;
-    const cart_3_real c11 = 1.0/l2;
+    const cart_3_real c10 = CART_3_NUMBER(1.0)/l1;
+    const cart_3_real c11 = CART_3_NUMBER(1.0)/l2;
     const cart_3_real c12 = m3*l2;
-    const cart_3_real c13 = 1.0/l3;
+    const cart_3_real c13 = CART_3_NUMBER(1.0)/l3;
     /* intermediate terms */
-    const cart_3_real cos_theta1 = cos(theta1);
+    const cart_3_real cos_theta1 = cart_3_cos(theta1);
     const cart_3_real x0 = l1*theta1_dot;
     const cart_3_real x1 = theta1_dot*x0;
-    const cart_3_real sin_theta1 = sin(theta1);
-    const cart_3_real cos_theta3 = cos(theta3);
-    const cart_3_real sin_theta3 = sin(theta3);
+    const cart_3_real sin_theta1 = cart_3_sin(theta1);
+    const cart_3_real cos_theta3 = cart_3_cos(theta3);
+    const cart_3_real sin_theta3 = cart_3_sin(theta3);
     const cart_3_real x2 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1;
     const cart_3_real x3 = m3*x2;
-    const cart_3_real cos_theta2 = cos(theta2);
-    const cart_3_real sin_theta2 = sin(theta2);
+    const cart_3_real cos_theta2 = cart_3_cos(theta2);
+    const cart_3_real sin_theta2 = cart_3_sin(theta2);
     const cart_3_real x4 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1;
     const cart_3_real x5 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1;
     const cart_3_real x6 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2;
@@ -285,9 +346,9 @@ static inline void cart_3_jacobian(
     const cart_3_real x8 = c2*x4 - x5*x7;
     const cart_3_real x9 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
     const cart_3_real x10 = m3*x9;
-    const cart_3_real x11 = 1.0/(m2 + x9*x10);
+    const cart_3_real x11 = CART_3_NUMBER(1.0)/(m2 + x9*x10);
     const cart_3_real x12 = x11*x8;
-    const cart_3_real x13 = 1.0/(c0 + x2*x3 - x8*x12);
+    const cart_3_real x13 = CART_3_NUMBER(1.0)/(c0 + x2*x3 - x8*x12);
     const cart_3_real x14 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1;
     const cart_3_real x15 = theta2_dot*theta2_dot;
     const cart_3_real x16 = c3*x15;
@@ -359,73 +420,76 @@ static inline void cart_3_jacobian(
     const cart_3_real x82 = x11*(x62*x0 + x8*x76 - x27*x64);
     const cart_3_real x83 = x11*(c12*x6*x9*theta2_dot + x27*x69 - x8*x77);
     const cart_3_real x84 = x11*(x9*x71 + x27*x72 - x8*x78);
-    const cart_3_real x85 = 2.0*c13*(x2*x0 + x5*x76 - cos_theta3*x64 - x6*x82);
-    const cart_3_real x86 = 2.0*c13*(x9*x68 + x5*x77 + x6*x83 - cos_theta3*x69);
+    const cart_3_real x85 =
+        CART_3_NUMBER(2.0)*c13*(x2*x0 + x5*x76 - cos_theta3*x64 - x6*x82);
+    const cart_3_real x86 =
+        CART_3_NUMBER(2.0)*c13*(x9*x68 + x5*x77 + x6*x83 - cos_theta3*x69);
+    const cart_3_real x87 = CART_3_NUMBER(2.0)*c13*(x5*x78 + x6*x84 - cos_theta3*x72);
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 0.0;
-    result[3] = 0.0;
-    result[4] = 1.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 0.0;
-    result[8] = 0.0;
-    result[9] = 0.0;
-    result[10] = 0.0;
-    result[11] = 0.0;
-    result[12] = 0.0;
-    result[13] = 1.0;
-    result[14] = 0.0;
-    result[15] = 0.0;
-    result[16] = 0.0;
-    result[17] = 0.0;
-    result[18] = 0.0;
-    result[19] = 0.0;
-    result[20] = 0.0;
-    result[21] = 0.0;
-    result[22] = 1.0;
-    result[23] = 0.0;
-    result[24] = 0.0;
-    result[25] = 0.0;
-    result[26] = 0.0;
-    result[27] = 0.0;
-    result[28] = 0.0;
-    result[29] = 0.0;
-    result[30] = 0.0;
-    result[31] = 1.0;
-    result[32] = 0.0;
+    result[0] = CART_3_NUMBER(0.0);
+    result[1] = CART_3_NUMBER(0.0);
+    result[2] = CART_3_NUMBER(0.0);
+    result[3] = CART_3_NUMBER(0.0);
+    result[4] = CART_3_NUMBER(1.0);
+    result[5] = CART_3_NUMBER(0.0);
+    result[6] = CART_3_NUMBER(0.0);
+    result[7] = CART_3_NUMBER(0.0);
+    result[8] = CART_3_NUMBER(0.0);
+    result[9] = CART_3_NUMBER(0.0);
+    result[10] = CART_3_NUMBER(0.0);
+    result[11] = CART_3_NUMBER(0.0);
+    result[12] = CART_3_NUMBER(0.0);
+    result[13] = CART_3_NUMBER(1.0);
+    result[14] = CART_3_NUMBER(0.0);
+    result[15] = CART_3_NUMBER(0.0);
+    result[16] = CART_3_NUMBER(0.0);
+    result[17] = CART_3_NUMBER(0.0);
+    result[18] = CART_3_NUMBER(0.0);
+    result[19] = CART_3_NUMBER(0.0);
+    result[20] = CART_3_NUMBER(0.0);
+    result[21] = CART_3_NUMBER(0.0);
+    result[22] = CART_3_NUMBER(1.0);
+    result[23] = CART_3_NUMBER(0.0);
+    result[24] = CART_3_NUMBER(0.0);
+    result[25] = CART_3_NUMBER(0.0);
+    result[26] = CART_3_NUMBER(0.0);
+    result[27] = CART_3_NUMBER(0.0);
+    result[28] = CART_3_NUMBER(0.0);
+    result[29] = CART_3_NUMBER(0.0);
+    result[30] = CART_3_NUMBER(0.0);
+    result[31] = CART_3_NUMBER(1.0);
+    result[32] = CART_3_NUMBER(0.0);
     result[33] = x46;
     result[34] = x55;
     result[35] = x61;
-    result[36] = 0.0;
-    result[37] = 2.0*x64;
-    result[38] = 2.0*x69;
-    result[39] = 2.0*x72;
-    result[40] = 0.0;
+    result[36] = CART_3_NUMBER(0.0);
+    result[37] = CART_3_NUMBER(2.0)*x64;
+    result[38] = CART_3_NUMBER(2.0)*x69;
+    result[39] = CART_3_NUMBER(2.0)*x72;
+    result[40] = CART_3_NUMBER(0.0);
     result[41] = -c10*x73;
     result[42] = -c10*x74;
     result[43] = -c10*x75;
-    result[44] = 0.0;
-    result[45] = -2.0*c10*x76;
-    result[46] = -2.0*c10*x77;
-    result[47] = -2.0*c10*x78;
-    result[48] = 0.0;
+    result[44] = CART_3_NUMBER(0.0);
+    result[45] = -CART_3_NUMBER(2.0)*c10*x76;
+    result[46] = -CART_3_NUMBER(2.0)*c10*x77;
+    result[47] = -CART_3_NUMBER(2.0)*c10*x78;
+    result[48] = CART_3_NUMBER(0.0);
     result[49] = c11*x79;
     result[50] = -c11*x80;
     result[51] = -c11*x81;
-    result[52] = 0.0;
-    result[53] = 2.0*c11*x82;
-    result[54] = -2.0*c11*x83;
-    result[55] = -2.0*c11*x84;
-    result[56] = 0.0;
+    result[52] = CART_3_NUMBER(0.0);
+    result[53] = CART_3_NUMBER(2.0)*c11*x82;
+    result[54] = -CART_3_NUMBER(2.0)*c11*x83;
+    result[55] = -CART_3_NUMBER(2.0)*c11*x84;
+    result[56] = CART_3_NUMBER(0.0);
     result[57] = c13*(x37 + x5*x73 - cos_theta3*x46 - x6*x79);
     result[58] = c13*(x49 + x5*x74 + x6*x80 - cos_theta3*x55);
     result[59] = -c13*(x57 + cos_theta3*x61 - x5*x75 - x6*x81);
-    result[60] = 0.0;
+    result[60] = CART_3_NUMBER(0.0);
     result[61] = x85;
     result[62] = x86;
-    result[63] = 2.0*c13*(x5*x78 + x6*x84 - cos_theta3*x72);
+    result[63] = x87;
     (void)t;
 }
 #endif
@@ -470,20 +534,21 @@ static inline void cart_3_energy(
     const cart_3_real c13 = g*c3;
     const cart_3_real c14 = g*c4;
     /* intermediate terms */
-    const cart_3_real cos_theta1 = cos(theta1);
-    const cart_3_real cos_theta2 = cos(theta2);
-    const cart_3_real cos_theta3 = cos(theta3);
-    const cart_3_real x0 =
+    const cart_3_real cos_theta1 = cart_3_cos(theta1);
+    const cart_3_real cos_theta2 = cart_3_cos(theta2);
+    const cart_3_real cos_theta3 = cart_3_cos(theta3);
+    const cart_3_real x0 = c5*theta1_dot*theta2_dot*cart_3_cos(theta1 - theta2);
+    const cart_3_real x1 = c6*theta3_dot*theta1_dot*cart_3_cos(theta1 - theta3);
+    const cart_3_real x2 = c7*theta3_dot*theta2_dot*cart_3_cos(theta2 - theta3);
+    const cart_3_real x3 =
         c8*x_dot*x_dot + c9*theta3_dot*theta3_dot + c10*theta1_dot*theta1_dot
         + c11*theta2_dot*theta2_dot;
-    const cart_3_real x1 =
+    const cart_3_real x4 =
         c2*x_dot*theta1_dot*cos_theta1 + c3*x_dot*theta2_dot*cos_theta2
-        + c4*x_dot*theta3_dot*cos_theta3 + c5*theta1_dot*theta2_dot*cos(theta1 - theta2)
-        + c6*theta3_dot*theta1_dot*cos(theta1 - theta3)
-        + c7*theta3_dot*theta2_dot*cos(theta2 - theta3) + 0.5*x0 - c12*cos_theta1
-        - c13*cos_theta2 - c14*cos_theta3;
+        + c4*x_dot*theta3_dot*cos_theta3 + x0 + x1 + x2 + CART_3_NUMBER(0.5)*x3
+        - c12*cos_theta1 - c13*cos_theta2 - c14*cos_theta3;
     /* outputs */
-    result[0] = x1;
+    result[0] = x4;
     (void)t;
 }
 #endif
@@ -516,12 +581,12 @@ static inline void cart_3_mass_matrix(
     const cart_3_real c6 = l1*c4;
     const cart_3_real c7 = l2*c4;
     /* intermediate terms */
-    const cart_3_real x0 = c2*cos(theta1);
-    const cart_3_real x1 = c3*cos(theta2);
-    const cart_3_real x2 = c4*cos(theta3);
-    const cart_3_real x3 = c5*cos(theta1 - theta2);
-    const cart_3_real x4 = c6*cos(theta1 - theta3);
-    const cart_3_real x5 = c7*cos(theta2 - theta3);
+    const cart_3_real x0 = c2*cart_3_cos(theta1);
+    const cart_3_real x1 = c3*cart_3_cos(theta2);
+    const cart_3_real x2 = c4*cart_3_cos(theta3);
+    const cart_3_real x3 = c5*cart_3_cos(theta1 - theta2);
+    const cart_3_real x4 = c6*cart_3_cos(theta1 - theta3);
+    const cart_3_real x5 = c7*cart_3_cos(theta2 - theta3);
     /* outputs */
     result[0] = m0 + c1;
     result[1] = x0;
@@ -559,19 +624,19 @@ static inline void cart_3_positions(
     const cart_3_real l2 = params[5];
     const cart_3_real l3 = params[6];
     /* intermediate terms */
-    const cart_3_real x0 = x + l1*sin(theta1);
-    const cart_3_real x1 = l1*cos(theta1);
-    const cart_3_real x2 = x0 + l2*sin(theta2);
-    const cart_3_real x3 = x1 + l2*cos(theta2);
+    const cart_3_real x0 = x + l1*cart_3_sin(theta1);
+    const cart_3_real x1 = l1*cart_3_cos(theta1);
+    const cart_3_real x2 = x0 + l2*cart_3_sin(theta2);
+    const cart_3_real x3 = x1 + l2*cart_3_cos(theta2);
     /* outputs */
     result[0] = x;
-    result[1] = 0.0;
+    result[1] = CART_3_NUMBER(0.0);
     result[2] = x0;
     result[3] = -x1;
     result[4] = x2;
     result[5] = -x3;
-    result[6] = x2 + l3*sin(theta3);
-    result[7] = -(x3 + l3*cos(theta3));
+    result[6] = x2 + l3*cart_3_sin(theta3);
+    result[7] = -(x3 + l3*cart_3_cos(theta3));
     (void)t;
 }
 #endif
@@ -608,16 +673,16 @@ static inline void cart_3_hamiltonian_state(
     const cart_3_real c5 = m3*l3;
     const cart_3_real c6 = l1*c0;
     /* intermediate terms */
-    const cart_3_real cos_theta1 = cos(theta1);
+    const cart_3_real cos_theta1 = cart_3_cos(theta1);
     const cart_3_real x0 = c3*theta1_dot;
-    const cart_3_real cos_theta2 = cos(theta2);
+    const cart_3_real cos_theta2 = cart_3_cos(theta2);
     const cart_3_real x1 = c4*theta2_dot;
-    const cart_3_real cos_theta3 = cos(theta3);
+    const cart_3_real cos_theta3 = cart_3_cos(theta3);
     const cart_3_real x2 = c5*theta3_dot;
     const cart_3_real x3 = c2*x_dot + cos_theta1*x0 + cos_theta2*x1 + cos_theta3*x2;
-    const cart_3_real x4 = cos(theta1 - theta2);
-    const cart_3_real x5 = cos(theta1 - theta3);
-    const cart_3_real x6 = cos(theta2 - theta3);
+    const cart_3_real x4 = cart_3_cos(theta1 - theta2);
+    const cart_3_real x5 = cart_3_cos(theta1 - theta3);
+    const cart_3_real x6 = cart_3_cos(theta2 - theta3);
     const cart_3_real x7 = x1 + c0*x_dot*cos_theta2 + c6*theta1_dot*x4 + x6*x2;
     const cart_3_real x8 =
         l3*theta3_dot + x_dot*cos_theta3 + l1*theta1_dot*x5 + l2*theta2_dot*x6;
@@ -658,33 +723,33 @@ static inline void cart_3_rhs_hamiltonian(
     const cart_3_real l3 = params[6];
     const cart_3_real g = params[7];
     /* terms of the parameters alone */
-    const cart_3_real c0 = 1.0/l3;
-    const cart_3_real c1 = 1.0/l2;
+    const cart_3_real c0 = CART_3_NUMBER(1.0)/l3;
+    const cart_3_real c1 = CART_3_NUMBER(1.0)/l2;
     const cart_3_real c2 = m2 + m3;
-    const cart_3_real c3 = 1.0/l1;
+    const cart_3_real c3 = CART_3_NUMBER(1.0)/l1;
     const cart_3_real c4 = m1 + m2;
     const cart_3_real c5 = m3 + c4;
     const cart_3_real c6 = m0 + c4;
-    const cart_3_real c7 = 1.0/(m3*l3);
+    const cart_3_real c7 = CART_3_NUMBER(1.0)/(m3*l3);
     const cart_3_real c8 = c5*l1*g;
     const cart_3_real c9 = c2*l2*g;
     const cart_3_real c10 = l3*g;
     /* intermediate terms */
-    const cart_3_real cos_theta3 = cos(theta3);
+    const cart_3_real cos_theta3 = cart_3_cos(theta3);
     const cart_3_real x0 = c0*p_theta3;
-    const cart_3_real cos_theta2 = cos(theta2);
-    const cart_3_real sin_theta3 = sin(theta3);
-    const cart_3_real sin_theta2 = sin(theta2);
+    const cart_3_real cos_theta2 = cart_3_cos(theta2);
+    const cart_3_real sin_theta3 = cart_3_sin(theta3);
+    const cart_3_real sin_theta2 = cart_3_sin(theta2);
     const cart_3_real x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2;
     const cart_3_real x2 = c1*p_theta2 - x1*x0;
     const cart_3_real x3 = m3*cos_theta3;
     const cart_3_real x4 = c2*cos_theta2 - x1*x3;
     const cart_3_real x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
     const cart_3_real x6 = m3*x5;
-    const cart_3_real x7 = 1.0/(m2 + x5*x6);
+    const cart_3_real x7 = CART_3_NUMBER(1.0)/(m2 + x5*x6);
     const cart_3_real x8 = x4*x7;
-    const cart_3_real cos_theta1 = cos(theta1);
-    const cart_3_real sin_theta1 = sin(theta1);
+    const cart_3_real cos_theta1 = cart_3_cos(theta1);
+    const cart_3_real sin_theta1 = cart_3_sin(theta1);
     const cart_3_real x9 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1;
     const cart_3_real x10 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1);
     const cart_3_real x11 = x10 - m3*x1*x9;
@@ -693,7 +758,7 @@ static inline void cart_3_rhs_hamiltonian(
     const cart_3_real x14 = c5*cos_theta1 - x9*x3 - x11*x8;
     const cart_3_real x15 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1;
     const cart_3_real x16 = m3*x15;
-    const cart_3_real x17 = 1.0/(c4 + x15*x16 - x11*x12);
+    const cart_3_real x17 = CART_3_NUMBER(1.0)/(c4 + x15*x16 - x11*x12);
     const cart_3_real x18 = x14*x17;
     const cart_3_real x19 =
         (p_x - cos_theta3*x0 - x2*x8 - x13*x18)/(c6 + m3*sin_theta3*sin_theta3 - x4*x8 - x14*x18);
@@ -712,7 +777,7 @@ static inline void cart_3_rhs_hamiltonian(
     result[1] = c3*x20;
     result[2] = -c1*x21;
     result[3] = c0*x22;
-    result[4] = 0.0;
+    result[4] = CART_3_NUMBER(0.0);
     result[5] = -x26;
     result[6] = -x28;
     result[7] = -m3*x29;
@@ -746,33 +811,33 @@ static inline void cart_3_jacobian_hamiltonian(
     /* terms of the parameters alone */
     const cart_3_real c0 = m1 + m2;
     const cart_3_real c1 = m2 + m3;
-    const cart_3_real c2 = 1.0/l1;
-    const cart_3_real c3 = 1.0/l3;
-    const cart_3_real c4 = 1.0/l2;
+    const cart_3_real c2 = CART_3_NUMBER(1.0)/l1;
+    const cart_3_real c3 = CART_3_NUMBER(1.0)/l3;
+    const cart_3_real c4 = CART_3_NUMBER(1.0)/l2;
     const cart_3_real c5 = m3 + c0;
     const cart_3_real c6 = m0 + c0;
-    const cart_3_real c7 = 1.0/(m3*l3);
+    const cart_3_real c7 = CART_3_NUMBER(1.0)/(m3*l3);
     const cart_3_real c8 = c5*l1*g;
     const cart_3_real c9 = c1*l2*g;
     const cart_3_real c10 = l3*g;
     /* intermediate terms */
-    const cart_3_real cos_theta3 = cos(theta3);
-    const cart_3_real sin_theta1 = sin(theta1);
-    const cart_3_real sin_theta3 = sin(theta3);
-    const cart_3_real cos_theta1 = cos(theta1);
+    const cart_3_real cos_theta3 = cart_3_cos(theta3);
+    const cart_3_real sin_theta1 = cart_3_sin(theta1);
+    const cart_3_real sin_theta3 = cart_3_sin(theta3);
+    const cart_3_real cos_theta1 = cart_3_cos(theta1);
     const cart_3_real x0 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1;
     const cart_3_real x1 = m3*x0;
-    const cart_3_real cos_theta2 = cos(theta2);
-    const cart_3_real sin_theta2 = sin(theta2);
+    const cart_3_real cos_theta2 = cart_3_cos(theta2);
+    const cart_3_real sin_theta2 = cart_3_sin(theta2);
     const cart_3_real x2 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1);
     const cart_3_real x3 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2;
     const cart_3_real x4 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1;
     const cart_3_real x5 = x2 - m3*x3*x4;
     const cart_3_real x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
     const cart_3_real x7 = m3*x6;
-    const cart_3_real x8 = 1.0/(m2 + x6*x7);
+    const cart_3_real x8 = CART_3_NUMBER(1.0)/(m2 + x6*x7);
     const cart_3_real x9 = x8*x5;
-    const cart_3_real x10 = 1.0/(c0 + x0*x1 - x5*x9);
+    const cart_3_real x10 = CART_3_NUMBER(1.0)/(c0 + x0*x1 - x5*x9);
     const cart_3_real x11 = c3*p_theta3;
     const cart_3_real x12 = c4*p_theta2 - x3*x11;
     const cart_3_real x13 = c2*p_theta1 - x4*x11 - x12*x9;
@@ -817,7 +882,7 @@ static inline void cart_3_jacobian_hamiltonian(
     const cart_3_real x52 = x0*x32;
     const cart_3_real x53 = x52 + x4*x49 - x51*x9;
     const cart_3_real x54 = m3*(x45 - cos_theta3*x49 + x51*x19 + x53*x20)/x21;
-    const cart_3_real x55 = 1.0/x21;
+    const cart_3_real x55 = CART_3_NUMBER(1.0)/x21;
     const cart_3_real x56 = c2*x20/x21;
     const cart_3_real x57 = c4*x8*(x17 - x5*x20)/x21;
     const cart_3_real x58 = x4 - x3*x9;
@@ -875,7 +940,7 @@ static inline void cart_3_jacobian_hamiltonian(
         x101 + c10*cos_theta3 + x52*x64 + x50*x74 + x46*x84 + x30*x32 + x45*x54 + x47*x84
         - x103 - x48*x84;
     /* outputs */
-    result[0] = 0.0;
+    result[0] = CART_3_NUMBER(0.0);
     result[1] = x37;
     result[2] = -x44;
     result[3] = x54;
@@ -883,7 +948,7 @@ static inline void cart_3_jacobian_hamiltonian(
     result[5] = -x56;
     result[6] = -x57;
     result[7] = -x59;
-    result[8] = 0.0;
+    result[8] = CART_3_NUMBER(0.0);
     result[9] = x61;
     result[10] = x63;
     result[11] = -x65;
@@ -891,7 +956,7 @@ static inline void cart_3_jacobian_hamiltonian(
     result[13] = c2*x67;
     result[14] = -c2*x68;
     result[15] = -c2*x69;
-    result[16] = 0.0;
+    result[16] = CART_3_NUMBER(0.0);
     result[17] = -x71;
     result[18] = x73;
     result[19] = -x75;
@@ -899,7 +964,7 @@ static inline void cart_3_jacobian_hamiltonian(
     result[21] = c4*x77;
     result[22] = c4*x78;
     result[23] = c4*x79;
-    result[24] = 0.0;
+    result[24] = CART_3_NUMBER(0.0);
     result[25] = x81;
     result[26] = -x83;
     result[27] = x85;
@@ -907,15 +972,15 @@ static inline void cart_3_jacobian_hamiltonian(
     result[29] = -c3*(x4*x67 + x3*x77 - cos_theta3*x56);
     result[30] = c3*(cos_theta3*x57 + x4*x68 - x3*x78);
     result[31] = c3*(c7 + cos_theta3*x59 + x4*x69 - x3*x79);
-    result[32] = 0.0;
-    result[33] = 0.0;
-    result[34] = 0.0;
-    result[35] = 0.0;
-    result[36] = 0.0;
-    result[37] = 0.0;
-    result[38] = 0.0;
-    result[39] = 0.0;
-    result[40] = 0.0;
+    result[32] = CART_3_NUMBER(0.0);
+    result[33] = CART_3_NUMBER(0.0);
+    result[34] = CART_3_NUMBER(0.0);
+    result[35] = CART_3_NUMBER(0.0);
+    result[36] = CART_3_NUMBER(0.0);
+    result[37] = CART_3_NUMBER(0.0);
+    result[38] = CART_3_NUMBER(0.0);
+    result[39] = CART_3_NUMBER(0.0);
+    result[40] = CART_3_NUMBER(0.0);
     result[41] = -x92;
     result[42] = -(x27*x62 + x33*x62 + x93 - x44*x88 - x82*x89);
     result[43] = x95;
@@ -923,7 +988,7 @@ static inline void cart_3_jacobian_hamiltonian(
     result[45] = -x61;
     result[46] = x71;
     result[47] = -x81;
-    result[48] = 0.0;
+    result[48] = CART_3_NUMBER(0.0);
     result[49] = x37*x96 + x39*x70 + x40*x70 + x80*x97 - x91;
     result[50] = -x99;
     result[51] = x100;
@@ -931,7 +996,7 @@ static inline void cart_3_jacobian_hamiltonian(
     result[53] = -x63;
     result[54] = -x73;
     result[55] = x83;
-    result[56] = 0.0;
+    result[56] = CART_3_NUMBER(0.0);
     result[57] = -m3*x102;
     result[58] = m3*x104;
     result[59] = -m3*x105;
@@ -967,34 +1032,34 @@ static inline void cart_3_energy_hamiltonian(
     const cart_3_real l3 = params[6];
     const cart_3_real g = params[7];
     /* terms of the parameters alone */
-    const cart_3_real c0 = 1.0/l3;
-    const cart_3_real c1 = 1.0/l2;
+    const cart_3_real c0 = CART_3_NUMBER(1.0)/l3;
+    const cart_3_real c1 = CART_3_NUMBER(1.0)/l2;
     const cart_3_real c2 = m2 + m3;
-    const cart_3_real c3 = 1.0/l1;
+    const cart_3_real c3 = CART_3_NUMBER(1.0)/l1;
     const cart_3_real c4 = m1 + m2;
     const cart_3_real c5 = m3 + c4;
     const cart_3_real c6 = m0 + c4;
     const cart_3_real c7 = m3*l3;
-    const cart_3_real c8 = 1.0/c7;
+    const cart_3_real c8 = CART_3_NUMBER(1.0)/c7;
     const cart_3_real c9 = c5*l1;
     const cart_3_real c10 = c2*l2;
     /* intermediate terms */
-    const cart_3_real cos_theta3 = cos(theta3);
+    const cart_3_real cos_theta3 = cart_3_cos(theta3);
     const cart_3_real x0 = c0*p_theta3;
     const cart_3_real x1 = c1*p_theta2;
-    const cart_3_real cos_theta2 = cos(theta2);
-    const cart_3_real sin_theta3 = sin(theta3);
-    const cart_3_real sin_theta2 = sin(theta2);
+    const cart_3_real cos_theta2 = cart_3_cos(theta2);
+    const cart_3_real sin_theta3 = cart_3_sin(theta3);
+    const cart_3_real sin_theta2 = cart_3_sin(theta2);
     const cart_3_real x2 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2;
     const cart_3_real x3 = x1 - x2*x0;
     const cart_3_real x4 = m3*cos_theta3;
     const cart_3_real x5 = c2*cos_theta2 - x2*x4;
     const cart_3_real x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
-    const cart_3_real x7 = 1.0/(m2 + m3*x6*x6);
+    const cart_3_real x7 = CART_3_NUMBER(1.0)/(m2 + m3*x6*x6);
     const cart_3_real x8 = x5*x7;
     const cart_3_real x9 = c3*p_theta1;
-    const cart_3_real cos_theta1 = cos(theta1);
-    const cart_3_real sin_theta1 = sin(theta1);
+    const cart_3_real cos_theta1 = cart_3_cos(theta1);
+    const cart_3_real sin_theta1 = cart_3_sin(theta1);
     const cart_3_real x10 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1;
     const cart_3_real x11 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1);
     const cart_3_real x12 = x11 - m3*x2*x10;
@@ -1002,7 +1067,7 @@ static inline void cart_3_energy_hamiltonian(
     const cart_3_real x14 = x9 - x10*x0 - x3*x13;
     const cart_3_real x15 = c5*cos_theta1 - x10*x4 - x12*x8;
     const cart_3_real x16 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1;
-    const cart_3_real x17 = 1.0/(c4 + m3*x16*x16 - x12*x13);
+    const cart_3_real x17 = CART_3_NUMBER(1.0)/(c4 + m3*x16*x16 - x12*x13);
     const cart_3_real x18 = x15*x17;
     const cart_3_real x19 =
         (p_x - cos_theta3*x0 - x3*x8 - x14*x18)/(c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x15*x18);
@@ -1010,8 +1075,9 @@ static inline void cart_3_energy_hamiltonian(
     const cart_3_real x21 = x7*(x5*x19 + x12*x20 - x3);
     const cart_3_real x22 = (c8*p_theta3 + x2*x21 - cos_theta3*x19 - x10*x20)*x0;
     const cart_3_real x23 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3);
+    const cart_3_real x24 = CART_3_NUMBER(0.5)*(p_x*x19 + x9*x20 + x22 - x1*x21) - x23;
     /* outputs */
-    result[0] = 0.5*(p_x*x19 + x9*x20 + x22 - x1*x21) - x23;
+    result[0] = x24;
     (void)t;
 }
 #endif
@@ -1040,29 +1106,29 @@ static inline void cart_3_lagrangian_state(
     const cart_3_real l2 = params[5];
     const cart_3_real l3 = params[6];
     /* terms of the parameters alone */
-    const cart_3_real c0 = 1.0/l3;
-    const cart_3_real c1 = 1.0/l2;
+    const cart_3_real c0 = CART_3_NUMBER(1.0)/l3;
+    const cart_3_real c1 = CART_3_NUMBER(1.0)/l2;
     const cart_3_real c2 = m2 + m3;
-    const cart_3_real c3 = 1.0/l1;
+    const cart_3_real c3 = CART_3_NUMBER(1.0)/l1;
     const cart_3_real c4 = m1 + m2;
     const cart_3_real c5 = m3 + c4;
     const cart_3_real c6 = m0 + c4;
-    const cart_3_real c7 = 1.0/(m3*l3);
+    const cart_3_real c7 = CART_3_NUMBER(1.0)/(m3*l3);
     /* intermediate terms */
-    const cart_3_real cos_theta3 = cos(theta3);
+    const cart_3_real cos_theta3 = cart_3_cos(theta3);
     const cart_3_real x0 = c0*p_theta3;
-    const cart_3_real cos_theta2 = cos(theta2);
-    const cart_3_real sin_theta3 = sin(theta3);
-    const cart_3_real sin_theta2 = sin(theta2);
+    const cart_3_real cos_theta2 = cart_3_cos(theta2);
+    const cart_3_real sin_theta3 = cart_3_sin(theta3);
+    const cart_3_real sin_theta2 = cart_3_sin(theta2);
     const cart_3_real x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2;
     const cart_3_real x2 = c1*p_theta2 - x1*x0;
     const cart_3_real x3 = m3*cos_theta3;
     const cart_3_real x4 = c2*cos_theta2 - x1*x3;
     const cart_3_real x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
-    const cart_3_real x6 = 1.0/(m2 + m3*x5*x5);
+    const cart_3_real x6 = CART_3_NUMBER(1.0)/(m2 + m3*x5*x5);
     const cart_3_real x7 = x4*x6;
-    const cart_3_real cos_theta1 = cos(theta1);
-    const cart_3_real sin_theta1 = sin(theta1);
+    const cart_3_real cos_theta1 = cart_3_cos(theta1);
+    const cart_3_real sin_theta1 = cart_3_sin(theta1);
     const cart_3_real x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1;
     const cart_3_real x9 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1);
     const cart_3_real x10 = x9 - m3*x1*x8;
@@ -1070,7 +1136,7 @@ static inline void cart_3_lagrangian_state(
     const cart_3_real x12 = c3*p_theta1 - x8*x0 - x2*x11;
     const cart_3_real x13 = c5*cos_theta1 - x8*x3 - x10*x7;
     const cart_3_real x14 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1;
-    const cart_3_real x15 = 1.0/(c4 + m3*x14*x14 - x10*x11);
+    const cart_3_real x15 = CART_3_NUMBER(1.0)/(c4 + m3*x14*x14 - x10*x11);
     const cart_3_real x16 = x13*x15;
     const cart_3_real x17 =
         (p_x - cos_theta3*x0 - x2*x7 - x12*x16)/(c6 + m3*sin_theta3*sin_theta3 - x4*x7 - x13*x16);
@@ -1108,12 +1174,12 @@ static inline void cart_3_rational_state(
     const cart_3_real theta3_dot = state[7];
     /* outputs */
     result[0] = x;
-    result[1] = sin(theta1);
-    result[2] = cos(theta1);
-    result[3] = sin(theta2);
-    result[4] = cos(theta2);
-    result[5] = sin(theta3);
-    result[6] = cos(theta3);
+    result[1] = cart_3_sin(theta1);
+    result[2] = cart_3_cos(theta1);
+    result[3] = cart_3_sin(theta2);
+    result[4] = cart_3_cos(theta2);
+    result[5] = cart_3_sin(theta3);
+    result[6] = cart_3_cos(theta3);
     result[7] = x_dot;
     result[8] = theta1_dot;
     result[9] = theta2_dot;
@@ -1159,9 +1225,9 @@ static inline void cart_3_rhs_rational(
     const cart_3_real c7 = c3*g;
     const cart_3_real c8 = c1*g;
     const cart_3_real c9 = m0 + c0;
-    const cart_3_real c10 = 1.0/l1;
-    const cart_3_real c11 = 1.0/l2;
-    const cart_3_real c12 = 1.0/l3;
+    const cart_3_real c10 = CART_3_NUMBER(1.0)/l1;
+    const cart_3_real c11 = CART_3_NUMBER(1.0)/l2;
+    const cart_3_real c12 = CART_3_NUMBER(1.0)/l3;
     /* intermediate terms */
     const cart_3_real x0 = theta1_dot*theta1_dot;
     const cart_3_real x1 = theta2_dot*theta2_dot;
@@ -1177,7 +1243,7 @@ static inline void cart_3_rhs_rational(
     const cart_3_real x11 = m3*x10;
     const cart_3_real x12 = c6*x9*x0 - x5*x3 - c7*sin_theta2 - x6*x11;
     const cart_3_real x13 = c3*cos_theta2 - x10*x7;
-    const cart_3_real x14 = 1.0/(m2 + m3*x5*x5);
+    const cart_3_real x14 = CART_3_NUMBER(1.0)/(m2 + m3*x5*x5);
     const cart_3_real x15 = x13*x14;
     const cart_3_real x16 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3;
     const cart_3_real x17 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
@@ -1185,7 +1251,7 @@ static inline void cart_3_rhs_rational(
     const cart_3_real x19 = x14*x18;
     const cart_3_real x20 = x9*x2 + x4*x3 + c8*sin_theta1 + m3*x16*x6 + x12*x19;
     const cart_3_real x21 = c1*cos_theta1 - x16*x7 - x18*x15;
-    const cart_3_real x22 = 1.0/(c0 + m3*x4*x4 - x18*x19);
+    const cart_3_real x22 = CART_3_NUMBER(1.0)/(c0 + m3*x4*x4 - x18*x19);
     const cart_3_real x23 = x21*x22;
     const cart_3_real x24 = c9 + m3*sin_theta3*sin_theta3 - x13*x15 - x21*x23;
     const cart_3_real x25 = (x8 - x12*x15 + x20*x23)/x24;
@@ -1249,9 +1315,9 @@ static inline void cart_3_rhs_variational(
     const cart_3_real c7 = c3*g;
     const cart_3_real c8 = c1*g;
     const cart_3_real c9 = m0 + c0;
-    const cart_3_real c10 = 1.0/l1;
-    const cart_3_real c11 = 1.0/l2;
-    const cart_3_real c12 = 1.0/l3;
+    const cart_3_real c10 = CART_3_NUMBER(1.0)/l1;
+    const cart_3_real c11 = CART_3_NUMBER(1.0)/l2;
+    const cart_3_real c12 = CART_3_NUMBER(1.0)/l3;
     /* intermediate terms */
     const cart_3_real x0 = theta1_dot*theta1_dot;
     const cart_3_real x1 = c2*sin_theta1;
@@ -1271,7 +1337,7 @@ static inline void cart_3_rhs_variational(
     const cart_3_real x15 = m3*x14;
     const cart_3_real x16 = x12*x13 - x8*x5 - c7*sin_theta2 - x10*x15;
     const cart_3_real x17 = c3*cos_theta2 - x14*x11;
-    const cart_3_real x18 = 1.0/(m2 + m3*x8*x8);
+    const cart_3_real x18 = CART_3_NUMBER(1.0)/(m2 + m3*x8*x8);
     const cart_3_real x19 = x17*x18;
     const cart_3_real x20 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x19;
     const cart_3_real x21 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3;
@@ -1281,7 +1347,7 @@ static inline void cart_3_rhs_variational(
     const cart_3_real x25 = x18*x24;
     const cart_3_real x26 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x22 + x16*x25;
     const cart_3_real x27 = c1*cos_theta1 - x21*x11 - x24*x19;
-    const cart_3_real x28 = 1.0/(c0 + m3*x6*x6 - x24*x25);
+    const cart_3_real x28 = CART_3_NUMBER(1.0)/(c0 + m3*x6*x6 - x24*x25);
     const cart_3_real x29 = x27*x28;
     const cart_3_real x30 = c9 + m3*sin_theta3*sin_theta3 - x17*x19 - x27*x29;
     const cart_3_real x31 = (x20 + x26*x29)/x30;
@@ -1301,25 +1367,26 @@ static inline void cart_3_rhs_variational(
     const cart_3_real x45 = c1*sin_theta1;
     const cart_3_real x46 =
         c2*cos_theta1*delta_theta1*x0 + cos_theta2*delta_theta2*x3 + cos_theta3*x35
-        + x36*x37 + sin_theta3*x39 + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
-        - x44*x45;
+        + x36*x37 + sin_theta3*x39
+        + CART_3_NUMBER(2.0)*(x40*x1 + sin_theta2*x42 + sin_theta3*x43) - x44*x45;
     const cart_3_real x47 = x21*x7;
     const cart_3_real x48 = x14*x9;
     const cart_3_real x49 =
         delta_theta1*x47 + delta_theta2*x48 + x8*x36
-        + delta_theta3*(x6*x32 + sin_theta3*x31 - x8*x33) + 2.0*(l1*x6*x40 + l2*x8*x41)
+        + delta_theta3*(x6*x32 + sin_theta3*x31 - x8*x33)
+        + CART_3_NUMBER(2.0)*(l1*x6*x40 + l2*x8*x41)
         - delta_theta3*(x47 + x48 + g*cos_theta3) - x6*x44;
     const cart_3_real x50 = x23*x13;
     const cart_3_real x51 = c3*x12;
     const cart_3_real x52 =
         delta_theta1*x50 + x14*x35 + delta_theta2*(x32*x51 + x31*x37 + x8*x38)
-        + 2.0*(c6*x12*x40 - x8*x43) - delta_theta2*(x50 + x14*x5 + c7*cos_theta2) - x51*x44
-        - x8*x39;
+        + CART_3_NUMBER(2.0)*(c6*x12*x40 - x8*x43)
+        - delta_theta2*(x50 + x14*x5 + c7*cos_theta2) - x51*x44 - x8*x39;
     const cart_3_real x53 = x52 - x49*x15;
     const cart_3_real x54 = x23*x3;
     const cart_3_real x55 =
         delta_theta1*(x54 + x21*x5 + c8*cos_theta1) + x51*x36 + x6*x39
-        + 2.0*(x12*x42 + x6*x43) - delta_theta2*x54 - x21*x35
+        + CART_3_NUMBER(2.0)*(x12*x42 + x6*x43) - delta_theta2*x54 - x21*x35
         - delta_theta1*(x31*x45 + x33*x51 + x6*x38);
     const cart_3_real x56 = x55 + x49*x22 + x53*x25;
     const cart_3_real x57 = (x46 - x49*x11 - x53*x19 + x56*x29)/x30;

@@ -94,10 +94,12 @@
        double state[6] = {...}, rate[6], params[7] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81};
        chain_3_rhs(0.0, state, params, rate);
 
+   Indices have names: state[CHAIN_3_LAGRANGIAN_theta1].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_CHAIN_3_H
 #define HOLONOMIC_CHAIN_3_H
@@ -110,12 +112,6 @@
 
 typedef HOLONOMIC_REAL chain_3_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define CHAIN_3_NUMBER(x) ((chain_3_real){0} + (x))
-#else
-#define CHAIN_3_NUMBER(x) (x)
-#endif
-
 enum {
     CHAIN_3_LAGRANGIAN_STATE = 6,
     CHAIN_3_HAMILTONIAN_STATE = 6,
@@ -123,6 +119,68 @@ enum {
     CHAIN_3_VARIATIONAL_STATE = 15,
     CHAIN_3_PARAMETERS = 7,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    CHAIN_3_PARAMETER_m1, CHAIN_3_PARAMETER_m2, CHAIN_3_PARAMETER_m3, CHAIN_3_PARAMETER_l1,
+    CHAIN_3_PARAMETER_l2, CHAIN_3_PARAMETER_l3, CHAIN_3_PARAMETER_g
+};
+enum {
+    CHAIN_3_LAGRANGIAN_theta1, CHAIN_3_LAGRANGIAN_theta2, CHAIN_3_LAGRANGIAN_theta3,
+    CHAIN_3_LAGRANGIAN_theta1_dot, CHAIN_3_LAGRANGIAN_theta2_dot,
+    CHAIN_3_LAGRANGIAN_theta3_dot
+};
+enum {
+    CHAIN_3_HAMILTONIAN_theta1, CHAIN_3_HAMILTONIAN_theta2, CHAIN_3_HAMILTONIAN_theta3,
+    CHAIN_3_HAMILTONIAN_p_theta1, CHAIN_3_HAMILTONIAN_p_theta2, CHAIN_3_HAMILTONIAN_p_theta3
+};
+enum {
+    CHAIN_3_RATIONAL_sin_theta1, CHAIN_3_RATIONAL_cos_theta1, CHAIN_3_RATIONAL_sin_theta2,
+    CHAIN_3_RATIONAL_cos_theta2, CHAIN_3_RATIONAL_sin_theta3, CHAIN_3_RATIONAL_cos_theta3,
+    CHAIN_3_RATIONAL_theta1_dot, CHAIN_3_RATIONAL_theta2_dot, CHAIN_3_RATIONAL_theta3_dot
+};
+enum {
+    CHAIN_3_VARIATIONAL_sin_theta1, CHAIN_3_VARIATIONAL_cos_theta1,
+    CHAIN_3_VARIATIONAL_sin_theta2, CHAIN_3_VARIATIONAL_cos_theta2,
+    CHAIN_3_VARIATIONAL_sin_theta3, CHAIN_3_VARIATIONAL_cos_theta3,
+    CHAIN_3_VARIATIONAL_theta1_dot, CHAIN_3_VARIATIONAL_theta2_dot,
+    CHAIN_3_VARIATIONAL_theta3_dot, CHAIN_3_VARIATIONAL_delta_theta1,
+    CHAIN_3_VARIATIONAL_delta_theta2, CHAIN_3_VARIATIONAL_delta_theta3,
+    CHAIN_3_VARIATIONAL_delta_theta1_dot, CHAIN_3_VARIATIONAL_delta_theta2_dot,
+    CHAIN_3_VARIATIONAL_delta_theta3_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(chain_3_real *)0)[0]) chain_3_number;
+static inline chain_3_real chain_3_splat(chain_3_number x)
+{
+    const chain_3_real zero = {0};
+    return zero + x;
+}
+#define CHAIN_3_NUMBER(x) chain_3_splat((chain_3_number)x)
+#else
+typedef chain_3_real chain_3_number;
+#define CHAIN_3_NUMBER(x) \
+    (sizeof(chain_3_number) > sizeof(double) ? (chain_3_number)x##L \
+        : (chain_3_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline chain_3_real chain_3_cos(chain_3_real x)
+{
+    return sizeof(x) > sizeof(double) ? (chain_3_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (chain_3_real)cos((double)x)
+        : (chain_3_real)cosf((float)x);
+}
+static inline chain_3_real chain_3_sin(chain_3_real x)
+{
+    return sizeof(x) > sizeof(double) ? (chain_3_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (chain_3_real)sin((double)x)
+        : (chain_3_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -147,7 +205,7 @@ static inline void chain_3_rhs(
     const chain_3_real l3 = params[5];
     const chain_3_real g = params[6];
     /* terms of the parameters alone */
-    const chain_3_real c0 = 1.0/l1;
+    const chain_3_real c0 = CHAIN_3_NUMBER(1.0)/l1;
     const chain_3_real c1 = m2 + m3;
     const chain_3_real c2 = c1*l2;
     const chain_3_real c3 = m3*l3;
@@ -155,17 +213,17 @@ static inline void chain_3_rhs(
     const chain_3_real c5 = (m3 + c4)*g;
     const chain_3_real c6 = l1*c1;
     const chain_3_real c7 = c1*g;
-    const chain_3_real c8 = 1.0/l2;
-    const chain_3_real c9 = 1.0/l3;
+    const chain_3_real c8 = CHAIN_3_NUMBER(1.0)/l2;
+    const chain_3_real c9 = CHAIN_3_NUMBER(1.0)/l3;
     /* intermediate terms */
-    const chain_3_real sin_theta1 = sin(theta1);
-    const chain_3_real cos_theta2 = cos(theta2);
-    const chain_3_real cos_theta1 = cos(theta1);
-    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real sin_theta1 = chain_3_sin(theta1);
+    const chain_3_real cos_theta2 = chain_3_cos(theta2);
+    const chain_3_real cos_theta1 = chain_3_cos(theta1);
+    const chain_3_real sin_theta2 = chain_3_sin(theta2);
     const chain_3_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const chain_3_real x1 = theta2_dot*theta2_dot;
-    const chain_3_real cos_theta3 = cos(theta3);
-    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real cos_theta3 = chain_3_cos(theta3);
+    const chain_3_real sin_theta3 = chain_3_sin(theta3);
     const chain_3_real x2 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
     const chain_3_real x3 = c3*(theta3_dot*theta3_dot);
     const chain_3_real x4 = theta1_dot*theta1_dot;
@@ -177,7 +235,7 @@ static inline void chain_3_rhs(
     const chain_3_real x10 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x9*x6;
     const chain_3_real x11 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
     const chain_3_real x12 = x11 - x9*x8;
-    const chain_3_real x13 = 1.0/(m2 + m3*x5*x5);
+    const chain_3_real x13 = CHAIN_3_NUMBER(1.0)/(m2 + m3*x5*x5);
     const chain_3_real x14 = x12*x13;
     const chain_3_real x15 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x10*x14;
     const chain_3_real x16 = x15/(c4 + m3*x2*x2 - x12*x14);
@@ -216,7 +274,7 @@ static inline void chain_3_jacobian(
     const chain_3_real l3 = params[5];
     const chain_3_real g = params[6];
     /* terms of the parameters alone */
-    const chain_3_real c0 = 1.0/l1;
+    const chain_3_real c0 = CHAIN_3_NUMBER(1.0)/l1;
     const chain_3_real c1 = m2 + m3;
     const chain_3_real c2 = c1*l2;
     const chain_3_real c3 = m3*l3;
@@ -224,25 +282,25 @@ static inline void chain_3_jacobian(
     const chain_3_real c5 = (m3 + c4)*g;
     const chain_3_real c6 = l1*c1;
     const chain_3_real c7 = c1*g;
-    const chain_3_real c8 = 1.0/l2;
+    const chain_3_real c8 = CHAIN_3_NUMBER(1.0)/l2;
     const chain_3_real c9 = m3*l2;
-    const chain_3_real c10 = 1.0/l3;
+    const chain_3_real c10 = CHAIN_3_NUMBER(1.0)/l3;
     /* intermediate terms */
-    const chain_3_real cos_theta1 = cos(theta1);
-    const chain_3_real cos_theta2 = cos(theta2);
-    const chain_3_real sin_theta1 = sin(theta1);
-    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real cos_theta1 = chain_3_cos(theta1);
+    const chain_3_real cos_theta2 = chain_3_cos(theta2);
+    const chain_3_real sin_theta1 = chain_3_sin(theta1);
+    const chain_3_real sin_theta2 = chain_3_sin(theta2);
     const chain_3_real x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
     const chain_3_real x1 = theta2_dot*theta2_dot;
     const chain_3_real x2 = c2*x1;
-    const chain_3_real cos_theta3 = cos(theta3);
-    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real cos_theta3 = chain_3_cos(theta3);
+    const chain_3_real sin_theta3 = chain_3_sin(theta3);
     const chain_3_real x3 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
     const chain_3_real x4 = theta3_dot*theta3_dot;
     const chain_3_real x5 = c3*x4;
     const chain_3_real x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
     const chain_3_real x7 = m3*x6;
-    const chain_3_real x8 = 1.0/(m2 + x6*x7);
+    const chain_3_real x8 = CHAIN_3_NUMBER(1.0)/(m2 + x6*x7);
     const chain_3_real x9 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const chain_3_real x10 = c6*(theta1_dot*theta1_dot);
     const chain_3_real x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
@@ -292,43 +350,45 @@ static inline void chain_3_jacobian(
     const chain_3_real x55 = x6*theta2_dot;
     const chain_3_real x56 = x8*(c9*x16*x55 - x20*x48);
     const chain_3_real x57 = x8*(x6*x49 - x20*x50);
+    const chain_3_real x58 = CHAIN_3_NUMBER(2.0)*c10*(x11*x12 + x3*x46 - x16*x54);
+    const chain_3_real x59 = CHAIN_3_NUMBER(2.0)*c10*(l2*x55 + x3*x48 + x16*x56);
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 0.0;
-    result[3] = 1.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 0.0;
-    result[8] = 0.0;
-    result[9] = 0.0;
-    result[10] = 1.0;
-    result[11] = 0.0;
-    result[12] = 0.0;
-    result[13] = 0.0;
-    result[14] = 0.0;
-    result[15] = 0.0;
-    result[16] = 0.0;
-    result[17] = 1.0;
+    result[0] = CHAIN_3_NUMBER(0.0);
+    result[1] = CHAIN_3_NUMBER(0.0);
+    result[2] = CHAIN_3_NUMBER(0.0);
+    result[3] = CHAIN_3_NUMBER(1.0);
+    result[4] = CHAIN_3_NUMBER(0.0);
+    result[5] = CHAIN_3_NUMBER(0.0);
+    result[6] = CHAIN_3_NUMBER(0.0);
+    result[7] = CHAIN_3_NUMBER(0.0);
+    result[8] = CHAIN_3_NUMBER(0.0);
+    result[9] = CHAIN_3_NUMBER(0.0);
+    result[10] = CHAIN_3_NUMBER(1.0);
+    result[11] = CHAIN_3_NUMBER(0.0);
+    result[12] = CHAIN_3_NUMBER(0.0);
+    result[13] = CHAIN_3_NUMBER(0.0);
+    result[14] = CHAIN_3_NUMBER(0.0);
+    result[15] = CHAIN_3_NUMBER(0.0);
+    result[16] = CHAIN_3_NUMBER(0.0);
+    result[17] = CHAIN_3_NUMBER(1.0);
     result[18] = -c0*x34;
     result[19] = -c0*x40;
     result[20] = -c0*x44;
-    result[21] = -2.0*c0*x46;
-    result[22] = -2.0*c0*x48;
-    result[23] = -2.0*c0*x50;
+    result[21] = -CHAIN_3_NUMBER(2.0)*c0*x46;
+    result[22] = -CHAIN_3_NUMBER(2.0)*c0*x48;
+    result[23] = -CHAIN_3_NUMBER(2.0)*c0*x50;
     result[24] = c8*x51;
     result[25] = -c8*x52;
     result[26] = -c8*x53;
-    result[27] = 2.0*c8*x54;
-    result[28] = -2.0*c8*x56;
-    result[29] = -2.0*c8*x57;
+    result[27] = CHAIN_3_NUMBER(2.0)*c8*x54;
+    result[28] = -CHAIN_3_NUMBER(2.0)*c8*x56;
+    result[29] = -CHAIN_3_NUMBER(2.0)*c8*x57;
     result[30] = c10*(x32 + x3*x34 - x16*x51);
     result[31] = c10*(x37 + x3*x40 + x16*x52);
     result[32] = c10*(x3*x44 + x16*x53 - x42);
-    result[33] = 2.0*c10*(x11*x12 + x3*x46 - x16*x54);
-    result[34] = 2.0*c10*(l2*x55 + x3*x48 + x16*x56);
-    result[35] = 2.0*c10*(x3*x50 + x16*x57);
+    result[33] = x58;
+    result[34] = x59;
+    result[35] = CHAIN_3_NUMBER(2.0)*c10*(x3*x50 + x16*x57);
     (void)t;
 }
 #endif
@@ -370,15 +430,16 @@ static inline void chain_3_energy(
     const chain_3_real c11 = g*c1;
     const chain_3_real c12 = g*c3;
     /* intermediate terms */
-    const chain_3_real x0 =
+    const chain_3_real x0 = c2*theta1_dot*theta2_dot*chain_3_cos(theta1 - theta2);
+    const chain_3_real x1 = c4*theta3_dot*theta1_dot*chain_3_cos(theta1 - theta3);
+    const chain_3_real x2 = c5*theta3_dot*theta2_dot*chain_3_cos(theta2 - theta3);
+    const chain_3_real x3 =
         c6*theta3_dot*theta3_dot + c8*theta1_dot*theta1_dot + c9*theta2_dot*theta2_dot;
-    const chain_3_real x1 =
-        c2*theta1_dot*theta2_dot*cos(theta1 - theta2)
-        + c4*theta3_dot*theta1_dot*cos(theta1 - theta3)
-        + c5*theta3_dot*theta2_dot*cos(theta2 - theta3) + 0.5*x0 - c10*cos(theta1)
-        - c11*cos(theta2) - c12*cos(theta3);
+    const chain_3_real x4 =
+        x0 + x1 + x2 + CHAIN_3_NUMBER(0.5)*x3 - c10*chain_3_cos(theta1)
+        - c11*chain_3_cos(theta2) - c12*chain_3_cos(theta3);
     /* outputs */
-    result[0] = x1;
+    result[0] = x4;
     (void)t;
 }
 #endif
@@ -409,9 +470,9 @@ static inline void chain_3_mass_matrix(
     const chain_3_real c4 = l1*c3;
     const chain_3_real c5 = l2*c3;
     /* intermediate terms */
-    const chain_3_real x0 = c2*cos(theta1 - theta2);
-    const chain_3_real x1 = c4*cos(theta1 - theta3);
-    const chain_3_real x2 = c5*cos(theta2 - theta3);
+    const chain_3_real x0 = c2*chain_3_cos(theta1 - theta2);
+    const chain_3_real x1 = c4*chain_3_cos(theta1 - theta3);
+    const chain_3_real x2 = c5*chain_3_cos(theta2 - theta3);
     /* outputs */
     result[0] = l1*l1*(m1 + c0);
     result[1] = x0;
@@ -442,17 +503,17 @@ static inline void chain_3_positions(
     const chain_3_real l2 = params[4];
     const chain_3_real l3 = params[5];
     /* intermediate terms */
-    const chain_3_real x0 = l1*sin(theta1);
-    const chain_3_real x1 = l1*cos(theta1);
-    const chain_3_real x2 = x0 + l2*sin(theta2);
-    const chain_3_real x3 = x1 + l2*cos(theta2);
+    const chain_3_real x0 = l1*chain_3_sin(theta1);
+    const chain_3_real x1 = l1*chain_3_cos(theta1);
+    const chain_3_real x2 = x0 + l2*chain_3_sin(theta2);
+    const chain_3_real x3 = x1 + l2*chain_3_cos(theta2);
     /* outputs */
     result[0] = x0;
     result[1] = -x1;
     result[2] = x2;
     result[3] = -x3;
-    result[4] = x2 + l3*sin(theta3);
-    result[5] = -(x3 + l3*cos(theta3));
+    result[4] = x2 + l3*chain_3_sin(theta3);
+    result[5] = -(x3 + l3*chain_3_cos(theta3));
     (void)t;
 }
 #endif
@@ -485,11 +546,11 @@ static inline void chain_3_hamiltonian_state(
     const chain_3_real c3 = m3*l3;
     const chain_3_real c4 = l1*c0;
     /* intermediate terms */
-    const chain_3_real x0 = cos(theta1 - theta2);
+    const chain_3_real x0 = chain_3_cos(theta1 - theta2);
     const chain_3_real x1 = c2*theta2_dot;
-    const chain_3_real x2 = cos(theta1 - theta3);
+    const chain_3_real x2 = chain_3_cos(theta1 - theta3);
     const chain_3_real x3 = c3*theta3_dot;
-    const chain_3_real x4 = cos(theta2 - theta3);
+    const chain_3_real x4 = chain_3_cos(theta2 - theta3);
     const chain_3_real x5 = l3*theta3_dot + l1*theta1_dot*x2 + l2*theta2_dot*x4;
     /* outputs */
     result[0] = theta1;
@@ -525,31 +586,31 @@ static inline void chain_3_rhs_hamiltonian(
     const chain_3_real l3 = params[5];
     const chain_3_real g = params[6];
     /* terms of the parameters alone */
-    const chain_3_real c0 = 1.0/l1;
-    const chain_3_real c1 = 1.0/l3;
-    const chain_3_real c2 = 1.0/l2;
+    const chain_3_real c0 = CHAIN_3_NUMBER(1.0)/l1;
+    const chain_3_real c1 = CHAIN_3_NUMBER(1.0)/l3;
+    const chain_3_real c2 = CHAIN_3_NUMBER(1.0)/l2;
     const chain_3_real c3 = m2 + m3;
     const chain_3_real c4 = m1 + m2;
-    const chain_3_real c5 = 1.0/(m3*l3);
+    const chain_3_real c5 = CHAIN_3_NUMBER(1.0)/(m3*l3);
     const chain_3_real c6 = l1*(m3 + c4)*g;
     const chain_3_real c7 = c3*l2*g;
     const chain_3_real c8 = l3*g;
     /* intermediate terms */
-    const chain_3_real cos_theta3 = cos(theta3);
-    const chain_3_real cos_theta1 = cos(theta1);
-    const chain_3_real sin_theta1 = sin(theta1);
-    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real cos_theta3 = chain_3_cos(theta3);
+    const chain_3_real cos_theta1 = chain_3_cos(theta1);
+    const chain_3_real sin_theta1 = chain_3_sin(theta1);
+    const chain_3_real sin_theta3 = chain_3_sin(theta3);
     const chain_3_real x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
     const chain_3_real x1 = c1*p_theta3;
-    const chain_3_real cos_theta2 = cos(theta2);
-    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real cos_theta2 = chain_3_cos(theta2);
+    const chain_3_real sin_theta2 = chain_3_sin(theta2);
     const chain_3_real x2 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2;
     const chain_3_real x3 = c2*p_theta2 - x2*x1;
     const chain_3_real x4 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
     const chain_3_real x5 = x4 - m3*x0*x2;
     const chain_3_real x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
     const chain_3_real x7 = m3*x6;
-    const chain_3_real x8 = 1.0/(m2 + x6*x7);
+    const chain_3_real x8 = CHAIN_3_NUMBER(1.0)/(m2 + x6*x7);
     const chain_3_real x9 = x5*x8;
     const chain_3_real x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
     const chain_3_real x11 = m3*x10;
@@ -593,28 +654,28 @@ static inline void chain_3_jacobian_hamiltonian(
     const chain_3_real l3 = params[5];
     const chain_3_real g = params[6];
     /* terms of the parameters alone */
-    const chain_3_real c0 = 1.0/l1;
-    const chain_3_real c1 = 1.0/l2;
-    const chain_3_real c2 = 1.0/l3;
+    const chain_3_real c0 = CHAIN_3_NUMBER(1.0)/l1;
+    const chain_3_real c1 = CHAIN_3_NUMBER(1.0)/l2;
+    const chain_3_real c2 = CHAIN_3_NUMBER(1.0)/l3;
     const chain_3_real c3 = m2 + m3;
     const chain_3_real c4 = m1 + m2;
-    const chain_3_real c5 = 1.0/(m3*l3);
+    const chain_3_real c5 = CHAIN_3_NUMBER(1.0)/(m3*l3);
     const chain_3_real c6 = l1*(m3 + c4)*g;
     const chain_3_real c7 = c3*l2*g;
     const chain_3_real c8 = l3*g;
     /* intermediate terms */
-    const chain_3_real cos_theta3 = cos(theta3);
-    const chain_3_real sin_theta2 = sin(theta2);
-    const chain_3_real sin_theta3 = sin(theta3);
-    const chain_3_real cos_theta2 = cos(theta2);
+    const chain_3_real cos_theta3 = chain_3_cos(theta3);
+    const chain_3_real sin_theta2 = chain_3_sin(theta2);
+    const chain_3_real sin_theta3 = chain_3_sin(theta3);
+    const chain_3_real cos_theta2 = chain_3_cos(theta2);
     const chain_3_real x0 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
     const chain_3_real x1 = m3*x0;
-    const chain_3_real x2 = 1.0/(m2 + x0*x1);
+    const chain_3_real x2 = CHAIN_3_NUMBER(1.0)/(m2 + x0*x1);
     const chain_3_real x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2;
     const chain_3_real x4 = c2*x3;
     const chain_3_real x5 = c1*p_theta2 - p_theta3*x4;
-    const chain_3_real cos_theta1 = cos(theta1);
-    const chain_3_real sin_theta1 = sin(theta1);
+    const chain_3_real cos_theta1 = chain_3_cos(theta1);
+    const chain_3_real sin_theta1 = chain_3_sin(theta1);
     const chain_3_real x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
     const chain_3_real x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
     const chain_3_real x8 = x6 - m3*x7*x3;
@@ -742,32 +803,32 @@ static inline void chain_3_energy_hamiltonian(
     const chain_3_real l3 = params[5];
     const chain_3_real g = params[6];
     /* terms of the parameters alone */
-    const chain_3_real c0 = 1.0/l1;
-    const chain_3_real c1 = 1.0/l3;
-    const chain_3_real c2 = 1.0/l2;
+    const chain_3_real c0 = CHAIN_3_NUMBER(1.0)/l1;
+    const chain_3_real c1 = CHAIN_3_NUMBER(1.0)/l3;
+    const chain_3_real c2 = CHAIN_3_NUMBER(1.0)/l2;
     const chain_3_real c3 = m2 + m3;
     const chain_3_real c4 = m1 + m2;
     const chain_3_real c5 = m3*l3;
-    const chain_3_real c6 = 1.0/c5;
+    const chain_3_real c6 = CHAIN_3_NUMBER(1.0)/c5;
     const chain_3_real c7 = l1*(m3 + c4);
     const chain_3_real c8 = c3*l2;
     /* intermediate terms */
     const chain_3_real x0 = c0*p_theta1;
-    const chain_3_real cos_theta3 = cos(theta3);
-    const chain_3_real cos_theta1 = cos(theta1);
-    const chain_3_real sin_theta1 = sin(theta1);
-    const chain_3_real sin_theta3 = sin(theta3);
+    const chain_3_real cos_theta3 = chain_3_cos(theta3);
+    const chain_3_real cos_theta1 = chain_3_cos(theta1);
+    const chain_3_real sin_theta1 = chain_3_sin(theta1);
+    const chain_3_real sin_theta3 = chain_3_sin(theta3);
     const chain_3_real x1 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3;
     const chain_3_real x2 = c1*p_theta3;
     const chain_3_real x3 = c2*p_theta2;
-    const chain_3_real cos_theta2 = cos(theta2);
-    const chain_3_real sin_theta2 = sin(theta2);
+    const chain_3_real cos_theta2 = chain_3_cos(theta2);
+    const chain_3_real sin_theta2 = chain_3_sin(theta2);
     const chain_3_real x4 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2;
     const chain_3_real x5 = x3 - x4*x2;
     const chain_3_real x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
     const chain_3_real x7 = x6 - m3*x1*x4;
     const chain_3_real x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2;
-    const chain_3_real x9 = 1.0/(m2 + m3*x8*x8);
+    const chain_3_real x9 = CHAIN_3_NUMBER(1.0)/(m2 + m3*x8*x8);
     const chain_3_real x10 = x7*x9;
     const chain_3_real x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3;
     const chain_3_real x12 = (x0 - x1*x2 - x5*x10)/(c4 + m3*x11*x11 - x7*x10);
@@ -775,7 +836,7 @@ static inline void chain_3_energy_hamiltonian(
     const chain_3_real x14 = x0*x12 + x3*x13 - (x1*x12 + x4*x13 - c6*p_theta3)*x2;
     const chain_3_real x15 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3);
     /* outputs */
-    result[0] = 0.5*x14 - x15;
+    result[0] = CHAIN_3_NUMBER(0.5)*x14 - x15;
     (void)t;
 }
 #endif
@@ -802,24 +863,24 @@ static inline void chain_3_lagrangian_state(
     const chain_3_real l2 = params[4];
     const chain_3_real l3 = params[5];
     /* terms of the parameters alone */
-    const chain_3_real c0 = 1.0/l1;
-    const chain_3_real c1 = 1.0/l3;
-    const chain_3_real c2 = 1.0/l2;
+    const chain_3_real c0 = CHAIN_3_NUMBER(1.0)/l1;
+    const chain_3_real c1 = CHAIN_3_NUMBER(1.0)/l3;
+    const chain_3_real c2 = CHAIN_3_NUMBER(1.0)/l2;
     const chain_3_real c3 = m2 + m3;
     const chain_3_real c4 = m1 + m2;
-    const chain_3_real c5 = 1.0/(m3*l3);
+    const chain_3_real c5 = CHAIN_3_NUMBER(1.0)/(m3*l3);
     /* intermediate terms */
     const chain_3_real x0 = theta1 - theta3;
-    const chain_3_real cos_x0 = cos(x0);
+    const chain_3_real cos_x0 = chain_3_cos(x0);
     const chain_3_real x1 = c1*p_theta3;
     const chain_3_real x2 = theta2 - theta3;
-    const chain_3_real cos_x2 = cos(x2);
+    const chain_3_real cos_x2 = chain_3_cos(x2);
     const chain_3_real x3 = c2*p_theta2 - cos_x2*x1;
-    const chain_3_real x4 = c3*cos(theta1 - theta2) - m3*cos_x0*cos_x2;
-    const chain_3_real sin_x2 = sin(x2);
-    const chain_3_real x5 = 1.0/(m2 + m3*sin_x2*sin_x2);
+    const chain_3_real x4 = c3*chain_3_cos(theta1 - theta2) - m3*cos_x0*cos_x2;
+    const chain_3_real sin_x2 = chain_3_sin(x2);
+    const chain_3_real x5 = CHAIN_3_NUMBER(1.0)/(m2 + m3*sin_x2*sin_x2);
     const chain_3_real x6 = x4*x5;
-    const chain_3_real sin_x0 = sin(x0);
+    const chain_3_real sin_x0 = chain_3_sin(x0);
     const chain_3_real x7 =
         (c0*p_theta1 - cos_x0*x1 - x3*x6)/(c4 + m3*sin_x0*sin_x0 - x4*x6);
     const chain_3_real x8 = x5*(x3 - x4*x7);
@@ -850,12 +911,12 @@ static inline void chain_3_rational_state(
     const chain_3_real theta2_dot = state[4];
     const chain_3_real theta3_dot = state[5];
     /* outputs */
-    result[0] = sin(theta1);
-    result[1] = cos(theta1);
-    result[2] = sin(theta2);
-    result[3] = cos(theta2);
-    result[4] = sin(theta3);
-    result[5] = cos(theta3);
+    result[0] = chain_3_sin(theta1);
+    result[1] = chain_3_cos(theta1);
+    result[2] = chain_3_sin(theta2);
+    result[3] = chain_3_cos(theta2);
+    result[4] = chain_3_sin(theta3);
+    result[5] = chain_3_cos(theta3);
     result[6] = theta1_dot;
     result[7] = theta2_dot;
     result[8] = theta3_dot;
@@ -889,7 +950,7 @@ static inline void chain_3_rhs_rational(
     const chain_3_real l3 = params[5];
     const chain_3_real g = params[6];
     /* terms of the parameters alone */
-    const chain_3_real c0 = 1.0/l1;
+    const chain_3_real c0 = CHAIN_3_NUMBER(1.0)/l1;
     const chain_3_real c1 = m2 + m3;
     const chain_3_real c2 = c1*l2;
     const chain_3_real c3 = m3*l3;
@@ -897,8 +958,8 @@ static inline void chain_3_rhs_rational(
     const chain_3_real c5 = (m3 + c4)*g;
     const chain_3_real c6 = l1*c1;
     const chain_3_real c7 = c1*g;
-    const chain_3_real c8 = 1.0/l2;
-    const chain_3_real c9 = 1.0/l3;
+    const chain_3_real c8 = CHAIN_3_NUMBER(1.0)/l2;
+    const chain_3_real c9 = CHAIN_3_NUMBER(1.0)/l3;
     /* intermediate terms */
     const chain_3_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const chain_3_real x1 = theta2_dot*theta2_dot;
@@ -913,7 +974,7 @@ static inline void chain_3_rhs_rational(
     const chain_3_real x10 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x9*x6;
     const chain_3_real x11 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2);
     const chain_3_real x12 = x11 - x9*x8;
-    const chain_3_real x13 = 1.0/(m2 + m3*x5*x5);
+    const chain_3_real x13 = CHAIN_3_NUMBER(1.0)/(m2 + m3*x5*x5);
     const chain_3_real x14 = x12*x13;
     const chain_3_real x15 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x10*x14;
     const chain_3_real x16 = x15/(c4 + m3*x2*x2 - x12*x14);
@@ -962,7 +1023,7 @@ static inline void chain_3_rhs_variational(
     const chain_3_real l3 = params[5];
     const chain_3_real g = params[6];
     /* terms of the parameters alone */
-    const chain_3_real c0 = 1.0/l1;
+    const chain_3_real c0 = CHAIN_3_NUMBER(1.0)/l1;
     const chain_3_real c1 = m2 + m3;
     const chain_3_real c2 = c1*l2;
     const chain_3_real c3 = m3*l3;
@@ -970,8 +1031,8 @@ static inline void chain_3_rhs_variational(
     const chain_3_real c5 = (m3 + c4)*g;
     const chain_3_real c6 = l1*c1;
     const chain_3_real c7 = c1*g;
-    const chain_3_real c8 = 1.0/l2;
-    const chain_3_real c9 = 1.0/l3;
+    const chain_3_real c8 = CHAIN_3_NUMBER(1.0)/l2;
+    const chain_3_real c9 = CHAIN_3_NUMBER(1.0)/l3;
     /* intermediate terms */
     const chain_3_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const chain_3_real x1 = theta2_dot*theta2_dot;
@@ -992,7 +1053,7 @@ static inline void chain_3_rhs_variational(
     const chain_3_real x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15;
     const chain_3_real x17 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
     const chain_3_real x18 = c1*x17 - x14*x12;
-    const chain_3_real x19 = 1.0/(m2 + m3*x8*x8);
+    const chain_3_real x19 = CHAIN_3_NUMBER(1.0)/(m2 + m3*x8*x8);
     const chain_3_real x20 = x18*x19;
     const chain_3_real x21 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x20;
     const chain_3_real x22 = c4 + m3*x3*x3 - x18*x20;
@@ -1009,7 +1070,7 @@ static inline void chain_3_rhs_variational(
     const chain_3_real x33 = delta_theta3_dot*x4;
     const chain_3_real x34 =
         delta_theta1*(x26 + x27 + c5*cos_theta1) + delta_theta2*x29 + delta_theta3*x31
-        + 2.0*(c2*x0*x32 + x3*x33) - x26*delta_theta2 - x27*delta_theta3
+        + CHAIN_3_NUMBER(2.0)*(c2*x0*x32 + x3*x33) - x26*delta_theta2 - x27*delta_theta3
         - delta_theta1*(x29 + x31);
     const chain_3_real x35 = x11*x7;
     const chain_3_real x36 = x14*x9;
@@ -1018,16 +1079,16 @@ static inline void chain_3_rhs_variational(
     const chain_3_real x39 = theta1_dot*delta_theta1_dot;
     const chain_3_real x40 =
         delta_theta1*x35 + delta_theta2*x36 + delta_theta2*x37 + delta_theta3*(x38 - x37)
-        + 2.0*(l1*x3*x39 + l2*x8*x32) - delta_theta3*(x35 + x36 + g*cos_theta3)
-        - delta_theta1*x38;
+        + CHAIN_3_NUMBER(2.0)*(l1*x3*x39 + l2*x8*x32)
+        - delta_theta3*(x35 + x36 + g*cos_theta3) - delta_theta1*x38;
     const chain_3_real x41 = x17*x13;
     const chain_3_real x42 = x14*x5;
     const chain_3_real x43 = x23*x28;
     const chain_3_real x44 = x8*x30;
     const chain_3_real x45 =
         delta_theta1*x41 + delta_theta3*x42 + delta_theta2*(x43 + x44)
-        + 2.0*(c6*x0*x39 - x8*x33) - delta_theta2*(x41 + x42 + c7*cos_theta2)
-        - delta_theta1*x43 - delta_theta3*x44;
+        + CHAIN_3_NUMBER(2.0)*(c6*x0*x39 - x8*x33)
+        - delta_theta2*(x41 + x42 + c7*cos_theta2) - delta_theta1*x43 - delta_theta3*x44;
     const chain_3_real x46 = x45 - x40*x15;
     const chain_3_real x47 = (x34 + x40*x12 + x46*x20)/x22;
     const chain_3_real x48 = x19*(x46 + x18*x47);

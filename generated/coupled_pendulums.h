@@ -75,10 +75,12 @@
        double state[4] = {...}, rate[4], params[5] = {1.0, 1.0, 1.0, 1.0, 9.81};
        coupled_pendulums_rhs(0.0, state, params, rate);
 
+   Indices have names: state[COUPLED_PENDULUMS_LAGRANGIAN_theta1].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_COUPLED_PENDULUMS_H
 #define HOLONOMIC_COUPLED_PENDULUMS_H
@@ -91,12 +93,6 @@
 
 typedef HOLONOMIC_REAL coupled_pendulums_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define COUPLED_PENDULUMS_NUMBER(x) ((coupled_pendulums_real){0} + (x))
-#else
-#define COUPLED_PENDULUMS_NUMBER(x) (x)
-#endif
-
 enum {
     COUPLED_PENDULUMS_LAGRANGIAN_STATE = 4,
     COUPLED_PENDULUMS_HAMILTONIAN_STATE = 4,
@@ -104,6 +100,72 @@ enum {
     COUPLED_PENDULUMS_VARIATIONAL_STATE = 10,
     COUPLED_PENDULUMS_PARAMETERS = 5,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    COUPLED_PENDULUMS_PARAMETER_m, COUPLED_PENDULUMS_PARAMETER_l,
+    COUPLED_PENDULUMS_PARAMETER_k, COUPLED_PENDULUMS_PARAMETER_d,
+    COUPLED_PENDULUMS_PARAMETER_g
+};
+enum {
+    COUPLED_PENDULUMS_LAGRANGIAN_theta1, COUPLED_PENDULUMS_LAGRANGIAN_theta2,
+    COUPLED_PENDULUMS_LAGRANGIAN_theta1_dot, COUPLED_PENDULUMS_LAGRANGIAN_theta2_dot
+};
+enum {
+    COUPLED_PENDULUMS_HAMILTONIAN_theta1, COUPLED_PENDULUMS_HAMILTONIAN_theta2,
+    COUPLED_PENDULUMS_HAMILTONIAN_p_theta1, COUPLED_PENDULUMS_HAMILTONIAN_p_theta2
+};
+enum {
+    COUPLED_PENDULUMS_RATIONAL_sin_theta1, COUPLED_PENDULUMS_RATIONAL_cos_theta1,
+    COUPLED_PENDULUMS_RATIONAL_sin_theta2, COUPLED_PENDULUMS_RATIONAL_cos_theta2,
+    COUPLED_PENDULUMS_RATIONAL_theta1_dot, COUPLED_PENDULUMS_RATIONAL_theta2_dot
+};
+enum {
+    COUPLED_PENDULUMS_VARIATIONAL_sin_theta1, COUPLED_PENDULUMS_VARIATIONAL_cos_theta1,
+    COUPLED_PENDULUMS_VARIATIONAL_sin_theta2, COUPLED_PENDULUMS_VARIATIONAL_cos_theta2,
+    COUPLED_PENDULUMS_VARIATIONAL_theta1_dot, COUPLED_PENDULUMS_VARIATIONAL_theta2_dot,
+    COUPLED_PENDULUMS_VARIATIONAL_delta_theta1, COUPLED_PENDULUMS_VARIATIONAL_delta_theta2,
+    COUPLED_PENDULUMS_VARIATIONAL_delta_theta1_dot,
+    COUPLED_PENDULUMS_VARIATIONAL_delta_theta2_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(coupled_pendulums_real *)0)[0]) coupled_pendulums_number;
+static inline coupled_pendulums_real coupled_pendulums_splat(coupled_pendulums_number x)
+{
+    const coupled_pendulums_real zero = {0};
+    return zero + x;
+}
+#define COUPLED_PENDULUMS_NUMBER(x) coupled_pendulums_splat((coupled_pendulums_number)x)
+#else
+typedef coupled_pendulums_real coupled_pendulums_number;
+#define COUPLED_PENDULUMS_NUMBER(x) \
+    (sizeof(coupled_pendulums_number) > sizeof(double) ? (coupled_pendulums_number)x##L \
+        : (coupled_pendulums_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline coupled_pendulums_real coupled_pendulums_cos(coupled_pendulums_real x)
+{
+    return sizeof(x) > sizeof(double) ? (coupled_pendulums_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (coupled_pendulums_real)cos((double)x)
+        : (coupled_pendulums_real)cosf((float)x);
+}
+static inline coupled_pendulums_real coupled_pendulums_sin(coupled_pendulums_real x)
+{
+    return sizeof(x) > sizeof(double) ? (coupled_pendulums_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (coupled_pendulums_real)sin((double)x)
+        : (coupled_pendulums_real)sinf((float)x);
+}
+static inline coupled_pendulums_real coupled_pendulums_sqrt(coupled_pendulums_real x)
+{
+    return sizeof(x) > sizeof(double) ? (coupled_pendulums_real)sqrtl((long double)x)
+        : sizeof(x) > sizeof(float) ? (coupled_pendulums_real)sqrt((double)x)
+        : (coupled_pendulums_real)sqrtf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -124,8 +186,8 @@ static inline void coupled_pendulums_rhs(
     const coupled_pendulums_real d = params[3];
     const coupled_pendulums_real g = params[4];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = 1.0/l;
-    const coupled_pendulums_real c1 = 1.0/m;
+    const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
+    const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/m;
     const coupled_pendulums_real c2 = k*d;
     const coupled_pendulums_real c3 = d*d;
     const coupled_pendulums_real c4 = l*l;
@@ -133,11 +195,11 @@ static inline void coupled_pendulums_rhs(
     const coupled_pendulums_real c6 = m*g;
     const coupled_pendulums_real c7 = l*k;
     /* intermediate terms */
-    const coupled_pendulums_real cos_theta1 = cos(theta1);
-    const coupled_pendulums_real cos_theta2 = cos(theta2);
-    const coupled_pendulums_real sin_theta1 = sin(theta1);
+    const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
+    const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
     const coupled_pendulums_real x0 = cos_theta2*sin_theta1;
-    const coupled_pendulums_real sin_theta2 = sin(theta2);
+    const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
     const coupled_pendulums_real x1 = cos_theta1*sin_theta2;
     const coupled_pendulums_real x2 = l*x0 - l*x1;
     const coupled_pendulums_real x3 = c4*cos_theta1;
@@ -146,8 +208,8 @@ static inline void coupled_pendulums_rhs(
         c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4;
     const coupled_pendulums_real x6 =
         c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5;
-    const coupled_pendulums_real sqrt_x6 = sqrt(x6);
+        + c4*sin_theta2*sin_theta2 + COUPLED_PENDULUMS_NUMBER(2.0)*x5;
+    const coupled_pendulums_real sqrt_x6 = coupled_pendulums_sqrt(x6);
     const coupled_pendulums_real x7 = c7*x0 - c7*x1;
     const coupled_pendulums_real x8 =
         c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1;
@@ -179,8 +241,8 @@ static inline void coupled_pendulums_jacobian(
     const coupled_pendulums_real d = params[3];
     const coupled_pendulums_real g = params[4];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = 1.0/l;
-    const coupled_pendulums_real c1 = 1.0/m;
+    const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
+    const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/m;
     const coupled_pendulums_real c2 = k*d;
     const coupled_pendulums_real c3 = d*d;
     const coupled_pendulums_real c4 = l*l;
@@ -189,10 +251,10 @@ static inline void coupled_pendulums_jacobian(
     const coupled_pendulums_real c7 = l*k;
     const coupled_pendulums_real c8 = c7*c1;
     /* intermediate terms */
-    const coupled_pendulums_real cos_theta1 = cos(theta1);
-    const coupled_pendulums_real cos_theta2 = cos(theta2);
-    const coupled_pendulums_real sin_theta1 = sin(theta1);
-    const coupled_pendulums_real sin_theta2 = sin(theta2);
+    const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
+    const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
+    const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
     const coupled_pendulums_real x0 = l*cos_theta2*sin_theta1 - l*cos_theta1*sin_theta2;
     const coupled_pendulums_real x1 = d*cos_theta1 - x0;
     const coupled_pendulums_real x2 = cos_theta1*cos_theta2;
@@ -200,8 +262,9 @@ static inline void coupled_pendulums_jacobian(
     const coupled_pendulums_real x4 = l*x2 + l*x3;
     const coupled_pendulums_real x5 =
         c3 + c4*cos_theta1*cos_theta1 + c4*cos_theta2*cos_theta2 + c4*sin_theta1*sin_theta1
-        + c4*sin_theta2*sin_theta2 + 2.0*(c5*sin_theta2 - c5*sin_theta1 - c4*x2 - c4*x3);
-    const coupled_pendulums_real sqrt_x5 = sqrt(x5);
+        + c4*sin_theta2*sin_theta2
+        + COUPLED_PENDULUMS_NUMBER(2.0)*(c5*sin_theta2 - c5*sin_theta1 - c4*x2 - c4*x3);
+    const coupled_pendulums_real sqrt_x5 = coupled_pendulums_sqrt(x5);
     const coupled_pendulums_real x6 = sqrt_x5*sqrt_x5;
     const coupled_pendulums_real x7 = sqrt_x5*x6;
     const coupled_pendulums_real x8 = c7*x2 + c7*x3;
@@ -213,22 +276,22 @@ static inline void coupled_pendulums_jacobian(
     const coupled_pendulums_real x13 =
         c2*(l*x11*x11 - (x4 - d*sin_theta2)*x6)/x7 + c6*cos_theta2 + x8 - c2*sin_theta2;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
+    result[0] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[1] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[2] = COUPLED_PENDULUMS_NUMBER(1.0);
+    result[3] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[4] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[5] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[6] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[7] = COUPLED_PENDULUMS_NUMBER(1.0);
     result[8] = -c0*(c1*x9);
     result[9] = x12;
-    result[10] = 0.0;
-    result[11] = 0.0;
+    result[10] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[11] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[12] = x12;
     result[13] = -c0*(c1*x13);
-    result[14] = 0.0;
-    result[15] = 0.0;
+    result[14] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[15] = COUPLED_PENDULUMS_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -262,12 +325,12 @@ static inline void coupled_pendulums_energy(
     const coupled_pendulums_real c7 = d*l;
     const coupled_pendulums_real c8 = l*m*g;
     /* intermediate terms */
-    const coupled_pendulums_real sin_theta2 = sin(theta2);
-    const coupled_pendulums_real cos_theta1 = cos(theta1);
+    const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
+    const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
     const coupled_pendulums_real x0 = cos_theta1*cos_theta1;
-    const coupled_pendulums_real cos_theta2 = cos(theta2);
+    const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
     const coupled_pendulums_real x1 = cos_theta2*cos_theta2;
-    const coupled_pendulums_real sin_theta1 = sin(theta1);
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
     const coupled_pendulums_real x2 = c4*sin_theta1;
     const coupled_pendulums_real x3 = sin_theta2*sin_theta2;
     const coupled_pendulums_real x4 =
@@ -276,10 +339,12 @@ static inline void coupled_pendulums_energy(
     const coupled_pendulums_real x5 = c3*sin_theta1;
     const coupled_pendulums_real x6 = cos_theta1*cos_theta2;
     const coupled_pendulums_real x7 = c7*sin_theta2 - c7*sin_theta1 - c3*x6 - sin_theta2*x5;
-    const coupled_pendulums_real x8 = c6 + c3*x0 + c3*x1 + sin_theta1*x5 + c3*x3 + 2.0*x7;
+    const coupled_pendulums_real x8 =
+        c6 + c3*x0 + c3*x1 + sin_theta1*x5 + c3*x3 + COUPLED_PENDULUMS_NUMBER(2.0)*x7;
     const coupled_pendulums_real x9 =
-        c1 + c2*sin_theta2 + 0.5*x4 - c0*sqrt(x8) - c8*cos_theta1 - c8*cos_theta2
-        - c2*sin_theta1 - c4*x6 - sin_theta2*x2;
+        c1 + c2*sin_theta2 + COUPLED_PENDULUMS_NUMBER(0.5)*x4
+        - c0*coupled_pendulums_sqrt(x8) - c8*cos_theta1 - c8*cos_theta2 - c2*sin_theta1
+        - c4*x6 - sin_theta2*x2;
     /* outputs */
     result[0] = x9;
     (void)t;
@@ -321,10 +386,10 @@ static inline void coupled_pendulums_positions(
     const coupled_pendulums_real l = params[1];
     const coupled_pendulums_real d = params[3];
     /* outputs */
-    result[0] = l*sin(theta1);
-    result[1] = -l*cos(theta1);
-    result[2] = d + l*sin(theta2);
-    result[3] = -l*cos(theta2);
+    result[0] = l*coupled_pendulums_sin(theta1);
+    result[1] = -l*coupled_pendulums_cos(theta1);
+    result[2] = d + l*coupled_pendulums_sin(theta2);
+    result[3] = -l*coupled_pendulums_cos(theta2);
     (void)t;
 }
 #endif
@@ -372,8 +437,8 @@ static inline void coupled_pendulums_rhs_hamiltonian(
     const coupled_pendulums_real d = params[3];
     const coupled_pendulums_real g = params[4];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = 1.0/l;
-    const coupled_pendulums_real c1 = 1.0/(l*m);
+    const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
+    const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/(l*m);
     const coupled_pendulums_real c2 = k*d;
     const coupled_pendulums_real c3 = d*d;
     const coupled_pendulums_real c4 = l*l;
@@ -381,11 +446,11 @@ static inline void coupled_pendulums_rhs_hamiltonian(
     const coupled_pendulums_real c6 = m*g;
     const coupled_pendulums_real c7 = l*k;
     /* intermediate terms */
-    const coupled_pendulums_real cos_theta1 = cos(theta1);
-    const coupled_pendulums_real cos_theta2 = cos(theta2);
-    const coupled_pendulums_real sin_theta1 = sin(theta1);
+    const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
+    const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
     const coupled_pendulums_real x0 = cos_theta2*sin_theta1;
-    const coupled_pendulums_real sin_theta2 = sin(theta2);
+    const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
     const coupled_pendulums_real x1 = cos_theta1*sin_theta2;
     const coupled_pendulums_real x2 = l*x0 - l*x1;
     const coupled_pendulums_real x3 = c4*cos_theta1;
@@ -394,8 +459,8 @@ static inline void coupled_pendulums_rhs_hamiltonian(
         c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4;
     const coupled_pendulums_real x6 =
         c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5;
-    const coupled_pendulums_real sqrt_x6 = sqrt(x6);
+        + c4*sin_theta2*sin_theta2 + COUPLED_PENDULUMS_NUMBER(2.0)*x5;
+    const coupled_pendulums_real sqrt_x6 = coupled_pendulums_sqrt(x6);
     const coupled_pendulums_real x7 = c7*x0 - c7*x1;
     const coupled_pendulums_real x8 =
         c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1;
@@ -427,7 +492,8 @@ static inline void coupled_pendulums_jacobian_hamiltonian(
     const coupled_pendulums_real d = params[3];
     const coupled_pendulums_real g = params[4];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = 1.0/(l*m)*(1.0/l);
+    const coupled_pendulums_real c0 =
+        COUPLED_PENDULUMS_NUMBER(1.0)/(l*m)*(COUPLED_PENDULUMS_NUMBER(1.0)/l);
     const coupled_pendulums_real c1 = k*d;
     const coupled_pendulums_real c2 = d*d;
     const coupled_pendulums_real c3 = l*l;
@@ -436,10 +502,10 @@ static inline void coupled_pendulums_jacobian_hamiltonian(
     const coupled_pendulums_real c6 = l*k;
     const coupled_pendulums_real c7 = k*c3;
     /* intermediate terms */
-    const coupled_pendulums_real cos_theta1 = cos(theta1);
-    const coupled_pendulums_real cos_theta2 = cos(theta2);
-    const coupled_pendulums_real sin_theta1 = sin(theta1);
-    const coupled_pendulums_real sin_theta2 = sin(theta2);
+    const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
+    const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
+    const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
     const coupled_pendulums_real x0 = l*cos_theta2*sin_theta1 - l*cos_theta1*sin_theta2;
     const coupled_pendulums_real x1 = d*cos_theta1 - x0;
     const coupled_pendulums_real x2 = cos_theta1*cos_theta2;
@@ -447,8 +513,9 @@ static inline void coupled_pendulums_jacobian_hamiltonian(
     const coupled_pendulums_real x4 = l*x2 + l*x3;
     const coupled_pendulums_real x5 =
         c2 + c3*cos_theta1*cos_theta1 + c3*cos_theta2*cos_theta2 + c3*sin_theta1*sin_theta1
-        + c3*sin_theta2*sin_theta2 + 2.0*(c4*sin_theta2 - c4*sin_theta1 - c3*x2 - c3*x3);
-    const coupled_pendulums_real sqrt_x5 = sqrt(x5);
+        + c3*sin_theta2*sin_theta2
+        + COUPLED_PENDULUMS_NUMBER(2.0)*(c4*sin_theta2 - c4*sin_theta1 - c3*x2 - c3*x3);
+    const coupled_pendulums_real sqrt_x5 = coupled_pendulums_sqrt(x5);
     const coupled_pendulums_real x6 = sqrt_x5*sqrt_x5;
     const coupled_pendulums_real x7 = sqrt_x5*x6;
     const coupled_pendulums_real x8 = c6*x2 + c6*x3;
@@ -460,22 +527,22 @@ static inline void coupled_pendulums_jacobian_hamiltonian(
     const coupled_pendulums_real x13 =
         c1*(l*x11*x11 - (x4 - d*sin_theta2)*x6)/x7 + c5*cos_theta2 + x8 - c1*sin_theta2;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
+    result[0] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[1] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[2] = c0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
+    result[3] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[4] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[5] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[6] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[7] = c0;
     result[8] = -l*x9;
     result[9] = x12;
-    result[10] = 0.0;
-    result[11] = 0.0;
+    result[10] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[11] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[12] = x12;
     result[13] = -l*x13;
-    result[14] = 0.0;
-    result[15] = 0.0;
+    result[14] = COUPLED_PENDULUMS_NUMBER(0.0);
+    result[15] = COUPLED_PENDULUMS_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -508,28 +575,31 @@ static inline void coupled_pendulums_energy_hamiltonian(
     const coupled_pendulums_real c6 = l*d;
     const coupled_pendulums_real c7 = l*m;
     const coupled_pendulums_real c8 = c7*g;
-    const coupled_pendulums_real c9 = 1.0/l;
-    const coupled_pendulums_real c10 = 1.0/c7;
+    const coupled_pendulums_real c9 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
+    const coupled_pendulums_real c10 = COUPLED_PENDULUMS_NUMBER(1.0)/c7;
     /* intermediate terms */
-    const coupled_pendulums_real sin_theta2 = sin(theta2);
-    const coupled_pendulums_real cos_theta1 = cos(theta1);
+    const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
+    const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
     const coupled_pendulums_real x0 = cos_theta1*cos_theta1;
-    const coupled_pendulums_real cos_theta2 = cos(theta2);
+    const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
     const coupled_pendulums_real x1 = cos_theta2*cos_theta2;
-    const coupled_pendulums_real sin_theta1 = sin(theta1);
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
     const coupled_pendulums_real x2 = c4*sin_theta1;
     const coupled_pendulums_real x3 = sin_theta2*sin_theta2;
     const coupled_pendulums_real x4 = c3*sin_theta1;
     const coupled_pendulums_real x5 = cos_theta1*cos_theta2;
     const coupled_pendulums_real x6 = c6*sin_theta2 - c6*sin_theta1 - c3*x5 - sin_theta2*x4;
-    const coupled_pendulums_real x7 = c5 + c3*x0 + c3*x1 + sin_theta1*x4 + c3*x3 + 2.0*x6;
+    const coupled_pendulums_real x7 =
+        c5 + c3*x0 + c3*x1 + sin_theta1*x4 + c3*x3 + COUPLED_PENDULUMS_NUMBER(2.0)*x6;
     const coupled_pendulums_real x8 =
-        c1 + c2*sin_theta2 + 0.5*(c4*x0 + c4*x1 + sin_theta1*x2 + c4*x3) - c0*sqrt(x7)
-        - c8*cos_theta1 - c8*cos_theta2 - c2*sin_theta1 - c4*x5 - sin_theta2*x2;
+        c1 + c2*sin_theta2
+        + COUPLED_PENDULUMS_NUMBER(0.5)*(c4*x0 + c4*x1 + sin_theta1*x2 + c4*x3)
+        - c0*coupled_pendulums_sqrt(x7) - c8*cos_theta1 - c8*cos_theta2 - c2*sin_theta1
+        - c4*x5 - sin_theta2*x2;
     const coupled_pendulums_real x9 =
         c9*p_theta1*(c10*p_theta1) + c9*p_theta2*(c10*p_theta2);
     /* outputs */
-    result[0] = x8 + 0.5*x9;
+    result[0] = x8 + COUPLED_PENDULUMS_NUMBER(0.5)*x9;
     (void)t;
 }
 #endif
@@ -549,8 +619,8 @@ static inline void coupled_pendulums_lagrangian_state(
     const coupled_pendulums_real m = params[0];
     const coupled_pendulums_real l = params[1];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = 1.0/l;
-    const coupled_pendulums_real c1 = 1.0/(l*m);
+    const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
+    const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/(l*m);
     /* outputs */
     result[0] = theta1;
     result[1] = theta2;
@@ -573,10 +643,10 @@ static inline void coupled_pendulums_rational_state(
     const coupled_pendulums_real theta1_dot = state[2];
     const coupled_pendulums_real theta2_dot = state[3];
     /* outputs */
-    result[0] = sin(theta1);
-    result[1] = cos(theta1);
-    result[2] = sin(theta2);
-    result[3] = cos(theta2);
+    result[0] = coupled_pendulums_sin(theta1);
+    result[1] = coupled_pendulums_cos(theta1);
+    result[2] = coupled_pendulums_sin(theta2);
+    result[3] = coupled_pendulums_cos(theta2);
     result[4] = theta1_dot;
     result[5] = theta2_dot;
     (void)t;
@@ -605,8 +675,8 @@ static inline void coupled_pendulums_rhs_rational(
     const coupled_pendulums_real d = params[3];
     const coupled_pendulums_real g = params[4];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = 1.0/l;
-    const coupled_pendulums_real c1 = 1.0/m;
+    const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
+    const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/m;
     const coupled_pendulums_real c2 = k*d;
     const coupled_pendulums_real c3 = d*d;
     const coupled_pendulums_real c4 = l*l;
@@ -623,8 +693,8 @@ static inline void coupled_pendulums_rhs_rational(
         c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4;
     const coupled_pendulums_real x6 =
         c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5;
-    const coupled_pendulums_real sqrt_x6 = sqrt(x6);
+        + c4*sin_theta2*sin_theta2 + COUPLED_PENDULUMS_NUMBER(2.0)*x5;
+    const coupled_pendulums_real sqrt_x6 = coupled_pendulums_sqrt(x6);
     const coupled_pendulums_real x7 = c7*x0 - c7*x1;
     const coupled_pendulums_real x8 =
         c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1;
@@ -666,8 +736,8 @@ static inline void coupled_pendulums_rhs_variational(
     const coupled_pendulums_real d = params[3];
     const coupled_pendulums_real g = params[4];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = 1.0/l;
-    const coupled_pendulums_real c1 = 1.0/m;
+    const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
+    const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/m;
     const coupled_pendulums_real c2 = k*d;
     const coupled_pendulums_real c3 = d*d;
     const coupled_pendulums_real c4 = l*l;
@@ -683,8 +753,9 @@ static inline void coupled_pendulums_rhs_variational(
     const coupled_pendulums_real x5 = sin_theta1*sin_theta2;
     const coupled_pendulums_real x6 =
         c3 + c4*cos_theta1*cos_theta1 + c4*cos_theta2*cos_theta2 + c4*sin_theta1*sin_theta1
-        + c4*sin_theta2*sin_theta2 + 2.0*(c5*sin_theta2 - c5*sin_theta1 - c4*x4 - c4*x5);
-    const coupled_pendulums_real sqrt_x6 = sqrt(x6);
+        + c4*sin_theta2*sin_theta2
+        + COUPLED_PENDULUMS_NUMBER(2.0)*(c5*sin_theta2 - c5*sin_theta1 - c4*x4 - c4*x5);
+    const coupled_pendulums_real sqrt_x6 = coupled_pendulums_sqrt(x6);
     const coupled_pendulums_real x7 = c7*x0 - c7*x1;
     const coupled_pendulums_real x8 = c2*x3/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1;
     const coupled_pendulums_real x9 = d*cos_theta2 - x2;

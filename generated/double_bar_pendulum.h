@@ -67,10 +67,12 @@
        double state[4] = {...}, rate[4], params[5] = {1.0, 1.0, 1.0, 1.0, 9.81};
        double_bar_pendulum_rhs(0.0, state, params, rate);
 
+   Indices have names: state[DOUBLE_BAR_PENDULUM_LAGRANGIAN_theta1].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_DOUBLE_BAR_PENDULUM_H
 #define HOLONOMIC_DOUBLE_BAR_PENDULUM_H
@@ -83,12 +85,6 @@
 
 typedef HOLONOMIC_REAL double_bar_pendulum_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define DOUBLE_BAR_PENDULUM_NUMBER(x) ((double_bar_pendulum_real){0} + (x))
-#else
-#define DOUBLE_BAR_PENDULUM_NUMBER(x) (x)
-#endif
-
 enum {
     DOUBLE_BAR_PENDULUM_LAGRANGIAN_STATE = 4,
     DOUBLE_BAR_PENDULUM_HAMILTONIAN_STATE = 4,
@@ -96,6 +92,67 @@ enum {
     DOUBLE_BAR_PENDULUM_VARIATIONAL_STATE = 10,
     DOUBLE_BAR_PENDULUM_PARAMETERS = 5,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    DOUBLE_BAR_PENDULUM_PARAMETER_m1, DOUBLE_BAR_PENDULUM_PARAMETER_m2,
+    DOUBLE_BAR_PENDULUM_PARAMETER_l1, DOUBLE_BAR_PENDULUM_PARAMETER_l2,
+    DOUBLE_BAR_PENDULUM_PARAMETER_g
+};
+enum {
+    DOUBLE_BAR_PENDULUM_LAGRANGIAN_theta1, DOUBLE_BAR_PENDULUM_LAGRANGIAN_theta2,
+    DOUBLE_BAR_PENDULUM_LAGRANGIAN_theta1_dot, DOUBLE_BAR_PENDULUM_LAGRANGIAN_theta2_dot
+};
+enum {
+    DOUBLE_BAR_PENDULUM_HAMILTONIAN_theta1, DOUBLE_BAR_PENDULUM_HAMILTONIAN_theta2,
+    DOUBLE_BAR_PENDULUM_HAMILTONIAN_p_theta1, DOUBLE_BAR_PENDULUM_HAMILTONIAN_p_theta2
+};
+enum {
+    DOUBLE_BAR_PENDULUM_RATIONAL_sin_theta1, DOUBLE_BAR_PENDULUM_RATIONAL_cos_theta1,
+    DOUBLE_BAR_PENDULUM_RATIONAL_sin_theta2, DOUBLE_BAR_PENDULUM_RATIONAL_cos_theta2,
+    DOUBLE_BAR_PENDULUM_RATIONAL_theta1_dot, DOUBLE_BAR_PENDULUM_RATIONAL_theta2_dot
+};
+enum {
+    DOUBLE_BAR_PENDULUM_VARIATIONAL_sin_theta1, DOUBLE_BAR_PENDULUM_VARIATIONAL_cos_theta1,
+    DOUBLE_BAR_PENDULUM_VARIATIONAL_sin_theta2, DOUBLE_BAR_PENDULUM_VARIATIONAL_cos_theta2,
+    DOUBLE_BAR_PENDULUM_VARIATIONAL_theta1_dot, DOUBLE_BAR_PENDULUM_VARIATIONAL_theta2_dot,
+    DOUBLE_BAR_PENDULUM_VARIATIONAL_delta_theta1,
+    DOUBLE_BAR_PENDULUM_VARIATIONAL_delta_theta2,
+    DOUBLE_BAR_PENDULUM_VARIATIONAL_delta_theta1_dot,
+    DOUBLE_BAR_PENDULUM_VARIATIONAL_delta_theta2_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(double_bar_pendulum_real *)0)[0]) double_bar_pendulum_number;
+static inline double_bar_pendulum_real double_bar_pendulum_splat(double_bar_pendulum_number x)
+{
+    const double_bar_pendulum_real zero = {0};
+    return zero + x;
+}
+#define DOUBLE_BAR_PENDULUM_NUMBER(x) double_bar_pendulum_splat((double_bar_pendulum_number)x)
+#else
+typedef double_bar_pendulum_real double_bar_pendulum_number;
+#define DOUBLE_BAR_PENDULUM_NUMBER(x) \
+    (sizeof(double_bar_pendulum_number) > sizeof(double) ? (double_bar_pendulum_number)x##L \
+        : (double_bar_pendulum_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline double_bar_pendulum_real double_bar_pendulum_cos(double_bar_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (double_bar_pendulum_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (double_bar_pendulum_real)cos((double)x)
+        : (double_bar_pendulum_real)cosf((float)x);
+}
+static inline double_bar_pendulum_real double_bar_pendulum_sin(double_bar_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (double_bar_pendulum_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (double_bar_pendulum_real)sin((double)x)
+        : (double_bar_pendulum_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -116,25 +173,31 @@ static inline void double_bar_pendulum_rhs(
     const double_bar_pendulum_real l2 = params[3];
     const double_bar_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = 1.0/l1;
+    const double_bar_pendulum_real c0 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l1;
     const double_bar_pendulum_real c1 = m2*l2;
-    const double_bar_pendulum_real c2 = g*(m2 + 0.5*m1);
-    const double_bar_pendulum_real c3 = m2 + (1.0/3.0)*m1;
-    const double_bar_pendulum_real c4 = 1.0/l2;
+    const double_bar_pendulum_real c2 = g*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
+    const double_bar_pendulum_real c3 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c4 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l2;
     /* intermediate terms */
     const double_bar_pendulum_real x0 = theta1 - theta2;
-    const double_bar_pendulum_real sin_x0 = sin(x0);
+    const double_bar_pendulum_real sin_x0 = double_bar_pendulum_sin(x0);
     const double_bar_pendulum_real x1 =
-        c1*theta2_dot*theta2_dot*sin_x0 + 2.0*c2*sin(theta1);
-    const double_bar_pendulum_real x2 = l1*theta1_dot*theta1_dot*sin_x0 - g*sin(theta2);
-    const double_bar_pendulum_real cos_x0 = cos(x0);
+        c1*theta2_dot*theta2_dot*sin_x0
+        + DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c2*double_bar_pendulum_sin(theta1);
+    const double_bar_pendulum_real x2 =
+        l1*theta1_dot*theta1_dot*sin_x0 - g*double_bar_pendulum_sin(theta2);
+    const double_bar_pendulum_real cos_x0 = double_bar_pendulum_cos(x0);
     const double_bar_pendulum_real x3 = m2*cos_x0;
-    const double_bar_pendulum_real x4 = (x1 + 1.5*x2*x3)/(2.0*c3 - 1.5*cos_x0*x3);
+    const double_bar_pendulum_real x4 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c3 - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*cos_x0*x3;
+    const double_bar_pendulum_real x5 = (x1 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x2*x3)/x4;
+    const double_bar_pendulum_real x6 = DOUBLE_BAR_PENDULUM_NUMBER(1.5)*c4*(x2 + cos_x0*x5);
     /* outputs */
     result[0] = theta1_dot;
     result[1] = theta2_dot;
-    result[2] = -c0*x4;
-    result[3] = 1.5*c4*(x2 + cos_x0*x4);
+    result[2] = -c0*x5;
+    result[3] = x6;
     (void)t;
 }
 #endif
@@ -158,57 +221,70 @@ static inline void double_bar_pendulum_jacobian(
     const double_bar_pendulum_real l2 = params[3];
     const double_bar_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = 1.0/l1;
+    const double_bar_pendulum_real c0 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l1;
     const double_bar_pendulum_real c1 = m2*l2;
-    const double_bar_pendulum_real c2 = g*(m2 + 0.5*m1);
-    const double_bar_pendulum_real c3 = m2 + (1.0/3.0)*m1;
+    const double_bar_pendulum_real c2 = g*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
+    const double_bar_pendulum_real c3 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
     const double_bar_pendulum_real c4 = l1*m2;
-    const double_bar_pendulum_real c5 = 1.0/l2;
+    const double_bar_pendulum_real c5 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l2;
     /* intermediate terms */
-    const double_bar_pendulum_real cos_theta1 = cos(theta1);
-    const double_bar_pendulum_real cos_theta2 = cos(theta2);
-    const double_bar_pendulum_real sin_theta1 = sin(theta1);
-    const double_bar_pendulum_real sin_theta2 = sin(theta2);
+    const double_bar_pendulum_real cos_theta1 = double_bar_pendulum_cos(theta1);
+    const double_bar_pendulum_real cos_theta2 = double_bar_pendulum_cos(theta2);
+    const double_bar_pendulum_real sin_theta1 = double_bar_pendulum_sin(theta1);
+    const double_bar_pendulum_real sin_theta2 = double_bar_pendulum_sin(theta2);
     const double_bar_pendulum_real x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
     const double_bar_pendulum_real x1 = theta2_dot*theta2_dot;
     const double_bar_pendulum_real x2 = x0*x1;
-    const double_bar_pendulum_real x3 = cos_theta2*sin_theta1 - cos_theta1*sin_theta2;
-    const double_bar_pendulum_real x4 = l1*theta1_dot;
-    const double_bar_pendulum_real x5 = x3*x4;
-    const double_bar_pendulum_real x6 = theta1_dot*x5 - g*sin_theta2;
-    const double_bar_pendulum_real x7 = c1*x3;
-    const double_bar_pendulum_real x8 = m2*x0;
-    const double_bar_pendulum_real x9 = 2.0*c3 - 1.5*x0*x8;
-    const double_bar_pendulum_real x10 = (x1*x7 + 2.0*c2*sin_theta1 + 1.5*x6*x8)/x9;
-    const double_bar_pendulum_real x11 = x3*(x6 + x0*x10);
-    const double_bar_pendulum_real x12 = x0*theta1_dot;
-    const double_bar_pendulum_real x13 = x4*x12;
-    const double_bar_pendulum_real x14 = x3*x10;
-    const double_bar_pendulum_real x15 = x13 - x14;
-    const double_bar_pendulum_real x16 =
-        2.0*(0.5*c1*x2 + c2*cos_theta1) - 1.5*m2*x11 + 1.5*x15*x8;
-    const double_bar_pendulum_real x17 = x16/x9;
-    const double_bar_pendulum_real x18 = x14 - (x13 + g*cos_theta2);
-    const double_bar_pendulum_real x19 = m2*(1.5*x11 - l2*x2 + 1.5*x0*x18)/x9;
-    const double_bar_pendulum_real x20 = c4*x3*x12/x9;
-    const double_bar_pendulum_real x21 = theta2_dot*x7/x9;
+    const double_bar_pendulum_real x3 =
+        DOUBLE_BAR_PENDULUM_NUMBER(0.5)*c1*x2 + c2*cos_theta1;
+    const double_bar_pendulum_real x4 = cos_theta2*sin_theta1 - cos_theta1*sin_theta2;
+    const double_bar_pendulum_real x5 = l1*theta1_dot;
+    const double_bar_pendulum_real x6 = x4*x5;
+    const double_bar_pendulum_real x7 = theta1_dot*x6 - g*sin_theta2;
+    const double_bar_pendulum_real x8 = c1*x4;
+    const double_bar_pendulum_real x9 =
+        x1*x8 + DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c2*sin_theta1;
+    const double_bar_pendulum_real x10 = m2*x0;
+    const double_bar_pendulum_real x11 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c3 - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x0*x10;
+    const double_bar_pendulum_real x12 = (x9 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x7*x10)/x11;
+    const double_bar_pendulum_real x13 = x4*(x7 + x0*x12);
+    const double_bar_pendulum_real x14 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*x3 - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*m2*x13;
+    const double_bar_pendulum_real x15 = x0*theta1_dot;
+    const double_bar_pendulum_real x16 = x5*x15;
+    const double_bar_pendulum_real x17 = x4*x12;
+    const double_bar_pendulum_real x18 = x16 - x17;
+    const double_bar_pendulum_real x19 =
+        (x14 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x18*x10)/x11;
+    const double_bar_pendulum_real x20 = x17 - (x16 + g*cos_theta2);
+    const double_bar_pendulum_real x21 =
+        DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x13 - l2*x2 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x0*x20;
+    const double_bar_pendulum_real x22 = m2*x21/x11;
+    const double_bar_pendulum_real x23 = c4*x4*x15/x11;
+    const double_bar_pendulum_real x24 = theta2_dot*x8/x11;
+    const double_bar_pendulum_real x25 = DOUBLE_BAR_PENDULUM_NUMBER(1.5)*c5*(x18 + x0*x19);
+    const double_bar_pendulum_real x26 = DOUBLE_BAR_PENDULUM_NUMBER(1.5)*c5*(x20 + x0*x22);
+    const double_bar_pendulum_real x27 =
+        DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c5*(x6 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x0*x23);
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
-    result[8] = -c0*x17;
-    result[9] = -c0*x19;
-    result[10] = -3.0*c0*x20;
-    result[11] = -2.0*c0*x21;
-    result[12] = 1.5*c5*(x15 + x0*x17);
-    result[13] = 1.5*c5*(x18 + x0*x19);
-    result[14] = 3.0*c5*(x5 + 1.5*x0*x20);
-    result[15] = 3.0*c5*(x0*x21);
+    result[0] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
+    result[1] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
+    result[2] = DOUBLE_BAR_PENDULUM_NUMBER(1.0);
+    result[3] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
+    result[4] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
+    result[5] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
+    result[6] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
+    result[7] = DOUBLE_BAR_PENDULUM_NUMBER(1.0);
+    result[8] = -c0*x19;
+    result[9] = -c0*x22;
+    result[10] = -DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c0*x23;
+    result[11] = -DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c0*x24;
+    result[12] = x25;
+    result[13] = x26;
+    result[14] = x27;
+    result[15] = DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c5*(x0*x24);
     (void)t;
 }
 #endif
@@ -234,18 +310,22 @@ static inline void double_bar_pendulum_energy(
     /* terms of the parameters alone */
     const double_bar_pendulum_real c0 = m2*l2;
     const double_bar_pendulum_real c1 = l2*c0;
-    const double_bar_pendulum_real c2 = l1*l1*(m2 + (1.0/3.0)*m1);
-    const double_bar_pendulum_real c3 = l1*c0;
-    const double_bar_pendulum_real c4 = g*c0;
-    const double_bar_pendulum_real c5 = l1*g*(m2 + 0.5*m1);
+    const double_bar_pendulum_real c2 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c3 = l1*l1*c2;
+    const double_bar_pendulum_real c4 = l1*c0;
+    const double_bar_pendulum_real c5 = g*c0;
+    const double_bar_pendulum_real c6 = l1*g*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
     /* intermediate terms */
     const double_bar_pendulum_real x0 =
-        c2*theta1_dot*theta1_dot + c3*theta1_dot*theta2_dot*cos(theta1 - theta2)
-        - c4*cos(theta2);
+        c4*theta1_dot*theta2_dot*double_bar_pendulum_cos(theta1 - theta2);
     const double_bar_pendulum_real x1 =
-        (1.0/6.0)*c1*theta2_dot*theta2_dot + 0.5*x0 - c5*cos(theta1);
+        c3*theta1_dot*theta1_dot + x0 - c5*double_bar_pendulum_cos(theta2);
+    const double_bar_pendulum_real x2 =
+        (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(6.0))*c1*theta2_dot*theta2_dot
+        + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x1 - c6*double_bar_pendulum_cos(theta1);
     /* outputs */
-    result[0] = x1;
+    result[0] = x2;
     (void)t;
 }
 #endif
@@ -266,15 +346,20 @@ static inline void double_bar_pendulum_mass_matrix(
     const double_bar_pendulum_real l1 = params[2];
     const double_bar_pendulum_real l2 = params[3];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = m2*l2;
-    const double_bar_pendulum_real c1 = l1*c0;
+    const double_bar_pendulum_real c0 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c1 = m2*l2;
+    const double_bar_pendulum_real c2 = l1*c1;
+    const double_bar_pendulum_real c3 =
+        (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*l2*c1;
     /* intermediate terms */
-    const double_bar_pendulum_real x0 = 0.5*c1*cos(theta1 - theta2);
+    const double_bar_pendulum_real x0 =
+        DOUBLE_BAR_PENDULUM_NUMBER(0.5)*c2*double_bar_pendulum_cos(theta1 - theta2);
     /* outputs */
-    result[0] = l1*l1*(m2 + (1.0/3.0)*m1);
+    result[0] = l1*l1*c0;
     result[1] = x0;
     result[2] = x0;
-    result[3] = (1.0/3.0)*l2*c0;
+    result[3] = c3;
     (void)t;
 }
 #endif
@@ -293,13 +378,17 @@ static inline void double_bar_pendulum_positions(
     const double_bar_pendulum_real l1 = params[2];
     const double_bar_pendulum_real l2 = params[3];
     /* intermediate terms */
-    const double_bar_pendulum_real x0 = l1*sin(theta1);
-    const double_bar_pendulum_real x1 = l1*cos(theta1);
+    const double_bar_pendulum_real x0 = l1*double_bar_pendulum_sin(theta1);
+    const double_bar_pendulum_real x1 = l1*double_bar_pendulum_cos(theta1);
+    const double_bar_pendulum_real x2 =
+        x0 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*l2*double_bar_pendulum_sin(theta2);
+    const double_bar_pendulum_real x3 =
+        x1 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*l2*double_bar_pendulum_cos(theta2);
     /* outputs */
-    result[0] = 0.5*x0;
-    result[1] = -0.5*x1;
-    result[2] = x0 + 0.5*l2*sin(theta2);
-    result[3] = -(x1 + 0.5*l2*cos(theta2));
+    result[0] = DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x0;
+    result[1] = -DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x1;
+    result[2] = x2;
+    result[3] = -x3;
     (void)t;
 }
 #endif
@@ -322,16 +411,22 @@ static inline void double_bar_pendulum_hamiltonian_state(
     const double_bar_pendulum_real l1 = params[2];
     const double_bar_pendulum_real l2 = params[3];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = l1*(m2 + (1.0/3.0)*m1);
-    const double_bar_pendulum_real c1 = m2*l2;
+    const double_bar_pendulum_real c0 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c1 = l1*c0;
+    const double_bar_pendulum_real c2 = m2*l2;
     /* intermediate terms */
-    const double_bar_pendulum_real x0 = cos(theta1 - theta2);
-    const double_bar_pendulum_real x1 = c1*((1.0/3.0)*l2*theta2_dot + 0.5*l1*theta1_dot*x0);
+    const double_bar_pendulum_real x0 = double_bar_pendulum_cos(theta1 - theta2);
+    const double_bar_pendulum_real x1 =
+        c1*theta1_dot + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*c2*theta2_dot*x0;
+    const double_bar_pendulum_real x2 =
+        (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*l2*theta2_dot
+        + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*l1*theta1_dot*x0;
     /* outputs */
     result[0] = theta1;
     result[1] = theta2;
-    result[2] = l1*(c0*theta1_dot + 0.5*c1*theta2_dot*x0);
-    result[3] = x1;
+    result[2] = l1*x1;
+    result[3] = c2*x2;
     (void)t;
 }
 #endif
@@ -355,24 +450,35 @@ static inline void double_bar_pendulum_rhs_hamiltonian(
     const double_bar_pendulum_real l2 = params[3];
     const double_bar_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = 1.0/l1;
-    const double_bar_pendulum_real c1 = 1.0/l2;
-    const double_bar_pendulum_real c2 = m2 + (1.0/3.0)*m1;
-    const double_bar_pendulum_real c3 = 1.0/(m2*l2);
-    const double_bar_pendulum_real c4 = l1*g*(m2 + 0.5*m1);
+    const double_bar_pendulum_real c0 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l1;
+    const double_bar_pendulum_real c1 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l2;
+    const double_bar_pendulum_real c2 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c3 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/(m2*l2);
+    const double_bar_pendulum_real c4 = l1*g*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
     const double_bar_pendulum_real c5 = l2*g;
     /* intermediate terms */
     const double_bar_pendulum_real x0 = theta1 - theta2;
-    const double_bar_pendulum_real cos_x0 = cos(x0);
+    const double_bar_pendulum_real cos_x0 = double_bar_pendulum_cos(x0);
     const double_bar_pendulum_real x1 =
-        (2.0*c0*p_theta1 - 3.0*c1*cos_x0*p_theta2)/(2.0*c2 - 1.5*m2*cos_x0*cos_x0);
-    const double_bar_pendulum_real x2 = c3*p_theta2 - 0.5*cos_x0*x1;
-    const double_bar_pendulum_real x3 = sin(x0)*(x1*x2);
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c0*p_theta1
+        - DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c1*cos_x0*p_theta2;
+    const double_bar_pendulum_real x2 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c2
+        - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*m2*cos_x0*cos_x0;
+    const double_bar_pendulum_real x3 = x1/x2;
+    const double_bar_pendulum_real x4 =
+        c3*p_theta2 - DOUBLE_BAR_PENDULUM_NUMBER(0.5)*cos_x0*x3;
+    const double_bar_pendulum_real x5 = double_bar_pendulum_sin(x0)*(x3*x4);
+    const double_bar_pendulum_real x6 =
+        c4*double_bar_pendulum_sin(theta1) + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*m2*x5;
+    const double_bar_pendulum_real x7 =
+        DOUBLE_BAR_PENDULUM_NUMBER(3.0)*x5 - c5*double_bar_pendulum_sin(theta2);
     /* outputs */
-    result[0] = c0*x1;
-    result[1] = 3.0*c1*x2;
-    result[2] = -(c4*sin(theta1) + 1.5*m2*x3);
-    result[3] = 0.5*m2*(3.0*x3 - c5*sin(theta2));
+    result[0] = c0*x3;
+    result[1] = DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c1*x4;
+    result[2] = -x6;
+    result[3] = DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m2*x7;
     (void)t;
 }
 #endif
@@ -396,56 +502,70 @@ static inline void double_bar_pendulum_jacobian_hamiltonian(
     const double_bar_pendulum_real l2 = params[3];
     const double_bar_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = 1.0/l1;
-    const double_bar_pendulum_real c1 = 1.0/(m2*l2);
-    const double_bar_pendulum_real c2 = 1.0/l2;
-    const double_bar_pendulum_real c3 = m2 + (1.0/3.0)*m1;
-    const double_bar_pendulum_real c4 = l1*g*(m2 + 0.5*m1);
+    const double_bar_pendulum_real c0 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l1;
+    const double_bar_pendulum_real c1 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/(m2*l2);
+    const double_bar_pendulum_real c2 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l2;
+    const double_bar_pendulum_real c3 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c4 = l1*g*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
     const double_bar_pendulum_real c5 = l2*g;
     /* intermediate terms */
     const double_bar_pendulum_real x0 = theta1 - theta2;
-    const double_bar_pendulum_real cos_x0 = cos(x0);
+    const double_bar_pendulum_real cos_x0 = double_bar_pendulum_cos(x0);
     const double_bar_pendulum_real x1 = c2*cos_x0;
-    const double_bar_pendulum_real x2 = 2.0*c3 - 1.5*m2*cos_x0*cos_x0;
-    const double_bar_pendulum_real x3 = (2.0*c0*p_theta1 - 3.0*p_theta2*x1)/x2;
-    const double_bar_pendulum_real x4 = cos_x0*x3;
-    const double_bar_pendulum_real x5 = c1*p_theta2 - 0.5*x4;
-    const double_bar_pendulum_real sin_x0 = sin(x0);
-    const double_bar_pendulum_real x6 = m2*sin_x0;
-    const double_bar_pendulum_real x7 = (x5 - 0.5*x4)*x6/x2;
-    const double_bar_pendulum_real x8 = c0*x7;
-    const double_bar_pendulum_real x9 = 3.0*x8;
-    const double_bar_pendulum_real x10 = -3.0*x8;
-    const double_bar_pendulum_real x11 = c0/x2;
-    const double_bar_pendulum_real x12 = x1/x2;
-    const double_bar_pendulum_real x13 = sin_x0*x3;
-    const double_bar_pendulum_real x14 = x13 - 3.0*cos_x0*x7;
-    const double_bar_pendulum_real x15 = c2*x14;
-    const double_bar_pendulum_real x16 = 1.5*x15;
-    const double_bar_pendulum_real x17 = -1.5*x15;
-    const double_bar_pendulum_real x18 = x4*x5;
-    const double_bar_pendulum_real x19 = x5*x7;
-    const double_bar_pendulum_real x20 =
-        1.5*m2*x18 + 4.5*x6*x19 + 0.75*x3*x14*x6 + c4*cos(theta1);
-    const double_bar_pendulum_real x21 = x13*x14 + 2.0*(x18 + 3.0*sin_x0*x19);
-    const double_bar_pendulum_real x22 = 1.5*m2*(0.5*x21);
+    const double_bar_pendulum_real x2 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c0*p_theta1
+        - DOUBLE_BAR_PENDULUM_NUMBER(3.0)*p_theta2*x1;
+    const double_bar_pendulum_real x3 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c3
+        - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*m2*cos_x0*cos_x0;
+    const double_bar_pendulum_real x4 = x2/x3;
+    const double_bar_pendulum_real x5 = cos_x0*x4;
+    const double_bar_pendulum_real x6 = c1*p_theta2 - DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x5;
+    const double_bar_pendulum_real sin_x0 = double_bar_pendulum_sin(x0);
+    const double_bar_pendulum_real x7 = m2*sin_x0;
+    const double_bar_pendulum_real x8 = (x6 - DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x5)*x7/x3;
+    const double_bar_pendulum_real x9 = c0*x8;
+    const double_bar_pendulum_real x10 = DOUBLE_BAR_PENDULUM_NUMBER(3.0)*x9;
+    const double_bar_pendulum_real x11 = -DOUBLE_BAR_PENDULUM_NUMBER(3.0)*x9;
+    const double_bar_pendulum_real x12 = c0/x3;
+    const double_bar_pendulum_real x13 = x1/x3;
+    const double_bar_pendulum_real x14 = sin_x0*x4;
+    const double_bar_pendulum_real x15 = x14 - DOUBLE_BAR_PENDULUM_NUMBER(3.0)*cos_x0*x8;
+    const double_bar_pendulum_real x16 = c2*x15;
+    const double_bar_pendulum_real x17 = DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x16;
+    const double_bar_pendulum_real x18 = -DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x16;
+    const double_bar_pendulum_real x19 =
+        c2*(c1 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*cos_x0*x13);
+    const double_bar_pendulum_real x20 = x5*x6;
+    const double_bar_pendulum_real x21 = x6*x8;
+    const double_bar_pendulum_real x22 =
+        DOUBLE_BAR_PENDULUM_NUMBER(1.5)*m2*x20 + DOUBLE_BAR_PENDULUM_NUMBER(4.5)*x7*x21
+        + DOUBLE_BAR_PENDULUM_NUMBER(0.75)*x4*x15*x7 + c4*double_bar_pendulum_cos(theta1);
+    const double_bar_pendulum_real x23 =
+        x14*x15
+        + DOUBLE_BAR_PENDULUM_NUMBER(2.0)*(x20 + DOUBLE_BAR_PENDULUM_NUMBER(3.0)*sin_x0*x21);
+    const double_bar_pendulum_real x24 =
+        DOUBLE_BAR_PENDULUM_NUMBER(1.5)*m2*(DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x23);
+    const double_bar_pendulum_real x25 =
+        c5*double_bar_pendulum_cos(theta2) + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x23;
     /* outputs */
-    result[0] = x9;
-    result[1] = x10;
-    result[2] = 2.0*c0*x11;
-    result[3] = -3.0*c0*x12;
-    result[4] = x16;
-    result[5] = x17;
-    result[6] = -3.0*c2*(cos_x0*x11);
-    result[7] = 3.0*c2*(c1 + 1.5*cos_x0*x12);
-    result[8] = -x20;
-    result[9] = x22;
-    result[10] = x10;
-    result[11] = x17;
-    result[12] = x22;
-    result[13] = -0.5*m2*(c5*cos(theta2) + 1.5*x21);
-    result[14] = x9;
-    result[15] = x16;
+    result[0] = x10;
+    result[1] = x11;
+    result[2] = DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c0*x12;
+    result[3] = -DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c0*x13;
+    result[4] = x17;
+    result[5] = x18;
+    result[6] = -DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c2*(cos_x0*x12);
+    result[7] = DOUBLE_BAR_PENDULUM_NUMBER(3.0)*x19;
+    result[8] = -x22;
+    result[9] = x24;
+    result[10] = x11;
+    result[11] = x18;
+    result[12] = x24;
+    result[13] = -DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m2*x25;
+    result[14] = x10;
+    result[15] = x17;
     (void)t;
 }
 #endif
@@ -469,22 +589,30 @@ static inline void double_bar_pendulum_energy_hamiltonian(
     const double_bar_pendulum_real l2 = params[3];
     const double_bar_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = 1.0/l1;
-    const double_bar_pendulum_real c1 = 1.0/l2;
-    const double_bar_pendulum_real c2 = m2 + (1.0/3.0)*m1;
+    const double_bar_pendulum_real c0 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l1;
+    const double_bar_pendulum_real c1 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l2;
+    const double_bar_pendulum_real c2 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
     const double_bar_pendulum_real c3 = m2*l2;
-    const double_bar_pendulum_real c4 = 1.0/c3;
-    const double_bar_pendulum_real c5 = l1*(m2 + 0.5*m1);
+    const double_bar_pendulum_real c4 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/c3;
+    const double_bar_pendulum_real c5 = l1*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
     /* intermediate terms */
     const double_bar_pendulum_real x0 = c0*p_theta1;
-    const double_bar_pendulum_real x1 = cos(theta1 - theta2);
+    const double_bar_pendulum_real x1 = double_bar_pendulum_cos(theta1 - theta2);
     const double_bar_pendulum_real x2 = c1*p_theta2;
-    const double_bar_pendulum_real x3 = (2.0*x0 - 3.0*x1*x2)/(2.0*c2 - 1.5*m2*x1*x1);
+    const double_bar_pendulum_real x3 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*x0 - DOUBLE_BAR_PENDULUM_NUMBER(3.0)*x1*x2;
     const double_bar_pendulum_real x4 =
-        0.5*x0*x3 + 1.5*(c4*p_theta2 - 0.5*x1*x3)*x2
-        - g*(c5*cos(theta1) + 0.5*c3*cos(theta2));
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c2 - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*m2*x1*x1;
+    const double_bar_pendulum_real x5 = x3/x4;
+    const double_bar_pendulum_real x6 = c4*p_theta2 - DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x1*x5;
+    const double_bar_pendulum_real x7 =
+        c5*double_bar_pendulum_cos(theta1)
+        + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*c3*double_bar_pendulum_cos(theta2);
+    const double_bar_pendulum_real x8 =
+        DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x0*x5 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x6*x2 - g*x7;
     /* outputs */
-    result[0] = x4;
+    result[0] = x8;
     (void)t;
 }
 #endif
@@ -507,19 +635,25 @@ static inline void double_bar_pendulum_lagrangian_state(
     const double_bar_pendulum_real l1 = params[2];
     const double_bar_pendulum_real l2 = params[3];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = 1.0/l1;
-    const double_bar_pendulum_real c1 = 1.0/l2;
-    const double_bar_pendulum_real c2 = m2 + (1.0/3.0)*m1;
-    const double_bar_pendulum_real c3 = 1.0/(m2*l2);
+    const double_bar_pendulum_real c0 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l1;
+    const double_bar_pendulum_real c1 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l2;
+    const double_bar_pendulum_real c2 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c3 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/(m2*l2);
     /* intermediate terms */
-    const double_bar_pendulum_real x0 = cos(theta1 - theta2);
+    const double_bar_pendulum_real x0 = double_bar_pendulum_cos(theta1 - theta2);
     const double_bar_pendulum_real x1 =
-        (2.0*c0*p_theta1 - 3.0*c1*x0*p_theta2)/(2.0*c2 - 1.5*m2*x0*x0);
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c0*p_theta1
+        - DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c1*x0*p_theta2;
+    const double_bar_pendulum_real x2 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c2 - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*m2*x0*x0;
+    const double_bar_pendulum_real x3 = x1/x2;
+    const double_bar_pendulum_real x4 = c3*p_theta2 - DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x0*x3;
     /* outputs */
     result[0] = theta1;
     result[1] = theta2;
-    result[2] = c0*x1;
-    result[3] = 3.0*c1*(c3*p_theta2 - 0.5*x0*x1);
+    result[2] = c0*x3;
+    result[3] = DOUBLE_BAR_PENDULUM_NUMBER(3.0)*c1*x4;
     (void)t;
 }
 #endif
@@ -538,10 +672,10 @@ static inline void double_bar_pendulum_rational_state(
     const double_bar_pendulum_real theta1_dot = state[2];
     const double_bar_pendulum_real theta2_dot = state[3];
     /* outputs */
-    result[0] = sin(theta1);
-    result[1] = cos(theta1);
-    result[2] = sin(theta2);
-    result[3] = cos(theta2);
+    result[0] = double_bar_pendulum_sin(theta1);
+    result[1] = double_bar_pendulum_cos(theta1);
+    result[2] = double_bar_pendulum_sin(theta2);
+    result[3] = double_bar_pendulum_cos(theta2);
     result[4] = theta1_dot;
     result[5] = theta2_dot;
     (void)t;
@@ -569,26 +703,29 @@ static inline void double_bar_pendulum_rhs_rational(
     const double_bar_pendulum_real l2 = params[3];
     const double_bar_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = 1.0/l1;
+    const double_bar_pendulum_real c0 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l1;
     const double_bar_pendulum_real c1 = m2*l2;
-    const double_bar_pendulum_real c2 = g*(m2 + 0.5*m1);
-    const double_bar_pendulum_real c3 = m2 + (1.0/3.0)*m1;
-    const double_bar_pendulum_real c4 = 1.0/l2;
+    const double_bar_pendulum_real c2 = g*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
+    const double_bar_pendulum_real c3 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c4 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l2;
     /* intermediate terms */
     const double_bar_pendulum_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
-    const double_bar_pendulum_real x1 = l1*theta1_dot*theta1_dot*x0 - g*sin_theta2;
-    const double_bar_pendulum_real x2 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
-    const double_bar_pendulum_real x3 = m2*x2;
-    const double_bar_pendulum_real x4 =
-        c1*theta2_dot*theta2_dot*x0 + 2.0*c2*sin_theta1 + 1.5*x1*x3;
-    const double_bar_pendulum_real x5 = x4/(2.0*c3 - 1.5*x2*x3);
+    const double_bar_pendulum_real x1 =
+        c1*theta2_dot*theta2_dot*x0 + DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c2*sin_theta1;
+    const double_bar_pendulum_real x2 = l1*theta1_dot*theta1_dot*x0 - g*sin_theta2;
+    const double_bar_pendulum_real x3 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
+    const double_bar_pendulum_real x4 = m2*x3;
+    const double_bar_pendulum_real x5 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c3 - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x3*x4;
+    const double_bar_pendulum_real x6 = (x1 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x2*x4)/x5;
     /* outputs */
     result[0] = theta1_dot*cos_theta1;
     result[1] = -theta1_dot*sin_theta1;
     result[2] = theta2_dot*cos_theta2;
     result[3] = -theta2_dot*sin_theta2;
-    result[4] = -c0*x5;
-    result[5] = 1.5*c4*(x1 + x2*x5);
+    result[4] = -c0*x6;
+    result[5] = DOUBLE_BAR_PENDULUM_NUMBER(1.5)*c4*(x2 + x3*x6);
     (void)t;
 }
 
@@ -616,47 +753,55 @@ static inline void double_bar_pendulum_rhs_variational(
     const double_bar_pendulum_real l2 = params[3];
     const double_bar_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = 1.0/l1;
+    const double_bar_pendulum_real c0 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l1;
     const double_bar_pendulum_real c1 = m2*l2;
-    const double_bar_pendulum_real c2 = g*(m2 + 0.5*m1);
-    const double_bar_pendulum_real c3 = m2 + (1.0/3.0)*m1;
-    const double_bar_pendulum_real c4 = 1.0/l2;
+    const double_bar_pendulum_real c2 = g*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
+    const double_bar_pendulum_real c3 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c4 = DOUBLE_BAR_PENDULUM_NUMBER(1.0)/l2;
     /* intermediate terms */
     const double_bar_pendulum_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const double_bar_pendulum_real x1 = c1*theta2_dot;
     const double_bar_pendulum_real x2 = theta2_dot*x1;
-    const double_bar_pendulum_real x3 = l1*theta1_dot;
-    const double_bar_pendulum_real x4 = theta1_dot*x3;
-    const double_bar_pendulum_real x5 = x0*x4 - g*sin_theta2;
-    const double_bar_pendulum_real x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
-    const double_bar_pendulum_real x7 = m2*x6;
-    const double_bar_pendulum_real x8 = 2.0*c3 - 1.5*x6*x7;
-    const double_bar_pendulum_real x9 = (x0*x2 + 2.0*c2*sin_theta1 + 1.5*x5*x7)/x8;
-    const double_bar_pendulum_real x10 = x5 + x6*x9;
-    const double_bar_pendulum_real x11 = x6*x2;
-    const double_bar_pendulum_real x12 =
-        delta_theta1*(0.5*x11 + c2*cos_theta1) + x0*delta_theta2_dot*x1;
-    const double_bar_pendulum_real x13 = x10*(m2*x0);
-    const double_bar_pendulum_real x14 =
-        2.0*x12 + 1.5*(delta_theta2*x13 - delta_theta1*x13) - x11*delta_theta2;
-    const double_bar_pendulum_real x15 = x6*x4;
-    const double_bar_pendulum_real x16 = x0*x9;
-    const double_bar_pendulum_real x17 =
-        delta_theta1*x15 + delta_theta2*x16 - delta_theta2*(x15 + g*cos_theta2)
-        - delta_theta1*x16;
-    const double_bar_pendulum_real x18 = x0*delta_theta1_dot*x3 + 0.5*x17;
-    const double_bar_pendulum_real x19 = (x14 + 3.0*x18*x7)/x8;
+    const double_bar_pendulum_real x3 =
+        x0*x2 + DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c2*sin_theta1;
+    const double_bar_pendulum_real x4 = l1*theta1_dot;
+    const double_bar_pendulum_real x5 = theta1_dot*x4;
+    const double_bar_pendulum_real x6 = x0*x5 - g*sin_theta2;
+    const double_bar_pendulum_real x7 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
+    const double_bar_pendulum_real x8 = m2*x7;
+    const double_bar_pendulum_real x9 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*c3 - DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x7*x8;
+    const double_bar_pendulum_real x10 = (x3 + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*x6*x8)/x9;
+    const double_bar_pendulum_real x11 = x6 + x7*x10;
+    const double_bar_pendulum_real x12 = x7*x2;
+    const double_bar_pendulum_real x13 =
+        DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x12 + c2*cos_theta1;
+    const double_bar_pendulum_real x14 = x11*(m2*x0);
+    const double_bar_pendulum_real x15 =
+        DOUBLE_BAR_PENDULUM_NUMBER(2.0)*(delta_theta1*x13 + x0*delta_theta2_dot*x1)
+        + DOUBLE_BAR_PENDULUM_NUMBER(1.5)*(delta_theta2*x14 - delta_theta1*x14)
+        - x12*delta_theta2;
+    const double_bar_pendulum_real x16 = x7*x5;
+    const double_bar_pendulum_real x17 = x0*x10;
+    const double_bar_pendulum_real x18 =
+        delta_theta1*x16 + delta_theta2*x17 - delta_theta2*(x16 + g*cos_theta2)
+        - delta_theta1*x17;
+    const double_bar_pendulum_real x19 =
+        x0*delta_theta1_dot*x4 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x18;
+    const double_bar_pendulum_real x20 = (x15 + DOUBLE_BAR_PENDULUM_NUMBER(3.0)*x19*x8)/x9;
+    const double_bar_pendulum_real x21 = c4*(x19 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*x7*x20);
     /* outputs */
     result[0] = theta1_dot*cos_theta1;
     result[1] = -theta1_dot*sin_theta1;
     result[2] = theta2_dot*cos_theta2;
     result[3] = -theta2_dot*sin_theta2;
-    result[4] = -c0*x9;
-    result[5] = 1.5*c4*x10;
+    result[4] = -c0*x10;
+    result[5] = DOUBLE_BAR_PENDULUM_NUMBER(1.5)*c4*x11;
     result[6] = delta_theta1_dot;
     result[7] = delta_theta2_dot;
-    result[8] = -c0*x19;
-    result[9] = 3.0*c4*(x18 + 0.5*x6*x19);
+    result[8] = -c0*x20;
+    result[9] = DOUBLE_BAR_PENDULUM_NUMBER(3.0)*x21;
     (void)t;
 }
 
@@ -686,17 +831,21 @@ static inline void double_bar_pendulum_linear(
     const double_bar_pendulum_real l2 = params[3];
     const double_bar_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_bar_pendulum_real c0 = m2*l2;
-    const double_bar_pendulum_real c1 = 0.5*l1*c0;
+    const double_bar_pendulum_real c0 =
+        m2 + (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*m1;
+    const double_bar_pendulum_real c1 = m2*l2;
+    const double_bar_pendulum_real c2 = DOUBLE_BAR_PENDULUM_NUMBER(0.5)*l1*c1;
+    const double_bar_pendulum_real c3 =
+        (DOUBLE_BAR_PENDULUM_NUMBER(1.0)/DOUBLE_BAR_PENDULUM_NUMBER(3.0))*l2*c1;
     /* outputs */
-    result[0] = l1*l1*(m2 + (1.0/3.0)*m1);
-    result[1] = c1;
-    result[2] = c1;
-    result[3] = (1.0/3.0)*l2*c0;
-    result[4] = l1*g*(m2 + 0.5*m1);
+    result[0] = l1*l1*c0;
+    result[1] = c2;
+    result[2] = c2;
+    result[3] = c3;
+    result[4] = l1*g*(m2 + DOUBLE_BAR_PENDULUM_NUMBER(0.5)*m1);
     result[5] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
     result[6] = DOUBLE_BAR_PENDULUM_NUMBER(0.0);
-    result[7] = 0.5*g*c0;
+    result[7] = DOUBLE_BAR_PENDULUM_NUMBER(0.5)*g*c1;
 }
 
 #endif

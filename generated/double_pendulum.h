@@ -67,10 +67,12 @@
        double state[4] = {...}, rate[4], params[5] = {1.0, 1.0, 2.0, 2.0, 9.81};
        double_pendulum_rhs(0.0, state, params, rate);
 
+   Indices have names: state[DOUBLE_PENDULUM_LAGRANGIAN_theta1].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_DOUBLE_PENDULUM_H
 #define HOLONOMIC_DOUBLE_PENDULUM_H
@@ -83,12 +85,6 @@
 
 typedef HOLONOMIC_REAL double_pendulum_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define DOUBLE_PENDULUM_NUMBER(x) ((double_pendulum_real){0} + (x))
-#else
-#define DOUBLE_PENDULUM_NUMBER(x) (x)
-#endif
-
 enum {
     DOUBLE_PENDULUM_LAGRANGIAN_STATE = 4,
     DOUBLE_PENDULUM_HAMILTONIAN_STATE = 4,
@@ -96,6 +92,65 @@ enum {
     DOUBLE_PENDULUM_VARIATIONAL_STATE = 10,
     DOUBLE_PENDULUM_PARAMETERS = 5,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    DOUBLE_PENDULUM_PARAMETER_m1, DOUBLE_PENDULUM_PARAMETER_m2,
+    DOUBLE_PENDULUM_PARAMETER_l1, DOUBLE_PENDULUM_PARAMETER_l2, DOUBLE_PENDULUM_PARAMETER_g
+};
+enum {
+    DOUBLE_PENDULUM_LAGRANGIAN_theta1, DOUBLE_PENDULUM_LAGRANGIAN_theta2,
+    DOUBLE_PENDULUM_LAGRANGIAN_theta1_dot, DOUBLE_PENDULUM_LAGRANGIAN_theta2_dot
+};
+enum {
+    DOUBLE_PENDULUM_HAMILTONIAN_theta1, DOUBLE_PENDULUM_HAMILTONIAN_theta2,
+    DOUBLE_PENDULUM_HAMILTONIAN_p_theta1, DOUBLE_PENDULUM_HAMILTONIAN_p_theta2
+};
+enum {
+    DOUBLE_PENDULUM_RATIONAL_sin_theta1, DOUBLE_PENDULUM_RATIONAL_cos_theta1,
+    DOUBLE_PENDULUM_RATIONAL_sin_theta2, DOUBLE_PENDULUM_RATIONAL_cos_theta2,
+    DOUBLE_PENDULUM_RATIONAL_theta1_dot, DOUBLE_PENDULUM_RATIONAL_theta2_dot
+};
+enum {
+    DOUBLE_PENDULUM_VARIATIONAL_sin_theta1, DOUBLE_PENDULUM_VARIATIONAL_cos_theta1,
+    DOUBLE_PENDULUM_VARIATIONAL_sin_theta2, DOUBLE_PENDULUM_VARIATIONAL_cos_theta2,
+    DOUBLE_PENDULUM_VARIATIONAL_theta1_dot, DOUBLE_PENDULUM_VARIATIONAL_theta2_dot,
+    DOUBLE_PENDULUM_VARIATIONAL_delta_theta1, DOUBLE_PENDULUM_VARIATIONAL_delta_theta2,
+    DOUBLE_PENDULUM_VARIATIONAL_delta_theta1_dot,
+    DOUBLE_PENDULUM_VARIATIONAL_delta_theta2_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(double_pendulum_real *)0)[0]) double_pendulum_number;
+static inline double_pendulum_real double_pendulum_splat(double_pendulum_number x)
+{
+    const double_pendulum_real zero = {0};
+    return zero + x;
+}
+#define DOUBLE_PENDULUM_NUMBER(x) double_pendulum_splat((double_pendulum_number)x)
+#else
+typedef double_pendulum_real double_pendulum_number;
+#define DOUBLE_PENDULUM_NUMBER(x) \
+    (sizeof(double_pendulum_number) > sizeof(double) ? (double_pendulum_number)x##L \
+        : (double_pendulum_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline double_pendulum_real double_pendulum_cos(double_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (double_pendulum_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (double_pendulum_real)cos((double)x)
+        : (double_pendulum_real)cosf((float)x);
+}
+static inline double_pendulum_real double_pendulum_sin(double_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (double_pendulum_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (double_pendulum_real)sin((double)x)
+        : (double_pendulum_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -116,23 +171,24 @@ static inline void double_pendulum_rhs(
     const double_pendulum_real l2 = params[3];
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_pendulum_real c0 = 1.0/l1;
+    const double_pendulum_real c0 = DOUBLE_PENDULUM_NUMBER(1.0)/l1;
     const double_pendulum_real c1 = m2*l2;
     const double_pendulum_real c2 = (m1 + m2)*g;
-    const double_pendulum_real c3 = 1.0/l2;
+    const double_pendulum_real c3 = DOUBLE_PENDULUM_NUMBER(1.0)/l2;
     /* intermediate terms */
     const double_pendulum_real x0 = theta1 - theta2;
-    const double_pendulum_real sin_x0 = sin(x0);
-    const double_pendulum_real cos_x0 = cos(x0);
-    const double_pendulum_real x1 = l1*theta1_dot*theta1_dot*sin_x0 - g*sin(theta2);
+    const double_pendulum_real sin_x0 = double_pendulum_sin(x0);
+    const double_pendulum_real x1 =
+        c1*theta2_dot*theta2_dot*sin_x0 + c2*double_pendulum_sin(theta1);
+    const double_pendulum_real cos_x0 = double_pendulum_cos(x0);
     const double_pendulum_real x2 =
-        c1*theta2_dot*theta2_dot*sin_x0 + c2*sin(theta1) + m2*cos_x0*x1;
-    const double_pendulum_real x3 = x2/(m1 + m2*sin_x0*sin_x0);
+        l1*theta1_dot*theta1_dot*sin_x0 - g*double_pendulum_sin(theta2);
+    const double_pendulum_real x3 = (x1 + m2*cos_x0*x2)/(m1 + m2*sin_x0*sin_x0);
     /* outputs */
     result[0] = theta1_dot;
     result[1] = theta2_dot;
     result[2] = -c0*x3;
-    result[3] = c3*(x1 + cos_x0*x3);
+    result[3] = c3*(x2 + cos_x0*x3);
     (void)t;
 }
 #endif
@@ -156,16 +212,16 @@ static inline void double_pendulum_jacobian(
     const double_pendulum_real l2 = params[3];
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_pendulum_real c0 = 1.0/l1;
+    const double_pendulum_real c0 = DOUBLE_PENDULUM_NUMBER(1.0)/l1;
     const double_pendulum_real c1 = m2*l2;
     const double_pendulum_real c2 = (m1 + m2)*g;
     const double_pendulum_real c3 = l1*m2;
-    const double_pendulum_real c4 = 1.0/l2;
+    const double_pendulum_real c4 = DOUBLE_PENDULUM_NUMBER(1.0)/l2;
     /* intermediate terms */
-    const double_pendulum_real cos_theta2 = cos(theta2);
-    const double_pendulum_real cos_theta1 = cos(theta1);
-    const double_pendulum_real sin_theta1 = sin(theta1);
-    const double_pendulum_real sin_theta2 = sin(theta2);
+    const double_pendulum_real cos_theta2 = double_pendulum_cos(theta2);
+    const double_pendulum_real cos_theta1 = double_pendulum_cos(theta1);
+    const double_pendulum_real sin_theta1 = double_pendulum_sin(theta1);
+    const double_pendulum_real sin_theta2 = double_pendulum_sin(theta2);
     const double_pendulum_real x0 = cos_theta2*cos_theta1 + sin_theta1*sin_theta2;
     const double_pendulum_real x1 = theta2_dot*theta2_dot;
     const double_pendulum_real x2 = x0*x1;
@@ -188,22 +244,22 @@ static inline void double_pendulum_jacobian(
     const double_pendulum_real x19 = c3*x0*x5/x10;
     const double_pendulum_real x20 = theta2_dot*x7/x10;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
+    result[0] = DOUBLE_PENDULUM_NUMBER(0.0);
+    result[1] = DOUBLE_PENDULUM_NUMBER(0.0);
+    result[2] = DOUBLE_PENDULUM_NUMBER(1.0);
+    result[3] = DOUBLE_PENDULUM_NUMBER(0.0);
+    result[4] = DOUBLE_PENDULUM_NUMBER(0.0);
+    result[5] = DOUBLE_PENDULUM_NUMBER(0.0);
+    result[6] = DOUBLE_PENDULUM_NUMBER(0.0);
+    result[7] = DOUBLE_PENDULUM_NUMBER(1.0);
     result[8] = -c0*x16;
     result[9] = -c0*x18;
-    result[10] = -2.0*c0*x19;
-    result[11] = -2.0*c0*x20;
+    result[10] = -DOUBLE_PENDULUM_NUMBER(2.0)*c0*x19;
+    result[11] = -DOUBLE_PENDULUM_NUMBER(2.0)*c0*x20;
     result[12] = c4*(x15 + x0*x16);
     result[13] = c4*(x17 + x0*x18);
-    result[14] = 2.0*c4*(x4*x3 + x0*x19);
-    result[15] = 2.0*c4*(x0*x20);
+    result[14] = DOUBLE_PENDULUM_NUMBER(2.0)*c4*(x4*x3 + x0*x19);
+    result[15] = DOUBLE_PENDULUM_NUMBER(2.0)*c4*(x0*x20);
     (void)t;
 }
 #endif
@@ -235,12 +291,14 @@ static inline void double_pendulum_energy(
     const double_pendulum_real c5 = g*c3;
     const double_pendulum_real c6 = g*c0;
     /* intermediate terms */
-    const double_pendulum_real x0 = c2*theta2_dot*theta2_dot + c4*theta1_dot*theta1_dot;
-    const double_pendulum_real x1 =
-        c1*theta2_dot*theta1_dot*cos(theta1 - theta2) + 0.5*x0 - c5*cos(theta1)
-        - c6*cos(theta2);
+    const double_pendulum_real x0 =
+        c1*theta2_dot*theta1_dot*double_pendulum_cos(theta1 - theta2);
+    const double_pendulum_real x1 = c2*theta2_dot*theta2_dot + c4*theta1_dot*theta1_dot;
+    const double_pendulum_real x2 =
+        x0 + DOUBLE_PENDULUM_NUMBER(0.5)*x1 - c5*double_pendulum_cos(theta1)
+        - c6*double_pendulum_cos(theta2);
     /* outputs */
-    result[0] = x1;
+    result[0] = x2;
     (void)t;
 }
 #endif
@@ -270,10 +328,10 @@ static inline void double_pendulum_reactions(
     const double_pendulum_real c3 = g*c0;
     /* intermediate terms */
     const double_pendulum_real x0 = theta1_dot*theta1_dot;
-    const double_pendulum_real cos_theta2 = cos(theta2);
-    const double_pendulum_real cos_theta1 = cos(theta1);
-    const double_pendulum_real sin_theta1 = sin(theta1);
-    const double_pendulum_real sin_theta2 = sin(theta2);
+    const double_pendulum_real cos_theta2 = double_pendulum_cos(theta2);
+    const double_pendulum_real cos_theta1 = double_pendulum_cos(theta1);
+    const double_pendulum_real sin_theta1 = double_pendulum_sin(theta1);
+    const double_pendulum_real sin_theta2 = double_pendulum_sin(theta2);
     const double_pendulum_real x1 = cos_theta2*cos_theta1 + sin_theta1*sin_theta2;
     const double_pendulum_real x2 = theta2_dot*theta2_dot;
     const double_pendulum_real x3 = c2*x2;
@@ -308,7 +366,7 @@ static inline void double_pendulum_mass_matrix(
     const double_pendulum_real c0 = m2*l2;
     const double_pendulum_real c1 = l1*c0;
     /* intermediate terms */
-    const double_pendulum_real x0 = c1*cos(theta1 - theta2);
+    const double_pendulum_real x0 = c1*double_pendulum_cos(theta1 - theta2);
     /* outputs */
     result[0] = l1*l1*(m1 + m2);
     result[1] = x0;
@@ -332,13 +390,13 @@ static inline void double_pendulum_positions(
     const double_pendulum_real l1 = params[2];
     const double_pendulum_real l2 = params[3];
     /* intermediate terms */
-    const double_pendulum_real x0 = l1*sin(theta1);
-    const double_pendulum_real x1 = l1*cos(theta1);
+    const double_pendulum_real x0 = l1*double_pendulum_sin(theta1);
+    const double_pendulum_real x1 = l1*double_pendulum_cos(theta1);
     /* outputs */
     result[0] = x0;
     result[1] = -x1;
-    result[2] = x0 + l2*sin(theta2);
-    result[3] = -(x1 + l2*cos(theta2));
+    result[2] = x0 + l2*double_pendulum_sin(theta2);
+    result[3] = -(x1 + l2*double_pendulum_cos(theta2));
     (void)t;
 }
 #endif
@@ -364,7 +422,7 @@ static inline void double_pendulum_hamiltonian_state(
     const double_pendulum_real c0 = l1*(m1 + m2);
     const double_pendulum_real c1 = m2*l2;
     /* intermediate terms */
-    const double_pendulum_real x0 = cos(theta1 - theta2);
+    const double_pendulum_real x0 = double_pendulum_cos(theta1 - theta2);
     /* outputs */
     result[0] = theta1;
     result[1] = theta2;
@@ -393,15 +451,15 @@ static inline void double_pendulum_rhs_hamiltonian(
     const double_pendulum_real l2 = params[3];
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_pendulum_real c0 = 1.0/l1;
-    const double_pendulum_real c1 = 1.0/l2;
-    const double_pendulum_real c2 = 1.0/(m2*l2);
+    const double_pendulum_real c0 = DOUBLE_PENDULUM_NUMBER(1.0)/l1;
+    const double_pendulum_real c1 = DOUBLE_PENDULUM_NUMBER(1.0)/l2;
+    const double_pendulum_real c2 = DOUBLE_PENDULUM_NUMBER(1.0)/(m2*l2);
     const double_pendulum_real c3 = l1*(m1 + m2)*g;
     const double_pendulum_real c4 = l2*g;
     /* intermediate terms */
     const double_pendulum_real x0 = theta1 - theta2;
-    const double_pendulum_real cos_x0 = cos(x0);
-    const double_pendulum_real sin_x0 = sin(x0);
+    const double_pendulum_real cos_x0 = double_pendulum_cos(x0);
+    const double_pendulum_real sin_x0 = double_pendulum_sin(x0);
     const double_pendulum_real x1 = m2*sin_x0;
     const double_pendulum_real x2 = (c0*p_theta1 - c1*p_theta2*cos_x0)/(m1 + sin_x0*x1);
     const double_pendulum_real x3 = c2*p_theta2 - cos_x0*x2;
@@ -409,8 +467,8 @@ static inline void double_pendulum_rhs_hamiltonian(
     /* outputs */
     result[0] = c0*x2;
     result[1] = c1*x3;
-    result[2] = -(c3*sin(theta1) + x1*x4);
-    result[3] = m2*(sin_x0*x4 - c4*sin(theta2));
+    result[2] = -(c3*double_pendulum_sin(theta1) + x1*x4);
+    result[3] = m2*(sin_x0*x4 - c4*double_pendulum_sin(theta2));
     (void)t;
 }
 #endif
@@ -434,16 +492,16 @@ static inline void double_pendulum_jacobian_hamiltonian(
     const double_pendulum_real l2 = params[3];
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_pendulum_real c0 = 1.0/l1;
-    const double_pendulum_real c1 = 1.0/(m2*l2);
-    const double_pendulum_real c2 = 1.0/l2;
+    const double_pendulum_real c0 = DOUBLE_PENDULUM_NUMBER(1.0)/l1;
+    const double_pendulum_real c1 = DOUBLE_PENDULUM_NUMBER(1.0)/(m2*l2);
+    const double_pendulum_real c2 = DOUBLE_PENDULUM_NUMBER(1.0)/l2;
     const double_pendulum_real c3 = l1*(m2 + m1)*g;
     const double_pendulum_real c4 = l2*g;
     /* intermediate terms */
     const double_pendulum_real x0 = theta1 - theta2;
-    const double_pendulum_real cos_x0 = cos(x0);
+    const double_pendulum_real cos_x0 = double_pendulum_cos(x0);
     const double_pendulum_real x1 = c2*cos_x0;
-    const double_pendulum_real sin_x0 = sin(x0);
+    const double_pendulum_real sin_x0 = double_pendulum_sin(x0);
     const double_pendulum_real x2 = m2*sin_x0;
     const double_pendulum_real x3 = m1 + sin_x0*x2;
     const double_pendulum_real x4 = (c0*p_theta1 - p_theta2*x1)/x3;
@@ -460,8 +518,10 @@ static inline void double_pendulum_jacobian_hamiltonian(
     const double_pendulum_real x15 = -x14;
     const double_pendulum_real x16 = x5*x6;
     const double_pendulum_real x17 = x6*x7;
-    const double_pendulum_real x18 = x12*x13 + (x16 + sin_x0*x17);
-    const double_pendulum_real x19 = m2*x18;
+    const double_pendulum_real x18 =
+        m2*x16 + x2*x17 + x4*x13*x2 + c3*double_pendulum_cos(theta1);
+    const double_pendulum_real x19 = x12*x13 + (x16 + sin_x0*x17);
+    const double_pendulum_real x20 = m2*x19;
     /* outputs */
     result[0] = x8;
     result[1] = x9;
@@ -471,12 +531,12 @@ static inline void double_pendulum_jacobian_hamiltonian(
     result[5] = x15;
     result[6] = -c2*(cos_x0*x10);
     result[7] = c2*(c1 + cos_x0*x11);
-    result[8] = -(m2*x16 + x2*x17 + x4*x13*x2 + c3*cos(theta1));
-    result[9] = x19;
+    result[8] = -x18;
+    result[9] = x20;
     result[10] = x9;
     result[11] = x15;
-    result[12] = x19;
-    result[13] = -m2*(x18 + c4*cos(theta2));
+    result[12] = x20;
+    result[13] = -m2*(x19 + c4*double_pendulum_cos(theta2));
     result[14] = x8;
     result[15] = x14;
     (void)t;
@@ -502,22 +562,24 @@ static inline void double_pendulum_energy_hamiltonian(
     const double_pendulum_real l2 = params[3];
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_pendulum_real c0 = 1.0/l1;
-    const double_pendulum_real c1 = 1.0/l2;
+    const double_pendulum_real c0 = DOUBLE_PENDULUM_NUMBER(1.0)/l1;
+    const double_pendulum_real c1 = DOUBLE_PENDULUM_NUMBER(1.0)/l2;
     const double_pendulum_real c2 = m2*l2;
-    const double_pendulum_real c3 = 1.0/c2;
+    const double_pendulum_real c3 = DOUBLE_PENDULUM_NUMBER(1.0)/c2;
     const double_pendulum_real c4 = l1*(m1 + m2);
     /* intermediate terms */
     const double_pendulum_real x0 = c0*p_theta1;
     const double_pendulum_real x1 = theta1 - theta2;
-    const double_pendulum_real cos_x1 = cos(x1);
+    const double_pendulum_real cos_x1 = double_pendulum_cos(x1);
     const double_pendulum_real x2 = c1*p_theta2;
-    const double_pendulum_real sin_x1 = sin(x1);
+    const double_pendulum_real sin_x1 = double_pendulum_sin(x1);
     const double_pendulum_real x3 = (x0 - cos_x1*x2)/(m1 + m2*sin_x1*sin_x1);
     const double_pendulum_real x4 =
-        0.5*(x0*x3 + (c3*p_theta2 - cos_x1*x3)*x2) - g*(c4*cos(theta1) + c2*cos(theta2));
+        c4*double_pendulum_cos(theta1) + c2*double_pendulum_cos(theta2);
+    const double_pendulum_real x5 =
+        DOUBLE_PENDULUM_NUMBER(0.5)*(x0*x3 + (c3*p_theta2 - cos_x1*x3)*x2) - g*x4;
     /* outputs */
-    result[0] = x4;
+    result[0] = x5;
     (void)t;
 }
 #endif
@@ -540,13 +602,13 @@ static inline void double_pendulum_lagrangian_state(
     const double_pendulum_real l1 = params[2];
     const double_pendulum_real l2 = params[3];
     /* terms of the parameters alone */
-    const double_pendulum_real c0 = 1.0/l1;
-    const double_pendulum_real c1 = 1.0/l2;
-    const double_pendulum_real c2 = 1.0/(m2*l2);
+    const double_pendulum_real c0 = DOUBLE_PENDULUM_NUMBER(1.0)/l1;
+    const double_pendulum_real c1 = DOUBLE_PENDULUM_NUMBER(1.0)/l2;
+    const double_pendulum_real c2 = DOUBLE_PENDULUM_NUMBER(1.0)/(m2*l2);
     /* intermediate terms */
     const double_pendulum_real x0 = theta1 - theta2;
-    const double_pendulum_real cos_x0 = cos(x0);
-    const double_pendulum_real sin_x0 = sin(x0);
+    const double_pendulum_real cos_x0 = double_pendulum_cos(x0);
+    const double_pendulum_real sin_x0 = double_pendulum_sin(x0);
     const double_pendulum_real x1 =
         (c0*p_theta1 - c1*p_theta2*cos_x0)/(m1 + m2*sin_x0*sin_x0);
     /* outputs */
@@ -572,10 +634,10 @@ static inline void double_pendulum_rational_state(
     const double_pendulum_real theta1_dot = state[2];
     const double_pendulum_real theta2_dot = state[3];
     /* outputs */
-    result[0] = sin(theta1);
-    result[1] = cos(theta1);
-    result[2] = sin(theta2);
-    result[3] = cos(theta2);
+    result[0] = double_pendulum_sin(theta1);
+    result[1] = double_pendulum_cos(theta1);
+    result[2] = double_pendulum_sin(theta2);
+    result[3] = double_pendulum_cos(theta2);
     result[4] = theta1_dot;
     result[5] = theta2_dot;
     (void)t;
@@ -603,10 +665,10 @@ static inline void double_pendulum_rhs_rational(
     const double_pendulum_real l2 = params[3];
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_pendulum_real c0 = 1.0/l1;
+    const double_pendulum_real c0 = DOUBLE_PENDULUM_NUMBER(1.0)/l1;
     const double_pendulum_real c1 = m2*l2;
     const double_pendulum_real c2 = (m1 + m2)*g;
-    const double_pendulum_real c3 = 1.0/l2;
+    const double_pendulum_real c3 = DOUBLE_PENDULUM_NUMBER(1.0)/l2;
     /* intermediate terms */
     const double_pendulum_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const double_pendulum_real x1 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2;
@@ -647,10 +709,10 @@ static inline void double_pendulum_rhs_variational(
     const double_pendulum_real l2 = params[3];
     const double_pendulum_real g = params[4];
     /* terms of the parameters alone */
-    const double_pendulum_real c0 = 1.0/l1;
+    const double_pendulum_real c0 = DOUBLE_PENDULUM_NUMBER(1.0)/l1;
     const double_pendulum_real c1 = m2*l2;
     const double_pendulum_real c2 = (m1 + m2)*g;
-    const double_pendulum_real c3 = 1.0/l2;
+    const double_pendulum_real c3 = DOUBLE_PENDULUM_NUMBER(1.0)/l2;
     /* intermediate terms */
     const double_pendulum_real x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2;
     const double_pendulum_real x1 = c1*theta2_dot;
@@ -667,13 +729,14 @@ static inline void double_pendulum_rhs_variational(
     const double_pendulum_real x12 = x6*x2;
     const double_pendulum_real x13 = x11*x8;
     const double_pendulum_real x14 =
-        delta_theta1*(x12 + c2*cos_theta1) + 2.0*x0*delta_theta2_dot*x1 + delta_theta2*x13
+        delta_theta1*(x12 + c2*cos_theta1)
+        + DOUBLE_PENDULUM_NUMBER(2.0)*x0*delta_theta2_dot*x1 + delta_theta2*x13
         - x12*delta_theta2 - delta_theta1*x13;
     const double_pendulum_real x15 = x6*x4;
     const double_pendulum_real x16 = x0*x10;
     const double_pendulum_real x17 =
-        delta_theta1*x15 + 2.0*x0*delta_theta1_dot*x3 + delta_theta2*x16
-        - delta_theta2*(x15 + g*cos_theta2) - delta_theta1*x16;
+        delta_theta1*x15 + DOUBLE_PENDULUM_NUMBER(2.0)*x0*delta_theta1_dot*x3
+        + delta_theta2*x16 - delta_theta2*(x15 + g*cos_theta2) - delta_theta1*x16;
     const double_pendulum_real x18 = (x14 + x17*x7)/x9;
     /* outputs */
     result[0] = theta1_dot*cos_theta1;

@@ -50,10 +50,12 @@
        double state[2] = {...}, rate[2], params[6] = {1.0, 1.0, 0.1, 100.0, 0.0, 9.81};
        driven_pendulum_rhs(0.0, state, params, rate);
 
+   Indices have names: state[DRIVEN_PENDULUM_LAGRANGIAN_theta].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_DRIVEN_PENDULUM_H
 #define HOLONOMIC_DRIVEN_PENDULUM_H
@@ -66,12 +68,6 @@
 
 typedef HOLONOMIC_REAL driven_pendulum_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define DRIVEN_PENDULUM_NUMBER(x) ((driven_pendulum_real){0} + (x))
-#else
-#define DRIVEN_PENDULUM_NUMBER(x) (x)
-#endif
-
 enum {
     DRIVEN_PENDULUM_LAGRANGIAN_STATE = 2,
     DRIVEN_PENDULUM_HAMILTONIAN_STATE = 2,
@@ -79,6 +75,60 @@ enum {
     DRIVEN_PENDULUM_VARIATIONAL_STATE = 5,
     DRIVEN_PENDULUM_PARAMETERS = 6,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    DRIVEN_PENDULUM_PARAMETER_m, DRIVEN_PENDULUM_PARAMETER_l, DRIVEN_PENDULUM_PARAMETER_a,
+    DRIVEN_PENDULUM_PARAMETER_Omega, DRIVEN_PENDULUM_PARAMETER_c,
+    DRIVEN_PENDULUM_PARAMETER_g
+};
+enum {
+    DRIVEN_PENDULUM_LAGRANGIAN_theta, DRIVEN_PENDULUM_LAGRANGIAN_theta_dot
+};
+enum {
+    DRIVEN_PENDULUM_HAMILTONIAN_theta, DRIVEN_PENDULUM_HAMILTONIAN_p_theta
+};
+enum {
+    DRIVEN_PENDULUM_RATIONAL_sin_theta, DRIVEN_PENDULUM_RATIONAL_cos_theta,
+    DRIVEN_PENDULUM_RATIONAL_theta_dot
+};
+enum {
+    DRIVEN_PENDULUM_VARIATIONAL_sin_theta, DRIVEN_PENDULUM_VARIATIONAL_cos_theta,
+    DRIVEN_PENDULUM_VARIATIONAL_theta_dot, DRIVEN_PENDULUM_VARIATIONAL_delta_theta,
+    DRIVEN_PENDULUM_VARIATIONAL_delta_theta_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(driven_pendulum_real *)0)[0]) driven_pendulum_number;
+static inline driven_pendulum_real driven_pendulum_splat(driven_pendulum_number x)
+{
+    const driven_pendulum_real zero = {0};
+    return zero + x;
+}
+#define DRIVEN_PENDULUM_NUMBER(x) driven_pendulum_splat((driven_pendulum_number)x)
+#else
+typedef driven_pendulum_real driven_pendulum_number;
+#define DRIVEN_PENDULUM_NUMBER(x) \
+    (sizeof(driven_pendulum_number) > sizeof(double) ? (driven_pendulum_number)x##L \
+        : (driven_pendulum_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline driven_pendulum_real driven_pendulum_cos(driven_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (driven_pendulum_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (driven_pendulum_real)cos((double)x)
+        : (driven_pendulum_real)cosf((float)x);
+}
+static inline driven_pendulum_real driven_pendulum_sin(driven_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (driven_pendulum_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (driven_pendulum_real)sin((double)x)
+        : (driven_pendulum_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -98,14 +148,15 @@ static inline void driven_pendulum_rhs(
     const driven_pendulum_real c = params[4];
     const driven_pendulum_real g = params[5];
     /* terms of the parameters alone */
-    const driven_pendulum_real c0 = 1.0/l;
+    const driven_pendulum_real c0 = DRIVEN_PENDULUM_NUMBER(1.0)/l;
     const driven_pendulum_real c1 = l*m;
-    const driven_pendulum_real c2 = 1.0/c1;
+    const driven_pendulum_real c2 = DRIVEN_PENDULUM_NUMBER(1.0)/c1;
     const driven_pendulum_real c3 = g*c1;
     const driven_pendulum_real c4 = Omega*Omega*a*c1;
     /* intermediate terms */
-    const driven_pendulum_real sin_theta = sin(theta);
-    const driven_pendulum_real x0 = c3*sin_theta + c*theta_dot - c4*sin_theta*cos(Omega*t);
+    const driven_pendulum_real sin_theta = driven_pendulum_sin(theta);
+    const driven_pendulum_real x0 =
+        c3*sin_theta + c*theta_dot - c4*sin_theta*driven_pendulum_cos(Omega*t);
     /* outputs */
     result[0] = theta_dot;
     result[1] = -c0*(c2*x0);
@@ -129,13 +180,16 @@ static inline void driven_pendulum_jacobian(
     const driven_pendulum_real c = params[4];
     const driven_pendulum_real g = params[5];
     /* terms of the parameters alone */
-    const driven_pendulum_real c0 = 1.0/l;
+    const driven_pendulum_real c0 = DRIVEN_PENDULUM_NUMBER(1.0)/l;
     const driven_pendulum_real c1 = Omega*Omega*a;
+    /* intermediate terms */
+    const driven_pendulum_real x0 =
+        driven_pendulum_cos(theta)*(g - c1*driven_pendulum_cos(Omega*t));
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 1.0;
-    result[2] = -c0*(cos(theta)*(g - c1*cos(Omega*t)));
-    result[3] = -c0*(c*(1.0/(l*m)));
+    result[0] = DRIVEN_PENDULUM_NUMBER(0.0);
+    result[1] = DRIVEN_PENDULUM_NUMBER(1.0);
+    result[2] = -c0*x0;
+    result[3] = -c0*(c*(DRIVEN_PENDULUM_NUMBER(1.0)/(l*m)));
 }
 #endif
 
@@ -162,9 +216,11 @@ static inline void driven_pendulum_energy(
     const driven_pendulum_real c3 = l*g;
     /* intermediate terms */
     const driven_pendulum_real x0 = Omega*t;
-    const driven_pendulum_real sin_x0 = sin(x0);
+    const driven_pendulum_real sin_x0 = driven_pendulum_sin(x0);
     const driven_pendulum_real x1 =
-        c0*cos(x0) + 0.5*(c1*theta_dot*theta_dot - c2*sin_x0*sin_x0) - c3*cos(theta);
+        c0*driven_pendulum_cos(x0)
+        + DRIVEN_PENDULUM_NUMBER(0.5)*(c1*theta_dot*theta_dot - c2*sin_x0*sin_x0)
+        - c3*driven_pendulum_cos(theta);
     /* outputs */
     result[0] = m*x1;
 }
@@ -196,11 +252,11 @@ static inline void driven_pendulum_power(
     const driven_pendulum_real c5 = l*c3;
     /* intermediate terms */
     const driven_pendulum_real x0 = Omega*t;
-    const driven_pendulum_real sin_x0 = sin(x0);
-    const driven_pendulum_real cos_x0 = cos(x0);
+    const driven_pendulum_real sin_x0 = driven_pendulum_sin(x0);
+    const driven_pendulum_real cos_x0 = driven_pendulum_cos(x0);
     const driven_pendulum_real x1 =
         c*theta_dot*theta_dot + c2*sin_x0 + c4*sin_x0*cos_x0
-        - c5*theta_dot*cos_x0*sin(theta);
+        - c5*theta_dot*cos_x0*driven_pendulum_sin(theta);
     /* outputs */
     result[0] = -x1;
 }
@@ -235,9 +291,12 @@ static inline void driven_pendulum_positions(
     const driven_pendulum_real l = params[1];
     const driven_pendulum_real a = params[2];
     const driven_pendulum_real Omega = params[3];
+    /* intermediate terms */
+    const driven_pendulum_real x0 =
+        a*driven_pendulum_cos(Omega*t) - l*driven_pendulum_cos(theta);
     /* outputs */
-    result[0] = l*sin(theta);
-    result[1] = a*cos(Omega*t) - l*cos(theta);
+    result[0] = l*driven_pendulum_sin(theta);
+    result[1] = x0;
 }
 #endif
 
@@ -259,9 +318,12 @@ static inline void driven_pendulum_hamiltonian_state(
     /* terms of the parameters alone */
     const driven_pendulum_real c0 = m*l;
     const driven_pendulum_real c1 = Omega*a;
+    /* intermediate terms */
+    const driven_pendulum_real x0 =
+        c1*driven_pendulum_sin(theta)*driven_pendulum_sin(Omega*t);
     /* outputs */
     result[0] = theta;
-    result[1] = c0*(l*theta_dot - c1*sin(theta)*sin(Omega*t));
+    result[1] = c0*(l*theta_dot - x0);
 }
 #endif
 
@@ -283,21 +345,23 @@ static inline void driven_pendulum_rhs_hamiltonian(
     const driven_pendulum_real c = params[4];
     const driven_pendulum_real g = params[5];
     /* terms of the parameters alone */
-    const driven_pendulum_real c0 = 1.0/l;
+    const driven_pendulum_real c0 = DRIVEN_PENDULUM_NUMBER(1.0)/l;
     const driven_pendulum_real c1 = l*m;
-    const driven_pendulum_real c2 = 1.0/c1;
+    const driven_pendulum_real c2 = DRIVEN_PENDULUM_NUMBER(1.0)/c1;
     const driven_pendulum_real c3 = Omega*a;
     const driven_pendulum_real c4 = c1*c3;
     const driven_pendulum_real c5 = c1*g;
     const driven_pendulum_real c6 = c0*c;
     const driven_pendulum_real c7 = m*c3;
     /* intermediate terms */
-    const driven_pendulum_real sin_theta = sin(theta);
-    const driven_pendulum_real x0 = sin(Omega*t);
+    const driven_pendulum_real sin_theta = driven_pendulum_sin(theta);
+    const driven_pendulum_real x0 = driven_pendulum_sin(Omega*t);
     const driven_pendulum_real x1 = c2*(p_theta + c4*sin_theta*x0);
+    const driven_pendulum_real x2 =
+        c5*sin_theta + c6*x1 + c7*x0*x1*driven_pendulum_cos(theta);
     /* outputs */
     result[0] = c0*x1;
-    result[1] = -(c5*sin_theta + c6*x1 + c7*x0*x1*cos(theta));
+    result[1] = -x2;
 }
 #endif
 
@@ -319,21 +383,21 @@ static inline void driven_pendulum_jacobian_hamiltonian(
     const driven_pendulum_real c = params[4];
     const driven_pendulum_real g = params[5];
     /* terms of the parameters alone */
-    const driven_pendulum_real c0 = 1.0/l;
+    const driven_pendulum_real c0 = DRIVEN_PENDULUM_NUMBER(1.0)/l;
     const driven_pendulum_real c1 = Omega*a;
     const driven_pendulum_real c2 = l*m;
-    const driven_pendulum_real c3 = 1.0/c2;
+    const driven_pendulum_real c3 = DRIVEN_PENDULUM_NUMBER(1.0)/c2;
     const driven_pendulum_real c4 = c1*m;
     const driven_pendulum_real c5 = c2*g;
     const driven_pendulum_real c6 = c0*c;
     const driven_pendulum_real c7 = c1*c2;
     const driven_pendulum_real c8 = c3*c;
     /* intermediate terms */
-    const driven_pendulum_real x0 = sin(Omega*t);
-    const driven_pendulum_real cos_theta = cos(theta);
+    const driven_pendulum_real x0 = driven_pendulum_sin(Omega*t);
+    const driven_pendulum_real cos_theta = driven_pendulum_cos(theta);
     const driven_pendulum_real x1 = x0*cos_theta;
     const driven_pendulum_real x2 = c1*x1;
-    const driven_pendulum_real x3 = x0*sin(theta);
+    const driven_pendulum_real x3 = x0*driven_pendulum_sin(theta);
     const driven_pendulum_real x4 =
         c4*x2*x1 + c5*cos_theta + c6*x2 - c4*(c3*(p_theta + c7*x3))*x3;
     /* outputs */
@@ -361,21 +425,23 @@ static inline void driven_pendulum_energy_hamiltonian(
     const driven_pendulum_real Omega = params[3];
     const driven_pendulum_real g = params[5];
     /* terms of the parameters alone */
-    const driven_pendulum_real c0 = 1.0/l;
+    const driven_pendulum_real c0 = DRIVEN_PENDULUM_NUMBER(1.0)/l;
     const driven_pendulum_real c1 = l*m;
     const driven_pendulum_real c2 = Omega*a;
     const driven_pendulum_real c3 = c1*c2;
-    const driven_pendulum_real c4 = 1.0/c1;
+    const driven_pendulum_real c4 = DRIVEN_PENDULUM_NUMBER(1.0)/c1;
     const driven_pendulum_real c5 = Omega*a*c2;
     const driven_pendulum_real c6 = l*g;
     const driven_pendulum_real c7 = a*g;
     /* intermediate terms */
     const driven_pendulum_real x0 = Omega*t;
-    const driven_pendulum_real sin_x0 = sin(x0);
-    const driven_pendulum_real x1 = p_theta + c3*sin(theta)*sin_x0;
-    const driven_pendulum_real x2 = 0.5*c5*sin_x0*sin_x0 + c6*cos(theta) - c7*cos(x0);
+    const driven_pendulum_real sin_x0 = driven_pendulum_sin(x0);
+    const driven_pendulum_real x1 = p_theta + c3*driven_pendulum_sin(theta)*sin_x0;
+    const driven_pendulum_real x2 =
+        DRIVEN_PENDULUM_NUMBER(0.5)*c5*sin_x0*sin_x0 + c6*driven_pendulum_cos(theta)
+        - c7*driven_pendulum_cos(x0);
     /* outputs */
-    result[0] = 0.5*c0*x1*(c4*x1) - m*x2;
+    result[0] = DRIVEN_PENDULUM_NUMBER(0.5)*c0*x1*(c4*x1) - m*x2;
 }
 #endif
 
@@ -395,13 +461,16 @@ static inline void driven_pendulum_lagrangian_state(
     const driven_pendulum_real a = params[2];
     const driven_pendulum_real Omega = params[3];
     /* terms of the parameters alone */
-    const driven_pendulum_real c0 = 1.0/l;
+    const driven_pendulum_real c0 = DRIVEN_PENDULUM_NUMBER(1.0)/l;
     const driven_pendulum_real c1 = l*m;
-    const driven_pendulum_real c2 = 1.0/c1;
+    const driven_pendulum_real c2 = DRIVEN_PENDULUM_NUMBER(1.0)/c1;
     const driven_pendulum_real c3 = Omega*a*c1;
+    /* intermediate terms */
+    const driven_pendulum_real x0 =
+        c3*driven_pendulum_sin(theta)*driven_pendulum_sin(Omega*t);
     /* outputs */
     result[0] = theta;
-    result[1] = c0*(c2*(p_theta + c3*sin(theta)*sin(Omega*t)));
+    result[1] = c0*(c2*(p_theta + x0));
 }
 #endif
 
@@ -417,8 +486,8 @@ static inline void driven_pendulum_rational_state(
     const driven_pendulum_real theta = state[0];
     const driven_pendulum_real theta_dot = state[1];
     /* outputs */
-    result[0] = sin(theta);
-    result[1] = cos(theta);
+    result[0] = driven_pendulum_sin(theta);
+    result[1] = driven_pendulum_cos(theta);
     result[2] = theta_dot;
     (void)t;
     (void)params;
@@ -444,13 +513,14 @@ static inline void driven_pendulum_rhs_rational(
     const driven_pendulum_real c = params[4];
     const driven_pendulum_real g = params[5];
     /* terms of the parameters alone */
-    const driven_pendulum_real c0 = 1.0/l;
+    const driven_pendulum_real c0 = DRIVEN_PENDULUM_NUMBER(1.0)/l;
     const driven_pendulum_real c1 = l*m;
-    const driven_pendulum_real c2 = 1.0/c1;
+    const driven_pendulum_real c2 = DRIVEN_PENDULUM_NUMBER(1.0)/c1;
     const driven_pendulum_real c3 = g*c1;
     const driven_pendulum_real c4 = Omega*Omega*a*c1;
     /* intermediate terms */
-    const driven_pendulum_real x0 = c*theta_dot + c3*sin_theta - c4*sin_theta*cos(Omega*t);
+    const driven_pendulum_real x0 =
+        c*theta_dot + c3*sin_theta - c4*sin_theta*driven_pendulum_cos(Omega*t);
     /* outputs */
     result[0] = theta_dot*cos_theta;
     result[1] = -theta_dot*sin_theta;
@@ -479,14 +549,14 @@ static inline void driven_pendulum_rhs_variational(
     const driven_pendulum_real c = params[4];
     const driven_pendulum_real g = params[5];
     /* terms of the parameters alone */
-    const driven_pendulum_real c0 = 1.0/l;
+    const driven_pendulum_real c0 = DRIVEN_PENDULUM_NUMBER(1.0)/l;
     const driven_pendulum_real c1 = l*m;
-    const driven_pendulum_real c2 = 1.0/c1;
+    const driven_pendulum_real c2 = DRIVEN_PENDULUM_NUMBER(1.0)/c1;
     const driven_pendulum_real c3 = g*c1;
     const driven_pendulum_real c4 = a*(Omega*Omega);
     const driven_pendulum_real c5 = c1*c4;
     /* intermediate terms */
-    const driven_pendulum_real x0 = cos(Omega*t);
+    const driven_pendulum_real x0 = driven_pendulum_cos(Omega*t);
     const driven_pendulum_real x1 = c2*(c3*sin_theta + c*theta_dot - c5*sin_theta*x0);
     const driven_pendulum_real x2 =
         c1*cos_theta*delta_theta*(g - c4*x0) + c*delta_theta_dot;

@@ -59,10 +59,12 @@
        double state[4] = {...}, rate[4], params[4] = {1.0, 100.0, 1.0, 9.81};
        elastic_pendulum_rhs(0.0, state, params, rate);
 
+   Indices have names: state[ELASTIC_PENDULUM_LAGRANGIAN_r].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_ELASTIC_PENDULUM_H
 #define HOLONOMIC_ELASTIC_PENDULUM_H
@@ -75,12 +77,6 @@
 
 typedef HOLONOMIC_REAL elastic_pendulum_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define ELASTIC_PENDULUM_NUMBER(x) ((elastic_pendulum_real){0} + (x))
-#else
-#define ELASTIC_PENDULUM_NUMBER(x) (x)
-#endif
-
 enum {
     ELASTIC_PENDULUM_LAGRANGIAN_STATE = 4,
     ELASTIC_PENDULUM_HAMILTONIAN_STATE = 4,
@@ -88,6 +84,64 @@ enum {
     ELASTIC_PENDULUM_VARIATIONAL_STATE = 9,
     ELASTIC_PENDULUM_PARAMETERS = 4,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    ELASTIC_PENDULUM_PARAMETER_m, ELASTIC_PENDULUM_PARAMETER_k,
+    ELASTIC_PENDULUM_PARAMETER_l, ELASTIC_PENDULUM_PARAMETER_g
+};
+enum {
+    ELASTIC_PENDULUM_LAGRANGIAN_r, ELASTIC_PENDULUM_LAGRANGIAN_theta,
+    ELASTIC_PENDULUM_LAGRANGIAN_r_dot, ELASTIC_PENDULUM_LAGRANGIAN_theta_dot
+};
+enum {
+    ELASTIC_PENDULUM_HAMILTONIAN_r, ELASTIC_PENDULUM_HAMILTONIAN_theta,
+    ELASTIC_PENDULUM_HAMILTONIAN_p_r, ELASTIC_PENDULUM_HAMILTONIAN_p_theta
+};
+enum {
+    ELASTIC_PENDULUM_RATIONAL_r, ELASTIC_PENDULUM_RATIONAL_sin_theta,
+    ELASTIC_PENDULUM_RATIONAL_cos_theta, ELASTIC_PENDULUM_RATIONAL_r_dot,
+    ELASTIC_PENDULUM_RATIONAL_theta_dot
+};
+enum {
+    ELASTIC_PENDULUM_VARIATIONAL_r, ELASTIC_PENDULUM_VARIATIONAL_sin_theta,
+    ELASTIC_PENDULUM_VARIATIONAL_cos_theta, ELASTIC_PENDULUM_VARIATIONAL_r_dot,
+    ELASTIC_PENDULUM_VARIATIONAL_theta_dot, ELASTIC_PENDULUM_VARIATIONAL_delta_r,
+    ELASTIC_PENDULUM_VARIATIONAL_delta_theta, ELASTIC_PENDULUM_VARIATIONAL_delta_r_dot,
+    ELASTIC_PENDULUM_VARIATIONAL_delta_theta_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(elastic_pendulum_real *)0)[0]) elastic_pendulum_number;
+static inline elastic_pendulum_real elastic_pendulum_splat(elastic_pendulum_number x)
+{
+    const elastic_pendulum_real zero = {0};
+    return zero + x;
+}
+#define ELASTIC_PENDULUM_NUMBER(x) elastic_pendulum_splat((elastic_pendulum_number)x)
+#else
+typedef elastic_pendulum_real elastic_pendulum_number;
+#define ELASTIC_PENDULUM_NUMBER(x) \
+    (sizeof(elastic_pendulum_number) > sizeof(double) ? (elastic_pendulum_number)x##L \
+        : (elastic_pendulum_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline elastic_pendulum_real elastic_pendulum_cos(elastic_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (elastic_pendulum_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (elastic_pendulum_real)cos((double)x)
+        : (elastic_pendulum_real)cosf((float)x);
+}
+static inline elastic_pendulum_real elastic_pendulum_sin(elastic_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (elastic_pendulum_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (elastic_pendulum_real)sin((double)x)
+        : (elastic_pendulum_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -107,16 +161,19 @@ static inline void elastic_pendulum_rhs(
     const elastic_pendulum_real l = params[2];
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = 1.0/m;
+    const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     const elastic_pendulum_real c1 = k*l;
     const elastic_pendulum_real c2 = m*g;
     /* intermediate terms */
-    const elastic_pendulum_real x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos(theta) - k*r);
+    const elastic_pendulum_real x0 =
+        m*theta_dot*theta_dot*r + (c1 + c2*elastic_pendulum_cos(theta) - k*r);
+    const elastic_pendulum_real x1 =
+        ELASTIC_PENDULUM_NUMBER(2.0)*r_dot*theta_dot + g*elastic_pendulum_sin(theta);
     /* outputs */
     result[0] = r_dot;
     result[1] = theta_dot;
     result[2] = c0*x0;
-    result[3] = -(2.0*r_dot*theta_dot + g*sin(theta))/r;
+    result[3] = -x1/r;
     (void)t;
 }
 #endif
@@ -138,26 +195,27 @@ static inline void elastic_pendulum_jacobian(
     const elastic_pendulum_real k = params[1];
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = 1.0/m;
+    const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     /* intermediate terms */
-    const elastic_pendulum_real x0 = g*sin(theta);
+    const elastic_pendulum_real x0 = g*elastic_pendulum_sin(theta);
+    const elastic_pendulum_real x1 = x0 + ELASTIC_PENDULUM_NUMBER(2.0)*theta_dot*r_dot;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
+    result[0] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[1] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[2] = ELASTIC_PENDULUM_NUMBER(1.0);
+    result[3] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[4] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[5] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[6] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[7] = ELASTIC_PENDULUM_NUMBER(1.0);
     result[8] = -c0*(k - m*theta_dot*theta_dot);
     result[9] = -x0;
-    result[10] = 0.0;
-    result[11] = 2.0*theta_dot*r;
-    result[12] = -(-(x0 + 2.0*theta_dot*r_dot))/r/r;
-    result[13] = -g*cos(theta)/r;
-    result[14] = -2.0*theta_dot/r;
-    result[15] = -2.0*r_dot/r;
+    result[10] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[11] = ELASTIC_PENDULUM_NUMBER(2.0)*theta_dot*r;
+    result[12] = -(-x1)/r/r;
+    result[13] = -g*elastic_pendulum_cos(theta)/r;
+    result[14] = -ELASTIC_PENDULUM_NUMBER(2.0)*theta_dot/r;
+    result[15] = -ELASTIC_PENDULUM_NUMBER(2.0)*r_dot/r;
     (void)t;
 }
 #endif
@@ -186,8 +244,10 @@ static inline void elastic_pendulum_energy(
     /* intermediate terms */
     const elastic_pendulum_real x0 = r*r;
     const elastic_pendulum_real x1 = c1 + k*x0 + m*r_dot*r_dot + m*theta_dot*theta_dot*x0;
+    const elastic_pendulum_real x2 =
+        ELASTIC_PENDULUM_NUMBER(0.5)*x1 - c0*r - c2*r*elastic_pendulum_cos(theta);
     /* outputs */
-    result[0] = 0.5*x1 - c0*r - c2*r*cos(theta);
+    result[0] = x2;
     (void)t;
 }
 #endif
@@ -222,8 +282,8 @@ static inline void elastic_pendulum_positions(
     const elastic_pendulum_real r = state[0];
     const elastic_pendulum_real theta = state[1];
     /* outputs */
-    result[0] = r*sin(theta);
-    result[1] = -r*cos(theta);
+    result[0] = r*elastic_pendulum_sin(theta);
+    result[1] = -r*elastic_pendulum_cos(theta);
     (void)t;
     (void)params;
 }
@@ -268,16 +328,17 @@ static inline void elastic_pendulum_rhs_hamiltonian(
     const elastic_pendulum_real l = params[2];
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = 1.0/m;
+    const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     const elastic_pendulum_real c1 = k*l;
     const elastic_pendulum_real c2 = m*g;
     /* intermediate terms */
     const elastic_pendulum_real x0 = c0*p_theta/r;
+    const elastic_pendulum_real x1 = c1 + c2*elastic_pendulum_cos(theta) - k*r + m*x0*x0/r;
     /* outputs */
     result[0] = c0*p_r;
     result[1] = x0/r;
-    result[2] = c1 + c2*cos(theta) - k*r + m*x0*x0/r;
-    result[3] = -c2*r*sin(theta);
+    result[2] = x1;
+    result[3] = -c2*r*elastic_pendulum_sin(theta);
     (void)t;
 }
 #endif
@@ -298,31 +359,32 @@ static inline void elastic_pendulum_jacobian_hamiltonian(
     const elastic_pendulum_real k = params[1];
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = 1.0/m;
+    const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     const elastic_pendulum_real c1 = m*g;
     /* intermediate terms */
     const elastic_pendulum_real x0 = c0*p_theta/r;
     const elastic_pendulum_real x1 = x0/r;
     const elastic_pendulum_real x2 = x1/r;
     const elastic_pendulum_real x3 = m*x0;
-    const elastic_pendulum_real x4 = -c1*sin(theta);
+    const elastic_pendulum_real x4 = k + ELASTIC_PENDULUM_NUMBER(4.0)*x1*x3/r - x0*x3/(r*r);
+    const elastic_pendulum_real x5 = -c1*elastic_pendulum_sin(theta);
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
+    result[0] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[1] = ELASTIC_PENDULUM_NUMBER(0.0);
     result[2] = c0;
-    result[3] = 0.0;
-    result[4] = -2.0*x2;
-    result[5] = 0.0;
-    result[6] = 0.0;
+    result[3] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[4] = -ELASTIC_PENDULUM_NUMBER(2.0)*x2;
+    result[5] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[6] = ELASTIC_PENDULUM_NUMBER(0.0);
     result[7] = c0/r/r;
-    result[8] = -(k + 4.0*x1*x3/r - x0*x3/(r*r));
-    result[9] = x4;
-    result[10] = 0.0;
-    result[11] = 2.0*x2;
-    result[12] = x4;
-    result[13] = -c1*r*cos(theta);
-    result[14] = 0.0;
-    result[15] = 0.0;
+    result[8] = -x4;
+    result[9] = x5;
+    result[10] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[11] = ELASTIC_PENDULUM_NUMBER(2.0)*x2;
+    result[12] = x5;
+    result[13] = -c1*r*elastic_pendulum_cos(theta);
+    result[14] = ELASTIC_PENDULUM_NUMBER(0.0);
+    result[15] = ELASTIC_PENDULUM_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -348,13 +410,14 @@ static inline void elastic_pendulum_energy_hamiltonian(
     const elastic_pendulum_real c0 = k*l;
     const elastic_pendulum_real c1 = l*c0;
     const elastic_pendulum_real c2 = m*g;
-    const elastic_pendulum_real c3 = 1.0/m;
+    const elastic_pendulum_real c3 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     /* intermediate terms */
     const elastic_pendulum_real x0 =
-        0.5*(c1 + k*r*r) - c0*r - c2*r*cos(theta)
-        + 0.5*(p_r*(c3*p_r) + p_theta*(c3*p_theta/r)/r);
+        ELASTIC_PENDULUM_NUMBER(0.5)*(c1 + k*r*r) - c0*r - c2*r*elastic_pendulum_cos(theta);
+    const elastic_pendulum_real x1 =
+        x0 + ELASTIC_PENDULUM_NUMBER(0.5)*(p_r*(c3*p_r) + p_theta*(c3*p_theta/r)/r);
     /* outputs */
-    result[0] = x0;
+    result[0] = x1;
     (void)t;
 }
 #endif
@@ -373,7 +436,7 @@ static inline void elastic_pendulum_lagrangian_state(
     const elastic_pendulum_real p_theta = state[3];
     const elastic_pendulum_real m = params[0];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = 1.0/m;
+    const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     /* outputs */
     result[0] = r;
     result[1] = theta;
@@ -397,8 +460,8 @@ static inline void elastic_pendulum_rational_state(
     const elastic_pendulum_real theta_dot = state[3];
     /* outputs */
     result[0] = r;
-    result[1] = sin(theta);
-    result[2] = cos(theta);
+    result[1] = elastic_pendulum_sin(theta);
+    result[2] = elastic_pendulum_cos(theta);
     result[3] = r_dot;
     result[4] = theta_dot;
     (void)t;
@@ -424,17 +487,19 @@ static inline void elastic_pendulum_rhs_rational(
     const elastic_pendulum_real l = params[2];
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = 1.0/m;
+    const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     const elastic_pendulum_real c1 = k*l;
     const elastic_pendulum_real c2 = m*g;
     /* intermediate terms */
     const elastic_pendulum_real x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos_theta - k*r);
+    const elastic_pendulum_real x1 =
+        ELASTIC_PENDULUM_NUMBER(2.0)*r_dot*theta_dot + g*sin_theta;
     /* outputs */
     result[0] = r_dot;
     result[1] = theta_dot*cos_theta;
     result[2] = -theta_dot*sin_theta;
     result[3] = c0*x0;
-    result[4] = -(2.0*r_dot*theta_dot + g*sin_theta)/r;
+    result[4] = -x1/r;
     (void)t;
 }
 
@@ -460,18 +525,21 @@ static inline void elastic_pendulum_rhs_variational(
     const elastic_pendulum_real l = params[2];
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = 1.0/m;
+    const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     const elastic_pendulum_real c1 = k*l;
     const elastic_pendulum_real c2 = m*g;
     /* intermediate terms */
     const elastic_pendulum_real x0 = m*theta_dot;
     const elastic_pendulum_real x1 = theta_dot*r;
-    const elastic_pendulum_real x2 = 2.0*r_dot*theta_dot + g*sin_theta;
+    const elastic_pendulum_real x2 =
+        ELASTIC_PENDULUM_NUMBER(2.0)*r_dot*theta_dot + g*sin_theta;
     const elastic_pendulum_real x3 = r*delta_theta_dot;
     const elastic_pendulum_real x4 =
-        delta_r*(k - theta_dot*x0) + c2*sin_theta*delta_theta - 2.0*x0*x3;
+        delta_r*(k - theta_dot*x0) + c2*sin_theta*delta_theta
+        - ELASTIC_PENDULUM_NUMBER(2.0)*x0*x3;
     const elastic_pendulum_real x5 =
-        g*cos_theta*r*delta_theta + 2.0*(delta_r_dot*x1 + r_dot*x3) - x2*delta_r;
+        g*cos_theta*r*delta_theta + ELASTIC_PENDULUM_NUMBER(2.0)*(delta_r_dot*x1 + r_dot*x3)
+        - x2*delta_r;
     /* outputs */
     result[0] = r_dot;
     result[1] = theta_dot*cos_theta;
@@ -497,7 +565,7 @@ static inline void elastic_pendulum_equilibrium(
     const elastic_pendulum_real l = params[2];
     const elastic_pendulum_real g = params[3];
     /* outputs */
-    result[0] = l + g*m*(1.0/k);
+    result[0] = l + g*m*(ELASTIC_PENDULUM_NUMBER(1.0)/k);
     result[1] = ELASTIC_PENDULUM_NUMBER(0.0);
 }
 
@@ -514,7 +582,7 @@ static inline void elastic_pendulum_linear(
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
     const elastic_pendulum_real c0 = m*g;
-    const elastic_pendulum_real c1 = l + 1.0/k*c0;
+    const elastic_pendulum_real c1 = l + ELASTIC_PENDULUM_NUMBER(1.0)/k*c0;
     /* outputs */
     result[0] = m;
     result[1] = ELASTIC_PENDULUM_NUMBER(0.0);

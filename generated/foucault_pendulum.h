@@ -79,10 +79,12 @@
        double state[4] = {...}, rate[4], params[5] = {28.0, 67.0, 9.81, 7.292e-05, 0.8527};
        foucault_pendulum_rhs(0.0, state, params, rate);
 
+   Indices have names: state[FOUCAULT_PENDULUM_LAGRANGIAN_x].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_FOUCAULT_PENDULUM_H
 #define HOLONOMIC_FOUCAULT_PENDULUM_H
@@ -101,6 +103,65 @@ enum {
     FOUCAULT_PENDULUM_VARIATIONAL_STATE = 8,
     FOUCAULT_PENDULUM_PARAMETERS = 5,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    FOUCAULT_PENDULUM_PARAMETER_m, FOUCAULT_PENDULUM_PARAMETER_l,
+    FOUCAULT_PENDULUM_PARAMETER_g, FOUCAULT_PENDULUM_PARAMETER_Omega,
+    FOUCAULT_PENDULUM_PARAMETER_latitude
+};
+enum {
+    FOUCAULT_PENDULUM_LAGRANGIAN_x, FOUCAULT_PENDULUM_LAGRANGIAN_y,
+    FOUCAULT_PENDULUM_LAGRANGIAN_x_dot, FOUCAULT_PENDULUM_LAGRANGIAN_y_dot
+};
+enum {
+    FOUCAULT_PENDULUM_HAMILTONIAN_x, FOUCAULT_PENDULUM_HAMILTONIAN_y,
+    FOUCAULT_PENDULUM_HAMILTONIAN_p_x, FOUCAULT_PENDULUM_HAMILTONIAN_p_y
+};
+enum {
+    FOUCAULT_PENDULUM_VARIATIONAL_x, FOUCAULT_PENDULUM_VARIATIONAL_y,
+    FOUCAULT_PENDULUM_VARIATIONAL_x_dot, FOUCAULT_PENDULUM_VARIATIONAL_y_dot,
+    FOUCAULT_PENDULUM_VARIATIONAL_delta_x, FOUCAULT_PENDULUM_VARIATIONAL_delta_y,
+    FOUCAULT_PENDULUM_VARIATIONAL_delta_x_dot, FOUCAULT_PENDULUM_VARIATIONAL_delta_y_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(foucault_pendulum_real *)0)[0]) foucault_pendulum_number;
+static inline foucault_pendulum_real foucault_pendulum_splat(foucault_pendulum_number x)
+{
+    const foucault_pendulum_real zero = {0};
+    return zero + x;
+}
+#define FOUCAULT_PENDULUM_NUMBER(x) foucault_pendulum_splat((foucault_pendulum_number)x)
+#else
+typedef foucault_pendulum_real foucault_pendulum_number;
+#define FOUCAULT_PENDULUM_NUMBER(x) \
+    (sizeof(foucault_pendulum_number) > sizeof(double) ? (foucault_pendulum_number)x##L \
+        : (foucault_pendulum_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline foucault_pendulum_real foucault_pendulum_cos(foucault_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (foucault_pendulum_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (foucault_pendulum_real)cos((double)x)
+        : (foucault_pendulum_real)cosf((float)x);
+}
+static inline foucault_pendulum_real foucault_pendulum_sin(foucault_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (foucault_pendulum_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (foucault_pendulum_real)sin((double)x)
+        : (foucault_pendulum_real)sinf((float)x);
+}
+static inline foucault_pendulum_real foucault_pendulum_sqrt(foucault_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (foucault_pendulum_real)sqrtl((long double)x)
+        : sizeof(x) > sizeof(float) ? (foucault_pendulum_real)sqrt((double)x)
+        : (foucault_pendulum_real)sqrtf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -122,13 +183,13 @@ static inline void foucault_pendulum_rhs(
     const foucault_pendulum_real latitude = params[4];
     /* terms of the parameters alone */
     const foucault_pendulum_real c0 = l*l;
-    const foucault_pendulum_real sin_latitude = sin(latitude);
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c1 = Omega*Omega;
-    const foucault_pendulum_real c2 = 2.0*latitude;
-    const foucault_pendulum_real cos_c2 = cos(c2);
-    const foucault_pendulum_real c3 = cos_c2 - 1.0;
-    const foucault_pendulum_real sin_c2 = sin(c2);
+    const foucault_pendulum_real c2 = FOUCAULT_PENDULUM_NUMBER(2.0)*latitude;
+    const foucault_pendulum_real cos_c2 = foucault_pendulum_cos(c2);
+    const foucault_pendulum_real c3 = cos_c2 - FOUCAULT_PENDULUM_NUMBER(1.0);
+    const foucault_pendulum_real sin_c2 = foucault_pendulum_sin(c2);
     /* intermediate terms */
     const foucault_pendulum_real x0 = x*x;
     const foucault_pendulum_real x1 = y*y;
@@ -139,7 +200,7 @@ static inline void foucault_pendulum_rhs(
     const foucault_pendulum_real x6 = x*y;
     const foucault_pendulum_real x7 = y*x6;
     const foucault_pendulum_real x8 = cos_latitude*y;
-    const foucault_pendulum_real x9 = sqrt(-x2);
+    const foucault_pendulum_real x9 = foucault_pendulum_sqrt(-x2);
     const foucault_pendulum_real x10 = x*x6;
     const foucault_pendulum_real x11 = x9*x9;
     const foucault_pendulum_real x12 = x9*x11;
@@ -148,21 +209,28 @@ static inline void foucault_pendulum_rhs(
     const foucault_pendulum_real x15 = sin_latitude - x8*(x11 - x0)/x12;
     const foucault_pendulum_real x16 = x_dot*y_dot;
     const foucault_pendulum_real x17 =
-        x*(x2 - x0)*x3/x4 + x5*x7/x4 + x13*x14 + x15*x14 - 0.5*c1*x*(c3 + sin_c2*y/x9)
-        - 2.0*x10*x16/x4 - x*(2.0*x1 - x2)*x5/x4;
+        x*(x2 - x0)*x3/x4 + x5*x7/x4 + x13*x14 + x15*x14
+        - FOUCAULT_PENDULUM_NUMBER(0.5)*c1*x*(c3 + sin_c2*y/x9)
+        - FOUCAULT_PENDULUM_NUMBER(2.0)*x10*x16/x4
+        - x*(FOUCAULT_PENDULUM_NUMBER(2.0)*x1 - x2)*x5/x4;
     const foucault_pendulum_real x18 = Omega*x_dot;
     const foucault_pendulum_real x19 =
-        x15*x18 + 0.5*c1*(2.0*cos_c2*y - sin_c2*(x9 - x1/x9)) + 2.0*x16*x7/x4 + x13*x18
-        - x10*x3/x4 - y*(x2 - x1)*x5/x4 - y*(x2 - 2.0*x0)*x3/x4;
-    const foucault_pendulum_real x20 = x19 + g*y/x9;
-    const foucault_pendulum_real x21 = m*(1.0/(m*(1.0 - x1/x2)));
+        FOUCAULT_PENDULUM_NUMBER(2.0)*cos_c2*y - sin_c2*(x9 - x1/x9);
+    const foucault_pendulum_real x20 =
+        x15*x18 + FOUCAULT_PENDULUM_NUMBER(0.5)*c1*x19
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*x16*x7/x4 + x13*x18 - x10*x3/x4 - y*(x2 - x1)*x5/x4
+        - y*(x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x0)*x3/x4;
+    const foucault_pendulum_real x21 = x20 + g*y/x9;
     const foucault_pendulum_real x22 =
-        m*(x17 - g*x/x9 - x20*x6*x21/x2)/(m*(1.0 - x0/x2 - y*x10*x21/x4));
+        FOUCAULT_PENDULUM_NUMBER(1.0)/(m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x2));
+    const foucault_pendulum_real x23 = m*x22;
+    const foucault_pendulum_real x24 = FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x2 - y*x10*x23/x4;
+    const foucault_pendulum_real x25 = m*(x17 - g*x/x9 - x21*x6*x23/x2)/(m*x24);
     /* outputs */
     result[0] = x_dot;
     result[1] = y_dot;
-    result[2] = x22;
-    result[3] = -(x20 - x22*x6/x2)*x21;
+    result[2] = x25;
+    result[3] = -(x21 - x25*x6/x2)*x23;
     (void)t;
 }
 #endif
@@ -187,124 +255,158 @@ static inline void foucault_pendulum_jacobian(
     const foucault_pendulum_real latitude = params[4];
     /* terms of the parameters alone */
     const foucault_pendulum_real c0 = l*l;
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c1 = Omega*cos_latitude;
     const foucault_pendulum_real c2 = Omega*Omega;
-    const foucault_pendulum_real c3 = 2.0*latitude;
-    const foucault_pendulum_real cos_c3 = cos(c3);
-    const foucault_pendulum_real c4 = cos_c3 - 1.0;
-    const foucault_pendulum_real sin_c3 = sin(c3);
-    const foucault_pendulum_real sin_latitude = sin(latitude);
+    const foucault_pendulum_real c3 = FOUCAULT_PENDULUM_NUMBER(2.0)*latitude;
+    const foucault_pendulum_real cos_c3 = foucault_pendulum_cos(c3);
+    const foucault_pendulum_real c4 = cos_c3 - FOUCAULT_PENDULUM_NUMBER(1.0);
+    const foucault_pendulum_real sin_c3 = foucault_pendulum_sin(c3);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
     const foucault_pendulum_real c5 = sin_c3*c2;
     /* intermediate terms */
     const foucault_pendulum_real x0 = x*x;
     const foucault_pendulum_real x1 = y*y;
     const foucault_pendulum_real x2 = x0 + x1 - c0;
     const foucault_pendulum_real x3 = x2 - x0;
-    const foucault_pendulum_real x4 = x2 - 4.0*x0;
+    const foucault_pendulum_real x4 = x2 - FOUCAULT_PENDULUM_NUMBER(4.0)*x0;
     const foucault_pendulum_real x5 = x_dot*x_dot;
     const foucault_pendulum_real x6 = x2*x2;
     const foucault_pendulum_real x7 = x2*x6;
     const foucault_pendulum_real x8 = y_dot*y_dot;
     const foucault_pendulum_real x9 = x1*x4;
-    const foucault_pendulum_real x10 = x1 - 0.5*x2;
-    const foucault_pendulum_real x11 = 2.0*x10;
-    const foucault_pendulum_real x12 = sqrt(-x2);
-    const foucault_pendulum_real x13 = x12*x12;
-    const foucault_pendulum_real x14 = x13 - x0;
-    const foucault_pendulum_real x15 = 4.0*x13 - 3.0*x14;
-    const foucault_pendulum_real x16 = x*y;
-    const foucault_pendulum_real x17 = c1*y_dot;
-    const foucault_pendulum_real x18 = x16*x17;
-    const foucault_pendulum_real x19 = x12*x13;
-    const foucault_pendulum_real x20 = x13*x19;
-    const foucault_pendulum_real x21 = x13 + (3.0*x0 + 2.0*x13);
-    const foucault_pendulum_real x22 = sin_c3*y;
-    const foucault_pendulum_real x23 = c4 + x22/x12;
-    const foucault_pendulum_real x24 = x*x16;
-    const foucault_pendulum_real x25 = x2 - 2.0*x0;
-    const foucault_pendulum_real x26 = x_dot*x16;
-    const foucault_pendulum_real x27 = y_dot*x26;
-    const foucault_pendulum_real x28 =
-        x3*x4*x5/x7 + x8*x9/x7 + (4.0*x0*x11 + 2.0*x0*x2 - x2*x11)*x8/x7 + x15*x18/x20
-        - x21*x18/x20 - 0.5*c2*(x23 + sin_c3*x24/x19) - 4.0*x25*x27/x7;
-    const foucault_pendulum_real x29 = x*x3;
-    const foucault_pendulum_real x30 = x16*x8;
-    const foucault_pendulum_real x31 = cos_latitude*y;
-    const foucault_pendulum_real x32 =
-        Omega*(sin_latitude - x31/x12 - cos_latitude*x24/x19);
-    const foucault_pendulum_real x33 = Omega*(sin_latitude - x14*x31/x19);
-    const foucault_pendulum_real x34 = x*x11;
-    const foucault_pendulum_real x35 =
-        x5*x29/x6 + y*x30/x6 + y_dot*x32 + y_dot*x33 - 0.5*c2*x*x23 - 2.0*x*x27/x6
-        - x8*x34/x6;
-    const foucault_pendulum_real x36 = x_dot*x26;
-    const foucault_pendulum_real x37 = x2 - x1;
-    const foucault_pendulum_real x38 = y*x37;
-    const foucault_pendulum_real x39 = y*x25;
-    const foucault_pendulum_real x40 =
-        x_dot*x33 + 0.5*c2*(2.0*cos_c3*y - sin_c3*(x12 - x1/x12)) + 2.0*y*x27/x6 + x_dot*x32
-        - x*x36/x6 - x8*x38/x6 - x5*x39/x6;
-    const foucault_pendulum_real x41 = x40 + g*y/x12;
-    const foucault_pendulum_real x42 = m*(1.0/(m*(1.0 - x1/x2)));
-    const foucault_pendulum_real x43 = x16*x42;
-    const foucault_pendulum_real x44 = m*(1.0 - x0/x2 - x16*x43/x6);
-    const foucault_pendulum_real x45 = m*(x35 - g*x/x12 - x41*x43/x2)/x44;
-    const foucault_pendulum_real x46 = x45*x16;
-    const foucault_pendulum_real x47 = (x41 - x46/x2)*x42;
-    const foucault_pendulum_real x48 = x28 - g*(x0 + x13)/x19 + (2.0*x45*x29 - x47*x39)/x6;
-    const foucault_pendulum_real x49 = c1*x26;
-    const foucault_pendulum_real x50 = x1 + x13;
-    const foucault_pendulum_real x51 = c5*x*x50/x19;
-    const foucault_pendulum_real x52 = x_dot*y_dot;
-    const foucault_pendulum_real x53 =
-        (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x52/x7 - x25*x36/x7;
-    const foucault_pendulum_real x54 = g*x16/x19;
-    const foucault_pendulum_real x55 = x15*x49/x20 + 0.5*x51 + 2.0*x53 - x21*x49/x20 + x54;
-    const foucault_pendulum_real x56 = x55 - y*(x25*x45 + 2.0*x47*x16)/x6;
-    const foucault_pendulum_real x57 = m*(x48 - x56*x43/x2)/x44;
-    const foucault_pendulum_real x58 = x13*x50 + x0*(3.0*x1 + x13);
-    const foucault_pendulum_real x59 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13;
-    const foucault_pendulum_real x60 = -2.0*x10;
-    const foucault_pendulum_real x61 = x1 - 0.25*x2;
-    const foucault_pendulum_real x62 =
-        (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x60*x30/x7 - x0*(4.0*x61)*x52/x7;
-    const foucault_pendulum_real x63 =
-        x54 + (0.5*x51 + x58*x17/x20 + x59*x17/x20 + 2.0*x62);
-    const foucault_pendulum_real x64 = -4.0*x61;
-    const foucault_pendulum_real x65 = c1*x_dot;
-    const foucault_pendulum_real x66 =
-        x0*x64*x5/x7 + x59*x65/x20 + x37*x64*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
-        + x58*x65/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
-        - 4.0*x60*x27/x7;
-    const foucault_pendulum_real x67 = x66 - g*x50/x19 - (x45*x34 + 2.0*x47*x38)/x6;
-    const foucault_pendulum_real x68 = m*(x63 + x*(2.0*x46 - x11*x47)/x6 - x67*x43/x2)/x44;
-    const foucault_pendulum_real x69 = y_dot*x16;
-    const foucault_pendulum_real x70 = x*x26/x6 - y*x69/x6;
-    const foucault_pendulum_real x71 = x33 + x32;
-    const foucault_pendulum_real x72 = 2.0*(-(x_dot*x39/x6 + x70)) + x71;
-    const foucault_pendulum_real x73 = y*x42;
-    const foucault_pendulum_real x74 = m*x*(2.0*(x_dot*x3 - x69) - x2*x72*x73)/(x6*x44);
-    const foucault_pendulum_real x75 = y_dot*x37 - x26;
-    const foucault_pendulum_real x76 = 2.0*(-(y_dot*x34/x6 + x70)) + x71 + 2.0*y*x75*x43/x7;
-    const foucault_pendulum_real x77 = m*x76/x44;
+    const foucault_pendulum_real x10 = x1 - FOUCAULT_PENDULUM_NUMBER(0.5)*x2;
+    const foucault_pendulum_real x11 = FOUCAULT_PENDULUM_NUMBER(2.0)*x10;
+    const foucault_pendulum_real x12 =
+        FOUCAULT_PENDULUM_NUMBER(4.0)*x0*x11 + FOUCAULT_PENDULUM_NUMBER(2.0)*x0*x2 - x2*x11;
+    const foucault_pendulum_real x13 = foucault_pendulum_sqrt(-x2);
+    const foucault_pendulum_real x14 = x13*x13;
+    const foucault_pendulum_real x15 = x14 - x0;
+    const foucault_pendulum_real x16 =
+        FOUCAULT_PENDULUM_NUMBER(4.0)*x14 - FOUCAULT_PENDULUM_NUMBER(3.0)*x15;
+    const foucault_pendulum_real x17 = x*y;
+    const foucault_pendulum_real x18 = c1*y_dot;
+    const foucault_pendulum_real x19 = x17*x18;
+    const foucault_pendulum_real x20 = x13*x14;
+    const foucault_pendulum_real x21 = x14*x20;
+    const foucault_pendulum_real x22 =
+        FOUCAULT_PENDULUM_NUMBER(3.0)*x0 + FOUCAULT_PENDULUM_NUMBER(2.0)*x14;
+    const foucault_pendulum_real x23 = x14 + x22;
+    const foucault_pendulum_real x24 = sin_c3*y;
+    const foucault_pendulum_real x25 = c4 + x24/x13;
+    const foucault_pendulum_real x26 = x*x17;
+    const foucault_pendulum_real x27 = x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x0;
+    const foucault_pendulum_real x28 = x_dot*x17;
+    const foucault_pendulum_real x29 = y_dot*x28;
+    const foucault_pendulum_real x30 =
+        x3*x4*x5/x7 + x8*x9/x7 + x12*x8/x7 + x16*x19/x21 - x23*x19/x21
+        - FOUCAULT_PENDULUM_NUMBER(0.5)*c2*(x25 + sin_c3*x26/x20)
+        - FOUCAULT_PENDULUM_NUMBER(4.0)*x27*x29/x7;
+    const foucault_pendulum_real x31 = x*x3;
+    const foucault_pendulum_real x32 = x17*x8;
+    const foucault_pendulum_real x33 = cos_latitude*y;
+    const foucault_pendulum_real x34 =
+        Omega*(sin_latitude - x33/x13 - cos_latitude*x26/x20);
+    const foucault_pendulum_real x35 = Omega*(sin_latitude - x15*x33/x20);
+    const foucault_pendulum_real x36 = x*x11;
+    const foucault_pendulum_real x37 =
+        x5*x31/x6 + y*x32/x6 + y_dot*x34 + y_dot*x35
+        - FOUCAULT_PENDULUM_NUMBER(0.5)*c2*x*x25 - FOUCAULT_PENDULUM_NUMBER(2.0)*x*x29/x6
+        - x8*x36/x6;
+    const foucault_pendulum_real x38 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*cos_c3*y - sin_c3*(x13 - x1/x13);
+    const foucault_pendulum_real x39 = x_dot*x28;
+    const foucault_pendulum_real x40 = x2 - x1;
+    const foucault_pendulum_real x41 = y*x40;
+    const foucault_pendulum_real x42 = y*x27;
+    const foucault_pendulum_real x43 =
+        x_dot*x35 + FOUCAULT_PENDULUM_NUMBER(0.5)*c2*x38
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*y*x29/x6 + x_dot*x34 - x*x39/x6 - x8*x41/x6
+        - x5*x42/x6;
+    const foucault_pendulum_real x44 = x43 + g*y/x13;
+    const foucault_pendulum_real x45 =
+        FOUCAULT_PENDULUM_NUMBER(1.0)/(m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x2));
+    const foucault_pendulum_real x46 = m*x45;
+    const foucault_pendulum_real x47 = x17*x46;
+    const foucault_pendulum_real x48 = FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x2 - x17*x47/x6;
+    const foucault_pendulum_real x49 = m*x48;
+    const foucault_pendulum_real x50 = m*(x37 - g*x/x13 - x44*x47/x2)/x49;
+    const foucault_pendulum_real x51 = x50*x17;
+    const foucault_pendulum_real x52 = (x44 - x51/x2)*x46;
+    const foucault_pendulum_real x53 = (FOUCAULT_PENDULUM_NUMBER(2.0)*x50*x31 - x52*x42)/x6;
+    const foucault_pendulum_real x54 = c1*x28;
+    const foucault_pendulum_real x55 = x1 + x14;
+    const foucault_pendulum_real x56 = c5*x*x55/x20;
+    const foucault_pendulum_real x57 = x_dot*y_dot;
+    const foucault_pendulum_real x58 =
+        (FOUCAULT_PENDULUM_NUMBER(2.0)*x40 - x2)*x32/x7
+        + (x2 + FOUCAULT_PENDULUM_NUMBER(2.0)*x27)*x39/x7 + x9*x57/x7 - x27*x39/x7;
+    const foucault_pendulum_real x59 =
+        x16*x54/x21 + FOUCAULT_PENDULUM_NUMBER(0.5)*x56 + FOUCAULT_PENDULUM_NUMBER(2.0)*x58
+        - x23*x54/x21;
+    const foucault_pendulum_real x60 = g*x17/x20;
+    const foucault_pendulum_real x61 = y*(x27*x50 + FOUCAULT_PENDULUM_NUMBER(2.0)*x52*x17);
+    const foucault_pendulum_real x62 = x59 + x60 - x61/x6;
+    const foucault_pendulum_real x63 = m*(x30 - g*(x0 + x14)/x20 + x53 - x62*x47/x2)/x49;
+    const foucault_pendulum_real x64 =
+        x14*x55 + x0*(FOUCAULT_PENDULUM_NUMBER(3.0)*x1 + x14);
+    const foucault_pendulum_real x65 =
+        x14*x15 + FOUCAULT_PENDULUM_NUMBER(3.0)*x1*x15
+        - FOUCAULT_PENDULUM_NUMBER(2.0)*x1*x14;
+    const foucault_pendulum_real x66 = -FOUCAULT_PENDULUM_NUMBER(2.0)*x10;
+    const foucault_pendulum_real x67 = x1 - FOUCAULT_PENDULUM_NUMBER(0.25)*x2;
+    const foucault_pendulum_real x68 =
+        (x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x11)*x32/x7
+        - (x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x3)*x39/x7 - x66*x32/x7
+        - x0*(FOUCAULT_PENDULUM_NUMBER(4.0)*x67)*x57/x7;
+    const foucault_pendulum_real x69 =
+        FOUCAULT_PENDULUM_NUMBER(0.5)*x56 + x64*x18/x21 + x65*x18/x21
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*x68;
+    const foucault_pendulum_real x70 = x*(FOUCAULT_PENDULUM_NUMBER(2.0)*x51 - x11*x52)/x6;
+    const foucault_pendulum_real x71 = -FOUCAULT_PENDULUM_NUMBER(4.0)*x67;
+    const foucault_pendulum_real x72 = c1*x_dot;
+    const foucault_pendulum_real x73 =
+        x2*x27 + FOUCAULT_PENDULUM_NUMBER(2.0)*x1*x2 - FOUCAULT_PENDULUM_NUMBER(4.0)*x1*x27;
+    const foucault_pendulum_real x74 = x24*(x14 + (x1 + FOUCAULT_PENDULUM_NUMBER(2.0)*x14));
+    const foucault_pendulum_real x75 = c2*(FOUCAULT_PENDULUM_NUMBER(2.0)*cos_c3 + x74/x20);
+    const foucault_pendulum_real x76 =
+        x0*x71*x5/x7 + x65*x72/x21 + x40*x71*x8/x7 + x73*x5/x7 + x64*x72/x21
+        - FOUCAULT_PENDULUM_NUMBER(0.5)*x75 - FOUCAULT_PENDULUM_NUMBER(4.0)*x66*x29/x7;
+    const foucault_pendulum_real x77 = (x50*x36 + FOUCAULT_PENDULUM_NUMBER(2.0)*x52*x41)/x6;
+    const foucault_pendulum_real x78 = x76 - g*x55/x20 - x77;
+    const foucault_pendulum_real x79 = m*(x60 + x69 + x70 - x78*x47/x2)/x49;
+    const foucault_pendulum_real x80 = y_dot*x17;
+    const foucault_pendulum_real x81 = x*x28/x6 - y*x80/x6;
+    const foucault_pendulum_real x82 = x35 + x34;
+    const foucault_pendulum_real x83 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*(-(x_dot*x42/x6 + x81)) + x82;
+    const foucault_pendulum_real x84 = y*x46;
+    const foucault_pendulum_real x85 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*(x_dot*x3 - x80) - x2*x83*x84;
+    const foucault_pendulum_real x86 = m*x*x85/(x6*x49);
+    const foucault_pendulum_real x87 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*(-(y_dot*x36/x6 + x81)) + x82;
+    const foucault_pendulum_real x88 = y_dot*x40 - x28;
+    const foucault_pendulum_real x89 = m*(x87 + FOUCAULT_PENDULUM_NUMBER(2.0)*y*x88*x47/x7);
+    const foucault_pendulum_real x90 = x89/x49;
+    const foucault_pendulum_real x91 = (FOUCAULT_PENDULUM_NUMBER(2.0)*x88 + x*x2*x90)*x84;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
-    result[8] = x57;
-    result[9] = -x68;
-    result[10] = x74;
-    result[11] = x77;
-    result[12] = -(x56 - x57*x16/x2)*x42;
-    result[13] = (x67 - x68*x16/x2)*x42;
-    result[14] = -(x72 - x74*x16/x2)*x42;
-    result[15] = (2.0*x75 + x*x2*x77)*x73/x6;
+    result[0] = FOUCAULT_PENDULUM_NUMBER(0.0);
+    result[1] = FOUCAULT_PENDULUM_NUMBER(0.0);
+    result[2] = FOUCAULT_PENDULUM_NUMBER(1.0);
+    result[3] = FOUCAULT_PENDULUM_NUMBER(0.0);
+    result[4] = FOUCAULT_PENDULUM_NUMBER(0.0);
+    result[5] = FOUCAULT_PENDULUM_NUMBER(0.0);
+    result[6] = FOUCAULT_PENDULUM_NUMBER(0.0);
+    result[7] = FOUCAULT_PENDULUM_NUMBER(1.0);
+    result[8] = x63;
+    result[9] = -x79;
+    result[10] = x86;
+    result[11] = x90;
+    result[12] = -(x62 - x63*x17/x2)*x46;
+    result[13] = (x78 - x79*x17/x2)*x46;
+    result[14] = -(x83 - x86*x17/x2)*x46;
+    result[15] = x91/x6;
     (void)t;
 }
 #endif
@@ -330,20 +432,24 @@ static inline void foucault_pendulum_energy(
     /* terms of the parameters alone */
     const foucault_pendulum_real c0 = l*l;
     const foucault_pendulum_real c1 = Omega*Omega;
-    const foucault_pendulum_real c2 = 2.0*latitude;
-    const foucault_pendulum_real sin_c2 = sin(c2);
-    const foucault_pendulum_real cos_c2 = cos(c2);
+    const foucault_pendulum_real c2 = FOUCAULT_PENDULUM_NUMBER(2.0)*latitude;
+    const foucault_pendulum_real sin_c2 = foucault_pendulum_sin(c2);
+    const foucault_pendulum_real cos_c2 = foucault_pendulum_cos(c2);
     /* intermediate terms */
     const foucault_pendulum_real x0 = y*y;
     const foucault_pendulum_real x1 = x*x;
     const foucault_pendulum_real x2 = x1 - c0;
     const foucault_pendulum_real x3 = x0 + x2;
-    const foucault_pendulum_real x4 = sqrt(-x3);
-    const foucault_pendulum_real x5 = sin_c2*y*x4 + 0.5*(c0 + x1 - cos_c2*(2.0*x0 + x2));
-    const foucault_pendulum_real x6 =
-        c1*x5 - x_dot*x_dot*(1.0 - x1/x3) - y_dot*y_dot*(1.0 - x0/x3);
+    const foucault_pendulum_real x4 = foucault_pendulum_sqrt(-x3);
+    const foucault_pendulum_real x5 =
+        c0 + x1 - cos_c2*(FOUCAULT_PENDULUM_NUMBER(2.0)*x0 + x2);
+    const foucault_pendulum_real x6 = c1*(sin_c2*y*x4 + FOUCAULT_PENDULUM_NUMBER(0.5)*x5);
+    const foucault_pendulum_real x7 = x_dot*x_dot*(FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x3);
+    const foucault_pendulum_real x8 = y_dot*y_dot*(FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x3);
+    const foucault_pendulum_real x9 =
+        g*x4 + x_dot*x*y*y_dot/x3 + FOUCAULT_PENDULUM_NUMBER(0.5)*(x6 - x7 - x8);
     /* outputs */
-    result[0] = -m*(g*x4 + x_dot*x*y*y_dot/x3 + 0.5*x6);
+    result[0] = -m*x9;
     (void)t;
 }
 #endif
@@ -368,10 +474,10 @@ static inline void foucault_pendulum_mass_matrix(
     const foucault_pendulum_real x2 = x0 + x1 - c0;
     const foucault_pendulum_real x3 = -m*x*y/x2;
     /* outputs */
-    result[0] = m*(1.0 - x0/x2);
+    result[0] = m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x2);
     result[1] = x3;
     result[2] = x3;
-    result[3] = m*(1.0 - x1/x2);
+    result[3] = m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x2);
     (void)t;
 }
 
@@ -390,15 +496,15 @@ static inline void foucault_pendulum_positions(
     const foucault_pendulum_real Omega = params[3];
     const foucault_pendulum_real latitude = params[4];
     /* terms of the parameters alone */
-    const foucault_pendulum_real sin_latitude = sin(latitude);
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c0 = l*l;
     /* intermediate terms */
-    const foucault_pendulum_real x0 = sqrt(-(x*x + y*y - c0));
+    const foucault_pendulum_real x0 = foucault_pendulum_sqrt(-(x*x + y*y - c0));
     const foucault_pendulum_real x1 = sin_latitude*y + cos_latitude*x0;
     const foucault_pendulum_real x2 = Omega*t;
-    const foucault_pendulum_real cos_x2 = cos(x2);
-    const foucault_pendulum_real sin_x2 = sin(x2);
+    const foucault_pendulum_real cos_x2 = foucault_pendulum_cos(x2);
+    const foucault_pendulum_real sin_x2 = foucault_pendulum_sin(x2);
     /* outputs */
     result[0] = -(x1*cos_x2 + x*sin_x2);
     result[1] = x*cos_x2 - x1*sin_x2;
@@ -424,23 +530,26 @@ static inline void foucault_pendulum_hamiltonian_state(
     const foucault_pendulum_real Omega = params[3];
     const foucault_pendulum_real latitude = params[4];
     /* terms of the parameters alone */
-    const foucault_pendulum_real sin_latitude = sin(latitude);
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c0 = l*l;
     /* intermediate terms */
     const foucault_pendulum_real x0 = x*x;
     const foucault_pendulum_real x1 = y*y;
     const foucault_pendulum_real x2 = x0 + x1 - c0;
-    const foucault_pendulum_real x3 = sqrt(-x2);
+    const foucault_pendulum_real x3 = foucault_pendulum_sqrt(-x2);
     const foucault_pendulum_real x4 = Omega*(sin_latitude*y + cos_latitude*(x3 + x0/x3));
     const foucault_pendulum_real x5 = x*y;
     const foucault_pendulum_real x6 =
-        y_dot*(1.0 - x1/x2) + Omega*x*(sin_latitude - cos_latitude*y/x3) - x_dot*x5/x2;
+        x4 + y_dot*x5/x2 - x_dot*(FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x2);
+    const foucault_pendulum_real x7 =
+        y_dot*(FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x2)
+        + Omega*x*(sin_latitude - cos_latitude*y/x3) - x_dot*x5/x2;
     /* outputs */
     result[0] = x;
     result[1] = y;
-    result[2] = -m*(x4 + y_dot*x5/x2 - x_dot*(1.0 - x0/x2));
-    result[3] = m*x6;
+    result[2] = -m*x6;
+    result[3] = m*x7;
     (void)t;
 }
 #endif
@@ -465,50 +574,57 @@ static inline void foucault_pendulum_rhs_hamiltonian(
     const foucault_pendulum_real latitude = params[4];
     /* terms of the parameters alone */
     const foucault_pendulum_real c0 = m*Omega;
-    const foucault_pendulum_real sin_latitude = sin(latitude);
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c1 = l*l;
     const foucault_pendulum_real c2 = Omega*Omega;
-    const foucault_pendulum_real c3 = 2.0*latitude;
-    const foucault_pendulum_real cos_c3 = cos(c3);
-    const foucault_pendulum_real c4 = cos_c3 - 1.0;
-    const foucault_pendulum_real sin_c3 = sin(c3);
+    const foucault_pendulum_real c3 = FOUCAULT_PENDULUM_NUMBER(2.0)*latitude;
+    const foucault_pendulum_real cos_c3 = foucault_pendulum_cos(c3);
+    const foucault_pendulum_real c4 = cos_c3 - FOUCAULT_PENDULUM_NUMBER(1.0);
+    const foucault_pendulum_real sin_c3 = foucault_pendulum_sin(c3);
     const foucault_pendulum_real c5 = Omega*cos_latitude;
     /* intermediate terms */
     const foucault_pendulum_real x0 = x*x;
     const foucault_pendulum_real x1 = y*y;
     const foucault_pendulum_real x2 = x0 + x1 - c1;
-    const foucault_pendulum_real x3 = sqrt(-x2);
+    const foucault_pendulum_real x3 = foucault_pendulum_sqrt(-x2);
     const foucault_pendulum_real x4 = p_x + c0*(sin_latitude*y + cos_latitude*(x3 + x0/x3));
     const foucault_pendulum_real x5 = cos_latitude*y;
     const foucault_pendulum_real x6 = sin_latitude - x5/x3;
     const foucault_pendulum_real x7 = p_y - c0*x*x6;
-    const foucault_pendulum_real x8 = 1.0/(m*(1.0 - x1/x2));
+    const foucault_pendulum_real x8 =
+        FOUCAULT_PENDULUM_NUMBER(1.0)/(m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x2));
     const foucault_pendulum_real x9 = x*y;
     const foucault_pendulum_real x10 = m*x9;
     const foucault_pendulum_real x11 = x8*x10;
     const foucault_pendulum_real x12 = x2*x2;
-    const foucault_pendulum_real x13 = (x4 + x7*x11/x2)/(m*(1.0 - x0/x2 - x9*x11/x12));
-    const foucault_pendulum_real x14 = x8*(x7 + x13*x10/x2);
-    const foucault_pendulum_real x15 = x*x13;
-    const foucault_pendulum_real x16 = x13*x15;
-    const foucault_pendulum_real x17 = y*x14;
-    const foucault_pendulum_real x18 = x3*x3;
-    const foucault_pendulum_real x19 = x3*x18;
-    const foucault_pendulum_real x20 = x14*x17;
+    const foucault_pendulum_real x13 = FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x2 - x9*x11/x12;
+    const foucault_pendulum_real x14 = (x4 + x7*x11/x2)/(m*x13);
+    const foucault_pendulum_real x15 = x8*(x7 + x14*x10/x2);
+    const foucault_pendulum_real x16 = x*x14;
+    const foucault_pendulum_real x17 = x14*x16;
+    const foucault_pendulum_real x18 = y*x15;
+    const foucault_pendulum_real x19 = x14*(x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x0)*x18/x12;
+    const foucault_pendulum_real x20 = x3*x3;
     const foucault_pendulum_real x21 =
-        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y/x3) + (x2 - x0)*x16/x12 + x13*(x2 - 2.0*x0)*x17/x12
-        - c5*(x18 - (x0 + 2.0*x18))*x15/x19 - x9*x20/x12
-        - Omega*x14*(x6 - cos_latitude*x*x9/x19);
-    const foucault_pendulum_real x22 =
-        g*y/x3 + 0.5*c2*(2.0*cos_c3*y - sin_c3*(x3 - x1/x3))
-        + Omega*x13*(sin_latitude - x5*(x18 - x0)/x19) + (x2 - x1)*x20/x12
-        + c5*x*x14*(x1 + x18)/x19 - x9*x16/x12 - x14*(2.0*x1 - x2)*x15/x12;
+        c5*(x20 - (x0 + FOUCAULT_PENDULUM_NUMBER(2.0)*x20))*x16;
+    const foucault_pendulum_real x22 = x3*x20;
+    const foucault_pendulum_real x23 = x15*x18;
+    const foucault_pendulum_real x24 =
+        g*x/x3 + FOUCAULT_PENDULUM_NUMBER(0.5)*c2*x*(c4 + sin_c3*y/x3) + (x2 - x0)*x17/x12
+        + x19 - x21/x22 - x9*x23/x12 - Omega*x15*(x6 - cos_latitude*x*x9/x22);
+    const foucault_pendulum_real x25 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*cos_c3*y - sin_c3*(x3 - x1/x3);
+    const foucault_pendulum_real x26 = x15*(FOUCAULT_PENDULUM_NUMBER(2.0)*x1 - x2)*x16/x12;
+    const foucault_pendulum_real x27 =
+        g*y/x3 + FOUCAULT_PENDULUM_NUMBER(0.5)*c2*x25
+        + Omega*x14*(sin_latitude - x5*(x20 - x0)/x22) + (x2 - x1)*x23/x12
+        + c5*x*x15*(x1 + x20)/x22 - x9*x17/x12 - x26;
     /* outputs */
-    result[0] = x13;
-    result[1] = x14;
-    result[2] = -m*x21;
-    result[3] = -m*x22;
+    result[0] = x14;
+    result[1] = x15;
+    result[2] = -m*x24;
+    result[3] = -m*x27;
     (void)t;
 }
 #endif
@@ -534,125 +650,160 @@ static inline void foucault_pendulum_jacobian_hamiltonian(
     /* terms of the parameters alone */
     const foucault_pendulum_real c0 = l*l;
     const foucault_pendulum_real c1 = m*Omega;
-    const foucault_pendulum_real sin_latitude = sin(latitude);
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c2 = Omega*cos_latitude;
     const foucault_pendulum_real c3 = Omega*Omega;
-    const foucault_pendulum_real c4 = 2.0*latitude;
-    const foucault_pendulum_real cos_c4 = cos(c4);
-    const foucault_pendulum_real c5 = cos_c4 - 1.0;
-    const foucault_pendulum_real sin_c4 = sin(c4);
+    const foucault_pendulum_real c4 = FOUCAULT_PENDULUM_NUMBER(2.0)*latitude;
+    const foucault_pendulum_real cos_c4 = foucault_pendulum_cos(c4);
+    const foucault_pendulum_real c5 = cos_c4 - FOUCAULT_PENDULUM_NUMBER(1.0);
+    const foucault_pendulum_real sin_c4 = foucault_pendulum_sin(c4);
     const foucault_pendulum_real c6 = sin_c4*c3;
     /* intermediate terms */
     const foucault_pendulum_real x0 = x*x;
     const foucault_pendulum_real x1 = y*y;
     const foucault_pendulum_real x2 = x0 + x1 - c0;
     const foucault_pendulum_real x3 = x2 - x0;
-    const foucault_pendulum_real x4 = sqrt(-x2);
+    const foucault_pendulum_real x4 = foucault_pendulum_sqrt(-x2);
     const foucault_pendulum_real x5 = p_x + c1*(sin_latitude*y + cos_latitude*(x4 + x0/x4));
     const foucault_pendulum_real x6 = cos_latitude*y;
     const foucault_pendulum_real x7 = sin_latitude - x6/x4;
     const foucault_pendulum_real x8 = p_y - c1*x*x7;
     const foucault_pendulum_real x9 = x*y;
-    const foucault_pendulum_real x10 = 1.0/(m*(1.0 - x1/x2));
+    const foucault_pendulum_real x10 =
+        FOUCAULT_PENDULUM_NUMBER(1.0)/(m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x2));
     const foucault_pendulum_real x11 = m*x10;
     const foucault_pendulum_real x12 = x9*x11;
     const foucault_pendulum_real x13 = x2*x2;
-    const foucault_pendulum_real x14 = m*(1.0 - x0/x2 - x12*x9/x13);
-    const foucault_pendulum_real x15 = (x5 + x8*x12/x2)/x14;
-    const foucault_pendulum_real x16 = x*x15;
-    const foucault_pendulum_real x17 = x3*x16;
-    const foucault_pendulum_real x18 = x2 - 2.0*x0;
-    const foucault_pendulum_real x19 = x15*x9;
-    const foucault_pendulum_real x20 = x10*(x8 + m*x19/x2);
-    const foucault_pendulum_real x21 = y*x20;
-    const foucault_pendulum_real x22 = x18*x21;
-    const foucault_pendulum_real x23 = x4*x4;
-    const foucault_pendulum_real x24 = x23 - (x0 + 2.0*x23);
-    const foucault_pendulum_real x25 = c2*x;
-    const foucault_pendulum_real x26 = x24*x25;
-    const foucault_pendulum_real x27 = x4*x23;
-    const foucault_pendulum_real x28 = x15*x18;
-    const foucault_pendulum_real x29 = x20*x9;
-    const foucault_pendulum_real x30 = x*x9;
-    const foucault_pendulum_real x31 = Omega*(x7 - cos_latitude*x30/x27);
-    const foucault_pendulum_real x32 = y*(x28 - 2.0*x29)/x13 - x31;
-    const foucault_pendulum_real x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x12/x2)/x14;
-    const foucault_pendulum_real x34 = x1 - 0.5*x2;
-    const foucault_pendulum_real x35 = 2.0*x34;
-    const foucault_pendulum_real x36 = x20*x35;
-    const foucault_pendulum_real x37 = x23 - x0;
-    const foucault_pendulum_real x38 = Omega*(sin_latitude - x6*x37/x27);
-    const foucault_pendulum_real x39 = x35*x16;
-    const foucault_pendulum_real x40 = x2 - x1;
-    const foucault_pendulum_real x41 = x40*x21;
-    const foucault_pendulum_real x42 = x1 + x23;
-    const foucault_pendulum_real x43 = x42*x25;
-    const foucault_pendulum_real x44 = (x39 - 2.0*x41)/x13 - x43/x27;
-    const foucault_pendulum_real x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x12/x2)/x14;
-    const foucault_pendulum_real x46 = 1.0/x14;
-    const foucault_pendulum_real x47 = x12/(x2*x14);
-    const foucault_pendulum_real x48 = (x32 + x33*x9/x2)*x11;
-    const foucault_pendulum_real x49 = (x44 + x45*x9/x2)*x11;
-    const foucault_pendulum_real x50 = sin_c4*y;
-    const foucault_pendulum_real x51 = x2 - 4.0*x0;
-    const foucault_pendulum_real x52 = x15*x15;
-    const foucault_pendulum_real x53 = x2*x13;
-    const foucault_pendulum_real x54 = c2*x29;
-    const foucault_pendulum_real x55 = x23*x27;
-    const foucault_pendulum_real x56 = y*x28;
-    const foucault_pendulum_real x57 = x20*x19;
-    const foucault_pendulum_real x58 = x9*x21;
-    const foucault_pendulum_real x59 = x17*x33/x13 - (x2 + 2.0*x18)*x57/x53 - x48*x58/x13;
-    const foucault_pendulum_real x60 = c2*x15;
-    const foucault_pendulum_real x61 =
-        0.5*c3*(c5 + x50/x4 + sin_c4*x30/x27) + x3*x51*x52/x53
-        + (x23 + (3.0*x0 + 2.0*x23))*x54/x55 + x22*x33/x13 + x48*x56/x13 + g*(x0 + x23)/x27
-        + 2.0*x59 - x24*(3.0*x0 + x23)*x60/x55 - y*x20*x51*x21/x53 - x26*x33/x27 - x31*x48;
-    const foucault_pendulum_real x62 = x15*x20;
-    const foucault_pendulum_real x63 = x23*x42;
-    const foucault_pendulum_real x64 = c2*x20;
-    const foucault_pendulum_real x65 = x20*x29;
-    const foucault_pendulum_real x66 =
-        x15*x19*(x2 - 2.0*x3)/x53 + x49*x58/x13 - (-2.0*x34)*x65/x53 - x17*x45/x13;
-    const foucault_pendulum_real x67 = c6*x*x42/x27 + 2.0*g*x9/x27;
-    const foucault_pendulum_real x68 = c2*x19;
-    const foucault_pendulum_real x69 =
-        (2.0*x1*x2 + x2*x18 - 4.0*x1*x18)*x62/x53 + (x63 + x0*(3.0*x1 + x23))*x64/x55
-        + x26*x45/x27 + x31*x49 + 2.0*x66 + 0.5*x67 - (2.0*x23 + 3.0*x24)*x68/x55
-        - x22*x45/x13 - x49*x56/x13;
-    const foucault_pendulum_real x70 = x*x33;
-    const foucault_pendulum_real x71 =
-        (x2 - 2.0*x40)*x65/x53 + x41*x48/x13 - x28*x19/x53 - x19*x70/x13;
-    const foucault_pendulum_real x72 =
-        (4.0*x0*x35 + 2.0*x0*x2 - x2*x35)*x62/x53 + (4.0*x23 - 3.0*x37)*x68/x55
-        + (x63 + 3.0*x0*x42 - 2.0*x0*x23)*x64/x55 + x33*x38 + x43*x48/x27 + 2.0*x71
-        + 0.5*x67 - x36*x70/x13 - x39*x48/x13;
-    const foucault_pendulum_real x73 = x1 - 0.25*x2;
-    const foucault_pendulum_real x74 = x*x45;
-    const foucault_pendulum_real x75 = x19*x74/x13 - (x2 - 2.0*x35)*x57/x53 - x41*x49/x13;
+    const foucault_pendulum_real x14 = FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x2 - x12*x9/x13;
+    const foucault_pendulum_real x15 = m*x14;
+    const foucault_pendulum_real x16 = (x5 + x8*x12/x2)/x15;
+    const foucault_pendulum_real x17 = x*x16;
+    const foucault_pendulum_real x18 = x3*x17;
+    const foucault_pendulum_real x19 = x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x0;
+    const foucault_pendulum_real x20 = x16*x9;
+    const foucault_pendulum_real x21 = x10*(x8 + m*x20/x2);
+    const foucault_pendulum_real x22 = y*x21;
+    const foucault_pendulum_real x23 = x19*x22;
+    const foucault_pendulum_real x24 = x4*x4;
+    const foucault_pendulum_real x25 = x24 - (x0 + FOUCAULT_PENDULUM_NUMBER(2.0)*x24);
+    const foucault_pendulum_real x26 = c2*x;
+    const foucault_pendulum_real x27 = x25*x26;
+    const foucault_pendulum_real x28 = x4*x24;
+    const foucault_pendulum_real x29 =
+        (FOUCAULT_PENDULUM_NUMBER(2.0)*x18 + x23)/x13 - x27/x28;
+    const foucault_pendulum_real x30 = x16*x19;
+    const foucault_pendulum_real x31 = x21*x9;
+    const foucault_pendulum_real x32 = x*x9;
+    const foucault_pendulum_real x33 = Omega*(x7 - cos_latitude*x32/x28);
+    const foucault_pendulum_real x34 =
+        y*(x30 - FOUCAULT_PENDULUM_NUMBER(2.0)*x31)/x13 - x33;
+    const foucault_pendulum_real x35 = m*(x29 + x34*x12/x2)/x15;
+    const foucault_pendulum_real x36 = x1 - FOUCAULT_PENDULUM_NUMBER(0.5)*x2;
+    const foucault_pendulum_real x37 = FOUCAULT_PENDULUM_NUMBER(2.0)*x36;
+    const foucault_pendulum_real x38 = x21*x37;
+    const foucault_pendulum_real x39 = x24 - x0;
+    const foucault_pendulum_real x40 = Omega*(sin_latitude - x6*x39/x28);
+    const foucault_pendulum_real x41 =
+        x*(FOUCAULT_PENDULUM_NUMBER(2.0)*x20 + x38)/x13 - x40;
+    const foucault_pendulum_real x42 = x37*x17;
+    const foucault_pendulum_real x43 = x2 - x1;
+    const foucault_pendulum_real x44 = x43*x22;
+    const foucault_pendulum_real x45 = x1 + x24;
+    const foucault_pendulum_real x46 = x45*x26;
+    const foucault_pendulum_real x47 =
+        (x42 - FOUCAULT_PENDULUM_NUMBER(2.0)*x44)/x13 - x46/x28;
+    const foucault_pendulum_real x48 = m*(x41 + x47*x12/x2)/x15;
+    const foucault_pendulum_real x49 = FOUCAULT_PENDULUM_NUMBER(1.0)/x15;
+    const foucault_pendulum_real x50 = x12/(x2*x15);
+    const foucault_pendulum_real x51 = (x34 + x35*x9/x2)*x11;
+    const foucault_pendulum_real x52 = (x47 + x48*x9/x2)*x11;
+    const foucault_pendulum_real x53 = x10*(FOUCAULT_PENDULUM_NUMBER(1.0) + m*x50*x9/x2);
+    const foucault_pendulum_real x54 = sin_c4*y;
+    const foucault_pendulum_real x55 = x2 - FOUCAULT_PENDULUM_NUMBER(4.0)*x0;
+    const foucault_pendulum_real x56 = x16*x16;
+    const foucault_pendulum_real x57 = x2*x13;
+    const foucault_pendulum_real x58 =
+        FOUCAULT_PENDULUM_NUMBER(3.0)*x0 + FOUCAULT_PENDULUM_NUMBER(2.0)*x24;
+    const foucault_pendulum_real x59 = c2*x31;
+    const foucault_pendulum_real x60 = x24*x28;
+    const foucault_pendulum_real x61 = y*x30;
+    const foucault_pendulum_real x62 = x21*x20;
+    const foucault_pendulum_real x63 = x9*x22;
+    const foucault_pendulum_real x64 =
+        x18*x35/x13 - (x2 + FOUCAULT_PENDULUM_NUMBER(2.0)*x19)*x62/x57 - x51*x63/x13;
+    const foucault_pendulum_real x65 = c2*x16;
+    const foucault_pendulum_real x66 = x25*(FOUCAULT_PENDULUM_NUMBER(3.0)*x0 + x24)*x65/x60;
+    const foucault_pendulum_real x67 =
+        FOUCAULT_PENDULUM_NUMBER(0.5)*c3*(c5 + x54/x4 + sin_c4*x32/x28) + x3*x55*x56/x57
+        + (x24 + x58)*x59/x60 + x23*x35/x13 + x51*x61/x13 + g*(x0 + x24)/x28
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*x64 - x66 - y*x21*x55*x22/x57 - x27*x35/x28
+        - x33*x51;
+    const foucault_pendulum_real x68 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*x1*x2 + x2*x19 - FOUCAULT_PENDULUM_NUMBER(4.0)*x1*x19;
+    const foucault_pendulum_real x69 = x16*x21;
+    const foucault_pendulum_real x70 = x24*x45;
+    const foucault_pendulum_real x71 = x70 + x0*(FOUCAULT_PENDULUM_NUMBER(3.0)*x1 + x24);
+    const foucault_pendulum_real x72 = c2*x21;
+    const foucault_pendulum_real x73 = x16*x20*(x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x3)/x57;
+    const foucault_pendulum_real x74 = x21*x31;
+    const foucault_pendulum_real x75 =
+        x73 + x52*x63/x13 - (-FOUCAULT_PENDULUM_NUMBER(2.0)*x36)*x74/x57 - x18*x48/x13;
     const foucault_pendulum_real x76 =
-        0.5*c3*(2.0*cos_c4 + x50*(x23 + (x1 + 2.0*x23))/x27) + x0*(4.0*x73)*x52/x53
-        + x20*x20*x40*(-4.0*x73)/x53 + 3.0*x42*x54/x55 + x36*x74/x13 + x39*x49/x13
-        + g*x42/x27 + 2.0*x75 - (x23*x37 + 3.0*x1*x37 - 2.0*x1*x23)*x60/x55 - x38*x45
-        - x43*x49/x27;
+        c6*x*x45/x28 + FOUCAULT_PENDULUM_NUMBER(2.0)*g*x9/x28;
+    const foucault_pendulum_real x77 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*x24 + FOUCAULT_PENDULUM_NUMBER(3.0)*x25;
+    const foucault_pendulum_real x78 = c2*x20;
+    const foucault_pendulum_real x79 =
+        x68*x69/x57 + x71*x72/x60 + x27*x48/x28 + x33*x52
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*x75 + FOUCAULT_PENDULUM_NUMBER(0.5)*x76
+        - x77*x78/x60 - x23*x48/x13 - x52*x61/x13;
+    const foucault_pendulum_real x80 =
+        FOUCAULT_PENDULUM_NUMBER(4.0)*x0*x37 + FOUCAULT_PENDULUM_NUMBER(2.0)*x0*x2 - x2*x37;
+    const foucault_pendulum_real x81 =
+        FOUCAULT_PENDULUM_NUMBER(4.0)*x24 - FOUCAULT_PENDULUM_NUMBER(3.0)*x39;
+    const foucault_pendulum_real x82 =
+        x70 + FOUCAULT_PENDULUM_NUMBER(3.0)*x0*x45 - FOUCAULT_PENDULUM_NUMBER(2.0)*x0*x24;
+    const foucault_pendulum_real x83 = x*x35;
+    const foucault_pendulum_real x84 =
+        (x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x43)*x74/x57 + x44*x51/x13 - x30*x20/x57
+        - x20*x83/x13;
+    const foucault_pendulum_real x85 =
+        x80*x69/x57 + x81*x78/x60 + x82*x72/x60 + x35*x40 + x46*x51/x28
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*x84 + FOUCAULT_PENDULUM_NUMBER(0.5)*x76
+        - x38*x83/x13 - x42*x51/x13;
+    const foucault_pendulum_real x86 = x54*(x24 + (x1 + FOUCAULT_PENDULUM_NUMBER(2.0)*x24));
+    const foucault_pendulum_real x87 = c3*(FOUCAULT_PENDULUM_NUMBER(2.0)*cos_c4 + x86/x28);
+    const foucault_pendulum_real x88 = x1 - FOUCAULT_PENDULUM_NUMBER(0.25)*x2;
+    const foucault_pendulum_real x89 = x21*x21*x43*(-FOUCAULT_PENDULUM_NUMBER(4.0)*x88)/x57;
+    const foucault_pendulum_real x90 = x*x48;
+    const foucault_pendulum_real x91 =
+        x20*x90/x13 - (x2 - FOUCAULT_PENDULUM_NUMBER(2.0)*x37)*x62/x57 - x44*x52/x13;
+    const foucault_pendulum_real x92 =
+        x24*x39 + FOUCAULT_PENDULUM_NUMBER(3.0)*x1*x39
+        - FOUCAULT_PENDULUM_NUMBER(2.0)*x1*x24;
+    const foucault_pendulum_real x93 =
+        FOUCAULT_PENDULUM_NUMBER(0.5)*x87 + x0*(FOUCAULT_PENDULUM_NUMBER(4.0)*x88)*x56/x57
+        + x89 + FOUCAULT_PENDULUM_NUMBER(3.0)*x45*x59/x60 + x38*x90/x13 + x42*x52/x13
+        + g*x45/x28 + FOUCAULT_PENDULUM_NUMBER(2.0)*x91 - x92*x65/x60 - x40*x48
+        - x46*x52/x28;
     /* outputs */
-    result[0] = x33;
-    result[1] = -x45;
-    result[2] = x46;
-    result[3] = x47;
-    result[4] = x48;
-    result[5] = -x49;
-    result[6] = x46*x12/x2;
-    result[7] = x10*(1.0 + m*x47*x9/x2);
-    result[8] = -m*x61;
-    result[9] = -m*x69;
-    result[10] = -x33;
-    result[11] = -x48;
-    result[12] = -m*x72;
-    result[13] = -m*x76;
-    result[14] = x45;
-    result[15] = x49;
+    result[0] = x35;
+    result[1] = -x48;
+    result[2] = x49;
+    result[3] = x50;
+    result[4] = x51;
+    result[5] = -x52;
+    result[6] = x49*x12/x2;
+    result[7] = x53;
+    result[8] = -m*x67;
+    result[9] = -m*x79;
+    result[10] = -x35;
+    result[11] = -x51;
+    result[12] = -m*x85;
+    result[13] = -m*x93;
+    result[14] = x48;
+    result[15] = x52;
     (void)t;
 }
 #endif
@@ -677,30 +828,36 @@ static inline void foucault_pendulum_energy_hamiltonian(
     const foucault_pendulum_real latitude = params[4];
     /* terms of the parameters alone */
     const foucault_pendulum_real c0 = Omega*m;
-    const foucault_pendulum_real sin_latitude = sin(latitude);
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c1 = l*l;
     const foucault_pendulum_real c2 = Omega*Omega;
-    const foucault_pendulum_real c3 = 2.0*latitude;
-    const foucault_pendulum_real sin_c3 = sin(c3);
-    const foucault_pendulum_real cos_c3 = cos(c3);
+    const foucault_pendulum_real c3 = FOUCAULT_PENDULUM_NUMBER(2.0)*latitude;
+    const foucault_pendulum_real sin_c3 = foucault_pendulum_sin(c3);
+    const foucault_pendulum_real cos_c3 = foucault_pendulum_cos(c3);
     /* intermediate terms */
     const foucault_pendulum_real x0 = y*y;
     const foucault_pendulum_real x1 = x*x;
     const foucault_pendulum_real x2 = c1 - x1;
     const foucault_pendulum_real x3 = x0 - x2;
-    const foucault_pendulum_real x4 = sqrt(-x3);
+    const foucault_pendulum_real x4 = foucault_pendulum_sqrt(-x3);
     const foucault_pendulum_real x5 = p_x + c0*(sin_latitude*y + cos_latitude*(x4 + x1/x4));
     const foucault_pendulum_real x6 = p_y - c0*x*(sin_latitude - cos_latitude*y/x4);
-    const foucault_pendulum_real x7 = 1.0/(m*(1.0 - x0/x3));
+    const foucault_pendulum_real x7 =
+        FOUCAULT_PENDULUM_NUMBER(1.0)/(m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x3));
     const foucault_pendulum_real x8 = x*(m*y);
     const foucault_pendulum_real x9 = x7*x8;
-    const foucault_pendulum_real x10 = (x5 + x6*x9/x3)/(m*(1.0 - x1/x3 - y*x*x9/(x3*x3)));
-    const foucault_pendulum_real x11 = sin_c3*y*x4 + 0.5*(c1 + x1 - cos_c3*(2.0*x0 - x2));
+    const foucault_pendulum_real x10 =
+        FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x3 - y*x*x9/(x3*x3);
+    const foucault_pendulum_real x11 = (x5 + x6*x9/x3)/(m*x10);
     const foucault_pendulum_real x12 =
-        0.5*(x5*x10 + x6*(x7*(x6 + x10*x8/x3))) - m*(0.5*c2*x11 + g*x4);
+        c1 + x1 - cos_c3*(FOUCAULT_PENDULUM_NUMBER(2.0)*x0 - x2);
+    const foucault_pendulum_real x13 = c2*(sin_c3*y*x4 + FOUCAULT_PENDULUM_NUMBER(0.5)*x12);
+    const foucault_pendulum_real x14 =
+        FOUCAULT_PENDULUM_NUMBER(0.5)*(x5*x11 + x6*(x7*(x6 + x11*x8/x3)))
+        - m*(FOUCAULT_PENDULUM_NUMBER(0.5)*x13 + g*x4);
     /* outputs */
-    result[0] = x12;
+    result[0] = x14;
     (void)t;
 }
 #endif
@@ -724,26 +881,29 @@ static inline void foucault_pendulum_lagrangian_state(
     const foucault_pendulum_real latitude = params[4];
     /* terms of the parameters alone */
     const foucault_pendulum_real c0 = m*Omega;
-    const foucault_pendulum_real sin_latitude = sin(latitude);
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c1 = l*l;
     /* intermediate terms */
     const foucault_pendulum_real x0 = x*x;
     const foucault_pendulum_real x1 = y*y;
     const foucault_pendulum_real x2 = x0 + x1 - c1;
-    const foucault_pendulum_real x3 = sqrt(-x2);
+    const foucault_pendulum_real x3 = foucault_pendulum_sqrt(-x2);
     const foucault_pendulum_real x4 = p_x + c0*(sin_latitude*y + cos_latitude*(x3 + x0/x3));
     const foucault_pendulum_real x5 = p_y - c0*x*(sin_latitude - cos_latitude*y/x3);
-    const foucault_pendulum_real x6 = 1.0/(m*(1.0 - x1/x2));
+    const foucault_pendulum_real x6 =
+        FOUCAULT_PENDULUM_NUMBER(1.0)/(m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x2));
     const foucault_pendulum_real x7 = x*y;
     const foucault_pendulum_real x8 = m*x7;
     const foucault_pendulum_real x9 = x6*x8;
-    const foucault_pendulum_real x10 = (x4 + x5*x9/x2)/(m*(1.0 - x0/x2 - x7*x9/(x2*x2)));
+    const foucault_pendulum_real x10 =
+        FOUCAULT_PENDULUM_NUMBER(1.0) - x0/x2 - x7*x9/(x2*x2);
+    const foucault_pendulum_real x11 = (x4 + x5*x9/x2)/(m*x10);
     /* outputs */
     result[0] = x;
     result[1] = y;
-    result[2] = x10;
-    result[3] = x6*(x5 + x10*x8/x2);
+    result[2] = x11;
+    result[3] = x6*(x5 + x11*x8/x2);
     (void)t;
 }
 #endif
@@ -773,12 +933,12 @@ static inline void foucault_pendulum_rhs_variational(
     /* terms of the parameters alone */
     const foucault_pendulum_real c0 = l*l;
     const foucault_pendulum_real c1 = Omega*Omega;
-    const foucault_pendulum_real c2 = 2.0*latitude;
-    const foucault_pendulum_real cos_c2 = cos(c2);
-    const foucault_pendulum_real c3 = cos_c2 - 1.0;
-    const foucault_pendulum_real sin_c2 = sin(c2);
-    const foucault_pendulum_real sin_latitude = sin(latitude);
-    const foucault_pendulum_real cos_latitude = cos(latitude);
+    const foucault_pendulum_real c2 = FOUCAULT_PENDULUM_NUMBER(2.0)*latitude;
+    const foucault_pendulum_real cos_c2 = foucault_pendulum_cos(c2);
+    const foucault_pendulum_real c3 = cos_c2 - FOUCAULT_PENDULUM_NUMBER(1.0);
+    const foucault_pendulum_real sin_c2 = foucault_pendulum_sin(c2);
+    const foucault_pendulum_real sin_latitude = foucault_pendulum_sin(latitude);
+    const foucault_pendulum_real cos_latitude = foucault_pendulum_cos(latitude);
     const foucault_pendulum_real c4 = Omega*cos_latitude;
     const foucault_pendulum_real c5 = sin_c2*c1;
     /* intermediate terms */
@@ -790,13 +950,13 @@ static inline void foucault_pendulum_rhs_variational(
     const foucault_pendulum_real x5 = x*x4;
     const foucault_pendulum_real x6 = x3*x3;
     const foucault_pendulum_real x7 = sin_c2*y;
-    const foucault_pendulum_real x8 = sqrt(-x3);
+    const foucault_pendulum_real x8 = foucault_pendulum_sqrt(-x3);
     const foucault_pendulum_real x9 = c3 + x7/x8;
     const foucault_pendulum_real x10 = x*y;
     const foucault_pendulum_real x11 = x_dot*x10;
     const foucault_pendulum_real x12 = y_dot*x11;
     const foucault_pendulum_real x13 = y_dot*y_dot;
-    const foucault_pendulum_real x14 = 2.0*x2 - x3;
+    const foucault_pendulum_real x14 = FOUCAULT_PENDULUM_NUMBER(2.0)*x2 - x3;
     const foucault_pendulum_real x15 = x*x14;
     const foucault_pendulum_real x16 = x10*x13;
     const foucault_pendulum_real x17 = cos_latitude*y;
@@ -807,76 +967,111 @@ static inline void foucault_pendulum_rhs_variational(
     const foucault_pendulum_real x22 = x1 - x19;
     const foucault_pendulum_real x23 = Omega*(sin_latitude + x17*x22/x20);
     const foucault_pendulum_real x24 =
-        x0*x5/x6 + 0.5*c1*x*x9 + 2.0*x*x12/x6 + x13*x15/x6 - y*x16/x6 - y_dot*x21
+        x0*x5/x6 + FOUCAULT_PENDULUM_NUMBER(0.5)*c1*x*x9
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*x*x12/x6 + x13*x15/x6 - y*x16/x6 - y_dot*x21
         - y_dot*x23;
     const foucault_pendulum_real x25 = x2 - x3;
     const foucault_pendulum_real x26 = y*x25;
-    const foucault_pendulum_real x27 = 2.0*x1 - x3;
-    const foucault_pendulum_real x28 = y*x27;
-    const foucault_pendulum_real x29 = x_dot*x11;
-    const foucault_pendulum_real x30 =
-        x_dot*x23 + x13*x26/x6 + 0.5*c1*(2.0*cos_c2*y - sin_c2*(x8 - x2/x8)) + x0*x28/x6
-        + 2.0*y*x12/x6 + x_dot*x21 - x*x29/x6;
-    const foucault_pendulum_real x31 = x30 + g*y/x8;
-    const foucault_pendulum_real x32 = m*(1.0/(m*(1.0 - x2/x3)));
-    const foucault_pendulum_real x33 = x10*x32;
-    const foucault_pendulum_real x34 = m*(1.0 - x1/x3 - y*x32*x18/x6);
-    const foucault_pendulum_real x35 = m*(x24 + g*x/x8 + x31*x33/x3)/x34;
-    const foucault_pendulum_real x36 = x35*x10;
-    const foucault_pendulum_real x37 = (x31 + x36/x3)*x32;
-    const foucault_pendulum_real x38 = 4.0*x1 - x3;
-    const foucault_pendulum_real x39 = x3*x6;
-    const foucault_pendulum_real x40 = 4.0*x19 + 3.0*x22;
-    const foucault_pendulum_real x41 = c4*y_dot;
-    const foucault_pendulum_real x42 = x10*x41;
-    const foucault_pendulum_real x43 = x20*x19;
-    const foucault_pendulum_real x44 = x2*x38;
-    const foucault_pendulum_real x45 = x19 + (3.0*x1 + 2.0*x19);
-    const foucault_pendulum_real x46 =
-        x4*x38*x0/x39 + 4.0*x27*x12/x39 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x39
-        + x40*x42/x43 - x13*x44/x39 - x45*x42/x43 - 0.5*c1*(x9 + sin_c2*x18/x20);
-    const foucault_pendulum_real x47 = y_dot*x10;
-    const foucault_pendulum_real x48 = y*x47/x6 - x*x11/x6;
-    const foucault_pendulum_real x49 = x21 + x23;
-    const foucault_pendulum_real x50 = x2 + x19;
-    const foucault_pendulum_real x51 = x19*x50 + x1*(3.0*x2 + x19);
-    const foucault_pendulum_real x52 = c5*x*x50/x20;
-    const foucault_pendulum_real x53 = x_dot*y_dot;
-    const foucault_pendulum_real x54 = 4.0*x2 - x3;
-    const foucault_pendulum_real x55 = x1*x54;
+    const foucault_pendulum_real x27 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*cos_c2*y - sin_c2*(x8 - x2/x8);
+    const foucault_pendulum_real x28 = FOUCAULT_PENDULUM_NUMBER(2.0)*x1 - x3;
+    const foucault_pendulum_real x29 = y*x28;
+    const foucault_pendulum_real x30 = x_dot*x11;
+    const foucault_pendulum_real x31 =
+        x_dot*x23 + x13*x26/x6 + FOUCAULT_PENDULUM_NUMBER(0.5)*c1*x27 + x0*x29/x6
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*y*x12/x6 + x_dot*x21 - x*x30/x6;
+    const foucault_pendulum_real x32 = x31 + g*y/x8;
+    const foucault_pendulum_real x33 =
+        FOUCAULT_PENDULUM_NUMBER(1.0)/(m*(FOUCAULT_PENDULUM_NUMBER(1.0) - x2/x3));
+    const foucault_pendulum_real x34 = m*x33;
+    const foucault_pendulum_real x35 = x10*x34;
+    const foucault_pendulum_real x36 = FOUCAULT_PENDULUM_NUMBER(1.0) - x1/x3 - y*x34*x18/x6;
+    const foucault_pendulum_real x37 = m*x36;
+    const foucault_pendulum_real x38 = m*(x24 + g*x/x8 + x32*x35/x3)/x37;
+    const foucault_pendulum_real x39 = x38*x10;
+    const foucault_pendulum_real x40 = (x32 + x39/x3)*x34;
+    const foucault_pendulum_real x41 = FOUCAULT_PENDULUM_NUMBER(4.0)*x1 - x3;
+    const foucault_pendulum_real x42 = x3*x6;
+    const foucault_pendulum_real x43 =
+        FOUCAULT_PENDULUM_NUMBER(4.0)*x1*x14 + FOUCAULT_PENDULUM_NUMBER(2.0)*x1*x3 - x3*x14;
+    const foucault_pendulum_real x44 =
+        FOUCAULT_PENDULUM_NUMBER(4.0)*x19 + FOUCAULT_PENDULUM_NUMBER(3.0)*x22;
+    const foucault_pendulum_real x45 = c4*y_dot;
+    const foucault_pendulum_real x46 = x10*x45;
+    const foucault_pendulum_real x47 = x20*x19;
+    const foucault_pendulum_real x48 = x2*x41;
+    const foucault_pendulum_real x49 =
+        FOUCAULT_PENDULUM_NUMBER(3.0)*x1 + FOUCAULT_PENDULUM_NUMBER(2.0)*x19;
+    const foucault_pendulum_real x50 = x19 + x49;
+    const foucault_pendulum_real x51 =
+        x4*x41*x0/x42 + FOUCAULT_PENDULUM_NUMBER(4.0)*x28*x12/x42 + x43*x13/x42
+        + x44*x46/x47 - x13*x48/x42 - x50*x46/x47
+        - FOUCAULT_PENDULUM_NUMBER(0.5)*c1*(x9 + sin_c2*x18/x20);
+    const foucault_pendulum_real x52 = y_dot*x10;
+    const foucault_pendulum_real x53 = y*x52/x6 - x*x11/x6;
+    const foucault_pendulum_real x54 = x21 + x23;
+    const foucault_pendulum_real x55 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*(x53 - y_dot*x15/x6) + x54;
     const foucault_pendulum_real x56 =
-        x14*x16/x39 + (x3 - 2.0*x14)*x16/x39 - (x3 + 2.0*x4)*x29/x39 - x53*x55/x39;
-    const foucault_pendulum_real x57 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22;
-    const foucault_pendulum_real x58 = g*x10/x20;
-    const foucault_pendulum_real x59 = x51*x41/x43 + 0.5*x52 + 2.0*x56 - x57*x41/x43 + x58;
-    const foucault_pendulum_real x60 =
-        delta_x*(x46 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x48 - y_dot*x15/x6) + x49)
-        + delta_x*(2.0*x35*x5 + x37*x28)/x6 + x*delta_y*(2.0*x36 + x14*x37)/x6 - delta_y*x59
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x47)/x6;
-    const foucault_pendulum_real x61 = c4*x11;
-    const foucault_pendulum_real x62 =
-        x27*x29/x39 + (x3 - 2.0*x27)*x29/x39 - (x3 + 2.0*x25)*x16/x39 - x53*x44/x39;
-    const foucault_pendulum_real x63 =
-        x58 + (0.5*x52 + x40*x61/x43 + 2.0*x62 - x45*x61/x43);
-    const foucault_pendulum_real x64 = c4*x_dot;
+        delta_x*(FOUCAULT_PENDULUM_NUMBER(2.0)*x38*x5 + x40*x29);
+    const foucault_pendulum_real x57 =
+        x*delta_y*(FOUCAULT_PENDULUM_NUMBER(2.0)*x39 + x14*x40);
+    const foucault_pendulum_real x58 = x2 + x19;
+    const foucault_pendulum_real x59 =
+        x19*x58 + x1*(FOUCAULT_PENDULUM_NUMBER(3.0)*x2 + x19);
+    const foucault_pendulum_real x60 = c5*x*x58/x20;
+    const foucault_pendulum_real x61 = x_dot*y_dot;
+    const foucault_pendulum_real x62 = FOUCAULT_PENDULUM_NUMBER(4.0)*x2 - x3;
+    const foucault_pendulum_real x63 = x1*x62;
+    const foucault_pendulum_real x64 =
+        x14*x16/x42 + (x3 - FOUCAULT_PENDULUM_NUMBER(2.0)*x14)*x16/x42
+        - (x3 + FOUCAULT_PENDULUM_NUMBER(2.0)*x4)*x30/x42 - x61*x63/x42;
     const foucault_pendulum_real x65 =
-        x25*x54*x13/x39 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x39 + 4.0*x14*x12/x39
-        + x51*x64/x43 - x0*x55/x39 - x57*x64/x43
-        - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20);
+        FOUCAULT_PENDULUM_NUMBER(2.0)*x2*x19 + x19*x22
+        + FOUCAULT_PENDULUM_NUMBER(3.0)*x2*x22;
     const foucault_pendulum_real x66 =
-        delta_x*x63 + delta_x_dot*(2.0*(x_dot*x28/x6 + x48) + x49)
-        + 2.0*y*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x65 - g*x50/x20)
-        - y*delta_x*(x27*x35 + 2.0*x37*x10)/x6 - delta_y*(x35*x15 + 2.0*x37*x26)/x6;
-    const foucault_pendulum_real x67 = m*(x60 - x66*x33/x3)/x34;
+        x59*x45/x47 + FOUCAULT_PENDULUM_NUMBER(0.5)*x60 + FOUCAULT_PENDULUM_NUMBER(2.0)*x64
+        - x65*x45/x47;
+    const foucault_pendulum_real x67 = g*x10/x20;
+    const foucault_pendulum_real x68 =
+        delta_x*(x51 - g*(x1 + x19)/x20) + delta_y_dot*x55 + x56/x6 + x57/x6
+        - delta_y*(x66 + x67)
+        - FOUCAULT_PENDULUM_NUMBER(2.0)*x*delta_x_dot*(x_dot*x4 + x52)/x6;
+    const foucault_pendulum_real x69 = c4*x11;
+    const foucault_pendulum_real x70 =
+        x28*x30/x42 + (x3 - FOUCAULT_PENDULUM_NUMBER(2.0)*x28)*x30/x42
+        - (x3 + FOUCAULT_PENDULUM_NUMBER(2.0)*x25)*x16/x42 - x61*x48/x42;
+    const foucault_pendulum_real x71 =
+        FOUCAULT_PENDULUM_NUMBER(0.5)*x60 + x44*x69/x47 + FOUCAULT_PENDULUM_NUMBER(2.0)*x70
+        - x50*x69/x47;
+    const foucault_pendulum_real x72 =
+        FOUCAULT_PENDULUM_NUMBER(2.0)*(x_dot*x29/x6 + x53) + x54;
+    const foucault_pendulum_real x73 =
+        FOUCAULT_PENDULUM_NUMBER(4.0)*x2*x28 + FOUCAULT_PENDULUM_NUMBER(2.0)*x2*x3 - x3*x28;
+    const foucault_pendulum_real x74 = c4*x_dot;
+    const foucault_pendulum_real x75 = x7*(x19 + (x2 + FOUCAULT_PENDULUM_NUMBER(2.0)*x19));
+    const foucault_pendulum_real x76 = c1*(FOUCAULT_PENDULUM_NUMBER(2.0)*cos_c2 + x75/x20);
+    const foucault_pendulum_real x77 =
+        x25*x62*x13/x42 + x73*x0/x42 + FOUCAULT_PENDULUM_NUMBER(4.0)*x14*x12/x42
+        + x59*x74/x47 - x0*x63/x42 - x65*x74/x47 - FOUCAULT_PENDULUM_NUMBER(0.5)*x76;
+    const foucault_pendulum_real x78 =
+        y*delta_x*(x28*x38 + FOUCAULT_PENDULUM_NUMBER(2.0)*x40*x10);
+    const foucault_pendulum_real x79 =
+        delta_y*(x38*x15 + FOUCAULT_PENDULUM_NUMBER(2.0)*x40*x26);
+    const foucault_pendulum_real x80 =
+        delta_x*(x67 + x71) + delta_x_dot*x72
+        + FOUCAULT_PENDULUM_NUMBER(2.0)*y*delta_y_dot*(y_dot*x25 + x11)/x6
+        - delta_y*(x77 - g*x58/x20) - x78/x6 - x79/x6;
+    const foucault_pendulum_real x81 = m*(x68 - x80*x35/x3)/x37;
     /* outputs */
     result[0] = x_dot;
     result[1] = y_dot;
-    result[2] = -x35;
-    result[3] = -x37;
+    result[2] = -x38;
+    result[3] = -x40;
     result[4] = delta_x_dot;
     result[5] = delta_y_dot;
-    result[6] = x67;
-    result[7] = -(x66 - x67*x10/x3)*x32;
+    result[6] = x81;
+    result[7] = -(x80 - x81*x10/x3)*x34;
     (void)t;
 }
 #endif

@@ -46,10 +46,12 @@
        double state[4] = {...}, rate[4], params[0] = {};
        henon_heiles_rhs(0.0, state, params, rate);
 
+   Indices have names: state[HENON_HEILES_LAGRANGIAN_x].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_HENON_HEILES_H
 #define HOLONOMIC_HENON_HEILES_H
@@ -62,18 +64,44 @@
 
 typedef HOLONOMIC_REAL henon_heiles_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define HENON_HEILES_NUMBER(x) ((henon_heiles_real){0} + (x))
-#else
-#define HENON_HEILES_NUMBER(x) (x)
-#endif
-
 enum {
     HENON_HEILES_LAGRANGIAN_STATE = 4,
     HENON_HEILES_HAMILTONIAN_STATE = 4,
     HENON_HEILES_VARIATIONAL_STATE = 8,
     HENON_HEILES_PARAMETERS = 0,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    HENON_HEILES_LAGRANGIAN_x, HENON_HEILES_LAGRANGIAN_y, HENON_HEILES_LAGRANGIAN_x_dot,
+    HENON_HEILES_LAGRANGIAN_y_dot
+};
+enum {
+    HENON_HEILES_HAMILTONIAN_x, HENON_HEILES_HAMILTONIAN_y, HENON_HEILES_HAMILTONIAN_p_x,
+    HENON_HEILES_HAMILTONIAN_p_y
+};
+enum {
+    HENON_HEILES_VARIATIONAL_x, HENON_HEILES_VARIATIONAL_y, HENON_HEILES_VARIATIONAL_x_dot,
+    HENON_HEILES_VARIATIONAL_y_dot, HENON_HEILES_VARIATIONAL_delta_x,
+    HENON_HEILES_VARIATIONAL_delta_y, HENON_HEILES_VARIATIONAL_delta_x_dot,
+    HENON_HEILES_VARIATIONAL_delta_y_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(henon_heiles_real *)0)[0]) henon_heiles_number;
+static inline henon_heiles_real henon_heiles_splat(henon_heiles_number x)
+{
+    const henon_heiles_real zero = {0};
+    return zero + x;
+}
+#define HENON_HEILES_NUMBER(x) henon_heiles_splat((henon_heiles_number)x)
+#else
+typedef henon_heiles_real henon_heiles_number;
+#define HENON_HEILES_NUMBER(x) \
+    (sizeof(henon_heiles_number) > sizeof(double) ? (henon_heiles_number)x##L \
+        : (henon_heiles_number)x)
+#endif
 
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
    9 operations, 0 of them on parameters alone.
@@ -87,10 +115,12 @@ static inline void henon_heiles_rhs(
     const henon_heiles_real y = state[1];
     const henon_heiles_real x_dot = state[2];
     const henon_heiles_real y_dot = state[3];
+    /* intermediate terms */
+    const henon_heiles_real x0 = HENON_HEILES_NUMBER(1.0) + HENON_HEILES_NUMBER(2.0)*y;
     /* outputs */
     result[0] = x_dot;
     result[1] = y_dot;
-    result[2] = -x*(1.0 + 2.0*y);
+    result[2] = -x*x0;
     result[3] = -(y + x*x - y*y);
     (void)t;
     (void)params;
@@ -107,7 +137,9 @@ static inline void henon_heiles_jacobian(
     const henon_heiles_real x = state[0];
     const henon_heiles_real y = state[1];
     /* intermediate terms */
-    const henon_heiles_real x0 = -2.0*x;
+    const henon_heiles_real x0 = HENON_HEILES_NUMBER(1.0) + HENON_HEILES_NUMBER(2.0)*y;
+    const henon_heiles_real x1 = -HENON_HEILES_NUMBER(2.0)*x;
+    const henon_heiles_real x2 = HENON_HEILES_NUMBER(2.0)*y - HENON_HEILES_NUMBER(1.0);
     /* outputs */
     result[0] = HENON_HEILES_NUMBER(0.0);
     result[1] = HENON_HEILES_NUMBER(0.0);
@@ -117,12 +149,12 @@ static inline void henon_heiles_jacobian(
     result[5] = HENON_HEILES_NUMBER(0.0);
     result[6] = HENON_HEILES_NUMBER(0.0);
     result[7] = HENON_HEILES_NUMBER(1.0);
-    result[8] = -(1.0 + 2.0*y);
-    result[9] = x0;
+    result[8] = -x0;
+    result[9] = x1;
     result[10] = HENON_HEILES_NUMBER(0.0);
     result[11] = HENON_HEILES_NUMBER(0.0);
-    result[12] = x0;
-    result[13] = 2.0*y - 1.0;
+    result[12] = x1;
+    result[13] = x2;
     result[14] = HENON_HEILES_NUMBER(0.0);
     result[15] = HENON_HEILES_NUMBER(0.0);
     (void)t;
@@ -145,7 +177,8 @@ static inline void henon_heiles_energy(
     const henon_heiles_real x0 = x*x;
     const henon_heiles_real x1 = y*y;
     const henon_heiles_real x2 =
-        x0*y + 0.5*(x0 + x1 + x_dot*x_dot + y_dot*y_dot) - (1.0/3.0)*y*x1;
+        x0*y + HENON_HEILES_NUMBER(0.5)*(x0 + x1 + x_dot*x_dot + y_dot*y_dot)
+        - (HENON_HEILES_NUMBER(1.0)/HENON_HEILES_NUMBER(3.0))*y*x1;
     /* outputs */
     result[0] = x2;
     (void)t;
@@ -220,10 +253,12 @@ static inline void henon_heiles_rhs_hamiltonian(
     const henon_heiles_real y = state[1];
     const henon_heiles_real p_x = state[2];
     const henon_heiles_real p_y = state[3];
+    /* intermediate terms */
+    const henon_heiles_real x0 = HENON_HEILES_NUMBER(1.0) + HENON_HEILES_NUMBER(2.0)*y;
     /* outputs */
     result[0] = p_x;
     result[1] = p_y;
-    result[2] = -x*(1.0 + 2.0*y);
+    result[2] = -x*x0;
     result[3] = -(y + x*x - y*y);
     (void)t;
     (void)params;
@@ -240,7 +275,9 @@ static inline void henon_heiles_jacobian_hamiltonian(
     const henon_heiles_real x = state[0];
     const henon_heiles_real y = state[1];
     /* intermediate terms */
-    const henon_heiles_real x0 = -2.0*x;
+    const henon_heiles_real x0 = HENON_HEILES_NUMBER(1.0) + HENON_HEILES_NUMBER(2.0)*y;
+    const henon_heiles_real x1 = -HENON_HEILES_NUMBER(2.0)*x;
+    const henon_heiles_real x2 = HENON_HEILES_NUMBER(2.0)*y - HENON_HEILES_NUMBER(1.0);
     /* outputs */
     result[0] = HENON_HEILES_NUMBER(0.0);
     result[1] = HENON_HEILES_NUMBER(0.0);
@@ -250,12 +287,12 @@ static inline void henon_heiles_jacobian_hamiltonian(
     result[5] = HENON_HEILES_NUMBER(0.0);
     result[6] = HENON_HEILES_NUMBER(0.0);
     result[7] = HENON_HEILES_NUMBER(1.0);
-    result[8] = -(1.0 + 2.0*y);
-    result[9] = x0;
+    result[8] = -x0;
+    result[9] = x1;
     result[10] = HENON_HEILES_NUMBER(0.0);
     result[11] = HENON_HEILES_NUMBER(0.0);
-    result[12] = x0;
-    result[13] = 2.0*y - 1.0;
+    result[12] = x1;
+    result[13] = x2;
     result[14] = HENON_HEILES_NUMBER(0.0);
     result[15] = HENON_HEILES_NUMBER(0.0);
     (void)t;
@@ -278,9 +315,11 @@ static inline void henon_heiles_energy_hamiltonian(
     const henon_heiles_real x0 = x*x;
     const henon_heiles_real x1 = y*y;
     const henon_heiles_real x2 =
-        x0*y + 0.5*(x0 + x1) - (1.0/3.0)*y*x1 + 0.5*(p_x*p_x + p_y*p_y);
+        x0*y + HENON_HEILES_NUMBER(0.5)*(x0 + x1)
+        - (HENON_HEILES_NUMBER(1.0)/HENON_HEILES_NUMBER(3.0))*y*x1;
+    const henon_heiles_real x3 = x2 + HENON_HEILES_NUMBER(0.5)*(p_x*p_x + p_y*p_y);
     /* outputs */
-    result[0] = x2;
+    result[0] = x3;
     (void)t;
     (void)params;
 }
@@ -323,7 +362,10 @@ static inline void henon_heiles_rhs_variational(
     const henon_heiles_real delta_x_dot = state[6];
     const henon_heiles_real delta_y_dot = state[7];
     /* intermediate terms */
-    const henon_heiles_real x0 = 1.0 + 2.0*y;
+    const henon_heiles_real x0 = HENON_HEILES_NUMBER(1.0) + HENON_HEILES_NUMBER(2.0)*y;
+    const henon_heiles_real x1 = -(x0*delta_x + HENON_HEILES_NUMBER(2.0)*x*delta_y);
+    const henon_heiles_real x2 = HENON_HEILES_NUMBER(2.0)*y - HENON_HEILES_NUMBER(1.0);
+    const henon_heiles_real x3 = -(HENON_HEILES_NUMBER(2.0)*x*delta_x - delta_y*x2);
     /* outputs */
     result[0] = x_dot;
     result[1] = y_dot;
@@ -331,8 +373,8 @@ static inline void henon_heiles_rhs_variational(
     result[3] = -(y + x*x - y*y);
     result[4] = delta_x_dot;
     result[5] = delta_y_dot;
-    result[6] = -(x0*delta_x + 2.0*x*delta_y);
-    result[7] = -(2.0*x*delta_x - delta_y*(2.0*y - 1.0));
+    result[6] = x1;
+    result[7] = x3;
     (void)t;
     (void)params;
 }

@@ -46,10 +46,12 @@
        double state[2] = {...}, rate[2], params[4] = {1.0, 1.0, 4.0, 9.81};
        rotating_hoop_rhs(0.0, state, params, rate);
 
+   Indices have names: state[ROTATING_HOOP_LAGRANGIAN_theta].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_ROTATING_HOOP_H
 #define HOLONOMIC_ROTATING_HOOP_H
@@ -62,12 +64,6 @@
 
 typedef HOLONOMIC_REAL rotating_hoop_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define ROTATING_HOOP_NUMBER(x) ((rotating_hoop_real){0} + (x))
-#else
-#define ROTATING_HOOP_NUMBER(x) (x)
-#endif
-
 enum {
     ROTATING_HOOP_LAGRANGIAN_STATE = 2,
     ROTATING_HOOP_HAMILTONIAN_STATE = 2,
@@ -75,6 +71,59 @@ enum {
     ROTATING_HOOP_VARIATIONAL_STATE = 5,
     ROTATING_HOOP_PARAMETERS = 4,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    ROTATING_HOOP_PARAMETER_m, ROTATING_HOOP_PARAMETER_R, ROTATING_HOOP_PARAMETER_Omega,
+    ROTATING_HOOP_PARAMETER_g
+};
+enum {
+    ROTATING_HOOP_LAGRANGIAN_theta, ROTATING_HOOP_LAGRANGIAN_theta_dot
+};
+enum {
+    ROTATING_HOOP_HAMILTONIAN_theta, ROTATING_HOOP_HAMILTONIAN_p_theta
+};
+enum {
+    ROTATING_HOOP_RATIONAL_sin_theta, ROTATING_HOOP_RATIONAL_cos_theta,
+    ROTATING_HOOP_RATIONAL_theta_dot
+};
+enum {
+    ROTATING_HOOP_VARIATIONAL_sin_theta, ROTATING_HOOP_VARIATIONAL_cos_theta,
+    ROTATING_HOOP_VARIATIONAL_theta_dot, ROTATING_HOOP_VARIATIONAL_delta_theta,
+    ROTATING_HOOP_VARIATIONAL_delta_theta_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(rotating_hoop_real *)0)[0]) rotating_hoop_number;
+static inline rotating_hoop_real rotating_hoop_splat(rotating_hoop_number x)
+{
+    const rotating_hoop_real zero = {0};
+    return zero + x;
+}
+#define ROTATING_HOOP_NUMBER(x) rotating_hoop_splat((rotating_hoop_number)x)
+#else
+typedef rotating_hoop_real rotating_hoop_number;
+#define ROTATING_HOOP_NUMBER(x) \
+    (sizeof(rotating_hoop_number) > sizeof(double) ? (rotating_hoop_number)x##L \
+        : (rotating_hoop_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline rotating_hoop_real rotating_hoop_cos(rotating_hoop_real x)
+{
+    return sizeof(x) > sizeof(double) ? (rotating_hoop_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (rotating_hoop_real)cos((double)x)
+        : (rotating_hoop_real)cosf((float)x);
+}
+static inline rotating_hoop_real rotating_hoop_sin(rotating_hoop_real x)
+{
+    return sizeof(x) > sizeof(double) ? (rotating_hoop_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (rotating_hoop_real)sin((double)x)
+        : (rotating_hoop_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -91,11 +140,14 @@ static inline void rotating_hoop_rhs(
     const rotating_hoop_real Omega = params[2];
     const rotating_hoop_real g = params[3];
     /* terms of the parameters alone */
-    const rotating_hoop_real c0 = 1.0/R;
+    const rotating_hoop_real c0 = ROTATING_HOOP_NUMBER(1.0)/R;
     const rotating_hoop_real c1 = R*Omega*Omega;
+    /* intermediate terms */
+    const rotating_hoop_real x0 =
+        rotating_hoop_sin(theta)*(c1*rotating_hoop_cos(theta) - g);
     /* outputs */
     result[0] = theta_dot;
-    result[1] = c0*(sin(theta)*(c1*cos(theta) - g));
+    result[1] = c0*x0;
     (void)t;
 }
 #endif
@@ -114,17 +166,17 @@ static inline void rotating_hoop_jacobian(
     const rotating_hoop_real Omega = params[2];
     const rotating_hoop_real g = params[3];
     /* terms of the parameters alone */
-    const rotating_hoop_real c0 = 1.0/R;
+    const rotating_hoop_real c0 = ROTATING_HOOP_NUMBER(1.0)/R;
     const rotating_hoop_real c1 = R*Omega*Omega;
     /* intermediate terms */
-    const rotating_hoop_real sin_theta = sin(theta);
-    const rotating_hoop_real cos_theta = cos(theta);
+    const rotating_hoop_real sin_theta = rotating_hoop_sin(theta);
+    const rotating_hoop_real cos_theta = rotating_hoop_cos(theta);
     const rotating_hoop_real x0 = c1*sin_theta*sin_theta - cos_theta*(c1*cos_theta - g);
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 1.0;
+    result[0] = ROTATING_HOOP_NUMBER(0.0);
+    result[1] = ROTATING_HOOP_NUMBER(1.0);
     result[2] = -c0*x0;
-    result[3] = 0.0;
+    result[3] = ROTATING_HOOP_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -148,9 +200,10 @@ static inline void rotating_hoop_energy(
     const rotating_hoop_real c0 = m*R;
     const rotating_hoop_real c1 = R*Omega*Omega;
     /* intermediate terms */
-    const rotating_hoop_real sin_theta = sin(theta);
+    const rotating_hoop_real sin_theta = rotating_hoop_sin(theta);
     const rotating_hoop_real x0 =
-        g*cos(theta) + 0.5*(c1*sin_theta*sin_theta - R*theta_dot*theta_dot);
+        g*rotating_hoop_cos(theta)
+        + ROTATING_HOOP_NUMBER(0.5)*(c1*sin_theta*sin_theta - R*theta_dot*theta_dot);
     /* outputs */
     result[0] = -c0*x0;
     (void)t;
@@ -187,11 +240,11 @@ static inline void rotating_hoop_positions(
     const rotating_hoop_real Omega = params[2];
     /* intermediate terms */
     const rotating_hoop_real x0 = Omega*t;
-    const rotating_hoop_real x1 = R*sin(theta);
+    const rotating_hoop_real x1 = R*rotating_hoop_sin(theta);
     /* outputs */
-    result[0] = cos(x0)*x1;
-    result[1] = sin(x0)*x1;
-    result[2] = -R*cos(theta);
+    result[0] = rotating_hoop_cos(x0)*x1;
+    result[1] = rotating_hoop_sin(x0)*x1;
+    result[2] = -R*rotating_hoop_cos(theta);
 }
 #endif
 
@@ -231,13 +284,16 @@ static inline void rotating_hoop_rhs_hamiltonian(
     const rotating_hoop_real Omega = params[2];
     const rotating_hoop_real g = params[3];
     /* terms of the parameters alone */
-    const rotating_hoop_real c0 = 1.0/R;
+    const rotating_hoop_real c0 = ROTATING_HOOP_NUMBER(1.0)/R;
     const rotating_hoop_real c1 = R*m;
-    const rotating_hoop_real c2 = 1.0/c1;
+    const rotating_hoop_real c2 = ROTATING_HOOP_NUMBER(1.0)/c1;
     const rotating_hoop_real c3 = R*Omega*Omega;
+    /* intermediate terms */
+    const rotating_hoop_real x0 =
+        c1*rotating_hoop_sin(theta)*(g - c3*rotating_hoop_cos(theta));
     /* outputs */
     result[0] = c0*(c2*p_theta);
-    result[1] = -c1*sin(theta)*(g - c3*cos(theta));
+    result[1] = -x0;
     (void)t;
 }
 #endif
@@ -258,17 +314,19 @@ static inline void rotating_hoop_jacobian_hamiltonian(
     const rotating_hoop_real g = params[3];
     /* terms of the parameters alone */
     const rotating_hoop_real c0 = R*m;
-    const rotating_hoop_real c1 = R*Omega*Omega;
+    const rotating_hoop_real c1 =
+        ROTATING_HOOP_NUMBER(1.0)/c0*(ROTATING_HOOP_NUMBER(1.0)/R);
+    const rotating_hoop_real c2 = R*Omega*Omega;
     /* intermediate terms */
-    const rotating_hoop_real sin_theta = sin(theta);
-    const rotating_hoop_real cos_theta = cos(theta);
+    const rotating_hoop_real sin_theta = rotating_hoop_sin(theta);
+    const rotating_hoop_real cos_theta = rotating_hoop_cos(theta);
     const rotating_hoop_real x0 =
-        c1*(sin_theta*sin_theta - cos_theta*cos_theta) + g*cos_theta;
+        c2*(sin_theta*sin_theta - cos_theta*cos_theta) + g*cos_theta;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 1.0/c0*(1.0/R);
+    result[0] = ROTATING_HOOP_NUMBER(0.0);
+    result[1] = c1;
     result[2] = -c0*x0;
-    result[3] = 0.0;
+    result[3] = ROTATING_HOOP_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -289,16 +347,17 @@ static inline void rotating_hoop_energy_hamiltonian(
     const rotating_hoop_real Omega = params[2];
     const rotating_hoop_real g = params[3];
     /* terms of the parameters alone */
-    const rotating_hoop_real c0 = 1.0/R;
+    const rotating_hoop_real c0 = ROTATING_HOOP_NUMBER(1.0)/R;
     const rotating_hoop_real c1 = R*m;
-    const rotating_hoop_real c2 = 1.0/c1;
+    const rotating_hoop_real c2 = ROTATING_HOOP_NUMBER(1.0)/c1;
     const rotating_hoop_real c3 = R*Omega*Omega;
     /* intermediate terms */
-    const rotating_hoop_real sin_theta = sin(theta);
+    const rotating_hoop_real sin_theta = rotating_hoop_sin(theta);
     const rotating_hoop_real x0 =
-        0.5*c0*p_theta*(c2*p_theta) - c1*(0.5*c3*sin_theta*sin_theta + g*cos(theta));
+        ROTATING_HOOP_NUMBER(0.5)*c3*sin_theta*sin_theta + g*rotating_hoop_cos(theta);
+    const rotating_hoop_real x1 = ROTATING_HOOP_NUMBER(0.5)*c0*p_theta*(c2*p_theta) - c1*x0;
     /* outputs */
-    result[0] = x0;
+    result[0] = x1;
     (void)t;
 }
 #endif
@@ -316,8 +375,8 @@ static inline void rotating_hoop_lagrangian_state(
     const rotating_hoop_real m = params[0];
     const rotating_hoop_real R = params[1];
     /* terms of the parameters alone */
-    const rotating_hoop_real c0 = 1.0/R;
-    const rotating_hoop_real c1 = 1.0/(R*m);
+    const rotating_hoop_real c0 = ROTATING_HOOP_NUMBER(1.0)/R;
+    const rotating_hoop_real c1 = ROTATING_HOOP_NUMBER(1.0)/(R*m);
     /* outputs */
     result[0] = theta;
     result[1] = c0*(c1*p_theta);
@@ -336,8 +395,8 @@ static inline void rotating_hoop_rational_state(
     const rotating_hoop_real theta = state[0];
     const rotating_hoop_real theta_dot = state[1];
     /* outputs */
-    result[0] = sin(theta);
-    result[1] = cos(theta);
+    result[0] = rotating_hoop_sin(theta);
+    result[1] = rotating_hoop_cos(theta);
     result[2] = theta_dot;
     (void)t;
     (void)params;
@@ -359,7 +418,7 @@ static inline void rotating_hoop_rhs_rational(
     const rotating_hoop_real Omega = params[2];
     const rotating_hoop_real g = params[3];
     /* terms of the parameters alone */
-    const rotating_hoop_real c0 = 1.0/R;
+    const rotating_hoop_real c0 = ROTATING_HOOP_NUMBER(1.0)/R;
     const rotating_hoop_real c1 = R*Omega*Omega;
     /* outputs */
     result[0] = theta_dot*cos_theta;
@@ -385,7 +444,7 @@ static inline void rotating_hoop_rhs_variational(
     const rotating_hoop_real Omega = params[2];
     const rotating_hoop_real g = params[3];
     /* terms of the parameters alone */
-    const rotating_hoop_real c0 = 1.0/R;
+    const rotating_hoop_real c0 = ROTATING_HOOP_NUMBER(1.0)/R;
     const rotating_hoop_real c1 = R*Omega*Omega;
     /* intermediate terms */
     const rotating_hoop_real x0 = g - c1*cos_theta;

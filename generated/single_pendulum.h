@@ -45,10 +45,12 @@
        double state[2] = {...}, rate[2], params[3] = {1.0, 2.0, 9.81};
        single_pendulum_rhs(0.0, state, params, rate);
 
+   Indices have names: state[SINGLE_PENDULUM_LAGRANGIAN_theta].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_SINGLE_PENDULUM_H
 #define HOLONOMIC_SINGLE_PENDULUM_H
@@ -61,12 +63,6 @@
 
 typedef HOLONOMIC_REAL single_pendulum_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define SINGLE_PENDULUM_NUMBER(x) ((single_pendulum_real){0} + (x))
-#else
-#define SINGLE_PENDULUM_NUMBER(x) (x)
-#endif
-
 enum {
     SINGLE_PENDULUM_LAGRANGIAN_STATE = 2,
     SINGLE_PENDULUM_HAMILTONIAN_STATE = 2,
@@ -74,6 +70,58 @@ enum {
     SINGLE_PENDULUM_VARIATIONAL_STATE = 5,
     SINGLE_PENDULUM_PARAMETERS = 3,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    SINGLE_PENDULUM_PARAMETER_m, SINGLE_PENDULUM_PARAMETER_l, SINGLE_PENDULUM_PARAMETER_g
+};
+enum {
+    SINGLE_PENDULUM_LAGRANGIAN_theta, SINGLE_PENDULUM_LAGRANGIAN_theta_dot
+};
+enum {
+    SINGLE_PENDULUM_HAMILTONIAN_theta, SINGLE_PENDULUM_HAMILTONIAN_p_theta
+};
+enum {
+    SINGLE_PENDULUM_RATIONAL_sin_theta, SINGLE_PENDULUM_RATIONAL_cos_theta,
+    SINGLE_PENDULUM_RATIONAL_theta_dot
+};
+enum {
+    SINGLE_PENDULUM_VARIATIONAL_sin_theta, SINGLE_PENDULUM_VARIATIONAL_cos_theta,
+    SINGLE_PENDULUM_VARIATIONAL_theta_dot, SINGLE_PENDULUM_VARIATIONAL_delta_theta,
+    SINGLE_PENDULUM_VARIATIONAL_delta_theta_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(single_pendulum_real *)0)[0]) single_pendulum_number;
+static inline single_pendulum_real single_pendulum_splat(single_pendulum_number x)
+{
+    const single_pendulum_real zero = {0};
+    return zero + x;
+}
+#define SINGLE_PENDULUM_NUMBER(x) single_pendulum_splat((single_pendulum_number)x)
+#else
+typedef single_pendulum_real single_pendulum_number;
+#define SINGLE_PENDULUM_NUMBER(x) \
+    (sizeof(single_pendulum_number) > sizeof(double) ? (single_pendulum_number)x##L \
+        : (single_pendulum_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline single_pendulum_real single_pendulum_cos(single_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (single_pendulum_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (single_pendulum_real)cos((double)x)
+        : (single_pendulum_real)cosf((float)x);
+}
+static inline single_pendulum_real single_pendulum_sin(single_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (single_pendulum_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (single_pendulum_real)sin((double)x)
+        : (single_pendulum_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -89,10 +137,10 @@ static inline void single_pendulum_rhs(
     const single_pendulum_real l = params[1];
     const single_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const single_pendulum_real c0 = 1.0/l;
+    const single_pendulum_real c0 = SINGLE_PENDULUM_NUMBER(1.0)/l;
     /* outputs */
     result[0] = theta_dot;
-    result[1] = -c0*(g*sin(theta));
+    result[1] = -c0*(g*single_pendulum_sin(theta));
     (void)t;
 }
 #endif
@@ -110,12 +158,12 @@ static inline void single_pendulum_jacobian(
     const single_pendulum_real l = params[1];
     const single_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const single_pendulum_real c0 = 1.0/l;
+    const single_pendulum_real c0 = SINGLE_PENDULUM_NUMBER(1.0)/l;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 1.0;
-    result[2] = -c0*(g*cos(theta));
-    result[3] = 0.0;
+    result[0] = SINGLE_PENDULUM_NUMBER(0.0);
+    result[1] = SINGLE_PENDULUM_NUMBER(1.0);
+    result[2] = -c0*(g*single_pendulum_cos(theta));
+    result[3] = SINGLE_PENDULUM_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -136,8 +184,11 @@ static inline void single_pendulum_energy(
     const single_pendulum_real g = params[2];
     /* terms of the parameters alone */
     const single_pendulum_real c0 = m*l;
+    /* intermediate terms */
+    const single_pendulum_real x0 =
+        SINGLE_PENDULUM_NUMBER(0.5)*l*theta_dot*theta_dot - g*single_pendulum_cos(theta);
     /* outputs */
-    result[0] = c0*(0.5*l*theta_dot*theta_dot - g*cos(theta));
+    result[0] = c0*x0;
     (void)t;
 }
 #endif
@@ -156,8 +207,10 @@ static inline void single_pendulum_reactions(
     const single_pendulum_real m = params[0];
     const single_pendulum_real l = params[1];
     const single_pendulum_real g = params[2];
+    /* intermediate terms */
+    const single_pendulum_real x0 = l*theta_dot*theta_dot + g*single_pendulum_cos(theta);
     /* outputs */
-    result[0] = m*(l*theta_dot*theta_dot + g*cos(theta));
+    result[0] = m*x0;
     (void)t;
 }
 #endif
@@ -190,8 +243,8 @@ static inline void single_pendulum_positions(
     const single_pendulum_real theta = state[0];
     const single_pendulum_real l = params[1];
     /* outputs */
-    result[0] = l*sin(theta);
-    result[1] = -l*cos(theta);
+    result[0] = l*single_pendulum_sin(theta);
+    result[1] = -l*single_pendulum_cos(theta);
     (void)t;
 }
 #endif
@@ -231,13 +284,13 @@ static inline void single_pendulum_rhs_hamiltonian(
     const single_pendulum_real l = params[1];
     const single_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const single_pendulum_real c0 = 1.0/l;
+    const single_pendulum_real c0 = SINGLE_PENDULUM_NUMBER(1.0)/l;
     const single_pendulum_real c1 = l*m;
-    const single_pendulum_real c2 = 1.0/c1;
+    const single_pendulum_real c2 = SINGLE_PENDULUM_NUMBER(1.0)/c1;
     const single_pendulum_real c3 = c1*g;
     /* outputs */
     result[0] = c0*(c2*p_theta);
-    result[1] = -c3*sin(theta);
+    result[1] = -c3*single_pendulum_sin(theta);
     (void)t;
 }
 #endif
@@ -257,12 +310,14 @@ static inline void single_pendulum_jacobian_hamiltonian(
     const single_pendulum_real g = params[2];
     /* terms of the parameters alone */
     const single_pendulum_real c0 = l*m;
-    const single_pendulum_real c1 = c0*g;
+    const single_pendulum_real c1 =
+        SINGLE_PENDULUM_NUMBER(1.0)/c0*(SINGLE_PENDULUM_NUMBER(1.0)/l);
+    const single_pendulum_real c2 = c0*g;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 1.0/c0*(1.0/l);
-    result[2] = -c1*cos(theta);
-    result[3] = 0.0;
+    result[0] = SINGLE_PENDULUM_NUMBER(0.0);
+    result[1] = c1;
+    result[2] = -c2*single_pendulum_cos(theta);
+    result[3] = SINGLE_PENDULUM_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -282,12 +337,15 @@ static inline void single_pendulum_energy_hamiltonian(
     const single_pendulum_real l = params[1];
     const single_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const single_pendulum_real c0 = 1.0/l;
+    const single_pendulum_real c0 = SINGLE_PENDULUM_NUMBER(1.0)/l;
     const single_pendulum_real c1 = l*m;
-    const single_pendulum_real c2 = 1.0/c1;
+    const single_pendulum_real c2 = SINGLE_PENDULUM_NUMBER(1.0)/c1;
     const single_pendulum_real c3 = c1*g;
+    /* intermediate terms */
+    const single_pendulum_real x0 =
+        SINGLE_PENDULUM_NUMBER(0.5)*c0*p_theta*(c2*p_theta) - c3*single_pendulum_cos(theta);
     /* outputs */
-    result[0] = 0.5*c0*p_theta*(c2*p_theta) - c3*cos(theta);
+    result[0] = x0;
     (void)t;
 }
 #endif
@@ -305,8 +363,8 @@ static inline void single_pendulum_lagrangian_state(
     const single_pendulum_real m = params[0];
     const single_pendulum_real l = params[1];
     /* terms of the parameters alone */
-    const single_pendulum_real c0 = 1.0/l;
-    const single_pendulum_real c1 = 1.0/(l*m);
+    const single_pendulum_real c0 = SINGLE_PENDULUM_NUMBER(1.0)/l;
+    const single_pendulum_real c1 = SINGLE_PENDULUM_NUMBER(1.0)/(l*m);
     /* outputs */
     result[0] = theta;
     result[1] = c0*(c1*p_theta);
@@ -325,8 +383,8 @@ static inline void single_pendulum_rational_state(
     const single_pendulum_real theta = state[0];
     const single_pendulum_real theta_dot = state[1];
     /* outputs */
-    result[0] = sin(theta);
-    result[1] = cos(theta);
+    result[0] = single_pendulum_sin(theta);
+    result[1] = single_pendulum_cos(theta);
     result[2] = theta_dot;
     (void)t;
     (void)params;
@@ -347,7 +405,7 @@ static inline void single_pendulum_rhs_rational(
     const single_pendulum_real l = params[1];
     const single_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const single_pendulum_real c0 = 1.0/l;
+    const single_pendulum_real c0 = SINGLE_PENDULUM_NUMBER(1.0)/l;
     /* outputs */
     result[0] = theta_dot*cos_theta;
     result[1] = -theta_dot*sin_theta;
@@ -371,7 +429,7 @@ static inline void single_pendulum_rhs_variational(
     const single_pendulum_real l = params[1];
     const single_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const single_pendulum_real c0 = 1.0/l;
+    const single_pendulum_real c0 = SINGLE_PENDULUM_NUMBER(1.0)/l;
     /* outputs */
     result[0] = theta_dot*cos_theta;
     result[1] = -theta_dot*sin_theta;

@@ -59,10 +59,12 @@
        double state[4] = {...}, rate[4], params[3] = {1.0, 1.0, 9.81};
        spherical_pendulum_rhs(0.0, state, params, rate);
 
+   Indices have names: state[SPHERICAL_PENDULUM_LAGRANGIAN_theta].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_SPHERICAL_PENDULUM_H
 #define HOLONOMIC_SPHERICAL_PENDULUM_H
@@ -75,12 +77,6 @@
 
 typedef HOLONOMIC_REAL spherical_pendulum_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define SPHERICAL_PENDULUM_NUMBER(x) ((spherical_pendulum_real){0} + (x))
-#else
-#define SPHERICAL_PENDULUM_NUMBER(x) (x)
-#endif
-
 enum {
     SPHERICAL_PENDULUM_LAGRANGIAN_STATE = 4,
     SPHERICAL_PENDULUM_HAMILTONIAN_STATE = 4,
@@ -88,6 +84,65 @@ enum {
     SPHERICAL_PENDULUM_VARIATIONAL_STATE = 10,
     SPHERICAL_PENDULUM_PARAMETERS = 3,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    SPHERICAL_PENDULUM_PARAMETER_m, SPHERICAL_PENDULUM_PARAMETER_l,
+    SPHERICAL_PENDULUM_PARAMETER_g
+};
+enum {
+    SPHERICAL_PENDULUM_LAGRANGIAN_theta, SPHERICAL_PENDULUM_LAGRANGIAN_phi,
+    SPHERICAL_PENDULUM_LAGRANGIAN_theta_dot, SPHERICAL_PENDULUM_LAGRANGIAN_phi_dot
+};
+enum {
+    SPHERICAL_PENDULUM_HAMILTONIAN_theta, SPHERICAL_PENDULUM_HAMILTONIAN_phi,
+    SPHERICAL_PENDULUM_HAMILTONIAN_p_theta, SPHERICAL_PENDULUM_HAMILTONIAN_p_phi
+};
+enum {
+    SPHERICAL_PENDULUM_RATIONAL_sin_theta, SPHERICAL_PENDULUM_RATIONAL_cos_theta,
+    SPHERICAL_PENDULUM_RATIONAL_sin_phi, SPHERICAL_PENDULUM_RATIONAL_cos_phi,
+    SPHERICAL_PENDULUM_RATIONAL_theta_dot, SPHERICAL_PENDULUM_RATIONAL_phi_dot
+};
+enum {
+    SPHERICAL_PENDULUM_VARIATIONAL_sin_theta, SPHERICAL_PENDULUM_VARIATIONAL_cos_theta,
+    SPHERICAL_PENDULUM_VARIATIONAL_sin_phi, SPHERICAL_PENDULUM_VARIATIONAL_cos_phi,
+    SPHERICAL_PENDULUM_VARIATIONAL_theta_dot, SPHERICAL_PENDULUM_VARIATIONAL_phi_dot,
+    SPHERICAL_PENDULUM_VARIATIONAL_delta_theta, SPHERICAL_PENDULUM_VARIATIONAL_delta_phi,
+    SPHERICAL_PENDULUM_VARIATIONAL_delta_theta_dot,
+    SPHERICAL_PENDULUM_VARIATIONAL_delta_phi_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(spherical_pendulum_real *)0)[0]) spherical_pendulum_number;
+static inline spherical_pendulum_real spherical_pendulum_splat(spherical_pendulum_number x)
+{
+    const spherical_pendulum_real zero = {0};
+    return zero + x;
+}
+#define SPHERICAL_PENDULUM_NUMBER(x) spherical_pendulum_splat((spherical_pendulum_number)x)
+#else
+typedef spherical_pendulum_real spherical_pendulum_number;
+#define SPHERICAL_PENDULUM_NUMBER(x) \
+    (sizeof(spherical_pendulum_number) > sizeof(double) ? (spherical_pendulum_number)x##L \
+        : (spherical_pendulum_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline spherical_pendulum_real spherical_pendulum_cos(spherical_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (spherical_pendulum_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (spherical_pendulum_real)cos((double)x)
+        : (spherical_pendulum_real)cosf((float)x);
+}
+static inline spherical_pendulum_real spherical_pendulum_sin(spherical_pendulum_real x)
+{
+    return sizeof(x) > sizeof(double) ? (spherical_pendulum_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (spherical_pendulum_real)sin((double)x)
+        : (spherical_pendulum_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -104,15 +159,17 @@ static inline void spherical_pendulum_rhs(
     const spherical_pendulum_real l = params[1];
     const spherical_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const spherical_pendulum_real c0 = 1.0/l;
+    const spherical_pendulum_real c0 = SPHERICAL_PENDULUM_NUMBER(1.0)/l;
     /* intermediate terms */
-    const spherical_pendulum_real sin_theta = sin(theta);
-    const spherical_pendulum_real x0 = cos(theta)*(l*phi_dot);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
+    const spherical_pendulum_real x0 = spherical_pendulum_cos(theta)*(l*phi_dot);
+    const spherical_pendulum_real x1 =
+        -SPHERICAL_PENDULUM_NUMBER(2.0)*c0*(theta_dot*x0)/sin_theta;
     /* outputs */
     result[0] = theta_dot;
     result[1] = phi_dot;
     result[2] = c0*(sin_theta*(phi_dot*x0 - g));
-    result[3] = -2.0*c0*(theta_dot*x0)/sin_theta;
+    result[3] = x1;
     (void)t;
 }
 #endif
@@ -132,32 +189,37 @@ static inline void spherical_pendulum_jacobian(
     const spherical_pendulum_real l = params[1];
     const spherical_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const spherical_pendulum_real c0 = 1.0/l;
+    const spherical_pendulum_real c0 = SPHERICAL_PENDULUM_NUMBER(1.0)/l;
     /* intermediate terms */
-    const spherical_pendulum_real cos_theta = cos(theta);
+    const spherical_pendulum_real cos_theta = spherical_pendulum_cos(theta);
     const spherical_pendulum_real x0 = l*phi_dot;
     const spherical_pendulum_real x1 = cos_theta*x0;
-    const spherical_pendulum_real sin_theta = sin(theta);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
     const spherical_pendulum_real x2 = sin_theta*sin_theta;
     const spherical_pendulum_real x3 =
-        theta_dot*(cos_theta*cos_theta - x2)*x0 - 2.0*cos_theta*(theta_dot*x1);
+        theta_dot*(cos_theta*cos_theta - x2)*x0
+        - SPHERICAL_PENDULUM_NUMBER(2.0)*cos_theta*(theta_dot*x1);
+    const spherical_pendulum_real x4 =
+        -SPHERICAL_PENDULUM_NUMBER(2.0)*c0*(x3/sin_theta)/sin_theta;
+    const spherical_pendulum_real x5 =
+        -SPHERICAL_PENDULUM_NUMBER(2.0)*c0*(l*cos_theta*theta_dot)/sin_theta;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
+    result[0] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[1] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[2] = SPHERICAL_PENDULUM_NUMBER(1.0);
+    result[3] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[4] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[5] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[6] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[7] = SPHERICAL_PENDULUM_NUMBER(1.0);
     result[8] = c0*(cos_theta*(phi_dot*x1 - g) - phi_dot*x2*x0);
-    result[9] = 0.0;
-    result[10] = 0.0;
-    result[11] = 2.0*c0*(sin_theta*x1);
-    result[12] = -2.0*c0*(x3/sin_theta)/sin_theta;
-    result[13] = 0.0;
-    result[14] = -2.0*c0*x1/sin_theta;
-    result[15] = -2.0*c0*(l*cos_theta*theta_dot)/sin_theta;
+    result[9] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[10] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[11] = SPHERICAL_PENDULUM_NUMBER(2.0)*c0*(sin_theta*x1);
+    result[12] = x4;
+    result[13] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[14] = -SPHERICAL_PENDULUM_NUMBER(2.0)*c0*x1/sin_theta;
+    result[15] = x5;
     (void)t;
 }
 #endif
@@ -180,11 +242,13 @@ static inline void spherical_pendulum_energy(
     /* terms of the parameters alone */
     const spherical_pendulum_real c0 = m*l;
     /* intermediate terms */
-    const spherical_pendulum_real sin_theta = sin(theta);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
     const spherical_pendulum_real x0 =
         l*theta_dot*theta_dot + l*phi_dot*phi_dot*sin_theta*sin_theta;
+    const spherical_pendulum_real x1 =
+        SPHERICAL_PENDULUM_NUMBER(0.5)*x0 - g*spherical_pendulum_cos(theta);
     /* outputs */
-    result[0] = c0*(0.5*x0 - g*cos(theta));
+    result[0] = c0*x1;
     (void)t;
 }
 #endif
@@ -204,11 +268,11 @@ static inline void spherical_pendulum_mass_matrix(
     /* terms of the parameters alone */
     const spherical_pendulum_real c0 = m*l*l;
     /* intermediate terms */
-    const spherical_pendulum_real sin_theta = sin(theta);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
     /* outputs */
     result[0] = c0;
-    result[1] = 0.0;
-    result[2] = 0.0;
+    result[1] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[2] = SPHERICAL_PENDULUM_NUMBER(0.0);
     result[3] = c0*sin_theta*sin_theta;
     (void)t;
 }
@@ -227,11 +291,11 @@ static inline void spherical_pendulum_positions(
     const spherical_pendulum_real phi = state[1];
     const spherical_pendulum_real l = params[1];
     /* intermediate terms */
-    const spherical_pendulum_real x0 = l*sin(theta);
+    const spherical_pendulum_real x0 = l*spherical_pendulum_sin(theta);
     /* outputs */
-    result[0] = cos(phi)*x0;
-    result[1] = sin(phi)*x0;
-    result[2] = -l*cos(theta);
+    result[0] = spherical_pendulum_cos(phi)*x0;
+    result[1] = spherical_pendulum_sin(phi)*x0;
+    result[2] = -l*spherical_pendulum_cos(theta);
     (void)t;
 }
 #endif
@@ -254,7 +318,7 @@ static inline void spherical_pendulum_hamiltonian_state(
     /* terms of the parameters alone */
     const spherical_pendulum_real c0 = m*l*l;
     /* intermediate terms */
-    const spherical_pendulum_real sin_theta = sin(theta);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
     /* outputs */
     result[0] = theta;
     result[1] = phi;
@@ -280,17 +344,19 @@ static inline void spherical_pendulum_rhs_hamiltonian(
     const spherical_pendulum_real l = params[1];
     const spherical_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const spherical_pendulum_real c0 = 1.0/l;
-    const spherical_pendulum_real c1 = 1.0/(l*m);
+    const spherical_pendulum_real c0 = SPHERICAL_PENDULUM_NUMBER(1.0)/l;
+    const spherical_pendulum_real c1 = SPHERICAL_PENDULUM_NUMBER(1.0)/(l*m);
     const spherical_pendulum_real c2 = l*g;
     /* intermediate terms */
-    const spherical_pendulum_real sin_theta = sin(theta);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
     const spherical_pendulum_real x0 = c1*p_phi/sin_theta;
+    const spherical_pendulum_real x1 =
+        c2*sin_theta - x0*x0*spherical_pendulum_cos(theta)/sin_theta;
     /* outputs */
     result[0] = c0*(c1*p_theta);
     result[1] = c0*x0/sin_theta;
-    result[2] = -m*(c2*sin_theta - x0*x0*cos(theta)/sin_theta);
-    result[3] = 0.0;
+    result[2] = -m*x1;
+    result[3] = SPHERICAL_PENDULUM_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -310,36 +376,37 @@ static inline void spherical_pendulum_jacobian_hamiltonian(
     const spherical_pendulum_real l = params[1];
     const spherical_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const spherical_pendulum_real c0 = 1.0/(l*m);
-    const spherical_pendulum_real c1 = 1.0/l;
+    const spherical_pendulum_real c0 = SPHERICAL_PENDULUM_NUMBER(1.0)/(l*m);
+    const spherical_pendulum_real c1 = SPHERICAL_PENDULUM_NUMBER(1.0)/l;
     const spherical_pendulum_real c2 = l*g;
     /* intermediate terms */
-    const spherical_pendulum_real sin_theta = sin(theta);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
     const spherical_pendulum_real x0 = c0*p_phi/sin_theta;
-    const spherical_pendulum_real cos_theta = cos(theta);
+    const spherical_pendulum_real cos_theta = spherical_pendulum_cos(theta);
     const spherical_pendulum_real x1 = x0*cos_theta;
     const spherical_pendulum_real x2 = x1/sin_theta;
     const spherical_pendulum_real x3 = c1*x2/sin_theta;
     const spherical_pendulum_real x4 = sin_theta*sin_theta;
     const spherical_pendulum_real x5 =
-        x0*x0*(x4 - cos_theta*cos_theta)/x4 + 4.0*x1*x2/sin_theta + c2*cos_theta;
+        x0*x0*(x4 - cos_theta*cos_theta)/x4 + SPHERICAL_PENDULUM_NUMBER(4.0)*x1*x2/sin_theta
+        + c2*cos_theta;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
+    result[0] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[1] = SPHERICAL_PENDULUM_NUMBER(0.0);
     result[2] = c0*c1;
-    result[3] = 0.0;
-    result[4] = -2.0*x3;
-    result[5] = 0.0;
-    result[6] = 0.0;
+    result[3] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[4] = -SPHERICAL_PENDULUM_NUMBER(2.0)*x3;
+    result[5] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[6] = SPHERICAL_PENDULUM_NUMBER(0.0);
     result[7] = c1*(c0/sin_theta)/sin_theta;
     result[8] = -m*x5;
-    result[9] = 0.0;
-    result[10] = 0.0;
-    result[11] = 2.0*x3;
-    result[12] = 0.0;
-    result[13] = 0.0;
-    result[14] = 0.0;
-    result[15] = 0.0;
+    result[9] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[10] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[11] = SPHERICAL_PENDULUM_NUMBER(2.0)*x3;
+    result[12] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[13] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[14] = SPHERICAL_PENDULUM_NUMBER(0.0);
+    result[15] = SPHERICAL_PENDULUM_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -360,16 +427,18 @@ static inline void spherical_pendulum_energy_hamiltonian(
     const spherical_pendulum_real l = params[1];
     const spherical_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const spherical_pendulum_real c0 = 1.0/l;
+    const spherical_pendulum_real c0 = SPHERICAL_PENDULUM_NUMBER(1.0)/l;
     const spherical_pendulum_real c1 = l*m;
-    const spherical_pendulum_real c2 = 1.0/c1;
+    const spherical_pendulum_real c2 = SPHERICAL_PENDULUM_NUMBER(1.0)/c1;
     const spherical_pendulum_real c3 = c1*g;
     /* intermediate terms */
-    const spherical_pendulum_real sin_theta = sin(theta);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
     const spherical_pendulum_real x0 =
         c0*p_theta*(c2*p_theta) + c0*p_phi*(c2*p_phi/sin_theta)/sin_theta;
+    const spherical_pendulum_real x1 =
+        SPHERICAL_PENDULUM_NUMBER(0.5)*x0 - c3*spherical_pendulum_cos(theta);
     /* outputs */
-    result[0] = 0.5*x0 - c3*cos(theta);
+    result[0] = x1;
     (void)t;
 }
 #endif
@@ -390,10 +459,10 @@ static inline void spherical_pendulum_lagrangian_state(
     const spherical_pendulum_real m = params[0];
     const spherical_pendulum_real l = params[1];
     /* terms of the parameters alone */
-    const spherical_pendulum_real c0 = 1.0/l;
-    const spherical_pendulum_real c1 = 1.0/(l*m);
+    const spherical_pendulum_real c0 = SPHERICAL_PENDULUM_NUMBER(1.0)/l;
+    const spherical_pendulum_real c1 = SPHERICAL_PENDULUM_NUMBER(1.0)/(l*m);
     /* intermediate terms */
-    const spherical_pendulum_real sin_theta = sin(theta);
+    const spherical_pendulum_real sin_theta = spherical_pendulum_sin(theta);
     /* outputs */
     result[0] = theta;
     result[1] = phi;
@@ -417,10 +486,10 @@ static inline void spherical_pendulum_rational_state(
     const spherical_pendulum_real theta_dot = state[2];
     const spherical_pendulum_real phi_dot = state[3];
     /* outputs */
-    result[0] = sin(theta);
-    result[1] = cos(theta);
-    result[2] = sin(phi);
-    result[3] = cos(phi);
+    result[0] = spherical_pendulum_sin(theta);
+    result[1] = spherical_pendulum_cos(theta);
+    result[2] = spherical_pendulum_sin(phi);
+    result[3] = spherical_pendulum_cos(phi);
     result[4] = theta_dot;
     result[5] = phi_dot;
     (void)t;
@@ -445,17 +514,18 @@ static inline void spherical_pendulum_rhs_rational(
     const spherical_pendulum_real l = params[1];
     const spherical_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const spherical_pendulum_real c0 = 1.0/l;
+    const spherical_pendulum_real c0 = SPHERICAL_PENDULUM_NUMBER(1.0)/l;
     /* intermediate terms */
     const spherical_pendulum_real x0 = theta_dot*cos_theta;
     const spherical_pendulum_real x1 = l*phi_dot;
+    const spherical_pendulum_real x2 = -SPHERICAL_PENDULUM_NUMBER(2.0)*c0*(x0*x1)/sin_theta;
     /* outputs */
     result[0] = x0;
     result[1] = -theta_dot*sin_theta;
     result[2] = phi_dot*cos_phi;
     result[3] = -phi_dot*sin_phi;
     result[4] = -c0*(sin_theta*(g - cos_theta*phi_dot*x1));
-    result[5] = -2.0*c0*(x0*x1)/sin_theta;
+    result[5] = x2;
     (void)t;
 }
 
@@ -479,7 +549,7 @@ static inline void spherical_pendulum_rhs_variational(
     const spherical_pendulum_real l = params[1];
     const spherical_pendulum_real g = params[2];
     /* terms of the parameters alone */
-    const spherical_pendulum_real c0 = 1.0/l;
+    const spherical_pendulum_real c0 = SPHERICAL_PENDULUM_NUMBER(1.0)/l;
     /* intermediate terms */
     const spherical_pendulum_real x0 = theta_dot*cos_theta;
     const spherical_pendulum_real x1 = l*phi_dot;
@@ -489,21 +559,24 @@ static inline void spherical_pendulum_rhs_variational(
     const spherical_pendulum_real x5 = sin_theta*sin_theta;
     const spherical_pendulum_real x6 = sin_theta*delta_phi_dot;
     const spherical_pendulum_real x7 =
-        delta_theta*(cos_theta*x3 + phi_dot*x5*x1) - 2.0*x2*x6;
+        delta_theta*(cos_theta*x3 + phi_dot*x5*x1) - SPHERICAL_PENDULUM_NUMBER(2.0)*x2*x6;
     const spherical_pendulum_real x8 = theta_dot*delta_theta*(x5 - cos_theta*cos_theta)*x1;
     const spherical_pendulum_real x9 =
-        x8 + 2.0*cos_theta*x4*delta_theta - sin_theta*delta_theta_dot*x2 - l*x0*x6;
+        x8 + SPHERICAL_PENDULUM_NUMBER(2.0)*cos_theta*x4*delta_theta
+        - sin_theta*delta_theta_dot*x2 - l*x0*x6;
+    const spherical_pendulum_real x10 =
+        SPHERICAL_PENDULUM_NUMBER(2.0)*c0*(x9/sin_theta)/sin_theta;
     /* outputs */
     result[0] = x0;
     result[1] = -theta_dot*sin_theta;
     result[2] = phi_dot*cos_phi;
     result[3] = -phi_dot*sin_phi;
     result[4] = -c0*(sin_theta*x3);
-    result[5] = -2.0*c0*x4/sin_theta;
+    result[5] = -SPHERICAL_PENDULUM_NUMBER(2.0)*c0*x4/sin_theta;
     result[6] = delta_theta_dot;
     result[7] = delta_phi_dot;
     result[8] = -c0*x7;
-    result[9] = 2.0*c0*(x9/sin_theta)/sin_theta;
+    result[9] = x10;
     (void)t;
 }
 

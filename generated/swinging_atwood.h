@@ -58,10 +58,12 @@
        double state[4] = {...}, rate[4], params[3] = {3.0, 1.0, 9.81};
        swinging_atwood_rhs(0.0, state, params, rate);
 
+   Indices have names: state[SWINGING_ATWOOD_LAGRANGIAN_r].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_SWINGING_ATWOOD_H
 #define HOLONOMIC_SWINGING_ATWOOD_H
@@ -74,12 +76,6 @@
 
 typedef HOLONOMIC_REAL swinging_atwood_real;
 
-#ifdef HOLONOMIC_VECTOR
-#define SWINGING_ATWOOD_NUMBER(x) ((swinging_atwood_real){0} + (x))
-#else
-#define SWINGING_ATWOOD_NUMBER(x) (x)
-#endif
-
 enum {
     SWINGING_ATWOOD_LAGRANGIAN_STATE = 4,
     SWINGING_ATWOOD_HAMILTONIAN_STATE = 4,
@@ -87,6 +83,63 @@ enum {
     SWINGING_ATWOOD_VARIATIONAL_STATE = 9,
     SWINGING_ATWOOD_PARAMETERS = 3,
 };
+
+/* Indices of parameters, and of the components of states. */
+enum {
+    SWINGING_ATWOOD_PARAMETER_M, SWINGING_ATWOOD_PARAMETER_m, SWINGING_ATWOOD_PARAMETER_g
+};
+enum {
+    SWINGING_ATWOOD_LAGRANGIAN_r, SWINGING_ATWOOD_LAGRANGIAN_theta,
+    SWINGING_ATWOOD_LAGRANGIAN_r_dot, SWINGING_ATWOOD_LAGRANGIAN_theta_dot
+};
+enum {
+    SWINGING_ATWOOD_HAMILTONIAN_r, SWINGING_ATWOOD_HAMILTONIAN_theta,
+    SWINGING_ATWOOD_HAMILTONIAN_p_r, SWINGING_ATWOOD_HAMILTONIAN_p_theta
+};
+enum {
+    SWINGING_ATWOOD_RATIONAL_r, SWINGING_ATWOOD_RATIONAL_sin_theta,
+    SWINGING_ATWOOD_RATIONAL_cos_theta, SWINGING_ATWOOD_RATIONAL_r_dot,
+    SWINGING_ATWOOD_RATIONAL_theta_dot
+};
+enum {
+    SWINGING_ATWOOD_VARIATIONAL_r, SWINGING_ATWOOD_VARIATIONAL_sin_theta,
+    SWINGING_ATWOOD_VARIATIONAL_cos_theta, SWINGING_ATWOOD_VARIATIONAL_r_dot,
+    SWINGING_ATWOOD_VARIATIONAL_theta_dot, SWINGING_ATWOOD_VARIATIONAL_delta_r,
+    SWINGING_ATWOOD_VARIATIONAL_delta_theta, SWINGING_ATWOOD_VARIATIONAL_delta_r_dot,
+    SWINGING_ATWOOD_VARIATIONAL_delta_theta_dot
+};
+
+/* Literals of this type. */
+#ifdef HOLONOMIC_VECTOR
+typedef __typeof__((*(swinging_atwood_real *)0)[0]) swinging_atwood_number;
+static inline swinging_atwood_real swinging_atwood_splat(swinging_atwood_number x)
+{
+    const swinging_atwood_real zero = {0};
+    return zero + x;
+}
+#define SWINGING_ATWOOD_NUMBER(x) swinging_atwood_splat((swinging_atwood_number)x)
+#else
+typedef swinging_atwood_real swinging_atwood_number;
+#define SWINGING_ATWOOD_NUMBER(x) \
+    (sizeof(swinging_atwood_number) > sizeof(double) ? (swinging_atwood_number)x##L \
+        : (swinging_atwood_number)x)
+#endif
+
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+static inline swinging_atwood_real swinging_atwood_cos(swinging_atwood_real x)
+{
+    return sizeof(x) > sizeof(double) ? (swinging_atwood_real)cosl((long double)x)
+        : sizeof(x) > sizeof(float) ? (swinging_atwood_real)cos((double)x)
+        : (swinging_atwood_real)cosf((float)x);
+}
+static inline swinging_atwood_real swinging_atwood_sin(swinging_atwood_real x)
+{
+    return sizeof(x) > sizeof(double) ? (swinging_atwood_real)sinl((long double)x)
+        : sizeof(x) > sizeof(float) ? (swinging_atwood_real)sin((double)x)
+        : (swinging_atwood_real)sinf((float)x);
+}
+#endif
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
@@ -105,14 +158,17 @@ static inline void swinging_atwood_rhs(
     const swinging_atwood_real m = params[1];
     const swinging_atwood_real g = params[2];
     /* terms of the parameters alone */
-    const swinging_atwood_real c0 = 1.0/(M + m);
+    const swinging_atwood_real c0 = SWINGING_ATWOOD_NUMBER(1.0)/(M + m);
     /* intermediate terms */
-    const swinging_atwood_real x0 = c0*(m*theta_dot*theta_dot*r - g*(M - m*cos(theta)));
+    const swinging_atwood_real x0 =
+        m*theta_dot*theta_dot*r - g*(M - m*swinging_atwood_cos(theta));
+    const swinging_atwood_real x1 =
+        SWINGING_ATWOOD_NUMBER(2.0)*r_dot*theta_dot + g*swinging_atwood_sin(theta);
     /* outputs */
     result[0] = r_dot;
     result[1] = theta_dot;
-    result[2] = x0;
-    result[3] = -(2.0*r_dot*theta_dot + g*sin(theta))/r;
+    result[2] = c0*x0;
+    result[3] = -x1/r;
     (void)t;
 }
 #endif
@@ -134,28 +190,30 @@ static inline void swinging_atwood_jacobian(
     const swinging_atwood_real m = params[1];
     const swinging_atwood_real g = params[2];
     /* terms of the parameters alone */
-    const swinging_atwood_real c0 = m*(1.0/(m + M));
+    const swinging_atwood_real c0 = m*(SWINGING_ATWOOD_NUMBER(1.0)/(m + M));
     const swinging_atwood_real c1 = c0*g;
     /* intermediate terms */
     const swinging_atwood_real x0 = c0*theta_dot;
-    const swinging_atwood_real sin_theta = sin(theta);
+    const swinging_atwood_real sin_theta = swinging_atwood_sin(theta);
+    const swinging_atwood_real x1 =
+        SWINGING_ATWOOD_NUMBER(2.0)*theta_dot*r_dot + g*sin_theta;
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0;
-    result[3] = 0.0;
-    result[4] = 0.0;
-    result[5] = 0.0;
-    result[6] = 0.0;
-    result[7] = 1.0;
+    result[0] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[1] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[2] = SWINGING_ATWOOD_NUMBER(1.0);
+    result[3] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[4] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[5] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[6] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[7] = SWINGING_ATWOOD_NUMBER(1.0);
     result[8] = theta_dot*x0;
     result[9] = -c1*sin_theta;
-    result[10] = 0.0;
-    result[11] = 2.0*r*x0;
-    result[12] = -(-(2.0*theta_dot*r_dot + g*sin_theta))/r/r;
-    result[13] = -g*cos(theta)/r;
-    result[14] = -2.0*theta_dot/r;
-    result[15] = -2.0*r_dot/r;
+    result[10] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[11] = SWINGING_ATWOOD_NUMBER(2.0)*r*x0;
+    result[12] = -(-x1)/r/r;
+    result[13] = -g*swinging_atwood_cos(theta)/r;
+    result[14] = -SWINGING_ATWOOD_NUMBER(2.0)*theta_dot/r;
+    result[15] = -SWINGING_ATWOOD_NUMBER(2.0)*r_dot/r;
     (void)t;
 }
 #endif
@@ -182,7 +240,8 @@ static inline void swinging_atwood_energy(
     const swinging_atwood_real c2 = m*g;
     /* intermediate terms */
     const swinging_atwood_real x0 =
-        c0*r + 0.5*(c1*r_dot*r_dot + m*r*r*theta_dot*theta_dot) - c2*r*cos(theta);
+        c0*r + SWINGING_ATWOOD_NUMBER(0.5)*(c1*r_dot*r_dot + m*r*r*theta_dot*theta_dot)
+        - c2*r*swinging_atwood_cos(theta);
     /* outputs */
     result[0] = x0;
     (void)t;
@@ -220,10 +279,10 @@ static inline void swinging_atwood_positions(
     const swinging_atwood_real r = state[0];
     const swinging_atwood_real theta = state[1];
     /* outputs */
-    result[0] = 0.0;
+    result[0] = SWINGING_ATWOOD_NUMBER(0.0);
     result[1] = r;
-    result[2] = r*sin(theta);
-    result[3] = -r*cos(theta);
+    result[2] = r*swinging_atwood_sin(theta);
+    result[3] = -r*swinging_atwood_cos(theta);
     (void)t;
     (void)params;
 }
@@ -270,16 +329,17 @@ static inline void swinging_atwood_rhs_hamiltonian(
     const swinging_atwood_real m = params[1];
     const swinging_atwood_real g = params[2];
     /* terms of the parameters alone */
-    const swinging_atwood_real c0 = 1.0/(M + m);
-    const swinging_atwood_real c1 = 1.0/m;
+    const swinging_atwood_real c0 = SWINGING_ATWOOD_NUMBER(1.0)/(M + m);
+    const swinging_atwood_real c1 = SWINGING_ATWOOD_NUMBER(1.0)/m;
     const swinging_atwood_real c2 = m*g;
     /* intermediate terms */
     const swinging_atwood_real x0 = c1*p_theta/r;
+    const swinging_atwood_real x1 = -(g*(M - m*swinging_atwood_cos(theta)) - m*x0*x0/r);
     /* outputs */
     result[0] = c0*p_r;
     result[1] = x0/r;
-    result[2] = -(g*(M - m*cos(theta)) - m*x0*x0/r);
-    result[3] = -c2*r*sin(theta);
+    result[2] = x1;
+    result[3] = -c2*r*swinging_atwood_sin(theta);
     (void)t;
 }
 #endif
@@ -300,30 +360,31 @@ static inline void swinging_atwood_jacobian_hamiltonian(
     const swinging_atwood_real m = params[1];
     const swinging_atwood_real g = params[2];
     /* terms of the parameters alone */
-    const swinging_atwood_real c0 = 1.0/m;
+    const swinging_atwood_real c0 = SWINGING_ATWOOD_NUMBER(1.0)/m;
     const swinging_atwood_real c1 = m*g;
     /* intermediate terms */
     const swinging_atwood_real x0 = c0*p_theta/r;
     const swinging_atwood_real x1 = x0/r;
     const swinging_atwood_real x2 = x1/r;
-    const swinging_atwood_real x3 = -c1*sin(theta);
+    const swinging_atwood_real x3 = m*x0*(x0 - SWINGING_ATWOOD_NUMBER(4.0)*r*x1)/(r*r);
+    const swinging_atwood_real x4 = -c1*swinging_atwood_sin(theta);
     /* outputs */
-    result[0] = 0.0;
-    result[1] = 0.0;
-    result[2] = 1.0/(M + m);
-    result[3] = 0.0;
-    result[4] = -2.0*x2;
-    result[5] = 0.0;
-    result[6] = 0.0;
+    result[0] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[1] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[2] = SWINGING_ATWOOD_NUMBER(1.0)/(M + m);
+    result[3] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[4] = -SWINGING_ATWOOD_NUMBER(2.0)*x2;
+    result[5] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[6] = SWINGING_ATWOOD_NUMBER(0.0);
     result[7] = c0/r/r;
-    result[8] = m*x0*(x0 - 4.0*r*x1)/(r*r);
-    result[9] = x3;
-    result[10] = 0.0;
-    result[11] = 2.0*x2;
-    result[12] = x3;
-    result[13] = -c1*r*cos(theta);
-    result[14] = 0.0;
-    result[15] = 0.0;
+    result[8] = x3;
+    result[9] = x4;
+    result[10] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[11] = SWINGING_ATWOOD_NUMBER(2.0)*x2;
+    result[12] = x4;
+    result[13] = -c1*r*swinging_atwood_cos(theta);
+    result[14] = SWINGING_ATWOOD_NUMBER(0.0);
+    result[15] = SWINGING_ATWOOD_NUMBER(0.0);
     (void)t;
 }
 #endif
@@ -345,11 +406,12 @@ static inline void swinging_atwood_energy_hamiltonian(
     const swinging_atwood_real m = params[1];
     const swinging_atwood_real g = params[2];
     /* terms of the parameters alone */
-    const swinging_atwood_real c0 = 1.0/(M + m);
-    const swinging_atwood_real c1 = 1.0/m;
+    const swinging_atwood_real c0 = SWINGING_ATWOOD_NUMBER(1.0)/(M + m);
+    const swinging_atwood_real c1 = SWINGING_ATWOOD_NUMBER(1.0)/m;
     /* intermediate terms */
     const swinging_atwood_real x0 =
-        g*r*(M - m*cos(theta)) + 0.5*(p_r*(c0*p_r) + p_theta*(c1*p_theta/r)/r);
+        g*r*(M - m*swinging_atwood_cos(theta))
+        + SWINGING_ATWOOD_NUMBER(0.5)*(p_r*(c0*p_r) + p_theta*(c1*p_theta/r)/r);
     /* outputs */
     result[0] = x0;
     (void)t;
@@ -371,8 +433,8 @@ static inline void swinging_atwood_lagrangian_state(
     const swinging_atwood_real M = params[0];
     const swinging_atwood_real m = params[1];
     /* terms of the parameters alone */
-    const swinging_atwood_real c0 = 1.0/(M + m);
-    const swinging_atwood_real c1 = 1.0/m;
+    const swinging_atwood_real c0 = SWINGING_ATWOOD_NUMBER(1.0)/(M + m);
+    const swinging_atwood_real c1 = SWINGING_ATWOOD_NUMBER(1.0)/m;
     /* outputs */
     result[0] = r;
     result[1] = theta;
@@ -396,8 +458,8 @@ static inline void swinging_atwood_rational_state(
     const swinging_atwood_real theta_dot = state[3];
     /* outputs */
     result[0] = r;
-    result[1] = sin(theta);
-    result[2] = cos(theta);
+    result[1] = swinging_atwood_sin(theta);
+    result[2] = swinging_atwood_cos(theta);
     result[3] = r_dot;
     result[4] = theta_dot;
     (void)t;
@@ -422,15 +484,17 @@ static inline void swinging_atwood_rhs_rational(
     const swinging_atwood_real m = params[1];
     const swinging_atwood_real g = params[2];
     /* terms of the parameters alone */
-    const swinging_atwood_real c0 = 1.0/(M + m);
+    const swinging_atwood_real c0 = SWINGING_ATWOOD_NUMBER(1.0)/(M + m);
     /* intermediate terms */
     const swinging_atwood_real x0 = c0*(m*theta_dot*theta_dot*r - g*(M - m*cos_theta));
+    const swinging_atwood_real x1 =
+        SWINGING_ATWOOD_NUMBER(2.0)*r_dot*theta_dot + g*sin_theta;
     /* outputs */
     result[0] = r_dot;
     result[1] = theta_dot*cos_theta;
     result[2] = -theta_dot*sin_theta;
     result[3] = x0;
-    result[4] = -(2.0*r_dot*theta_dot + g*sin_theta)/r;
+    result[4] = -x1/r;
     (void)t;
 }
 
@@ -455,16 +519,18 @@ static inline void swinging_atwood_rhs_variational(
     const swinging_atwood_real m = params[1];
     const swinging_atwood_real g = params[2];
     /* terms of the parameters alone */
-    const swinging_atwood_real c0 = 1.0/(M + m);
+    const swinging_atwood_real c0 = SWINGING_ATWOOD_NUMBER(1.0)/(M + m);
     const swinging_atwood_real c1 = m*c0;
     /* intermediate terms */
     const swinging_atwood_real x0 = theta_dot*r;
     const swinging_atwood_real x1 = g*sin_theta;
-    const swinging_atwood_real x2 = 2.0*r_dot*theta_dot + x1;
+    const swinging_atwood_real x2 = SWINGING_ATWOOD_NUMBER(2.0)*r_dot*theta_dot + x1;
     const swinging_atwood_real x3 =
-        theta_dot*theta_dot*delta_r + 2.0*delta_theta_dot*x0 - x1*delta_theta;
+        theta_dot*theta_dot*delta_r + SWINGING_ATWOOD_NUMBER(2.0)*delta_theta_dot*x0
+        - x1*delta_theta;
     const swinging_atwood_real x4 =
-        g*cos_theta*r*delta_theta + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot)
+        g*cos_theta*r*delta_theta
+        + SWINGING_ATWOOD_NUMBER(2.0)*(delta_r_dot*x0 + r_dot*r*delta_theta_dot)
         - x2*delta_r;
     /* outputs */
     result[0] = r_dot;

@@ -3,6 +3,7 @@
 import ctypes
 import inspect
 import random
+import re
 import shutil
 import subprocess
 from collections.abc import Callable
@@ -11,13 +12,17 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+import sympy as sp
+from mpmath import mpf, workdps
 
-from derive import Derivation
+from derive import Coordinate, Derivation, Parameter, PointMass, System, load, names, write
 from derive.codegen.functions import Function, contents
+from derive.codegen.writing import texts
 from solvers.equations.forms import Form
 
 GENERATED = Path(__file__).parent.parent / "generated"
 STRICT = ["-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic", "-ffp-contract=off"]
+IN_FLOAT = ["-Wdouble-promotion", "-Wfloat-conversion"]
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 
@@ -109,53 +114,140 @@ def test_headers_are_valid_cpp_and_two_of_them_fit_into_one_program(tmp_path: Pa
     assert value == 0.5 * 2.0 * 9.0 - 2.0 * 9.81 * 3.0
 
 
-def test_vectors_of_doubles_compute_each_lane_as_a_scalar_does(tmp_path: Path) -> None:
+LANES = """
+    typedef {real} lanes __attribute__((vector_size(32)));
+    #define HOLONOMIC_REAL lanes
+    #define HOLONOMIC_VECTOR
+    #include "double_pendulum.h"
+    #if __cplusplus
+    extern "C"
+    #endif
+    void rates(const lanes *y, lanes *r, const lanes *p);
+    void rates(const lanes *y, lanes *r, const lanes *p)
+    {{ lanes t = {{0}}; double_pendulum_rhs_rational(t, y, p, r); }}
+"""
+
+
+@pytest.mark.parametrize("compiler", ["cc", "c++"])
+@pytest.mark.parametrize("real", ["double", "float"])
+def test_vectors_compute_each_lane_as_a_scalar_does(
+    real: str, compiler: str, tmp_path: Path
+) -> None:
     import generated.double_pendulum as dp
 
-    source = """
-        typedef double lanes __attribute__((vector_size(32)));
-        #define HOLONOMIC_REAL lanes
-        #define HOLONOMIC_VECTOR
-        #include "double_pendulum.h"
-        void rates(const lanes *y, lanes *r, const lanes *p);
-        void rates(const lanes *y, lanes *r, const lanes *p)
-        { lanes t = {0.0}; double_pendulum_rhs_rational(t, y, p, r); }
-    """
-    library = ctypes.CDLL(str(compiled(source, tmp_path, "-mavx2")))
-    together = cases(dp, "rational")[:4]
-    y, params = (aligned(np.array(columns).T) for columns in zip(*together, strict=True))
-    result = aligned(np.empty((6, 4)))
+    if shutil.which(compiler) is None:
+        pytest.skip(f"needs {compiler}")
+    source = LANES.format(real=real)
+    library = ctypes.CDLL(str(compiled(source, tmp_path, "-mavx2", *IN_FLOAT, compiler=compiler)))
+    dtype = np.dtype("f8" if real == "double" else "f4")
+    count = 32 // dtype.itemsize
+    together = cases(dp, "rational")[:count]
+    y, params = (aligned(np.array(columns, dtype).T) for columns in zip(*together, strict=True))
+    result = aligned(np.empty((6, count), dtype))
     library.rates(*(ctypes.c_void_p(a.ctypes.data) for a in (y, result, params)))
     for lane, (state, values) in enumerate(together):
-        assert tuple(result[:, lane]) == dp.rhs_rational(0.0, state, values)
+        rates = dp.rhs_rational(0.0, state, values)
+        if real == "double":
+            assert tuple(result[:, lane]) == rates
+        else:
+            np.testing.assert_allclose(result[:, lane], rates, rtol=1e-3)
 
 
 def aligned(array: np.ndarray) -> np.ndarray:
-    """A copy that begins at a multiple of 32 bytes, as vectors of four doubles must."""
-    space = np.empty(array.size + 4)
-    start = (-space.ctypes.data % 32) // 8
+    """A copy that begins at a multiple of 32 bytes, as vectors of this size must."""
+    space = np.empty(array.size + 8, array.dtype)
+    start = (-space.ctypes.data % 32) // array.itemsize
     copy = space[start : start + array.size].reshape(array.shape)
     copy[:] = array
     return copy
 
 
-def test_another_number_type_is_used_throughout(tmp_path: Path) -> None:
+OTHER_TYPE = """
+    #define HOLONOMIC_REAL {real}
+    #include "rod.h"
+    void energy(const double *y, const double *p, double *r);
+    void energy(const double *y, const double *p, double *r)
+    {{
+        {real} state[2], params[3], result;
+        for (int i = 0; i < 2; ++i) state[i] = ({real})y[i];
+        for (int i = 0; i < 3; ++i) params[i] = ({real})p[i];
+        rod_energy(({real})0, state, params, &result);
+        r[0] = (double)result;
+        r[1] = (double)(result - ({real})r[0]);
+    }}
+"""
+
+
+@pytest.mark.parametrize("real", ["float", "double", "long double"])
+def test_another_number_type_is_used_throughout(real: str, tmp_path: Path) -> None:
+    # literals with fractions and pi, and functions: in double they would have errors of 1e-17
+    theta, g = sp.symbols("theta g", real=True)
+    m, length = sp.symbols("m l", positive=True)
+    rod = System(
+        name="rod",
+        title="",
+        coordinates=[Coordinate(theta, "rad", "")],
+        parameters=[Parameter(s, "1", 1.0, "") for s in (m, length, g)],
+        masses=[PointMass(m, (length * sp.sin(theta), -length * sp.cos(theta)))],
+        potential=-m * g * length * sp.cos(theta) + sp.sqrt(2 + theta) * sp.pi / 7 + theta / 3,
+    )
+    write(rod, tmp_path)
+    library = ctypes.CDLL(str(compiled(OTHER_TYPE.format(real=real), tmp_path, f"-I{tmp_path}")))
+    # exact in every type
+    y, params, result = np.array([0.625, 0.75]), np.array([1.5, 1.25, 9.75]), np.empty(2)
+    library.energy(*(ctypes.c_void_p(a.ctypes.data) for a in (y, params, result)))
+    with workdps(30):
+        symbols = (*rod.q, *rod.qdot, *rod.params)
+        exact = sp.lambdify(symbols, Derivation(rod).energy, "mpmath")(*map(mpf, [*y, *params]))
+        eps = {"float": 2**-23, "double": 2**-52, "long double": np.finfo(np.longdouble).eps}[real]
+        error = abs(mpf(result[0]) + mpf(result[1]) - exact)
+        assert 0 < error < 4 * float(eps) * abs(exact)
+
+
+SINGLE = """
+    #define HOLONOMIC_REAL float
+    #include "{name}.h"
+    #if __cplusplus
+    extern "C"
+    #endif
+    void rate(const float *y, const float *p, float *r);
+    void rate(const float *y, const float *p, float *r)
+    {{ {name}_rhs(0.0f, y, p, r); {name}_energy(0.0f, y, p, r); }}
+"""
+
+
+@pytest.mark.parametrize("compiler", ["cc", "c++"])
+@pytest.mark.parametrize("name", [*names(), "chain_16"])
+def test_float_computes_in_float_alone(name: str, compiler: str, tmp_path: Path) -> None:
+    if shutil.which(compiler) is None:
+        pytest.skip(f"needs {compiler}")
+    if name == "chain_16":  # whose functions have loops
+        for file, text in texts(Derivation(load(name)), ["rhs", "energy"]).items():
+            (tmp_path / file).write_text(text)
+    options = [*IN_FLOAT, f"-I{tmp_path}", *(["-std=c99"] if compiler == "cc" else [])]
+    library = compiled(SINGLE.format(name=name), tmp_path, *options, compiler=compiler)
+    called = subprocess.run(["nm", "-D", "-u", library], capture_output=True, text=True).stdout
+    functions = re.findall(r"\b(?:sin|cos|sincos|sqrt)[fl]?\b", called)
+    assert all(function.endswith("f") for function in functions)
+
+
+def test_indices_of_parameters_and_states_have_names(module: ModuleType, tmp_path: Path) -> None:
+    guard = module.SYSTEM.upper()
+    arrays = {"PARAMETER": module.PARAMETERS}
+    arrays |= {form.upper(): state for form, state in module.STATES.items()}
+    checks = "\n".join(
+        f"typedef char check_{array}_{name}[{guard}_{array}_{name} == {k} ? 1 : -1];"
+        for array, components in arrays.items()
+        for k, name in enumerate(components)
+    )
+    for compiler in filter(shutil.which, ("cc", "c++")):
+        compiled(f'#include "{module.SYSTEM}.h"\n{checks}\n', tmp_path, compiler=compiler)
+
+
+def test_names_that_differ_in_case_alone_have_their_own_indices(tmp_path: Path) -> None:
     source = """
-        #include <tgmath.h>
-        #define HOLONOMIC_REAL long double
-        #include "double_pendulum.h"
-        double difference(const double *y, const double *p);
-        double difference(const double *y, const double *p)
-        {
-            long double state[4], params[5], energy;
-            for (int i = 0; i < 4; ++i) state[i] = y[i];
-            for (int i = 0; i < 5; ++i) params[i] = p[i];
-            double_pendulum_energy(0.0L, state, params, &energy);
-            return (double)(energy - (long double)(double)energy);
-        }
+        #include "swinging_atwood.h"
+        typedef char first[SWINGING_ATWOOD_PARAMETER_M == 0 ? 1 : -1];
+        typedef char second[SWINGING_ATWOOD_PARAMETER_m == 1 ? 1 : -1];
     """
-    library = ctypes.CDLL(str(compiled(source, tmp_path)))
-    library.difference.restype = ctypes.c_double
-    y, params = np.array([0.3, 0.4, 0.5, 0.6]), np.array([1.1, 1.2, 1.3, 1.4, 9.81])
-    rest = library.difference(*(ctypes.c_void_p(a.ctypes.data) for a in (y, params)))
-    assert 0 < abs(rest) < 1e-14
+    compiled(source, tmp_path)

@@ -12,6 +12,7 @@ from itertools import count
 
 from derive.codegen import operation as op
 from derive.codegen.lowering import Lowering
+from derive.codegen.node import Number
 from derive.codegen.operation import Operation, triangle_rows
 
 #: Longest expression that is written in place instead of named.
@@ -33,8 +34,12 @@ class Notation:
         is_exact = (numerator, denominator) == (value.numerator, value.denominator)
         # a quotient of exact numbers is rounded once, in any type
         if value == float(value) or not is_exact:
-            return repr(float(value))
-        return f"({numerator!r}/{denominator!r})"
+            return self.decimal(value)
+        return f"({self.decimal(value.numerator)}/{self.decimal(value.denominator)})"
+
+    def decimal(self, value: Number) -> str:
+        """A number as a decimal fraction, by default of double precision."""
+        return repr(float(value))
 
     def call(self, function: str, argument: str) -> str:
         """A call of a mathematical function, by its name in C99."""

@@ -36,10 +36,14 @@ class Backend(Notation, ABC):
     def statement(self, statement: Statement, function: Function) -> Iterable[str]:
         """The lines that compute a named value, in the body of a function."""
 
+    def notation(self, function: Function) -> Notation:
+        """The notation in a function."""
+        return self
+
     def assignments(self, function: Function) -> Assignments:
         """The assignments of a function, in the notation of this language."""
         reserved = {*RESERVED, *function.state, *function.parameters}
-        return Assignments(function.lowering, reserved, self)
+        return Assignments(function.lowering, reserved, self.notation(function))
 
     def body(self, function: Function, inputs: Iterable[str], assigned: Assignments) -> list[str]:
         """The lines of a function's body, from the given lines of its inputs to the outputs."""

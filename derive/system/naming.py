@@ -18,7 +18,7 @@ RESERVED = {
     *"restrict short signed sizeof static struct switch typedef union unsigned void".split(),
     *"volatile NULL NAN INFINITY pi".split(),
     *FUNCTIONS,
-    *"t params state result numpy math hasattr".split(),
+    *"t params state result numpy math hasattr STATE".split(),
     # keywords of C++, and macros that compilers may define
     *"asm bool catch class delete dynamic_cast explicit export friend mutable namespace".split(),
     *"new operator private protected public template this throw typeid typename using".split(),
@@ -26,10 +26,14 @@ RESERVED = {
     *"alignas alignof true false linux unix HUGE_VAL HUGE_VALF HUGE_VALL M_PI M_E EOF".split(),
 }
 
+#: Words that a C header appends to the name of its system.
+HELPERS = ("real", "number", "splat", *FUNCTIONS)
+
 
 def check_name(name: str, system: str) -> None:
     """Raise `SystemDefinitionError` if `name` is no identifier or a reserved word."""
-    if not IDENTIFIER.match(name) or name in (*RESERVED, f"{system}_real"):
+    helpers = {f"{system}_{word}" for word in HELPERS}
+    if not IDENTIFIER.match(name) or name in RESERVED | helpers:
         raise SystemDefinitionError(
             f"{name[:50]!r} cannot be a name in system {system[:50]!r}: use a letter and up to 39 "
             "letters, digits or underscores, and no word reserved by Python, C or generated code"

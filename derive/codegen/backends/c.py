@@ -1,14 +1,21 @@
 """C99 headers, with the same operations as the Python modules."""
 
 from collections.abc import Iterable, Iterator
-from textwrap import indent
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from textwrap import indent, wrap
 
-from derive.codegen.assignments import Factorisation, Solution, Statement, Value
+from derive.codegen.assignments import Factorisation, Notation, Solution, Statement, Value
 from derive.codegen.backend import Backend
 from derive.codegen.functions import Contents, Function
+from derive.codegen.node import Number
 from derive.codegen.summary import broken_sum, summary
 
 WIDTH = 92
+
+#: Digits of irrational numbers, of which long double has at most 36.
+DIGITS = 40
 
 HEADER = """\
 /* {system.title}.
@@ -23,10 +30,12 @@ HEADER = """\
        double state[{length}] = {{...}}, rate[{length}], params[{count}] = {{{defaults}}};
        {system.name}_rhs(0.0, state, params, rate);
 
+   Indices have names: state[{guard}_LAGRANGIAN_{system.q[0]}].
+
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
-   long double (in C include <tgmath.h> first, so that sines have the same type), or a vector of
-   doubles (`vector_size` of GCC and Clang), which computes several states at once. With a vector
-   also define HOLONOMIC_VECTOR, which omits functions that call the mathematical library. */
+   long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
+   omits functions that call the mathematical library. */
 
 #ifndef HOLONOMIC_{guard}_H
 #define HOLONOMIC_{guard}_H
@@ -38,24 +47,53 @@ HEADER = """\
 {double}#endif
 
 typedef HOLONOMIC_REAL {system.name}_real;
-{number}
+
 enum {{
 {sizes}
 }};
 
+/* Indices of parameters, and of the components of states. */
+{indices}
+{numbers}{calls}
 {functions}
 
 #endif
 """
 
-#: For functions that take vectors and return constants.
-NUMBER = """
+#: A literal is a number of the type, or a vector of equal numbers. Only long double takes the
+#: suffix: a double would be rounded twice.
+NUMBERS = """
+/* Literals of this type. */
 #ifdef HOLONOMIC_VECTOR
-#define {guard}_NUMBER(x) (({system}_real){{0}} + (x))
+typedef __typeof__((*({system}_real *)0)[0]) {system}_number;
+static inline {system}_real {system}_splat({system}_number x)
+{{
+    const {system}_real zero = {{0}};
+    return zero + x;
+}}
+#define {guard}_NUMBER(x) {system}_splat(({system}_number)x)
 #else
-#define {guard}_NUMBER(x) (x)
+typedef {system}_real {system}_number;
+#define {guard}_NUMBER(x) \\
+    (sizeof({system}_number) > sizeof(double) ? ({system}_number)x##L \\
+        : ({system}_number)x)
 #endif
 """
+
+CALLS = """
+/* Functions of this type. */
+#ifndef HOLONOMIC_VECTOR
+{calls}
+#endif
+"""
+
+CALL = """\
+static inline {system}_real {system}_{name}({system}_real x)
+{{
+    return sizeof(x) > sizeof(double) ? ({system}_real){name}l((long double)x)
+        : sizeof(x) > sizeof(float) ? ({system}_real){name}((double)x)
+        : ({system}_real){name}f((float)x);
+}}"""
 
 FUNCTION = """\
 /* {f.summary}
@@ -88,7 +126,7 @@ static inline void {system}_clear({system}_real *matrix, int count)
 {{
 #ifndef HOLONOMIC_VECTOR
     for (int k = 0; k < count; k++) {{
-        matrix[k] = 0.0;
+        matrix[k] = {guard}_NUMBER(0.0);
     }}
 #endif
     (void)matrix; (void)count;
@@ -100,7 +138,7 @@ static inline void {system}_factorise({system}_real *matrix, int n, int stride)
 {{
     for (int i = 0; i < n; i++) {{
         {system}_real *row = matrix + i*stride;
-        const {system}_real inverse = 1.0/row[i];
+        const {system}_real inverse = {guard}_NUMBER(1.0)/row[i];
         for (int j = i + 1; j < n; j++) {{
             const {system}_real ratio = row[j]*inverse;
             {system}_real *below = matrix + j*stride;
@@ -142,10 +180,30 @@ static inline void {system}_solve(const {system}_real *matrix, {system}_real *x,
 """
 
 
+@dataclass(frozen=True)
+class CNotation(Notation):
+    """Literals and calls of the number type of a system's header."""
+
+    system: str
+
+    def decimal(self, value: Number) -> str:
+        digits = repr(abs(float(value)))
+        if Fraction(digits) != abs(value):
+            with localcontext(prec=DIGITS):
+                digits = f"{abs(Decimal(value.numerator)) / value.denominator:e}"
+        return f"{'-' * (value < 0)}{self.system.upper()}_NUMBER({digits})"
+
+    def call(self, function: str, argument: str) -> str:
+        return f"{self.system}_{function}({argument})"
+
+
 class CBackend(Backend):
     """Headers of ``static inline`` functions for any real type, and for vectors."""
 
     suffix = ".h"
+
+    def notation(self, function: Function) -> Notation:
+        return CNotation(function.system.name)
 
     def comment(self, text: str) -> str:
         return f"    /* {text} */"
@@ -161,14 +219,14 @@ class CBackend(Backend):
                 return [
                     f"    {system}_real {name}[{n * stride}];",
                     f"    {system}_clear({name}, {n * stride});",
-                    *_stores(name, indices, entries, function),
+                    *_stores(name, indices, entries),
                     f"    {system}_factorise({name}, {n}, {stride});",
                 ]
             case Solution(_, matrix, right):
                 n = len(right)
                 return [
                     f"    {system}_real {name}[{n}];",
-                    *_stores(name, range(n), right, function),
+                    *_stores(name, range(n), right),
                     f"    {system}_solve({matrix}, {name}, {n}, {_stride(n)});",
                 ]
 
@@ -178,7 +236,9 @@ class CBackend(Backend):
         lengths["parameters"] = len(system.params)
         functions = "\n".join(map(self._function, contents.functions)).rstrip("\n")
         has_loops = f"{system.name}_factorise(" in functions
-        number = NUMBER if f"{guard}_NUMBER(" in functions else ""
+        numbers = NUMBERS if f"{guard}_NUMBER(" in functions else ""
+        called = {name for f in contents.functions for name in f.lowering.functions}
+        calls = "\n".join(CALL.format(system=system.name, name=name) for name in sorted(called))
         loops = LOOPS if has_loops else ""
         return HEADER.format(
             system=system,
@@ -189,7 +249,9 @@ class CBackend(Backend):
             defaults=", ".join(repr(float(p.default)) for p in system.parameters),
             sizes="\n".join(f"    {guard}_{k.upper()} = {n}," for k, n in lengths.items()),
             double=f"#define {guard}_DOUBLE\n" if has_loops else "",
-            number=number.format(system=system.name, guard=guard),
+            indices="\n".join(_indices(contents)),
+            numbers=numbers.format(system=system.name, guard=guard),
+            calls=CALLS.format(calls=calls) if called else "",
             functions=loops.format(system=system.name, guard=guard, block=BLOCK) + functions,
         )
 
@@ -199,7 +261,7 @@ class CBackend(Backend):
         outputs = range(len(assigned.outputs))
         lines = [
             *self.body(function, _inputs(function), assigned),
-            *_stores("result", outputs, assigned.outputs, function),
+            *_stores("result", outputs, assigned.outputs),
             *_unused(function),
         ]
         arguments = _separated([*state, f"const {real} *params", f"{real} *result"])
@@ -219,14 +281,19 @@ def _inputs(function: Function) -> Iterator[str]:
                 yield f"    const {function.system.name}_real {name} = {argument}[{k}];"
 
 
-def _stores(
-    array: str, indices: Iterable[int], texts: Iterable[str], function: Function
-) -> Iterator[str]:
-    """Statements that store values in an array; vectors of equal numbers in place of numbers."""
+def _indices(contents: Contents) -> Iterator[str]:
+    """Enumerations of the parameters and of the components of states."""
+    parameters = tuple(symbol.name for symbol in contents.system.params)
+    for array, names in (("parameter", parameters), *contents.states.items()):
+        prefix = f"{contents.system.name}_{array}".upper()
+        if names:
+            text = wrap(", ".join(f"{prefix}_{name}" for name in names), WIDTH - 4)
+            yield f"enum {{\n{indent(chr(10).join(text), '    ')}\n}};"
+
+
+def _stores(array: str, indices: Iterable[int], texts: Iterable[str]) -> Iterator[str]:
+    """Statements that store values in an array."""
     for k, text in zip(indices, texts, strict=True):
-        is_number = text.lstrip("-").replace(".", "").isdigit()
-        if is_number and not function.lowering.functions:
-            text = f"{function.system.name.upper()}_NUMBER({text})"
         yield _line(f"{array}[{k}]", text)
 
 
