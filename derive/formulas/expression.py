@@ -5,8 +5,9 @@ values, with names from the caller's scope. Sizes are limited before anything is
 """
 
 import ast
+import keyword
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from typing import Any, TypeAlias
 
@@ -23,6 +24,11 @@ RELATION = re.compile(r"(>=|<=|=|>|<)")
 
 #: The functions and constants available in every formula.
 FUNCTIONS: dict[str, Any] = functions.FUNCTIONS | {"pi": sp.pi}
+
+#: Words of Python's grammar, which are names in a formula, such as lambda.
+KEYWORD = re.compile(rf"\b(?:{'|'.join(keyword.kwlist)})\b")
+#: From an ASCII letter to the wide letter that Python's parser normalises to it.
+WIDE = 0xFEE0
 
 #: Limits: characters of a formula, absolute value of an exponent, bits of a number.
 MAX_LENGTH, MAX_EXPONENT, MAX_BITS = 20_000, 100, 256
@@ -49,10 +55,17 @@ def syntax_tree(text: str) -> ast.expr:
     for character in "#\n\\":
         if character in text:
             raise ExpressionError(f"{character!r} has no meaning in a formula: {text[:80]!r}")
+    # with a wide letter, the parser reads a keyword as a name, and normalises it
+    source = KEYWORD.sub(lambda word: chr(ord(word[0][0]) + WIDE) + word[0][1:], text)
     try:
-        return ast.parse(text, mode="eval").body
+        tree = ast.parse(source, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise ExpressionError(f"cannot parse {text[:80]!r} as a formula: {error}") from None
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant):
+            # the digits, since the value is already rounded; `kind` is free but for text
+            node.kind = ast.get_source_segment(source, node)
+    return tree
 
 
 def evaluate(node: ast.expr, text: str, scope: Scope) -> Value:
@@ -84,8 +97,8 @@ class _Evaluator:
 
     def _value(self, node: ast.expr) -> Any:
         match node:
-            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-                return self._exact_number(node)
+            case ast.Constant(value=int() | float(), kind=str() as digits):
+                return _exact_number(digits)
             case ast.Name(id=name):
                 return self._lookup(name, function=False)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
@@ -101,7 +114,7 @@ class _Evaluator:
             case ast.BinOp(left=left, op=ast.Div(), right=right):
                 return self.value(left) / self.value(right)
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
-                return self._lookup(name, function=True)(*map(self.value, arguments))
+                return self._call(name, [*map(self.value, arguments)])
             case ast.Tuple(elts=[_, *_] as items):
                 return sp.ImmutableDenseMatrix(list(map(self._entry, items)))
             case ast.List(elts=[ast.List(elts=[_, *_]), *_] as lists):
@@ -115,18 +128,18 @@ class _Evaluator:
             "functions, (a, b) for a column and [[a, b], [c, d]] for a matrix"
         )
 
-    def _exact_number(self, node: ast.expr) -> sp.Rational:
-        # the source digits: the parsed float is already rounded
-        digits = Decimal(ast.get_source_segment(self._text, node) or "nan")
-        if abs(digits.adjusted()) > MAX_EXPONENT:
-            raise ExpressionError(f"{_quoted(node)} is out of range: 1e-100 to 1e100")
-        return sp.Rational(*digits.as_integer_ratio())
-
     def _entry(self, node: ast.expr) -> sp.Expr:
         value = self.value(node)
         if isinstance(value, sp.MatrixBase):
             raise ExpressionError(f"{_quoted(node)} cannot be an entry: entries are numbers")
         return value
+
+    def _call(self, name: str, arguments: Sequence[Value]) -> Value:
+        function = self._lookup(name, function=True)
+        for value in arguments:
+            if function is FUNCTIONS.get(name) and isinstance(value, sp.MatrixBase):
+                raise ExpressionError(f"{name} of a column or matrix: it is a function of numbers")
+        return function(*arguments)
 
     def _lookup(self, name: str, *, function: bool) -> Any:
         if name not in self._scope:
@@ -142,6 +155,13 @@ class _Evaluator:
 
 def _quoted(node: ast.expr) -> str:
     return repr(ast.unparse(node)[:80])
+
+
+def _exact_number(digits: str) -> sp.Rational:
+    number = Decimal(digits)
+    if abs(number.adjusted()) > MAX_EXPONENT:
+        raise ExpressionError(f"{digits[:50]!r} is out of range: 1e-100 to 1e100")
+    return sp.Rational(*number.as_integer_ratio())
 
 
 def _power(base: Value, exponent: Value) -> Value:
