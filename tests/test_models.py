@@ -243,6 +243,27 @@ def test_one_degree_of_freedom_is_a_quadrature(module, params, y0) -> None:
     assert np.abs(end - run.y[:, -1]).max() < 1e-6
 
 
+@pytest.mark.parametrize("speed", [1e-3, 1e-6, -1e-6, 1e-9])
+def test_a_start_next_to_a_turning_point_costs_no_accuracy(speed: float) -> None:
+    for module, y0, params in (
+        (sp, (1.0, speed), sp.DEFAULTS),
+        (ep, (1.0, 0.3, speed, 2.0), (1, 40, 0.75, 0)),
+    ):
+        motion = motion_from(module, y0, 3.0, params)
+        model = Quadrature.of(motion)
+        assert largest_error(motion, model) <= min(model.error_estimate, 1e-11)
+
+
+def test_the_error_of_turning_points_is_estimated() -> None:
+    # of a slow swing of 1e-4 rad the energy above rest has half of all digits, and so have the
+    # turning points; errors of velocities and of the time are much smaller
+    params = (1, 2, 9.81e-12)
+    for share in np.geomspace(1e-3, 1e-2, 12):
+        y0 = (1e-4, share * 1e-4 * (params[2] / params[1]) ** 0.5)
+        motion = motion_from(sp, y0, 1.0, params, (0,))
+        assert largest_error(motion, model := Quadrature.of(motion)) <= model.error_estimate < 1e-9
+
+
 def test_quadrature_refuses_motions_outside_its_domain() -> None:
     with pytest.raises(OutsideDomainError, match="rotating the whole system changes its energy"):
         Quadrature.of(motion_from(dp, (0, 1, 2, 3), 1))

@@ -212,6 +212,9 @@ def _converged(reduced: ReducedMotion, path: Path, phase: float, n: int) -> Orbi
     turning_point_error = float(max(lost[0], lost[n // 2]) * abs(distance))
     rate_error = float((lost * (np.abs(du) + np.abs(S)) / G).max())
     errors = (period_error, turning_point_error, rate_error)
+    if amplitude:  # du = amplitude sin φ dφ; the square root of `orbit` rounds at turning points
+        start, rate, _ = reduced.start
+        phase = float(np.arctan2(rate * time.value(np.array(phase)), centre - start))
     return Orbit(reduced, path, time, rotation, phase, *errors)
 
 
