@@ -1,5 +1,6 @@
 """Objectives, claims and recommendations: verdicts that follow from numbers, not from opinion."""
 
+import re
 from math import pi
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.app.commands.chart import DEFAULT
-from solvers.app.verdict.claims import claims, objectives, recommendations
+from solvers.app.verdict.claims import _chapter_5, claims, objectives, recommendations
 from solvers.app.verdict.evidence import Evidence
+from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
 from solvers.studies.failure_modes.lyapunov import Mean
 from solvers.studies.failure_modes.study import studies
@@ -89,6 +91,25 @@ def test_a_wrong_equation_or_a_better_rk4_would_change_the_objectives_verdicts(
     monkeypatch.setattr(Evidence, "exponent", lambda _, **masses: Mean(1.0, 0.1))
     advice = {o.id: o.verdict for o in recommendations(evidence)}
     assert advice["5g"] == advice["5h"] == "contradicted"
+
+
+def test_the_growth_of_a_difference_is_that_of_the_motions(
+    evidence: Evidence, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def verdict() -> tuple[str, list[float]]:
+        (claim,) = (claim for claim in _chapter_5(evidence) if claim.id == "5a")
+        growth = re.findall(r"factor of (\S+) in 5 s and of (\S+) in 20 s", claim.number)
+        return claim.verdict, [*map(float, *growth)]
+
+    monkeypatch.setattr(Evidence, "error", lambda *_: 1.0)  # of other claims
+    shown = []
+    for t in (5, 20):
+        starts = PROSE.y0, (PROSE.y0[0] + 1e-9, *PROSE.y0[1:])
+        one, other = (taylor(dp, PROSE.params, y0, [0, t], 24)[-1] for y0 in starts)
+        shown.append(pytest.approx(np.linalg.norm(one - other) / 1e-9, rel=0.01))
+    assert verdict() == ("supported", shown)
+    monkeypatch.setattr(Evidence, "divergence", lambda _, __, duration: 45.0 * duration)
+    assert verdict() == ("contradicted", [225, 900])
 
 
 def test_right_hand_sides_are_counted_to_an_error(evidence: Evidence) -> None:

@@ -18,6 +18,7 @@ from solvers.integration.compiled import compiler
 from solvers.integration.compiled.compiler import LIBRARY, TIME_LIMIT, NoCompilerError, build
 from solvers.integration.compiled.native import native_rhs
 from solvers.io.build_cache import DIGESTS, cache_folder
+from solvers.studies.benchmarks.double_pendulum import _peak_library
 
 ROOT = Path(__file__).parent.parent
 SOURCE = "int answer(void);\nint answer(void) { return 42; }\n"
@@ -225,3 +226,13 @@ def test_after_a_kill_in_the_middle_the_next_run_builds_at_once() -> None:
         run.send_signal(signal.SIGKILL)
         run.communicate()
     assert started("\n\n").communicate()[0] == "42\n"
+
+
+def test_the_peak_program_does_the_operations_that_it_counts() -> None:
+    # twelve sums, each x → x/2 + 1e-9 in every lane of a register: a product and a sum
+    library, first = _peak_library(), 25.2
+    for rounds in (0, 1, 2, 40):
+        left = 0.5**rounds
+        expected = first * left + 12 * 2e-9 * (1 - left)
+        assert library.peak(rounds) == pytest.approx(expected, rel=1e-12)
+    assert library.operations() in {12 * 2 * lanes for lanes in (2, 4, 8)}

@@ -113,6 +113,17 @@ def test_states_at_events_use_the_parameters_of_their_motion() -> None:
         assert_allclose(getattr(found[0], name), getattr(found[1], name), atol=1e-8)
 
 
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+def test_integration_of_one_motion_stores_all_extremes(backend: str) -> None:
+    half = 2 * ellipk(sin(0.5) ** 2) / sqrt(sp.DEFAULTS[2] / sp.DEFAULTS[1])
+    event, end = Extremum(sp, "theta_dot"), 6.5 * half
+    run = integrate(
+        sp, (0, end), (1.0, 0.0), sp.DEFAULTS, events=event, rtol=1e-11, backend=backend
+    )
+    assert_allclose(run.t_events[0], half * np.arange(1, 7), atol=1e-8)
+    assert_allclose(run.y_events[0][:, 0], [-1, 1, -1, 1, -1, 1], atol=1e-8)
+
+
 def test_extremes_have_two_occurrences_whatever_other_events_have() -> None:
     events = [Extremum(dp, "theta1_dot"), Event(dp, "theta1", 0.0)]
     found = [

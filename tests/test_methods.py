@@ -195,6 +195,18 @@ def test_stability_functions_are_the_published_ones(
     assert found == (tuple(map(Fraction, numerator)), tuple(map(Fraction, denominator)))
 
 
+@pytest.mark.parametrize("text", [
+    "0 0; 1/2 1/2",  # the trapezoidal rule
+    "0 0 0; 5/24 1/3 -1/24; 1/6 2/3 1/6",  # Lobatto IIIA: the first stage is explicit
+    "1/6 -1/6 0; 1/6 1/3 0; 1/6 5/6 0",  # Lobatto IIIB: no stage needs the last one
+    "1/2 0; 0 1/2",  # stages that need themselves only
+])  # fmt: skip
+def test_an_implicit_method_may_have_zeros(text: str) -> None:
+    A = tuple(tuple(map(Fraction, row.split())) for row in text.split(";"))
+    assert not Tableau("", A, A[-1]).is_explicit
+    assert not Tableau("", A, A[-1]).is_fsal
+
+
 @pytest.mark.parametrize("name", ["gauss1", "gauss2", "gauss3"])
 def test_gauss_methods_are_symplectic_and_others_are_not(name: str) -> None:
     # b_i a_ij + b_j a_ji = b_i b_j (Hairer, Lubich and Wanner, theorem VI.4.3)

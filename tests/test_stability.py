@@ -208,6 +208,15 @@ def test_another_system_has_other_critical_steps(monkeypatch: pytest.MonkeyPatch
     assert other.measured == pytest.approx(sqrt(3) / 100, rel=1e-3)
 
 
+@pytest.mark.parametrize("method", ["gauss1", "rk4", "dop853", "verner98"])
+def test_rounding_at_a_stretched_equilibrium_is_no_growth(method: str) -> None:
+    # small motion of a spring of 1.1 m: its states are rounded to 1e-16 m, not to 1e-16 of 1e-7 m
+    assert ep.equilibrium(ep.DEFAULTS)[0] > 1
+    found = critical_step(method, ep, ep.DEFAULTS)
+    assert found.predicted > 0
+    assert found.measured == pytest.approx(found.predicted, rel=1e-3)
+
+
 def test_limits_are_bisected_whatever_the_growth() -> None:
     assert limit(lambda h: h - 0.7, 1.0) == pytest.approx(0.7, rel=2e-4)
     assert limit(lambda h: 1.0, 1.0) == 0.0
