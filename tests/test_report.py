@@ -4,6 +4,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
@@ -136,6 +137,39 @@ def test_every_mutation_of_a_verified_equation_is_rejected(equation: Equation) -
             survivors.append(text)
     assert survivors == []
     assert count >= 2
+
+
+def misprinted(equation: Equation, printed: str) -> Equation:
+    """The same misprint of another text; blanks, which mutants lack, do not matter."""
+    changes = tuple((squeezed(wrong), squeezed(right)) for wrong, right in equation.changes)
+    return replace(equation, printed=squeezed(printed), changes=changes)
+
+
+def squeezed(text: str) -> str:
+    return text.replace(" ", "")
+
+
+@pytest.mark.parametrize("name", sorted(MISPRINTS))
+def test_a_misprint_differs_from_its_correction_by_the_stated_changes_alone(name: str) -> None:
+    equation = EQUATIONS[name]
+    assert verdict(misprinted(equation, equation.printed), order).verdict == "misprint"
+    survivors, count = [], 0
+    for text in mutants(equation.printed):
+        count += 1
+        try:
+            result = verdict(misprinted(equation, text), order)
+        except (ValueError, TypeError):  # not a formula, or a part to change is missing
+            continue
+        if result.verdict != "wrong":
+            survivors.append(text)
+    assert survivors == []
+    assert count >= 2
+
+
+def test_a_part_to_change_must_be_printed_once() -> None:
+    for printed, count in (("x1 = l1", 0), ("x1 = l2 + l2", 2)):
+        with pytest.raises(ValueError, match=f"eq47: .* 'l2' is printed {count} times, not once"):
+            Equation("eq47", printed, changes=(("l2", "l1"),))
 
 
 @pytest.mark.parametrize(

@@ -35,9 +35,7 @@ EQUATIONS: tuple[Equation, ...] = (
              "ddt(p_phi2) = m2*l2**2*phi2_ddot + m2*l1*l2*phi1_ddot*cos(phi1 - phi2)"
              " - m2*l1*l2*phi1_dot**2*phi1_dot*sin(phi1 - phi2)"
              " + m2*l1*l2*phi1_dot*phi2_dot*sin(phi1 - phi2)",
-             corrected="ddt(p_phi2) = m2*l2**2*phi2_ddot + m2*l1*l2*phi1_ddot*cos(phi1 - phi2)"
-             " - m2*l1*l2*phi1_dot**2*sin(phi1 - phi2)"
-             " + m2*l1*l2*phi1_dot*phi2_dot*sin(phi1 - phi2)",
+             changes=(("phi1_dot**2*phi1_dot*sin", "phi1_dot**2*sin"),),
              measure="0", note="a factor too many"),
     Equation("A11",
              "d(L, phi1) = -m2*l1*l2*phi1_dot*phi2_dot*sin(phi1 - phi2)"
@@ -48,14 +46,13 @@ EQUATIONS: tuple[Equation, ...] = (
     Equation("eq97",
              "(m1 + m2)*l1*phi1_ddot + m2*l2*phi2_ddot*cos(phi1 - phi2)"
              " + m2*l2*phi1_dot**2*sin(phi1 - phi2) + (m1 + m2)*g*sin(phi1) = 0",
-             corrected="(m1 + m2)*l1*phi1_ddot + m2*l2*phi2_ddot*cos(phi1 - phi2)"
-             " + m2*l2*phi2_dot**2*sin(phi1 - phi2) + (m1 + m2)*g*sin(phi1) = 0",
+             changes=(("phi1_dot**2", "phi2_dot**2"),),
              measure="E1/l1", note="as (64); the displays above it give the right index"),
     Equation("eq98",
              "l1*phi2_ddot + l1*phi1_dot*cos(phi1 - phi2) - l1*phi1_dot**2*sin(phi1 - phi2)"
              " + g*sin(phi2) = 0",
-             corrected="l2*phi2_ddot + l1*phi1_ddot*cos(phi1 - phi2)"
-             " - l1*phi1_dot**2*sin(phi1 - phi2) + g*sin(phi2) = 0",
+             changes=(("l1*phi2_ddot", "l2*phi2_ddot"),
+                      ("phi1_dot*cos", "phi1_ddot*cos")),
              measure="E2/(m2*l2)", note="two slips: l1 for l2, and a dot missing over phi1"),
     Equation("eq99", "phi1_ddot + alpha1*phi2_ddot = f1", using=("eq101", "eq103"),
              measure="E1/((m1 + m2)*l1**2)"),
@@ -77,15 +74,15 @@ EQUATIONS: tuple[Equation, ...] = (
     Equation("eq105",
              "A*(phi1_ddot, phi2_ddot) = [[1, phi1_ddot], [phi2_ddot, 1]]*(phi1_dot, phi2_dot)"
              " = (f1, f2)",
-             corrected="A*(phi1_ddot, phi2_ddot)"
-             " = [[1, alpha1], [alpha2, 1]]*(phi1_ddot, phi2_ddot) = (f1, f2)",
+             changes=(("[[1, phi1_ddot], [phi2_ddot, 1]]*(phi1_dot, phi2_dot)",
+                       "[[1, alpha1], [alpha2, 1]]*(phi1_ddot, phi2_ddot)"),),
              using=("eq101", "eq102", "eq103", "eq104"),
              note="accelerations stand where alpha belongs; (68) is right"),
     Equation("eq106",
              "inverse(A) = 1/det(A)*[[1, phi1_ddot], [phi2_ddot, 1]]"
              " = 1/(1 - alpha1*alpha2)*[[1, -phi1_ddot], [-phi2_ddot, 1]]",
-             corrected="inverse(A) = 1/det(A)*[[1, -alpha1], [-alpha2, 1]]"
-             " = 1/(1 - alpha1*alpha2)*[[1, -alpha1], [-alpha2, 1]]",
+             changes=(("[[1, phi1_ddot], [phi2_ddot, 1]]", "[[1, -alpha1], [-alpha2, 1]]"),
+                      ("[[1, -phi1_ddot], [-phi2_ddot, 1]]", "[[1, -alpha1], [-alpha2, 1]]")),
              using=("eq101", "eq102"),
              note="accelerations stand where alpha belongs, and two signs are missing"),
     Equation("eq107",
@@ -105,25 +102,26 @@ EQUATIONS: tuple[Equation, ...] = (
              " g2 = (-alpha2*f1 + f2)/(1 - alpha1*alpha2)",
              check="phi1_ddot = g1; phi2_ddot = g2",
              using=("eq101", "eq102", "eq103", "eq104")),
-    Equation("A15", "alpha_i = (phi1, phi2)", corrected="alpha_i = only(alpha_i, phi1, phi2)",
+    Equation("A15", "alpha_i = (phi1, phi2)",
+             changes=(("(phi1, phi2)", "only(alpha_i, phi1, phi2)"),),
              using=("eq101", "eq102"),
              note="the function's name is missing: alpha_i depends on phi1 and phi2 alone"),
     Equation("A16", "f_1 = only(f_i, phi1, phi2, omega1, omega2)",
-             corrected="f_i = only(f_i, phi1, phi2, omega1, omega2)",
+             changes=(("f_1 =", "f_i ="),),
              using=("eq103", "eq104"), note="the left index should be i"),
     Equation("eq110", LAGRANGIAN),
     Equation("eq111", MOMENTUM_1),
     Equation("eq112", MOMENTUM_2),
     Equation("eq113", "H = theta1_dot*P_theta1 + theta2_dot*P_theta2 - L"),
     Equation("eq114", "thetadot_i = d(H, P_theta_i); P_theta_i = -d(H, theta_i)",
-             corrected="thetadot_i = d(H, P_theta_i); Pdot_theta_i = -d(H, theta_i)",
+             changes=(("; P_theta_i =", "; Pdot_theta_i ="),),
              note="the dot over the momentum is missing; (76) has it"),
     Equation("eq115", "(P_theta1, P_theta2) = B*(theta1_dot, theta2_dot)"),
     Equation("eq116",
              "B = [[(m1 + m2)*l1**2, m2*l1*l2*cos(theta1 - theta2)],"
              " [m2*l1*l2*cos(theta1 - theta2), m2*l2**2]]"),
     Equation("eq117", "P*(theta1_dot, theta2_dot) = inverse(B)*(P_theta1, P_theta2)",
-             corrected="(theta1_dot, theta2_dot) = inverse(B)*(P_theta1, P_theta2)",
+             changes=(("P*(theta1_dot", "(theta1_dot"),),
              stray="P", note="a P too many"),
     Equation("A17",
              "det(B) = m1*m2*l1**2*l2**2 + m2**2*l1**2*l2**2*(1 - cos(theta1 - theta2)**2)"
@@ -138,8 +136,7 @@ EQUATIONS: tuple[Equation, ...] = (
     Equation("eq119",
              "theta2_dot = (-m2*l2*P_theta1 - l1*P_theta2*cos(theta1 - theta2)"
              " + (m1 + m2)*l1*P_theta2)/(m2*l1*l2**2*(m1 + m2*sin(theta1 - theta2)**2))",
-             corrected="theta2_dot = (-m2*l2*P_theta1*cos(theta1 - theta2)"
-             " + (m1 + m2)*l1*P_theta2)/(m2*l1*l2**2*(m1 + m2*sin(theta1 - theta2)**2))",
+             changes=((" - l1*P_theta2*cos(", "*cos("),),
              note="as (81); the line under (120) has the right form"),
     Equation("eq120",
              "H = (m2*l2**2*P_theta1**2 + (m1 + m2)*l1**2*P_theta2**2"

@@ -33,7 +33,7 @@ EQUATIONS: tuple[Equation, ...] = (
              check="I*d(d(theta, t), t) + stiffness*theta = 0; "
                    "at(theta, t, -psi/omega) = theta0; at(theta, t, (pi/2 - psi)/omega) = 0",
              note="with omega = sqrt(g/l), as the next line of the report says"),
-    Equation("eq9", "v = 0", corrected="z = 0", system="single",
+    Equation("eq9", "v = 0", changes=(("v = 0", "z = 0"),), system="single",
              note="the speed of a swinging bob is not 0; its third coordinate is"),
     Equation("eq10", "norm(r) = l", system="single"),
     Equation("eq11", "r = l*(sin(theta), cos(theta), 0)", system="single",
@@ -41,7 +41,7 @@ EQUATIONS: tuple[Equation, ...] = (
     Equation("eq12", "F = T*(-r)/norm(r) + m*g_vector = -T/l*r + m*g_vector", system="single",
              note="F is mass times acceleration of the motion, T its projection on the rod"),
     Equation("eq13", "r1 = l1*(sin(theta1), cos(theta2), 0)",
-             corrected="r1 = l1*(sin(theta1), cos(theta1), 0)"),
+             changes=(("cos(theta2)", "cos(theta1)"),)),
     Equation("eq14", "r2 = r1 + l2*(sin(theta2), cos(theta2), 0)",
              note="with r1 as corrected in (13)"),
     Equation("eq15",
@@ -57,17 +57,17 @@ EQUATIONS: tuple[Equation, ...] = (
     *fourth_order_rule(20),
     Equation("eq26", HAMILTON),
     Equation("eq27", "Ixx*omega_x_dot + (Izz - Iyy)*omega_y*omega_x = tau_x", system="rigid",
-             corrected="Ixx*omega_x_dot + (Izz - Iyy)*omega_y*omega_z = tau_x"),
+             changes=(("omega_y*omega_x", "omega_y*omega_z"),)),
     Equation("eq28", "Iyy*omega_y_dot + (Ixx - Izz)*omega_z*omega_y = tau_y", system="rigid",
-             corrected="Iyy*omega_y_dot + (Ixx - Izz)*omega_z*omega_x = tau_y"),
+             changes=(("omega_z*omega_y", "omega_z*omega_x"),)),
     Equation("eq29", "Izz*omega_z_dot + (Iyy - Ixx)*omega_x*omega_z = tau_z", system="rigid",
-             corrected="Izz*omega_z_dot + (Iyy - Ixx)*omega_x*omega_y = tau_z"),
+             changes=(("omega_x*omega_z", "omega_x*omega_y"),)),
     Equation("eq30", "u_t + u.grad(u) + grad(p) = 0", exempt="context",
            note="a field equation of an inviscid fluid: no positions of masses lead to it"),
     Equation("eq31", "div(u) = 0", exempt="context",
            note="incompressibility of a fluid: no positions of masses lead to it"),
     Equation("eq32", "ddt(d(L, theta1)) = d(L, theta1)",
-             corrected="ddt(d(L, theta1_dot)) = d(L, theta1)",
+             changes=(("ddt(d(L, theta1))", "ddt(d(L, theta1_dot))"),),
              note="the dot over the left angle is missing"),
     Equation("eq33",
              "l1*((m1 + m2)*l1*theta1_ddot + m2*l2*cos(theta1 - theta2)*theta2_ddot"
@@ -107,14 +107,12 @@ EQUATIONS: tuple[Equation, ...] = (
     Equation("eq64",
              "(m1 + m2)*l1*phi1_ddot + m2*l2*phi2_ddot*cos(phi1 - phi2)"
              " + m2*l2*phi1_dot**2*sin(phi1 - phi2) + (m1 + m2)*g*sin(phi1) = 0",
-             corrected="(m1 + m2)*l1*phi1_ddot + m2*l2*phi2_ddot*cos(phi1 - phi2)"
-             " + m2*l2*phi2_dot**2*sin(phi1 - phi2) + (m1 + m2)*g*sin(phi1) = 0",
+             changes=(("phi1_dot**2", "phi2_dot**2"),),
              measure="E1/l1", note="(33) has the right index"),
     Equation("eq65",
              "l1*phi2_ddot + l1*phi1_ddot*cos(phi1 - phi2) - l1*phi1_dot**2*sin(phi1 - phi2)"
              " + g*sin(phi2) = 0",
-             corrected="l2*phi2_ddot + l1*phi1_ddot*cos(phi1 - phi2)"
-             " - l1*phi1_dot**2*sin(phi1 - phi2) + g*sin(phi2) = 0",
+             changes=(("l1*phi2_ddot", "l2*phi2_ddot"),),
              measure="E2/(m2*l2)", note="(34) has the right length"),
     Equation("eq66", "phi1_ddot + alpha1*phi2_ddot = f1", using=("eq101", "eq103"),
              measure="E1/((m1 + m2)*l1**2)"),
@@ -124,14 +122,14 @@ EQUATIONS: tuple[Equation, ...] = (
              "A*(phi1_ddot, phi2_ddot) = [[1, alpha1], [alpha2, 1]]*(phi1_ddot, phi2_ddot)"
              " = (f1, f2)", using=("eq101", "eq102", "eq103", "eq104")),
     Equation("eq69", "inverse(A) = 1/det(A)*[[1, alpha1], [alpha2, 1]]",
-             corrected="inverse(A) = 1/det(A)*[[1, -alpha1], [-alpha2, 1]]",
+             changes=(("[[1, alpha1], [alpha2, 1]]", "[[1, -alpha1], [-alpha2, 1]]"),),
              using=("eq101", "eq102"), note="two signs are missing; (70) has them"),
     Equation("eq70",
              "(phi1_ddot, phi2_ddot)"
              " = 1/(1 - alpha1*alpha2)*(f1 - alpha1*f2, -alpha2*f1 + f2)",
              using=("eq101", "eq102", "eq103", "eq104")),
     Equation("eq71", "ddt((phi1, phi2, omega1, omega2)) = (chi1, chi2, g1, g2)",
-             corrected="ddt((phi1, phi2, omega1, omega2)) = (omega1, omega2, g1, g2)",
+             changes=(("(chi1, chi2,", "(omega1, omega2,"),),
              using=("eq101", "eq102", "eq103", "eq104", "A14"),
              note="the sentence before it lets omega be the velocity; chi is not defined"),
     Equation("eq72", LAGRANGIAN),
@@ -143,11 +141,10 @@ EQUATIONS: tuple[Equation, ...] = (
     Equation("eq78",
              "B = P*[[(m1 + m2)*l1**2, m2*l1*l2*cos(theta1 - theta2)],"
              " [m2*l1*l2*cos(theta1 - theta2), m2*l2**2]]",
-             corrected="B = [[(m1 + m2)*l1**2, m2*l1*l2*cos(theta1 - theta2)],"
-             " [m2*l1*l2*cos(theta1 - theta2), m2*l2**2]]",
+             changes=(("P*[[", "[["),),
              stray="P", note="printed 'P (...)' for 'B = (...)'; (116) is right"),
     Equation("eq79", "P*(theta1_dot, theta2_dot) = inverse(B)*(P_theta1, P_theta2)",
-             corrected="(theta1_dot, theta2_dot) = inverse(B)*(P_theta1, P_theta2)",
+             changes=(("P*(theta1_dot", "(theta1_dot"),),
              stray="P", note="a P too many"),
     Equation("eq80",
              "theta1_dot = (l2*P_theta1 - l1*P_theta2*cos(theta1 - theta2))"
@@ -155,8 +152,7 @@ EQUATIONS: tuple[Equation, ...] = (
     Equation("eq81",
              "theta2_dot = (-m2*l2*P_theta1 - l1*P_theta2*cos(theta1 - theta2)"
              " + (m1 + m2)*l1*P_theta2)/(m2*l1*l2**2*(m1 + m2*sin(theta1 - theta2)**2))",
-             corrected="theta2_dot = (-m2*l2*P_theta1*cos(theta1 - theta2)"
-             " + (m1 + m2)*l1*P_theta2)/(m2*l1*l2**2*(m1 + m2*sin(theta1 - theta2)**2))",
+             changes=((" - l1*P_theta2*cos(", "*cos("),),
              note="the line under (120) has the right form"),
     Equation("eq82",
              "H = (m2*l2**2*P_theta1**2 + (m1 + m2)*l1**2*P_theta2**2"

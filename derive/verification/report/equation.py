@@ -10,7 +10,8 @@ class Equation:
 
     id: str  # eq33 for equation (33), A9 for the ninth unnumbered display
     printed: str
-    corrected: str = ""  # the correct equation, if the printed one does not hold
+    # of a misprint: the incorrect parts, each of which is printed once, and the correct ones
+    changes: tuple[tuple[str, str], ...] = ()
     # left minus right side as an identity: for equations of motion, a multiple of the
     # Euler–Lagrange residual; without it, the sides must be equal along every motion
     measure: str = ""
@@ -20,6 +21,20 @@ class Equation:
     system: Literal["double", "single", "rigid", "method"] = "double"
     exempt: Literal["", "definition", "context"] = ""  # not judged by computation
     note: str = ""
+
+    def __post_init__(self) -> None:
+        for incorrect, _ in self.changes:
+            if (count := self.printed.count(incorrect)) != 1:
+                part = f"the incorrect part {incorrect!r}"
+                raise ValueError(f"{self.id}: {part} is printed {count} times, not once")
+
+    @property
+    def corrected(self) -> str:
+        """The printed equation with its changes; empty if it has none."""
+        text = self.printed
+        for incorrect, correct in self.changes:
+            text = text.replace(incorrect, correct)
+        return text if self.changes else ""
 
 
 def fourth_order_rule(first: int) -> tuple[Equation, ...]:
