@@ -38,7 +38,10 @@ def units(system: System) -> dict[str, str]:
 def summary(contents: Contents) -> str:
     """Coordinates, states, parameters, positions, Lagrangian and equations of motion."""
     system, derivation, unit = contents.system, contents.derivation, units(contents.system)
-    coordinates = [f"{c.symbol} [{c.unit}]: {c.meaning}" for c in system.coordinates]
+    coordinates = [
+        f"{c.symbol} [{c.unit}]{' > 0' if c.symbol.is_positive else ''}: {c.meaning}"
+        for c in system.coordinates
+    ]
     sections = {"Coordinates q": coordinates}
     for form, state in contents.states.items():
         sections[STATES[form]] = [f"{name} [{unit[name]}]" for name in state]

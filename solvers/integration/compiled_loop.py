@@ -29,11 +29,11 @@ def obstacle(problem: Problem) -> str:
         return f"its stages have {unknowns} unknowns, more than {MOST_UNKNOWNS}"
     if problem.atol.ndim:
         return "atol differs by component"
-    if len(problem.events) > MAX_EVENTS:
+    if len(problem.all_events) > MAX_EVENTS:
         return f"there are more than {MAX_EVENTS} events"
     if header(problem.form.module) is None:
         return "there is no C header beside the module"
-    for event in problem.events:
+    for event in problem.all_events:
         if not isinstance(event, Event):
             return "an event is a Python function; use solvers.integration.events.Event"
         for name in event.components:
@@ -85,12 +85,12 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
         finally:  # an interruption arrives when C returns: collect its results first
             status = STATUSES[batch.motions["status"][0]]
             _collect(batch, problem, outcome)
-    outcome.status = status
+    outcome.end_with(status, problem)
 
 
 def _collect(batch: Batch, problem: Problem, outcome: Outcome) -> None:
     """Move the results of the motion into `outcome`, and free their rows."""
-    motion, events = batch.motions[0], range(len(problem.events))
+    motion, events = batch.motions[0], range(len(problem.all_events))
     collected = 0 if problem.samples is None else sum(map(len, outcome.t))
     rows = batch.rows[0, collected : motion["rows"]]
     times = rows["t"] if problem.samples is None else problem.samples[collected : motion["rows"]]

@@ -82,20 +82,23 @@ class EnsembleRun:
 
     def _collect(self, batch: Batch) -> None:
         """Copy the results of the batch."""
-        result, motions = self.result, batch.motions
+        result, motions, events = self.result, batch.motions, len(self.problem.events)
         result.t[:], result.y.T[:] = motions["t"], batch.ordinary(motions)
         if motions["scale"].size:
             changes = motions["z"][:, -(len(result.units) // 2) :]
             self._set_growth(changes, motions["scale"][:, 0])
         result.status[:] = np.array(STATUSES, object)[motions["status"]]
         result.status[motions["status"] < STATUSES.index(Status.FINISHED)] = Status.INTERRUPTED
+        at_limit = motions["occurred"][:, events : events + len(self.problem.limits)].any(axis=1)
+        result.status[at_limit & (result.status == Status.EVENT)] = Status.OUTSIDE_DOMAIN
         result.steps[:], result.rejected[:] = motions["steps"], motions["rejected"]
         result.nfev[:] = batch.nfev
         for k in range(len(result.t_eval)):
             reached = np.flatnonzero(motions["rows"] > k)
             result.samples[:, reached, k] = batch.ordinary(batch.rows[reached, k], reached).T
-        result.occurred[:] = motions["occurred"][:, : result.occurred.shape[1]]
-        stored = np.where(batch.extremes_only, np.minimum(result.occurred, 2), result.occurred)
+        result.occurred[:] = motions["occurred"][:, :events]
+        extremes = batch.extremes_only[:events]
+        stored = np.where(extremes, np.minimum(result.occurred, 2), result.occurred)
         for event, k in np.ndindex(result.t_events.shape[1:]):
             with_event = np.flatnonzero(stored[:, event] > k)
             rows = batch.event_rows[with_event, event, k]

@@ -121,6 +121,15 @@ class Extremum(Event):
         return (self.name, self.coordinate)
 
 
+@dataclass(frozen=True)
+class Limit(Event):
+    """A coordinate that must be positive falls to 0, which ends the motion."""
+
+    value: float = 0.0
+    direction: int = -1
+    terminal: bool = True
+
+
 def _is_finite(value: object) -> bool:
     try:
         return isfinite(value)  # type: ignore[arg-type]

@@ -139,16 +139,18 @@ def integrate(
 
 def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = "") -> Solution:
     (times, rows), (t, y), form = outcome.rows(), outcome.end, problem.form
+    events = len(problem.events)
     if outcome.status is not Status.FINISHED:
-        detail = f" ({detail or f't = {t}, y = {y}'})"
+        state = ", ".join(f"{name} = {x:.6g}" for name, x in zip(problem.units, y, strict=True))
+        detail = f" (t = {t}, {state})" if not detail else f" ({detail})"
     states, energies = rows.T[: len(form.module.STATE)], None
     if energy:
         energies = np.asarray(form.module.energy_many(times, states, form.params))
     return Solution(
         t=times,
         y=rows.T,
-        t_events=[np.array(roots) for roots in outcome.t_events],
-        y_events=[np.array(rows).reshape(-1, len(y)) for rows in outcome.y_events],
+        t_events=[np.array(roots) for roots in outcome.t_events[:events]],
+        y_events=[np.array(rows).reshape(-1, len(y)) for rows in outcome.y_events[:events]],
         nfev=outcome.nfev,
         njev=outcome.njev,
         status=outcome.status,

@@ -99,6 +99,9 @@ class Prepared:
         batch.task.time_limit = compiled_loop.TIME_LIMIT
         self._single, self._task = single, ctypes.addressof(batch.task)
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
+        module, names = problem.form.module, problem.form.ordinary
+        self._positive = [k for k, p in enumerate(module.PARAMETERS) if p in module.POSITIVE]
+        self._limited = [k for k, q in enumerate(names) if q in module.POSITIVE]
         self._idle = [True]  # empty during a call; faster than a lock, and as atomic
 
     def __call__(
@@ -130,6 +133,8 @@ class Prepared:
         except (TypeError, ValueError):
             start, end = validation.time_span(t_span)
             self._start[:] = self._checked(y0)
+        if self._limited and not all(self._start[k] > 0 for k in self._limited):
+            self._checked(self._start)
         if start == end:
             validation.time_span(t_span)
             return tuple(self._checked(self._start))
@@ -146,6 +151,8 @@ class Prepared:
         while STATUSES[code] is None:
             code = self._single(self._task, start, end, None, self._to)
         y, status = tuple(self._end), STATUSES[code]
+        if status is Status.EVENT:  # the only events are limits of coordinates
+            status = Status.OUTSIDE_DOMAIN
         if status is not Status.FINISHED:
             assert status is not None
             raise NotFinishedError(status, float(self._batch.motions["t"][0]), y)
@@ -154,7 +161,8 @@ class Prepared:
     def _set_params(self, params: Numbers) -> None:
         try:
             self._params[:] = list(params)  # type: ignore[arg-type]
-            if all(map(isfinite, self._params)):
+            values = self._params
+            if all(map(isfinite, values)) and all(values[k] >= 0 for k in self._positive):
                 return
         except (TypeError, ValueError):
             pass  # a mapping, or invalid

@@ -50,6 +50,7 @@ class Problem:
     atol: Array
     samples: Array | None  # times of the states to record; None for the end of every step
     events: list[EventFunction]
+    limits: list[Any]  # events that end the motion where a positive coordinate falls to 0
     max_steps: int
     options: Options  # as given
 
@@ -60,6 +61,11 @@ class Problem:
     def with_params(self, params: Sequence[Any]) -> "Problem":
         """The same problem with other parameters: numbers, or arrays for several motions."""
         return replace(self, form=Form(self.form.module, self.form.name, params))
+
+    @property
+    def all_events(self) -> list[EventFunction]:
+        """The requested events, followed by the limits of coordinates."""
+        return [*self.events, *self.limits]
 
     @property
     def backend(self) -> str | None:
@@ -103,8 +109,13 @@ class Outcome:
     @classmethod
     def at_start(cls, problem: Problem) -> "Outcome":
         """The outcome before the first step."""
-        events = problem.events
+        events = problem.all_events
         return cls((problem.span[0], problem.start), [[] for _ in events], [[] for _ in events])
+
+    def end_with(self, status: Status, problem: Problem) -> None:
+        """Set the status; an event that ends the motion may be one of its limits."""
+        is_limit = status is Status.EVENT and any(self.t_events[len(problem.events) :])
+        self.status = Status.OUTSIDE_DOMAIN if is_limit else status
 
     def rows(self) -> tuple[Array, Array]:
         """All times, and all states in rows."""

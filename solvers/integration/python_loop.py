@@ -99,7 +99,7 @@ def run(problem: Problem, outcome: Outcome) -> None:
         controller = Controller(problem.method.error_order, problem.rtol, problem.atol)
     attempts = Attempts(stepper, controller, problem.form.normalised)
     try:
-        outcome.status = _run(problem, outcome, attempts)
+        outcome.end_with(_run(problem, outcome, attempts), problem)
     finally:
         outcome.nfev, outcome.njev = stepper.nfev, stepper.njev
 

@@ -17,7 +17,7 @@ class Recorder:
     """
 
     def __init__(self, problem: Problem, outcome: Outcome) -> None:
-        self.form, self.samples, self.events = problem.form, problem.samples, problem.events
+        self.form, self.samples, self.events = problem.form, problem.samples, problem.all_events
         self.t, self.y = problem.span[0], problem.start
         self._outcome, self._sampled = outcome, 0
         if self.samples is None or (len(self.samples) and self.samples[0] == self.t):

@@ -16,7 +16,7 @@ def run(problem: Problem, outcome: Outcome) -> None:
     """Integrate `problem`; `outcome` holds the results so far at any time."""
     outcome.backend = "scipy"
     try:
-        outcome.status = _run(problem, outcome, Recorder(problem, outcome))
+        outcome.end_with(_run(problem, outcome, Recorder(problem, outcome)), problem)
     except NotFiniteError:
         outcome.status = Status.NOT_FINITE
 

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule, state_names
+from solvers.equations.module import GeneratedModule, check_sign, state_names
+from solvers.integration.events import Limit
 from solvers.integration.problem import Options, Problem, shortest_step
 from solvers.integration.solution import Array
 from solvers.io.suggestion import counted, did_you_mean
@@ -48,9 +49,9 @@ def problem(
     samples = None if options.t_eval is None else times(options.t_eval, span)
     events = event_functions(options.events, module)
     max_steps = count("max_steps", options.max_steps, 0)
-    return Problem(
-        form, tableau or method, span, start, h, rtol, atol, samples, events, max_steps, options
-    )
+    limits = [Limit(module, q) for q in module.COORDINATES if q in module.POSITIVE]
+    control, record = (h, rtol, atol), (samples, events, limits)
+    return Problem(form, tableau or method, span, start, *control, *record, max_steps, options)
 
 
 def problem_at_rest(
@@ -58,25 +59,28 @@ def problem_at_rest(
 ) -> Problem:
     """The problem of motions whose initial states are given later; default parameters if None."""
     check_module(module)
-    rest = np.zeros(len(state_names(module, options.form or "lagrangian")))
+    names = state_names(module, options.form or "lagrangian")
+    rest = [float(name in module.POSITIVE) for name in names]
     return problem(module, t_span, rest, module.DEFAULTS if params is None else params, options)
 
 
 def parameters(module: GeneratedModule, values: Values) -> Array:
     """Parameters in the order of the module; a mapping is completed by default values."""
-    return numbers("params", _parameters(module, values), module.PARAMETERS)
+    result = numbers("params", _parameters(module, values), module.PARAMETERS)
+    return _checked(module, result, module.PARAMETERS)
 
 
 def initial_state(module: GeneratedModule, values: Values, form: str = "lagrangian") -> Array:
     """A state in the order of the module; a mapping may leave out velocities, which are 0."""
-    return numbers("y0", _states(module, values, form), state_names(module, form))
+    names = state_names(module, form)
+    return _checked(module, numbers("y0", _states(module, values, form), names), names)
 
 
 def parameter_rows(module: GeneratedModule, values: Values, motions: int) -> Array:
     """Parameters, component first, as rows: one for all motions or one for each."""
     array = np.asarray(_parameters(module, values))
     columns = array[:, np.newaxis] if array.ndim == 1 else array
-    rows = _rows("params", columns, module.PARAMETERS)
+    rows = _checked(module, _rows("params", columns, module.PARAMETERS), module.PARAMETERS)
     if len(rows) not in (1, motions):
         raise ValueError(
             f"params holds values for {counted(len(rows), 'motion')}, but y0 has {motions}"
@@ -86,7 +90,15 @@ def parameter_rows(module: GeneratedModule, values: Values, motions: int) -> Arr
 
 def state_rows(module: GeneratedModule, values: Values, form: str) -> Array:
     """Initial states, component first, as rows."""
-    return _rows("y0", _states(module, values, form), state_names(module, form))
+    names = state_names(module, form)
+    return _checked(module, _rows("y0", _states(module, values, form), names), names)
+
+
+def _checked(module: GeneratedModule, values: Array, names: Sequence[str]) -> Array:
+    """The values, of which the last axis has these names, if their signs are as declared."""
+    for k, name in enumerate(names):
+        check_sign(module, name, values[..., k])
+    return values
 
 
 def _parameters(module: GeneratedModule, values: Values) -> ArrayLike:

@@ -8,6 +8,7 @@ Runge–Kutta methods.
 from collections.abc import Sequence
 from decimal import Decimal, localcontext
 from functools import reduce
+from math import inf
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +22,12 @@ Array = NDArray[np.float64]
 
 #: Digits computed in addition to those requested.
 GUARD = 6
+#: The shortest step, in units of the spacing of floating-point times.
+SHORTEST = 10
+
+
+class SeriesError(ArithmeticError):
+    """A motion cannot be continued by series; the message states time, state and reason."""
 
 
 def taylor(
@@ -29,6 +36,7 @@ def taylor(
     y0: Sequence[float],
     times: ArrayLike,
     digits: int = 32,
+    max_products: float = inf,
 ) -> Array:
     """States (q, q̇) at `times` by Taylor series; the state at the first of them is `y0`.
 
@@ -42,6 +50,8 @@ def taylor(
         Increasing or decreasing, in s.
     digits : int
         A step neglects terms beyond this many digits of the state; rounding errors are smaller.
+    max_products : float
+        Most products of coefficients, of which a second computes some ten million.
 
     Returns
     -------
@@ -50,8 +60,10 @@ def taylor(
 
     Raises
     ------
-    ArithmeticError
-        When the equations are not finite at a state, such as the logarithm of a negative number.
+    SeriesError
+        When the equations are not finite at a state, such as the logarithm of a negative number;
+        when steps are below the resolution of time, as before a collision; when `max_products`
+        do not suffice.
 
     Notes
     -----
@@ -63,14 +75,24 @@ def taylor(
     with localcontext(prec=digits + GUARD):
         motion = _Motion(module, params, y0, samples[0])
         order = int(digits * 2.302585 / 2) + 2
-        t, h, states = samples[0], Decimal(0), []
+        t, h, states, products = samples[0], Decimal(0), [], 0
+        shortest = SHORTEST * float(np.spacing(max(abs(float(t)) for t in samples)))
         for sample in samples:
             while abs(sample - t) > h:
                 if h:
                     step = h.copy_sign(sample - t)
                     t += step
                     motion.restart(t, motion.state_after(step))
-                h = motion.expand(order)
+                products += motion.size * order * order // 2
+                if products > max_products:
+                    reason = f"series of {digits} digits take more than {max_products:g} products"
+                    raise motion.error(reason)
+                try:
+                    h = motion.expand(order)
+                except ArithmeticError as error:
+                    raise motion.error("the equations are not finite") from error
+                if h < shortest and abs(sample - t) > h:
+                    raise motion.error("a step is below the resolution of time, at a singularity")
             states.append([float(x) for x in motion.ordinary_after(sample - t)])
     return np.array(states)
 
@@ -114,6 +136,16 @@ class _Motion:
         self._time.coefficients[:] = [t]
         for series, value in zip(self._state, state, strict=True):
             series.coefficients[:] = [value]
+
+    @property
+    def size(self) -> int:
+        """Number of series."""
+        return len(self._tape)
+
+    def error(self, reason: str) -> SeriesError:
+        """The error for a motion that stops at the current time for a reason."""
+        state = ", ".join(f"{self._state[k].at(0):.6g}" for k in self._columns)
+        return SeriesError(f"{reason} (t = {self._time.at(0):.10g}, y = {state})")
 
     def ordinary_after(self, h: Decimal) -> list[Decimal]:
         """Coordinates and velocities after `h`, at most a step."""

@@ -94,13 +94,10 @@ def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[
         raise ValueError(f"{text}: add one of {', '.join(state)}")
 
 
-def check_numbers(module: GeneratedModule, params: Sequence[float], accuracy: float) -> None:
-    """Refuse negative masses, lengths and stiffnesses, and more digits than double precision."""
+def check_accuracy(accuracy: float) -> None:
+    """Refuse more digits than double precision has."""
     if accuracy < FINEST:
         raise ValueError(f"accuracy = {accuracy} is below {FINEST}, the limit of double precision")
-    for name, value in zip(module.PARAMETERS, params, strict=True):
-        if name in module.POSITIVE and value < 0:
-            raise ValueError(f"{name} = {value} must be positive, in {module.UNITS[name]}")
 
 
 def check_choice(name: str, value: object, allowed: Sequence[str]) -> None:

@@ -112,7 +112,7 @@ class Scene:
         for name, value in completed.items():
             object.__setattr__(self, name, value)
         validation.check_positive(duration=self.duration, accuracy=self.accuracy, step=self.step)
-        checks.check_numbers(self.module, self.params, self.accuracy)
+        checks.check_accuracy(self.accuracy)
         checks.check_masses(self.module, self.params, self.y0)
         checks.check_method(self.module, self.method, self.form, self.step, self.duration)
         if self.model is not None:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from math import isfinite
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, check_sign
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.maps import Map
@@ -46,8 +46,8 @@ def check_names(module: GeneratedModule, axes: Axes, values: Values) -> None:
         if value != FROM_ENERGY and (isinstance(value, str) or not isfinite(value)):
             raise ValueError(f"{name} = {value!r} must be a finite number")
     for name, low in {**values, **axes.smallest}.items():
-        if name in module.POSITIVE and not isinstance(low, str) and low <= 0:
-            raise ValueError(f"{name} = {low} must be positive, in {module.UNITS[name]}")
+        if not isinstance(low, str):
+            check_sign(module, name, low, absent=False)
 
 
 def check_energy(module: GeneratedModule, given: Sequence[str], values: Values) -> None:

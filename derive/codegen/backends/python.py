@@ -215,7 +215,7 @@ def _constants(contents: Contents) -> str:
         "STATES": _dict({form: _literal(contents.states[form], depth=1) for form in forms}),
         "PARAMETERS: tuple[str, ...]": _literal(parameters),
         "DEFAULTS: tuple[float, ...]": _literal(float(p.default) for p in system.parameters),
-        "POSITIVE": _literal(symbol.name for symbol in system.params if symbol.is_positive),
+        "POSITIVE": _literal(s.name for s in (*system.params, *system.q) if s.is_positive),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.functions),
         "OPERATIONS": _dict({f.name: repr(f.lowering.cost) for f in functions}),

@@ -79,7 +79,7 @@ class Batch:
         pauses: bool = False,
     ) -> None:
         starts = problem.start[np.newaxis] if starts is None else starts
-        n, events, form = len(starts), cast("list[Event]", problem.events), problem.form
+        n, events, form = len(starts), cast("list[Event]", problem.all_events), problem.form
         self._kernel, self.form = kernel, form
         self.motions = np.zeros(n, kernel.trajectory)  # Trajectory in c/layout.h
         self.motions["t"], self.motions["t_end"] = problem.span

@@ -10,6 +10,7 @@ from solvers.equations.forms import fastest_form
 from solvers.runge_kutta.catalogue import load
 from solvers.scenes.models.integration_run import (
     MAX_STEPS,
+    EndsEarlyError,
     IntegrationRun,
     NotAccurateError,
     TooLongError,
@@ -93,24 +94,47 @@ def integrated(
 
 
 def estimated_error(run: IntegrationRun, checked: Motion) -> float:
-    """Estimated error of a run; infinity for one that does not reach its end."""
+    """Estimated error of a run; infinity for one that does not reach its end.
+
+    `EndsEarlyError` where the motion itself does not.
+    """
+    check = _check(run, checked)
     try:
         times, _ = run.integrate(None)
     except NotAccurateError:
+        _refuse_early_end(check)
         return np.inf
     if len(times) > MOST_SAMPLES:
         times = times[np.unique((len(times) * golden_points(MOST_SAMPLES)).astype(int))]
     # steps are dense where the motion is fast; between two of them it may be faster
     times = np.unique([*times, *(times[1:] + times[:-1]) / 2, *run.motion.sample_times])
     states = run.states(times)
+    try:
+        reference = check.states(times)
+    except NotAccurateError:
+        _refuse_early_end(check)
+        return np.inf
+    # the check's own error counts where the run is more accurate than its tolerance
+    rest = check.setting * float(np.abs(reference).max())
+    return _difference(run.motion, states, reference) + rest
+
+
+def _check(run: IntegrationRun, checked: Motion) -> IntegrationRun:
+    """A run with a finer tolerance to compare with."""
     # another method in another form has no rounding in common, not even of the initial state
     choice = run.method_choice
     method = next(name for name in CHECKS if name != choice.method)
     form = fastest_form(checked.module) if choice.form == "lagrangian" else "lagrangian"
     tolerance = FINEST if choice.is_fixed else max(run.setting / TIGHTER, FINEST)
-    reference = IntegrationRun(checked, MethodChoice(method, form, ""), tolerance).states(times)
-    # the check's own error counts where the run is more accurate than its tolerance
-    return _difference(run.motion, states, reference) + tolerance * float(np.abs(reference).max())
+    return IntegrationRun(checked, MethodChoice(method, form, ""), tolerance)
+
+
+def _refuse_early_end(check: IntegrationRun) -> None:
+    """Raise `EndsEarlyError` where the finest check ends early, as every other run would."""
+    try:
+        replace(check, setting=FINEST).integrate(None)
+    except NotAccurateError as failure:
+        raise EndsEarlyError(f"{failure}: end the motion before") from failure
 
 
 def _difference(motion: Motion, one: Array, other: Array) -> float:

@@ -19,6 +19,8 @@ from solvers.scenes.models.motion import Array, Motion
 SMALL_STATE = 1e-3
 #: Largest number of steps of a run.
 MAX_STEPS = 3 * 10**6
+#: Largest number of products of a Taylor series, which take up to half a minute.
+MAX_PRODUCTS = 1e8
 
 
 class NotAccurateError(ArithmeticError):
@@ -27,6 +29,10 @@ class NotAccurateError(ArithmeticError):
 
 class TooLongError(ArithmeticError):
     """A motion takes more steps than the limit."""
+
+
+class EndsEarlyError(ArithmeticError):
+    """A motion cannot be continued, as at a collision; the message states time and state."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +63,8 @@ class IntegrationRun:
         """Coordinates and velocities at increasing times, shape (n, state)."""
         if self.method_choice.is_series:
             motion, times = self.motion, t if t[0] == 0 else [0.0, *t]  # which include the start
-            states = taylor(motion.module, motion.params, motion.y0, times, int(self.setting))
-            return states[-len(t) :]
+            arguments = motion.module, motion.params, motion.y0, times, int(self.setting)
+            return taylor(*arguments, max_products=MAX_PRODUCTS)[-len(t) :]
         return self.integrate(t)[1]
 
     def integrate(self, t: Array | None) -> tuple[Array, Array]:

@@ -239,7 +239,11 @@ def _turning_points(reduced: ReducedMotion) -> tuple[float, float] | None:
             inner = points[outer - 1] if outer else u
             if np.isnan(values[outer]):
                 raise OutsideDomainError("the motion approaches a singularity")
-            ends.append(float(brentq(kinetic, inner, points[outer], xtol=1e-300, rtol=4 * EPS)))
+            try:
+                end = brentq(kinetic, inner, points[outer], xtol=1e-300, rtol=4 * EPS)
+            except RuntimeError as error:  # it converges to a pole of the potential at 0
+                raise OutsideDomainError("the motion approaches a singularity") from error
+            ends.append(float(end))
         elif not reduced.is_angle:
             raise OutsideDomainError("the motion does not return")
     if not ends:

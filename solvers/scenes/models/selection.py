@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from solvers.references.taylor import SeriesError
 from solvers.scenes.models.catalogue import closed_forms
 from solvers.scenes.models.full_equations import by_series, integrated
 from solvers.scenes.models.integration_run import NotAccurateError
@@ -70,7 +71,12 @@ def select_model(
     report("full equations by Taylor series")
     why = "the motion loses more digits than double precision has"
     choice = MethodChoice(SERIES, usual_form(scene.module, SERIES), why)
-    return ModelSelection(by_series(motion, choice, scene.accuracy, scene.times), declined)
+    try:
+        return ModelSelection(by_series(motion, choice, scene.accuracy, scene.times), declined)
+    except SeriesError as error:
+        raise NotAccurateError(
+            f"{declined['double precision']}; by Taylor series {error}"
+        ) from error
 
 
 def _closed_form(model: type[ClosedForm], motion: Motion) -> ClosedForm:
