@@ -15,6 +15,9 @@ from solvers.integration.integrate import integrate
 from solvers.player.page import Page
 from solvers.player.track import Track
 
+#: What energy errors of the tracks are relative to.
+UNIT = "energy at the start"
+
 
 def track_of(method: str, h: float | None = None) -> Track:
     motion = integrate(
@@ -30,7 +33,13 @@ def track_of(method: str, h: float | None = None) -> Track:
     assert motion.energy is not None
     positions = np.asarray(dp.positions_many(0.0, motion.y, dp.DEFAULTS))
     return Track(
-        method, motion.t, positions, ((-1, 0), (0, 1)), (), motion.energy / motion.energy[0] - 1
+        method,
+        motion.t,
+        positions,
+        ((-1, 0), (0, 1)),
+        (),
+        motion.energy / motion.energy[0] - 1,
+        UNIT,
     )
 
 
@@ -39,7 +48,9 @@ def at_rest(
 ) -> Track:
     n = 501
     positions = np.tile(np.reshape(position, (1, 2, 1)), n)
-    return Track("at rest", np.linspace(0, end, n), positions, (), ((-1, 0),), np.full(n, error))
+    return Track(
+        "at rest", np.linspace(0, end, n), positions, (), ((-1, 0),), np.full(n, error), UNIT
+    )
 
 
 class Player:

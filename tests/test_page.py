@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import Player, at_rest, track_of
+from browser import UNIT, Player, at_rest, track_of
 
 from solvers.player import page
 from solvers.player.track import Track
@@ -231,7 +231,7 @@ def test_each_run_has_its_canvas_and_its_entry_in_the_legend(
 
 def test_traces_fade_over_two_seconds(player: Player) -> None:
     t = np.linspace(0, 5, 301)
-    across = Track("across", t, np.array([[t, 0 * t - 0.55]]), (), (), t)
+    across = Track("across", t, np.array([[t, 0 * t - 0.55]]), (), (), t, UNIT)
     player.open([across])
     player.find("#time-slider").send_keys("\ue010")  # the key End
     player.settle()

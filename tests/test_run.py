@@ -20,7 +20,7 @@ from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.io.notation import symbol
 from solvers.references.taylor import taylor
-from solvers.scenes.geometry import ELEVATION, projected, track
+from solvers.scenes.geometry import ELEVATION, projected, tracks
 from solvers.scenes.plots import _labelled, default_pictures, figure
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
@@ -108,7 +108,8 @@ def test_a_motion_starts_exactly_at_the_initial_state(name: str) -> None:
 
 
 def test_rods_and_springs_are_distinguished_by_their_lengths() -> None:
-    rods, spring = (track(run_scene(find(name, load_module))) for name in ("report", "spring"))
+    runs = (run_scene(find(name, load_module)) for name in ("report", "spring"))
+    rods, spring = tracks([*runs])
     assert (rods.links, rods.springs) == (((-1, 0), (0, 1)), ())
     assert (spring.links, spring.springs) == ((), ((-1, 0),))
 
@@ -124,7 +125,7 @@ def test_masses_at_a_constant_distance_are_joined(
 ) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(f'system = "{system}"\nduration = 2\naccuracy = 1e-6\n[initial]\n{initial}\n')
-    motion = track(run_scene(find(str(path), load_module)))
+    (motion,) = tracks([run_scene(find(str(path), load_module))])
     assert list(motion.links) == rods
     assert not motion.springs
 

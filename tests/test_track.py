@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import at_rest, track_of
+from browser import UNIT, at_rest, track_of
 
 from solvers.player.page import Page
 from solvers.player.track import MOST_SAMPLES, Track
@@ -39,7 +39,7 @@ def test_a_page_is_small_and_as_exact_as_a_screen(tracks: list[Track], tmp_path:
 def test_many_samples_are_reduced_evenly(tmp_path: Path) -> None:
     n = 3 * MOST_SAMPLES
     t = np.linspace(1e4, 1e4 + 6, n)
-    track = Track("many", t, np.array([[t, t]]), (), (), t)
+    track = Track("many", t, np.array([[t, t]]), (), (), t, UNIT)
     Page("", "", [track]).write(tmp_path / "page.html")
     (values,) = motions(tmp_path / "page.html")
     assert len(values["t"]) == len(values["positions"][0][0]) == MOST_SAMPLES

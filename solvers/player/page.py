@@ -79,12 +79,18 @@ def player(tracks: Sequence[Track]) -> str:
     # no character of a label starts or ends a tag or a comment
     for character in "&<>":
         motions = motions.replace(character, rf"\u{ord(character):04x}")
-    return Template(_source("player.html")).substitute(motions=motions)
+    unit = tracks[0].energy_unit
+    words = "in J" if unit == "J" else f"relative to the {unit}"
+    return Template(_source("player.html")).substitute(motions=motions, unit=escape(words))
 
 
 def _check(tracks: Sequence[Track]) -> None:
     if not tracks:
         raise ValueError("tracks is empty, but a page plays at least one: give it a Track")
+    units = [track.energy_unit for track in tracks]
+    if len({*units}) > 1:
+        text = f"the units of energy errors are {', '.join(map(repr, units))}"
+        raise ValueError(f"{text}, but they share an axis: convert them to J")
     for track in tracks:
         track.check()
 

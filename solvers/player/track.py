@@ -31,7 +31,10 @@ class Track:
     springs : tuple of pairs of int
         Indices of masses that a spring joins, likewise.
     energy_error : ndarray of shape (n,)
-        Relative energy error, with its sign.
+        Energy error, with its sign.
+    energy_unit : str
+        Its unit ``"J"``, or the name of the energy that it is relative to, such as ``"energy above
+        rest"``.
     """
 
     label: str
@@ -40,6 +43,7 @@ class Track:
     links: Pairs
     springs: Pairs
     energy_error: Array
+    energy_unit: str
 
     def check(self) -> None:
         """Raise `ValueError` where this run cannot be played."""

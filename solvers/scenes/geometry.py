@@ -1,8 +1,10 @@
 """Geometry of a result: positions of masses, rods and springs, and the energy error."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from solvers.equations.energy import energy_error, supplied_energy
+from solvers.equations.energy import energy_unit
 from solvers.player.track import Pairs, Track
 from solvers.scenes.run import SceneResult, energies
 
@@ -46,15 +48,29 @@ def rods_and_springs(result: SceneResult) -> tuple[Pairs, Pairs]:
     return (), ((-1, 0),) if is_spring else ()
 
 
-def energy_errors(result: SceneResult) -> np.ndarray:
-    """Energy errors relative to the energy above rest, shape (samples,)."""
-    scene = result.scene
-    energy = energies(scene, result.t, result.y)
-    energy -= supplied_energy(scene.module, result.t, result.y, scene.params)
-    return energy_error(scene.module, scene.params, energy)
+def energy_errors(results: Sequence[SceneResult]) -> tuple[list[np.ndarray], str]:
+    """Energy errors of runs, each of shape (samples,), and the unit that they share.
+
+    It is the name of the energy that they are relative to, or J where one run has none above rest.
+    Energy that forces, friction and prescribed motions supply is no error.
+    """
+    kept = [energies(r.scene, r.t, r.y) - r.supplied_energy for r in results]
+    units = [
+        energy_unit(r.scene.module, r.scene.params, float(energy[0]))
+        for r, energy in zip(results, kept, strict=True)
+    ]
+    is_relative = all(unit.is_relative for unit in units)
+    errors = [
+        (energy - energy[0]) / (unit.joules if is_relative else 1.0)
+        for energy, unit in zip(kept, units, strict=True)
+    ]
+    return errors, units[0].name if is_relative else "J"
 
 
-def track(result: SceneResult) -> Track:
-    """The motion for the page that plays it: masses joined by rods, or by springs."""
-    view, joined = projected(mass_positions(result)), rods_and_springs(result)
-    return Track(result.scene.label, result.t, view, *joined, energy_errors(result))
+def tracks(results: Sequence[SceneResult]) -> list[Track]:
+    """The motions for the page that plays them: masses joined by rods, or by springs."""
+    errors, unit = energy_errors(results)
+    return [
+        Track(r.scene.label, r.t, projected(mass_positions(r)), *rods_and_springs(r), error, unit)
+        for r, error in zip(results, errors, strict=True)
+    ]

@@ -6,7 +6,7 @@ from pathlib import Path
 from solvers.io.atomic_write import write_text
 from solvers.io.figures import save
 from solvers.player.page import Page
-from solvers.scenes.geometry import track
+from solvers.scenes.geometry import tracks
 from solvers.scenes.plots import figure, full_note
 from solvers.scenes.run import SceneResult
 from solvers.scenes.summary import table
@@ -23,5 +23,5 @@ def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]
         paths[f"table {n}"] = write_text(folder / f"{scene.name}_{n}.csv", table(result))
     if module := results[0].specialised_module:
         paths["code"] = Path(module.__file__ or "")
-    Page(scene.title, full_note(results), [*map(track, results)]).write(paths["page"])
+    Page(scene.title, full_note(results), tracks(results)).write(paths["page"])
     return paths

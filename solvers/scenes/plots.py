@@ -1,6 +1,6 @@
 """Plots of a scene: coordinates over time, phase curves, paths and the energy error."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, cycle, groupby, pairwise
 from math import ceil
 from textwrap import fill
@@ -18,6 +18,8 @@ from solvers.scenes.geometry import energy_errors, mass_positions, projected, ro
 from solvers.scenes.models.motion import Array
 from solvers.scenes.run import SceneResult
 
+#: The name of a curve if there are several, its horizontal and its vertical values.
+Curve = tuple[str, Array, Array]
 STYLES = ("-", "--", ":", "-.")
 #: Smallest energy error on the logarithmic axis, and most panels in rows of three instead of four.
 LEAST, MOST = 1e-17, 6
@@ -104,11 +106,12 @@ def _accuracy_note(result: SceneResult, is_labelled: bool) -> str:
 
 def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
     width = 0.9 if picture in ("path", "energy") else 1.1
-    for n, (result, style) in enumerate(zip(results, cycle(STYLES), strict=False)):
+    runs = zip(results, _runs(results, picture), cycle(STYLES), strict=False)
+    for n, (result, curves, style) in enumerate(runs):
         shift = 2 * n % len(COLOURS)  # two curves of a run have colours of their own
         colours = COLOURS[shift:] + COLOURS[:shift]
         label = _plain(result.scene.label) if len(results) > 1 else ""
-        for (name, x, y), colour in zip(_curves(result, picture), colours, strict=False):
+        for (name, x, y), colour in zip(curves, colours, strict=False):
             text = ", ".join(filter(None, [name, label]))
             panel.plot(x, y, style, color=colour, linewidth=width, label=text)
             if picture == "path":
@@ -116,15 +119,22 @@ def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
                 label = ""
         if picture == "path":
             _draw_links(panel, result)
-    _label_axes(panel, picture, results[0])
+    _label_axes(panel, picture, results)
 
 
-def _curves(result: SceneResult, picture: str) -> list[tuple[str, Array, Array]]:
-    """The curves of a picture: names if there are several, horizontal and vertical values."""
+def _runs(results: Sequence[SceneResult], picture: str) -> Iterator[list[Curve]]:
+    """The curves of each run."""
+    if picture == "energy":
+        for result, error in zip(results, energy_errors(results)[0], strict=True):
+            yield [("", result.t, np.maximum(np.abs(error), LEAST))]
+    else:
+        for result in results:
+            yield _curves(result, picture)
+
+
+def _curves(result: SceneResult, picture: str) -> list[Curve]:
     if picture == "path":
         return [("", x, y) for x, y in projected(mass_positions(result))]
-    if picture == "energy":
-        return [("", result.t, np.maximum(np.abs(energy_errors(result)), LEAST))]
     names, over = curves_of(picture)
     columns = {"t": result.t, **dict(zip(result.scene.module.STATE, result.y, strict=True))}
     return [(symbol(q) if len(names) > 1 else "", columns[over], columns[q]) for q in names]
@@ -138,24 +148,24 @@ def _draw_links(panel: Axes, result: SceneResult) -> None:
         panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)
 
 
-def _label_axes(panel: Axes, picture: str, result: SceneResult) -> None:
-    module = result.scene.module
+def _label_axes(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
+    module = results[0].scene.module
     if picture == "path":
-        in_space = mass_positions(result).shape[1] == 3
+        in_space = mass_positions(results[0]).shape[1] == 3
         x, y = ("horizontal", "vertical, oblique view") if in_space else ("x", "y")
         panel.set(xlabel=f"{x} / m", ylabel=f"{y} / m")
         panel.set_aspect("equal", adjustable="datalim")
         if "positions" not in module.TIMED:  # else the pivot may move
             panel.plot(0, 0, "k+", markersize=8)
     elif picture == "energy":
-        label = "energy error / energy above rest"
+        label = axis_label("energy error", energy_errors(results)[1])
         panel.set(yscale="log", xlabel=f"{symbol('t')} / s", ylabel=label)
     else:
         names, over = curves_of(picture)
         units = {**module.UNITS, "t": "s"}
         panel.set(xlabel=axis_label(symbol(over), units[over]), ylabel=_labelled(names, units))
         if over == "t":
-            panel.set_xlim(0, result.t[-1])
+            panel.set_xlim(0, results[0].t[-1])
 
 
 def _labelled(names: Sequence[str], units: Mapping[str, str]) -> str:

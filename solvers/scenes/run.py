@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import nan
 from time import perf_counter
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.energy import supplied_energy
+from solvers.equations.module import GeneratedModule, has_function
 from solvers.scenes.models.method_choice import MethodChoice, cheapest
 from solvers.scenes.models.motion import Array, Motion
 from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
@@ -93,6 +95,15 @@ class SceneResult:
         """The requested components of the state at the end, by name."""
         state = dict(zip(self.scene.module.STATE, self.y[:, -1].tolist(), strict=True))
         return {k: v for k, v in state.items() if k in self.scene.outputs and np.isfinite(v)}
+
+    @cached_property
+    def supplied_energy(self) -> Array:
+        """Energy in J from forces, friction and prescribed motions, shape (samples,)."""
+        scene, model, t = self.scene, self.selection.model, self.t
+        run = model.run if has_function(scene.module, "power") else None
+        times = np.union1d(t, run.step_times()) if run else t
+        energy = supplied_energy(scene.module, scene.params, times, model.states)
+        return energy[np.searchsorted(times, t)]
 
     @property
     def is_met(self) -> bool:

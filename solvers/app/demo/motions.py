@@ -8,7 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from solvers.app.demo.stage import Number, Stage, png_image
-from solvers.equations.energy import energy_error
+from solvers.equations.energy import energy_error, energy_unit
 from solvers.integration.integrate import integrate
 from solvers.integration.solution import Solution
 from solvers.player.page import player
@@ -41,7 +41,7 @@ def motion(scene: Scene) -> Stage:
     after, command = f"after {scene.duration:g} s", "holonomic demo"
     apart = f"largest difference between the states of two programs {after}"
     programs = f"Verner 9(8) and SciPy's DOP853, both with tolerances of {TOLERANCE:g}"
-    energy = "computed along the motion, relative to the energy above rest"
+    energy = f"computed along the motion, relative to the {tracks[0].energy_unit}"
     return Stage(
         (
             f"{after}: {end} rad",
@@ -60,7 +60,8 @@ def _track(scene: Scene, label: str, run: Solution) -> Track:
     positions = np.asarray(scene.module.positions_many(0.0, run.y, scene.params))
     assert run.energy is not None
     error = energy_error(scene.module, scene.params, run.energy)
-    return Track(label, run.t, positions, ((-1, 0), (0, 1)), (), error)
+    unit = energy_unit(scene.module, scene.params, float(run.energy[0])).name
+    return Track(label, run.t, positions, ((-1, 0), (0, 1)), (), error, unit)
 
 
 def flips(definition: Sweep, folder: Path) -> Stage:

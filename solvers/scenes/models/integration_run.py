@@ -1,6 +1,6 @@
 """One integration of a motion: method, form, and tolerance, step size or digits."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,10 @@ from solvers.scenes.models.motion import Array, Motion
 
 #: Magnitude of a state in rad or m above which it is resolved relatively.
 SMALL_STATE = 1e-3
-#: Largest number of steps of a run.
-MAX_STEPS = 3 * 10**6
+#: Largest number of steps of a run, and of those that divide an integral over time.
+MAX_STEPS, MOST_INTERVALS = 3 * 10**6, 20_000
+#: Method, form and tolerance with the steps of a Taylor series.
+SMOOTH, FINE = ("verner98", "lagrangian"), 1e-12
 #: Largest number of products of a Taylor series, which take up to half a minute.
 MAX_PRODUCTS = 1e8
 
@@ -81,6 +83,14 @@ class IntegrationRun:
         if solution.status is not Status.FINISHED:
             raise NotAccurateError(f"{method}, {self.setting:g}: {solution.message}")
         return solution.t, solution.y.T
+
+    def step_times(self) -> Array:
+        """Times between which the motion is smooth: at most `MOST_INTERVALS` ends of steps."""
+        run = self
+        if self.method_choice.is_series:  # its steps are as long as those of another method
+            run = replace(self, method_choice=MethodChoice(*SMOOTH, ""), setting=FINE)
+        times, _ = run.integrate(None)
+        return times[:: -(-len(times) // MOST_INTERVALS)]
 
     def seconds(self) -> float:
         """Seconds of an integration to the end, without preparations that are done once."""
