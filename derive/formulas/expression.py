@@ -14,6 +14,8 @@ from typing import Any, TypeAlias
 import sympy as sp
 
 from derive.formulas import functions
+from derive.formulas.numeric import NoValueError
+from derive.formulas.sampling import check_value
 from solvers.io.suggestion import did_you_mean
 
 Value: TypeAlias = sp.Expr | sp.MatrixBase
@@ -29,6 +31,9 @@ FUNCTIONS: dict[str, Any] = functions.FUNCTIONS | {"pi": sp.pi}
 KEYWORD = re.compile(rf"\b(?:{'|'.join(keyword.kwlist)})\b")
 #: From an ASCII letter to the wide letter that Python's parser normalises to it.
 WIDE = 0xFEE0
+
+#: Functions that have no value for some arguments.
+PARTIAL = (sp.tan, sp.log)
 
 #: Limits: characters of a formula, absolute value of an exponent, bits of a number.
 MAX_LENGTH, MAX_EXPONENT, MAX_BITS = 20_000, 100, 256
@@ -76,6 +81,8 @@ def evaluate(node: ast.expr, text: str, scope: Scope) -> Value:
         raise
     except RecursionError:
         raise ExpressionError("the formula is nested too deeply: name its parts") from None
+    except NoValueError as error:
+        raise ExpressionError(f"{text[:80]!r} has no finite value: {error}") from None
     except Exception as error:  # SymPy raises many types for invalid operations
         raise ExpressionError(f"{text[:80]!r} cannot be computed: {error}") from None
     if value.has(sp.zoo, sp.nan, sp.oo):
@@ -112,7 +119,7 @@ class _Evaluator:
             case ast.BinOp(left=left, op=ast.Mult(), right=right):
                 return self.value(left) * self.value(right)
             case ast.BinOp(left=left, op=ast.Div(), right=right):
-                return self.value(left) / self.value(right)
+                return self.value(left) / _divisor(self.value(right))
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 return self._call(name, [*map(self.value, arguments)])
             case ast.Tuple(elts=[_, *_] as items):
@@ -139,7 +146,10 @@ class _Evaluator:
         for value in arguments:
             if function is FUNCTIONS.get(name) and isinstance(value, sp.MatrixBase):
                 raise ExpressionError(f"{name} of a column or matrix: it is a function of numbers")
-        return function(*arguments)
+        result = function(*arguments)
+        if isinstance(result, PARTIAL):
+            check_value(result)
+        return result
 
     def _lookup(self, name: str, *, function: bool) -> Any:
         if name not in self._scope:
@@ -151,6 +161,13 @@ class _Evaluator:
             reason = "is not a function; write products with *" if function else "needs arguments"
             raise ExpressionError(f"{name!r} {reason}")
         return value
+
+
+def _divisor(value: Value) -> Value:
+    # SymPy cancels a divisor that is zero, unless it is zero in its automatic form
+    if isinstance(value, sp.Expr) and value.has(sp.Add):
+        check_value(1 / value)
+    return value
 
 
 def _quoted(node: ast.expr) -> str:
@@ -172,4 +189,4 @@ def _power(base: Value, exponent: Value) -> Value:
         raise ExpressionError("powers of matrices are not supported: write out the product")
     if isinstance(base, sp.Rational) and base.p.bit_length() * abs(exponent) > MAX_BITS:
         raise ExpressionError(f"{base}**{exponent} has more than {MAX_BITS} bits")
-    return base**exponent
+    return (_divisor(base) if exponent < 0 else base) ** exponent

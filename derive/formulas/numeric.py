@@ -1,0 +1,204 @@
+"""Numeric values of expressions with many digits, and bounds of their errors.
+
+Each operation adds its rounding error to the errors of its operands (N. J. Higham, Accuracy and
+Stability of Numerical Algorithms, § 3.3). A value that does not exceed its error is zero as far as
+the digits show; a divisor of this kind leaves no value.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+from mpmath import MPContext
+
+#: Digits of the arithmetic, and of values that are converted to SymPy numbers.
+WORKING_DIGITS, DIGITS = 120, 90
+
+#: Largest logarithm of a value: the exponential function of more is refused.
+MAX_LOGARITHM = 10**5
+
+mp = MPContext()
+mp.dps = WORKING_DIGITS
+ROUNDING = mp.mpf(10) ** (1 - WORKING_DIGITS)
+
+#: Largest error of the argument of a function, and largest ratio that counts as zero.
+TINY = mp.mpf("1e-30")
+
+
+class NoValueError(ArithmeticError):
+    """An expression has no value, because it divides by zero, or none that is computable."""
+
+
+@dataclass(frozen=True, slots=True)
+class Approximation:
+    """A real or complex number, and a bound of its error."""
+
+    number: Any
+    error: Any = mp.zero
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether the digits do not differ from zero."""
+        return bool(abs(self.number) <= self.error)
+
+    def rounded(self) -> sp.Expr:
+        """The value as a SymPy number."""
+        parts = [sp.Float(str(part), DIGITS) for part in (self.number.real, self.number.imag)]
+        return parts[0] + sp.I * parts[1] if parts[1] else parts[0]
+
+
+class Evaluator:
+    """Values of expressions at one state; equal subexpressions are evaluated once."""
+
+    def __init__(self, state: Mapping[sp.Symbol, sp.Expr]) -> None:
+        self._known: dict[sp.Basic, Approximation] = {}
+        self._known |= {symbol: self(value) for symbol, value in state.items()}
+
+    def __call__(self, expression: sp.Expr) -> Approximation:
+        """Evaluate `expression`; a `NoValueError` states why it has no value."""
+        if expression not in self._known:
+            self._known[expression] = self._evaluate(expression)
+        return self._known[expression]
+
+    def _evaluate(self, expression: sp.Expr) -> Approximation:
+        if expression.is_Rational:
+            number = mp.mpf(expression.p) / expression.q
+            return Approximation(number, ROUNDING * abs(number))
+        if expression.is_Float:
+            number = mp.make_mpf(expression._mpf_)
+            return Approximation(number, mp.ldexp(abs(number), 1 - expression._prec))
+        if expression.is_NumberSymbol:
+            number = mp.make_mpf(expression.evalf(WORKING_DIGITS)._mpf_)
+            return Approximation(number, ROUNDING * abs(number))
+        if expression is sp.I:
+            return Approximation(mp.j)
+        operands = [self(part) for part in expression.args]
+        if expression.is_Add:
+            return _sum(operands)
+        if expression.is_Mul:
+            return _product(operands)
+        if expression.is_Pow and expression.exp.is_Rational:
+            return _power(operands[0], expression.exp)
+        if expression.func in FUNCTIONS:
+            return FUNCTIONS[expression.func](operands[0])
+        raise NotImplementedError(f"cannot evaluate {str(expression)[:80]!r} in numbers")
+
+
+def solved(
+    matrix: sp.MatrixBase, column: sp.MatrixBase, evaluator: Evaluator
+) -> tuple[sp.Expr, ...]:
+    """Solve linear equations at a state; the coefficients are expressions."""
+    rows = [[evaluator(entry).number for entry in matrix.row(i)] for i in range(matrix.rows)]
+    right = [evaluator(entry).number for entry in column]
+    solution = mp.lu_solve(mp.matrix(rows), mp.matrix(right))
+    return tuple(Approximation(entry).rounded() for entry in solution)
+
+
+def independent(rows: Sequence[Sequence[sp.Expr]]) -> list[int]:
+    """Return the indices of rows of numbers that are not combinations of rows before them."""
+    indices: list[int] = []
+    pivots: list[tuple[int, list[Any]]] = []
+    for index, row in enumerate(rows):
+        rest = [Evaluator({})(entry).number for entry in row]
+        size = max(map(abs, rest))
+        for column, pivot in pivots:
+            factor = rest[column] / pivot[column]
+            rest = [a - factor * b for a, b in zip(rest, pivot, strict=True)]
+        column = max(range(len(rest)), key=lambda k: abs(rest[k]))
+        if abs(rest[column]) > size * TINY:
+            indices.append(index)
+            pivots.append((column, rest))
+    return indices
+
+
+def _sum(operands: Iterable[Approximation]) -> Approximation:
+    number = error = mp.zero
+    for operand in operands:
+        number += operand.number
+        error += operand.error + ROUNDING * (abs(number) + abs(operand.number))
+    return Approximation(number, error)
+
+
+def _product(operands: Iterable[Approximation]) -> Approximation:
+    number, error = mp.one, mp.zero
+    for operand in operands:
+        size = abs(operand.number)
+        error = error * (size + operand.error) + abs(number) * operand.error
+        number *= operand.number
+        error += ROUNDING * abs(number)
+    return Approximation(number, error)
+
+
+def _power(base: Approximation, exponent: sp.Rational) -> Approximation:
+    power = int(exponent) if exponent.is_Integer else mp.mpf(exponent.p) / exponent.q
+    if base.is_zero:
+        if power < 0:
+            raise NoValueError("it divides by zero")
+        return Approximation(mp.zero, mp.power(2 * base.error, power))
+    number = mp.power(base.number, power)
+    relative = 2 * abs(power) * (base.error / abs(base.number) + ROUNDING)
+    return Approximation(number, abs(number) * (relative + ROUNDING))
+
+
+def _argument(operand: Approximation, name: str) -> Any:
+    if operand.error > TINY or abs(mp.im(operand.number)) > MAX_LOGARITHM:
+        raise NoValueError(f"the argument of {name} is too large")
+    return operand.number
+
+
+def _wave(name: str) -> Any:
+    def wave(operand: Approximation) -> Approximation:
+        number = getattr(mp, name)(_argument(operand, name))
+        slope = mp.cosh(mp.im(operand.number))
+        return Approximation(number, 2 * operand.error * slope + ROUNDING * (abs(number) + slope))
+
+    return wave
+
+
+def _tangent(operand: Approximation) -> Approximation:
+    sine, cosine = _wave("sin")(operand), _wave("cos")(operand)
+    return _product([sine, _power(cosine, sp.S.NegativeOne)])
+
+
+def _exponential(operand: Approximation) -> Approximation:
+    argument = _argument(operand, "exp")
+    if abs(argument) > MAX_LOGARITHM:
+        raise NoValueError("the argument of exp is too large")
+    number = mp.exp(argument)
+    return Approximation(number, abs(number) * (2 * operand.error + ROUNDING))
+
+
+def _logarithm(operand: Approximation) -> Approximation:
+    if operand.is_zero:
+        raise NoValueError("it contains the logarithm of zero")
+    number = mp.log(operand.number)
+    error = 2 * operand.error / abs(operand.number)
+    return Approximation(number, error + ROUNDING * (1 + abs(number)))
+
+
+def _absolute(operand: Approximation) -> Approximation:
+    return Approximation(abs(operand.number), operand.error)
+
+
+def _sign(operand: Approximation) -> Approximation:
+    return Approximation(mp.zero if operand.is_zero else mp.sign(operand.number), ROUNDING)
+
+
+def _impulse(operand: Approximation) -> Approximation:
+    if operand.is_zero:
+        raise NoValueError("it contains the derivative of a step at the step")
+    return Approximation(mp.zero)
+
+
+#: Functions by their SymPy class.
+FUNCTIONS = {
+    sp.sin: _wave("sin"),
+    sp.cos: _wave("cos"),
+    sp.tan: _tangent,
+    sp.exp: _exponential,
+    sp.log: _logarithm,
+    sp.Abs: _absolute,
+    sp.sign: _sign,
+    sp.DiracDelta: _impulse,
+}
