@@ -16,15 +16,21 @@ from operator import or_
 import sympy as sp
 from sympy.polys.rings import PolyElement, PolyRing
 
+from derive.formulas.expansion import is_expandable
+
 #: Largest power, and largest multiple of an angle, that is expanded.
 MAX_MULTIPLE = 100
+
+#: Limit of the work: products of two terms of polynomials; a second or two.
+MAX_PRODUCTS = 500_000
 
 
 def vanishes(expression: sp.Expr) -> bool:
     """Whether `expression`, rational in symbols and in sines and cosines of sums, is zero.
 
-    A `NotImplementedError` reports other expressions, and powers and multiples of angles above
-    `MAX_MULTIPLE`; a `ZeroDivisionError`, a denominator that is identically zero.
+    A `NotImplementedError` reports other expressions, powers and multiples of angles above
+    `MAX_MULTIPLE`, and more work than `MAX_PRODUCTS`; a `ZeroDivisionError`, a denominator that is
+    identically zero.
     """
     whole = _with_integer_angles(expression)
     expanded = whole.xreplace({wave: _expanded(wave) for wave in _waves(whole)})
@@ -65,6 +71,7 @@ class _Converter:
     def __init__(self, ring: PolyRing, sines: dict[int, PolyElement]) -> None:
         self._ring, self._sines = ring, sines
         self._cache: dict[sp.Expr, _Fraction] = {}
+        self._products = 0
 
     def fraction(self, expression: sp.Expr) -> _Fraction:
         if expression not in self._cache:
@@ -108,16 +115,24 @@ class _Converter:
         above = a.denominator.elements()
         return _Fraction(reduce(self._times, above, self._ring(1 / content)), +denominator)
 
+    def _multiplied(self, a: PolyElement, b: PolyElement) -> PolyElement:
+        self._products += len(a) * len(b)
+        if self._products > MAX_PRODUCTS:
+            raise NotImplementedError("cannot decide within the limit of work")
+        return a * b
+
     def _times(self, a: PolyElement, b: PolyElement) -> PolyElement:
-        product = a * b
+        product = self._multiplied(a, b)
         for i, sine in self._sines.items():
             parts: dict[int, dict[tuple[int, ...], object]] = {}  # by the power of cos²
             for monomial, coefficient in product.terms():
                 half, odd = divmod(monomial[i], 2)
                 parts.setdefault(half, {})[(*monomial[:i], odd, *monomial[i + 1 :])] = coefficient
             if {*parts} - {0}:
-                terms = (self._ring(part) * (1 - sine**2) ** n for n, part in parts.items())
-                product = sum(terms, self._ring.zero)
+                product = sum(
+                    (self._multiplied(self._ring(p), (1 - sine**2) ** n) for n, p in parts.items()),
+                    self._ring.zero,
+                )
         return product
 
 
@@ -127,6 +142,8 @@ def _waves(expression: sp.Expr) -> set[sp.Expr]:
 
 def _with_integer_angles(expression: sp.Expr) -> sp.Expr:
     """Rescale the symbols of `expression` so that all multiples of angles are integers."""
+    if not all(is_expandable(wave.args[0]) for wave in _waves(expression)):
+        raise NotImplementedError("cannot expand an angle: it has too many terms")
     arguments = [sp.expand(wave.args[0]) for wave in _waves(expression)]
     multiples = [n for a in arguments for n in a.as_coefficients_dict().values()]
     scale = lcm(*(int(n.q) for n in multiples if n.is_Rational))

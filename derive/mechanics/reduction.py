@@ -7,22 +7,21 @@ since sin² a costs less than (1 - cos 2a)/2 and is accurate near a = 0.
 """
 
 from collections.abc import Callable
-from math import prod
 
 import sympy as sp
+
+from derive.formulas.expansion import is_expandable
 
 Square = Callable[[sp.Expr], sp.Expr]
 Wave = tuple[bool, sp.Expr]  # (is a sine, argument)
 HALF = sp.Rational(1, 2)
 #: Forms of cos 2a.
 SQUARES: tuple[Square, ...] = (lambda a: 1 - 2 * sp.sin(a) ** 2, lambda a: 2 * sp.cos(a) ** 2 - 1)
-#: Terms of the largest expression that is expanded to find a shorter form.
-LARGEST = 5000
 
 
 def reduced(expression: sp.Expr) -> sp.Expr:
     """The form of `expression` with the fewest operations."""
-    if not expression.has(sp.sin, sp.cos) or _expanded_size(expression, {}) > LARGEST:
+    if not expression.has(sp.sin, sp.cos) or not is_expandable(expression):
         return expression
     waves = harmonics(expression)
     candidates = [waves, expression]
@@ -33,29 +32,13 @@ def reduced(expression: sp.Expr) -> sp.Expr:
 
 def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
     """`expression` expanded, one term for each function of `variables`; unchanged if too long."""
-    if _expanded_size(expression, {}) > LARGEST:
+    if not is_expandable(expression):
         return expression
     coefficients: dict[sp.Expr, sp.Expr] = {}
     for term in sp.Add.make_args(sp.expand(expression)):
         coefficient, dependent = term.as_independent(*variables, as_Add=False)
         coefficients[dependent] = coefficients.get(dependent, sp.S.Zero) + coefficient
     return sp.Add(*(sp.factor_terms(c) * dependent for dependent, c in coefficients.items()))
-
-
-def _expanded_size(expression: sp.Expr, known: dict[sp.Expr, int]) -> int:
-    """Number of terms of the expanded expression, up to a bound."""
-    if expression not in known:
-        sizes = [_expanded_size(part, known) for part in expression.args]
-        if expression.is_Add:
-            size = sum(sizes)
-        elif expression.is_Mul:
-            size = prod(sizes)
-        elif expression.is_Pow and expression.exp.is_Integer and expression.exp > 0:
-            size = min(sizes[0], LARGEST + 1) ** min(int(expression.exp), 100)
-        else:
-            size = max(sizes, default=1)
-        known[expression] = min(size, LARGEST + 1)
-    return known[expression]
 
 
 def harmonics(expression: sp.Expr) -> sp.Expr:

@@ -1,0 +1,29 @@
+"""The size of expanded expressions, known before anything is expanded."""
+
+from math import prod
+
+import sympy as sp
+
+#: Terms of the largest expression that is expanded.
+LARGEST = 5000
+
+
+def is_expandable(expression: sp.Expr) -> bool:
+    """Whether the expanded expression has at most `LARGEST` terms, before terms are collected."""
+    return _expanded_size(expression, {}) <= LARGEST
+
+
+def _expanded_size(expression: sp.Expr, known: dict[sp.Expr, int]) -> int:
+    """Number of terms of the expanded expression, up to a bound."""
+    if expression not in known:
+        sizes = [_expanded_size(part, known) for part in expression.args]
+        if expression.is_Add:
+            size = sum(sizes)
+        elif expression.is_Mul:
+            size = prod(sizes)
+        elif expression.is_Pow and expression.exp.is_Integer and expression.exp > 0:
+            size = min(sizes[0], LARGEST + 1) ** min(int(expression.exp), 100)
+        else:
+            size = max(sizes, default=1)
+        known[expression] = min(size, LARGEST + 1)
+    return known[expression]
