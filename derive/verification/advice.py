@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from derive.formulas.expansion import is_expandable
 from derive.formulas.expression import ExpressionError
 from derive.verification.model import Model, depends_on, variables
 from derive.verification.terms import (
@@ -26,17 +27,15 @@ def advised(verdict: Verdict, model: Model, derived: sp.Expr | None) -> Verdict:
     In unusual quotients no term is identified.
     """
     terms = terms_of_equation(verdict.printed, model.context.scope)
+    value, wrong_term = sp.Add(*(term.value for term in terms)), None
     if derived is None:
         derived = closest_equation(terms, model)
         wrong_term = first_wrong_term(terms, derived, variables(model.derivation.system))
-    else:
+    elif is_expandable(value):
         wrong_term = _wrong_term_of_quotient(verdict.printed, model, derived)
-    value = sp.Add(*(term.value for term in terms))
-    values = [x.evalf(8, subs=model.context.states[0]) for x in (value, derived)]
-    result = replace(verdict, witness=" instead of ".join(map(sp.sstr, values)))
     if wrong_term is None:
-        return result
-    return replace(result, wrong_term=wrong_term.text, correct_term=str(wrong_term.correct))
+        return verdict
+    return replace(verdict, wrong_term=wrong_term.text, correct_term=str(wrong_term.correct))
 
 
 def closest_equation(terms: Terms, model: Model) -> sp.Expr:

@@ -8,21 +8,21 @@ A name that ends in ``_i`` stands for every index.
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import sympy as sp
 
 from derive.formulas.expression import RELATION, ExpressionError, Scope, parse
+from derive.formulas.numeric import DIGITS, Evaluator, NoValueError
+from derive.formulas.sampling import STATES
 from derive.formulas.zero import is_positive, vanishes
 
 State = Mapping[sp.Symbol, sp.Expr]
 
 INDEXED = re.compile(r"\b(\w+_)i\b")
 
-#: Digits of numeric values, and the largest value that counts as zero; both allow for cancellation.
-DIGITS, TINY = 40, sp.Float("1e-30")
-
-#: The number of states at which agreement is sufficient for what no proof decides.
-SUFFICIENT_STATES = 5
+#: The note on what no proof decides.
+IN_NUMBERS = f"not proved: the sides agree to {DIGITS} digits at {STATES} generic states"
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,7 @@ class Context:
     states: tuple[State, ...]
     substitutions: tuple[State, ...] = ()
     index_count: int = 0  # an index takes the values 1 to index_count
+    implicit: frozenset[sp.Symbol] = frozenset()  # dependent, but without a substitution
 
     def check(self, text: str, definitions: Scope | None = None) -> Check:
         """Check every part of `text`, with additional names from `definitions`."""
@@ -64,7 +65,7 @@ class Context:
                 if not is_positive(residual, strictly="=" not in comparison.relation):
                     return Check(False, index, "not proved positive")
             elif not comparison.comparable or not self.is_zero(residual):
-                return Check(False, index, sp.sstr(_value(residual, self.states[0]).n(6)))
+                return Check(False, index, sp.sstr(self.value(residual).n(6)))
         return Check(holds=True)
 
     def comparisons(self, text: str, definitions: Scope | None = None) -> list[Comparison]:
@@ -79,29 +80,64 @@ class Context:
 
     def is_zero(self, expression: sp.Expr) -> bool:
         """Whether `expression` is zero: by proof, or where none is possible, at many states."""
-        if not all(is_small(expression, state) for state in self.states):
-            return False
+        return self.agreement(expression) is not None
+
+    def is_small(self, *expressions: sp.Expr) -> bool:
+        """Whether all `expressions` are zero at all states, as far as the digits show."""
+        return all(self._is_small(one, place) for place in self.evaluators for one in expressions)
+
+    def agreement(self, *differences: sp.Expr) -> str | None:
+        """Return "" if all `differences` are proved zero, `IN_NUMBERS` if they are zero at states.
+
+        None if one of them is not zero.
+        """
+        if not self.is_small(*differences):
+            return None
+        try:
+            return "" if all(map(self._vanishes, differences)) else None
+        except NotImplementedError:
+            if len(self.states) < STATES:
+                raise
+            return IN_NUMBERS
+
+    def witness(self, value: sp.Expr, derived: sp.Expr) -> str:
+        """Both values at the first state where they differ, with as many digits as show it."""
+        states = range(len(self.states))
+        differs = (k for k in states if not self._is_small(value - derived, self.evaluators[k]))
+        index = next(differs, 0)
+        pair = [self.value(side, index) for side in (value, derived)]
+        for digits in range(8, DIGITS, 4):
+            texts = [sp.sstr(number.n(digits)) for number in pair]
+            if texts[0] != texts[1]:
+                break
+        return " instead of ".join(texts)
+
+    def value(self, expression: sp.Expr, index: int = 0) -> sp.Expr:
+        """The value of `expression` at a state."""
+        return self.evaluators[index](expression).rounded()
+
+    @cached_property
+    def evaluators(self) -> tuple[Evaluator, ...]:
+        """Evaluators of expressions at the states."""
+        return tuple(map(Evaluator, self.states))
+
+    def _is_small(self, expression: sp.Expr, evaluator: Evaluator) -> bool:
+        try:
+            return evaluator(expression).is_zero
+        except (NoValueError, NotImplementedError) as error:
+            raise ExpressionError(f"the formula has no value at a generic state: {error}") from None
+
+    def _vanishes(self, expression: sp.Expr) -> bool:
         for substitution in self.substitutions:
             expression = expression.xreplace(substitution)
-        try:
-            return vanishes(expression)
-        except NotImplementedError:
-            if len(self.states) < SUFFICIENT_STATES:
-                raise
-            return True
+        if expression.free_symbols & self.implicit:
+            raise NotImplementedError(f"cannot prove that {str(expression)[:80]!r} vanishes")
+        return vanishes(expression)
 
 
-def is_small(expression: sp.Expr, state: State) -> bool:
-    """Whether `expression` is zero at `state`, relative to its largest term."""
-    terms = sp.Add.make_args(sp.expand_mul(expression))
-    values = [_value(term, state) for term in terms]
-    return bool(abs(sum(values)) <= TINY * max(map(abs, values)))
-
-
-def _value(expression: sp.Expr, state: State) -> sp.Expr:
-    # numbers first: `evalf` with symbols adds digits without end where the value is 0
-    numbers = {symbol: sp.Float(value, DIGITS) for symbol, value in state.items()}
-    return sp.sympify(expression.xreplace(numbers)).evalf(DIGITS)
+def joined(*notes: str) -> str:
+    """Join the notes that are not empty."""
+    return "; ".join(filter(None, notes))
 
 
 def _compared(text: str, scope: Scope) -> Iterator[Comparison]:

@@ -1,44 +1,110 @@
 """A derivation with generic states, against which formulas about its system are judged."""
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, Scope, Value
+from derive.formulas.numeric import Evaluator, NoValueError, solved
+from derive.formulas.sampling import STATES, sample
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
-from derive.verification.engine import DIGITS, SUFFICIENT_STATES, TINY, Context, State, is_small
+from derive.verification.engine import Context, State
+
+#: Coordinates of the largest systems whose mass matrix, any or a diagonal one, is inverted in
+#: formulas: with four, this takes a minute. Accelerations of larger ones are judged in numbers.
+LARGEST_INVERSE, LARGEST_DIAGONAL = 3, 7
+
+#: Factors of coordinates at states, tried until the Lagrangian is real: a thread limits
+#: coordinates from above, a wheel's axis from below.
+SIZES = (sp.S.One, sp.Rational(1, 20), sp.Integer(5))
 
 
 @dataclass(frozen=True)
 class Model:
-    """A derivation, and names that formulas can use in addition to those of its system."""
+    """A derivation, and names that formulas can use in addition to those of its system.
+
+    Momenta and energy follow from `source_lagrangian`, the source's own, if there is one.
+    """
 
     derivation: Derivation
     names: Scope
+    source_lagrangian: sp.Expr | None = None
+
+    def with_lagrangian(self, lagrangian: sp.Expr) -> Self:
+        """The model with another Lagrangian that has the same equations of motion."""
+        return replace(self, source_lagrangian=lagrangian)
+
+    @cached_property
+    def lagrangian(self) -> sp.Expr:
+        """The Lagrangian of the source, or the derived one."""
+        derived = self.derivation.lagrangian
+        return derived if self.source_lagrangian is None else self.source_lagrangian
+
+    @cached_property
+    def momenta(self) -> Mapping[sp.Symbol, sp.Expr]:
+        """∂L/∂q̇ of the Lagrangian, by the momentum's symbol."""
+        system, values = self.derivation.system, list(self.derivation.momenta)
+        if self.source_lagrangian is not None:
+            values = [self.source_lagrangian.diff(qdot) for qdot in system.qdot]
+        return dict(zip(system.p, values, strict=True))
+
+    @cached_property
+    def energy(self) -> sp.Expr:
+        """q̇·∂L/∂q̇ - L of the Lagrangian."""
+        if self.source_lagrangian is None:
+            return self.derivation.energy
+        pairs = zip(self.derivation.system.qdot, self.momenta.values(), strict=True)
+        return sp.Add(*(qdot * p for qdot, p in pairs)) - self.source_lagrangian
+
+    @cached_property
+    def has_inverse(self) -> bool:
+        """Whether accelerations and Hamiltonian are derived as formulas, which takes seconds."""
+        M = self.derivation.mass_matrix
+        return M.rows <= (LARGEST_DIAGONAL if M.is_diagonal() else LARGEST_INVERSE)
 
     @cached_property
     def context(self) -> Context:
-        """The names of formulas, and generic states."""
+        """The names of formulas, and generic states with any accelerations."""
         system = self.derivation.system
-        states = tuple(generic_state(system, index) for index in range(SUFFICIENT_STATES))
-        return Context({**own_names(system), **self.names}, states)
+        scope = {**own_names(system), **self.names}
+        rates = {f"{p}_dot": time_derivative(system, value) for p, value in self.momenta.items()}
+        states = tuple(self._state(index) for index in range(STATES))
+        return Context({**rates, **scope}, states, (self.momenta,))
 
-    def holds_along_motions(self, residual: sp.Expr) -> bool:
-        """Whether an equation of motion holds with the derived accelerations, in numbers."""
-        derivation, accelerations = self.derivation, self.derivation.system.qddot
-        for state in self.context.states:
-            M = derivation.mass_matrix.evalf(DIGITS, subs=state)
-            f = derivation.forcing.evalf(DIGITS, subs=state)
-            solved = {**state, **dict(zip(accelerations, M.LUsolve(f), strict=True))}
-            derivatives = [residual.diff(a).evalf(DIGITS, subs=solved) for a in accelerations]
-            # an identity, which holds with any accelerations, is not an equation of motion
-            if not is_small(residual, solved) or max(map(abs, derivatives)) < TINY:
-                return False
-        return True
+    @cached_property
+    def motions(self) -> Context:
+        """The names of formulas, and generic states with the accelerations of motions."""
+        system, derivation = self.derivation.system, self.derivation
+        states = []
+        for state, evaluator in zip(self.context.states, self.context.evaluators, strict=True):
+            values = solved(derivation.mass_matrix, derivation.forcing, evaluator)
+            states.append({**state, **dict(zip(system.qddot, values, strict=True))})
+        context = replace(self.context, states=tuple(states))
+        if not self.has_inverse:
+            return replace(context, implicit=frozenset(system.qddot))
+        accelerations = dict(zip(system.qddot, derivation.accelerations, strict=True))
+        return replace(context, substitutions=(self.momenta, accelerations))
+
+    def _state(self, index: int) -> State:
+        """One of several states at which nothing vanishes, with the momenta of its velocities."""
+        system = self.derivation.system
+        moving = (*system.q, *system.qdot, *system.qddot, TIME)
+        values = sample((*system.params, *moving), index)
+        # at later states, angles exceed a right angle, so that sqrt(cos(x)**2) and cos(x) differ
+        values |= {symbol: values[symbol] * sp.Rational(1 + index, 5) for symbol in moving}
+        for size in SIZES:
+            state = values | {q: values[q] * size for q in system.q}
+            if _is_real(self.derivation.lagrangian, state):
+                break
+        else:
+            state = values
+        evaluator = Evaluator(state)
+        return state | {p: evaluator(value).rounded() for p, value in self.momenta.items()}
 
 
 def variables(system: System) -> tuple[sp.Symbol, ...]:
@@ -51,17 +117,6 @@ def own_names(system: System) -> Scope:
     return {s.name: s for s in (*variables(system), *system.params)} | FUNCTIONS
 
 
-def generic_state(system: System, index: int) -> State:
-    """One of many states at which nothing vanishes; at the first, coordinates are small."""
-    shift = 17 + 3 * index
-    values = {s: sp.Rational(11 * k + shift, 7 * k + 11) for k, s in enumerate(system.params)}
-    for k, symbol in enumerate(variables(system)):
-        # signs vary, and angles exceed a right angle, so that sqrt(x**2) and x differ
-        size = sp.Rational(5 * k + 3 + index, 9 * k + 14) * (1 + index)
-        values[symbol] = size * (1 if symbol.is_positive else (-1) ** ((k + index) % 3))
-    return values
-
-
 def time_derivative(system: System, value: Value) -> Value:
     """The time derivative of a function of coordinates, velocities and time."""
     rates = zip((*system.q, *system.qdot), (*system.qdot, *system.qddot), strict=True)
@@ -71,3 +126,10 @@ def time_derivative(system: System, value: Value) -> Value:
 def depends_on(value: Value, symbols: Collection[sp.Symbol]) -> bool:
     """Whether `value` contains one of `symbols`."""
     return bool(value.free_symbols & {*symbols})
+
+
+def _is_real(expression: sp.Expr, state: State) -> bool:
+    try:
+        return bool(Evaluator(state)(expression).rounded().is_real)
+    except NoValueError:
+        return False

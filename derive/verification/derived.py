@@ -1,0 +1,63 @@
+"""The derived formula of each quantity: one to compare with, and one to print."""
+
+from collections.abc import Callable, Iterable
+
+import sympy as sp
+
+from derive.system.symbols import TIME
+from derive.verification.model import Model, time_derivative
+
+
+def _acceleration(model: Model, name: str) -> sp.Expr:
+    system, value = model.derivation.system, model.context.scope[name]
+    return time_derivative(system, time_derivative(system, value))
+
+
+def _hamilton(model: Model, name: str) -> sp.Expr:
+    """The rate of a coordinate or momentum; that of a momentum is ∂L/∂q + Q."""
+    system = model.derivation.system
+    pairs = zip(system.q, system.applied, strict=True)
+    return _rate(model, name, system.qdot, [model.lagrangian.diff(q) + force for q, force in pairs])
+
+
+def _rate(
+    model: Model, name: str, velocities: Iterable[sp.Expr], forces: Iterable[sp.Expr]
+) -> sp.Expr:
+    system, value = model.derivation.system, model.context.scope[name]
+    rates = zip((*system.q, *system.p), (*velocities, *forces), strict=True)
+    return sp.Add(value.diff(TIME), *(value.diff(symbol) * rate for symbol, rate in rates))
+
+
+#: Functions of coordinates, velocities, accelerations and momenta. The last three quantities have
+#: a formula for each coordinate, or name of one: a mirrored angle has the opposite momentum.
+QUANTITIES: dict[str, Callable[[Model, str], sp.Expr]] = {
+    "kinetic_energy": lambda model, _: model.derivation.kinetic_energy,
+    "potential_energy": lambda model, _: model.derivation.potential_energy,
+    "lagrangian": lambda model, _: model.lagrangian,
+    "energy": lambda model, _: model.energy,
+    "hamiltonian": lambda model, _: model.energy,
+    "momenta": lambda model, name: model.context.scope[f"p_{name}"],
+    "accelerations": _acceleration,
+    "hamilton": _hamilton,
+}
+
+#: Quantities that are functions of momenta instead of velocities.
+CANONICAL = ("hamiltonian", "hamilton")
+
+
+def printed_formula(model: Model, kind: str, name: str) -> sp.Expr | None:
+    """The formula in the variables of its kind; None if it requires a large inverse."""
+    derivation, system = model.derivation, model.derivation.system
+    if kind in ("accelerations", *CANONICAL) and not model.has_inverse:
+        return None
+    match kind:
+        case "hamiltonian":
+            return derivation.hamiltonian
+        case "hamilton":
+            return _rate(model, name, *derivation.hamilton_equations)
+        case "accelerations":
+            known = dict(zip(system.qddot, derivation.accelerations, strict=True))
+            return QUANTITIES[kind](model, name).xreplace(known)
+        case "momenta":
+            return QUANTITIES[kind](model, name).xreplace(model.momenta)
+    return QUANTITIES[kind](model, name)

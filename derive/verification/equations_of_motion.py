@@ -1,0 +1,125 @@
+"""Verdicts on equations of motion, one by one and as a set."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import sympy as sp
+
+from derive.formulas.expansion import is_expandable
+from derive.formulas.expression import ExpressionError
+from derive.formulas.numeric import independent, solved
+from derive.verification.advice import closest_equation
+from derive.verification.engine import joined
+from derive.verification.model import Model, depends_on
+from derive.verification.other_solutions import has_other_solutions
+from derive.verification.terms import terms_of_equation
+from derive.verification.verdict import Verdict
+
+#: Largest ratio of factors that counts as zero.
+TINY = sp.Float("1e-30")
+
+NOT_LINEAR = "is not linear in the accelerations"
+
+
+def judge_equation(model: Model, label: str, text: str) -> Verdict:
+    """Judge an equation that must hold along every motion, and determine accelerations."""
+    if text.count("=") > 1:
+        raise ExpressionError(f"an equation has one equals sign, not {text.count('=')}")
+    system, verdict = model.derivation.system, partial(Verdict, label, printed=text)
+    terms = terms_of_equation(text, model.context.scope)
+    value = sp.Add(*(term.value for term in terms))
+    if not depends_on(value.xreplace(model.momenta), system.qddot):
+        if depends_on(value, system.p) and (note := model.context.agreement(value)) is not None:
+            return verdict(verdict="definition", note=joined("it defines a momentum", note))
+        return verdict(verdict="wrong", note="it contains no acceleration")
+    coefficients = [value.diff(a) for a in system.qddot]
+    is_linear = all(model.context.is_zero(c.diff(a)) for c in coefficients for a in system.qddot)
+    if not model.motions.is_small(value):
+        if is_linear and is_expandable(value):
+            derived = closest_equation(terms, model)
+            witness = model.context.witness(value, derived)
+            return verdict(verdict="wrong", correction=f"{derived} = 0", witness=witness)
+        reason = "has too many terms to compare them" if is_linear else NOT_LINEAR
+        witness = model.motions.witness(value, sp.S.Zero)
+        return verdict(verdict="wrong", witness=witness, note=f"it {reason}")
+    if model.motions.is_small(*coefficients):
+        note = "it holds along every motion, but determines no acceleration"
+        return verdict(verdict="wrong", note=note)
+    if not is_linear and has_other_solutions(model, value):
+        return verdict(verdict="wrong", note=f"it {NOT_LINEAR}, and has other solutions")
+    note = _agreement(model, value, coefficients)
+    if note is None:
+        return verdict(verdict="wrong", note="it holds at single states only")
+    if not is_linear:
+        reason = "it is an equation of motion times a factor that contains accelerations"
+        return verdict(verdict="equivalent", note=joined(reason, note))
+    if momenta := sorted(symbol.name for symbol in value.free_symbols & {*system.p}):
+        reason = f"it holds for the momenta of the motion: {', '.join(momenta)}"
+        return verdict(verdict="equivalent", note=joined(reason, note))
+    return verdict(verdict="verified", note=note)
+
+
+def judge_set(model: Model, equations: Sequence[Verdict]) -> list[Verdict]:
+    """Add to correct equations a verdict on all of them if they depend on each other.
+
+    If they are independent but fewer than the coordinates, a note on the last one states so.
+    """
+    if any(one.verdict in ("wrong", "unreadable") for one in equations):
+        return [*equations]
+    system, numbered = model.derivation.system, enumerate(equations, 1)
+    rows = {number: row for number, one in numbered if (row := _row(model, one.printed))}
+    kept = independent([*rows.values(), *sp.eye(len(system.q)).tolist()])
+    missing = [k - len(rows) for k in kept if k >= len(rows)]
+    if not missing:
+        return [*equations]
+    names = ", ".join(system.q[k].name for k in missing)
+    lacking = f"the set is incomplete: independent equations are missing, such as for {names}"
+    if dependent := [number for k, number in enumerate(rows) if k not in kept]:
+        follows = f"equation {dependent[0]} follows from the equations before it"
+        correction = "; ".join(f"{model.derivation.euler_lagrange[k]} = 0" for k in missing)
+        printed, note = f"{len(equations)} equations", joined(follows, lacking)
+        return [*equations, Verdict("euler_lagrange", "wrong", printed, correction, note=note)]
+    return [*equations[:-1], replace(equations[-1], note=joined(equations[-1].note, lacking))]
+
+
+def _row(model: Model, text: str) -> tuple[sp.Expr, ...]:
+    """The factors of the derived equations in a correct one; none in other definitions.
+
+    The definition of a conserved momentum implies that its rate is zero.
+    """
+    system, L = model.derivation.system, model.lagrangian
+    value = _value(model, text)
+    if depends_on(value.xreplace(model.momenta), system.qddot):
+        return _factors(model, [value.diff(a) for a in system.qddot])
+    rates = [L.diff(q) + f for q, f in zip(system.q, system.applied, strict=True)]
+    momenta = zip(system.p, rates, strict=True)
+    if all(model.context.is_zero(rate) for p, rate in momenta if p in value.free_symbols):
+        return _factors(model, [value.diff(qdot) for qdot in system.qdot])
+    return ()
+
+
+def _factors(model: Model, coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
+    """Solve Mᵀ λ = c: an equation with coefficients c is Σ λ_i times the derived equation i."""
+    matrix, column = model.derivation.mass_matrix, sp.Matrix(coefficients)
+    return solved(matrix, column, model.motions.evaluators[0])
+
+
+def _value(model: Model, text: str) -> sp.Expr:
+    return sp.Add(*(term.value for term in terms_of_equation(text, model.context.scope)))
+
+
+def _agreement(model: Model, value: sp.Expr, coefficients: Sequence[sp.Expr]) -> str | None:
+    """How an equation that holds at states is known to hold along all motions."""
+    factors = _factors(model, coefficients)
+    smallest = TINY * max(map(abs, factors))
+    combined = [i for i, factor in enumerate(factors) if abs(factor) > smallest]
+    if len(combined) > 1:
+        reason = "it is a combination of the equations of motion"
+        note = model.motions.agreement(value)
+        return note if note is None else joined(reason, note)
+    # a multiple of one equation of motion: no accelerations need to be solved for
+    i = combined[0]
+    M, equation = model.derivation.mass_matrix, model.derivation.euler_lagrange[i]
+    note = model.context.agreement(value * M[i, i] - coefficients[i] * equation)
+    return model.motions.agreement(value) if note is None else note
