@@ -24,7 +24,12 @@ from solvers.scenes.reading import find
 from solvers.studies import heyoka
 from solvers.studies.work_precision import measurement, peers, plots
 from solvers.studies.work_precision.curve import Curve, Point, frontier
-from solvers.studies.work_precision.findings import misleading_energy, rounding_limits, wrong_above
+from solvers.studies.work_precision.findings import (
+    RoundingLimit,
+    misleading_energy,
+    rounding_limits,
+    wrong_above,
+)
 from solvers.studies.work_precision.measurement import combinations, curves
 from solvers.studies.work_precision.reference import Reference
 from solvers.studies.work_precision.scene_curves import SceneCurves
@@ -184,6 +189,13 @@ def test_shorter_steps_are_better_until_rounding_dominates() -> None:
     flat = [Point({"h": h}, 1 / h, int(1 / h), 1.0, 1.0) for h in steps]
     (none,) = rounding_limits([curve("rk1", "lagrangian", "compiled", *flat)])
     assert isnan(none.order)
+
+
+def test_a_rounding_limit_says_where_rounding_begins() -> None:
+    limit = RoundingLimit("rk4", 1e-3, 1e-12, 1e-5, 3e-11, 4.0)
+    assert "at h = 1.0e-03 s; by rounding it is 3.0e-11 at 1.0e-05 s" in str(limit)
+    assert str(replace(limit, finest_error=1.5e-12)).endswith("at the shortest step, 1.0e-05 s")
+    assert "no observed order" in str(replace(limit, order=nan))
 
 
 def test_in_the_report_s_scene_rounding_limits_rk4(

@@ -135,6 +135,11 @@ def test_invalid_scenes_are_refused_with_a_remedy(changes: dict[str, object], wo
         scene_from(**changes)
 
 
+@pytest.mark.parametrize("method", ["LSODA", "verner87"])
+def test_methods_that_control_their_steps_need_none(method: str) -> None:
+    assert (scene_from(method=method).method, scene_from(method=method).step) == (method, None)
+
+
 @pytest.mark.parametrize("key", ["system", "duration", "initial"])
 def test_a_missing_key_is_named(key: str) -> None:
     with pytest.raises(InputError, match=f"'{key}' is missing"):

@@ -317,6 +317,15 @@ def test_an_invalid_sweep_is_refused(changes: dict[str, Any], words: str) -> Non
         Sweep(dp, **(valid | changes))
 
 
+def test_names_of_maps_and_numbers_of_motions_have_limits() -> None:
+    at_most = {"a" * 50: Lyapunov()}
+    assert Sweep(dp, STARTS, at_most, 1.0).maps == at_most
+    with pytest.raises(ValueError, match="cannot be a map's name: use up to 50 letters"):
+        Sweep(dp, STARTS, {"a" * 51: Lyapunov()}, 1.0)
+    with pytest.raises(ValueError, match="the number of motions = 27000000000000000 must be"):
+        Grid(dict.fromkeys(("theta1", "theta2", "m2"), np.linspace(0, 1, 300_000)))
+
+
 def test_energy_errors_need_a_conserved_energy() -> None:
     axes = Grid({name: [0.1] for name in driven.COORDINATES})
     with pytest.raises(ValueError, match="does not conserve its energy"):
