@@ -5,7 +5,7 @@ and elementary functions are replaced by those of series. Nothing numerical is s
 Runge–Kutta methods.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from decimal import Decimal, localcontext
 from functools import reduce
 from math import inf
@@ -37,6 +37,7 @@ def taylor(
     times: ArrayLike,
     digits: int = 32,
     max_products: float = inf,
+    progress: Callable[[float], None] = lambda t: None,
 ) -> Array:
     """States (q, q̇) at `times` by Taylor series; the state at the first of them is `y0`.
 
@@ -52,6 +53,8 @@ def taylor(
         A step neglects terms beyond this many digits of the state; rounding errors are smaller.
     max_products : float
         Most products of coefficients, of which a second computes some ten million.
+    progress : callable
+        Called with the time in s after every step; an exception that it raises ends the series.
 
     Returns
     -------
@@ -83,6 +86,7 @@ def taylor(
                     step = h.copy_sign(sample - t)
                     t += step
                     motion.restart(t, motion.state_after(step))
+                    progress(float(t))
                 products += motion.size * order * order // 2
                 if products > max_products:
                     reason = f"series of {digits} digits take more than {max_products:g} products"

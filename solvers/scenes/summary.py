@@ -36,6 +36,8 @@ def _integration(result: SceneResult) -> str:
     if not run:
         return ""
     text = f" by {result.method}, {result.form} form, {run.setting_name} = {run.setting:.3g}"
+    if run.is_compensated:
+        text += ", compensated sums"
     if not result.specialised_module:
         return text
     modules = (result.specialised_module, result.scene.module)

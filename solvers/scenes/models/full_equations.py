@@ -1,13 +1,13 @@
-"""The full equations, integrated by one method and checked by another."""
+"""The full equations, integrated by one method and checked by others."""
 
 from dataclasses import dataclass, field, replace
-from time import perf_counter
 from typing import ClassVar, Self
 
 import numpy as np
 
 from solvers.equations.forms import fastest_form
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.catalogue import SCIPY, load
+from solvers.scenes.models.double_precision import check_times, sufficient
 from solvers.scenes.models.integration_run import (
     MAX_STEPS,
     EndsEarlyError,
@@ -17,7 +17,7 @@ from solvers.scenes.models.integration_run import (
 )
 from solvers.scenes.models.method_choice import MethodChoice
 from solvers.scenes.models.model import Model
-from solvers.scenes.models.motion import Array, Motion, golden_points
+from solvers.scenes.models.motion import Array, Motion
 
 #: Methods of the check, how much finer its tolerance is, and the finest tolerance.
 CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14
@@ -25,12 +25,6 @@ CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14
 MARGIN = 2.0
 #: Number of tolerances or steps to try, and the share of the requested accuracy to aim at.
 TRIES, RESERVE = 6, 0.3
-#: Digits of Taylor series: fewest, increment, most.
-DIGITS, MORE_DIGITS, MOST_DIGITS = 24, 12, 96
-#: Most steps at which errors are estimated.
-MOST_SAMPLES = 100_000
-#: Largest angle in rad and number of turns for Taylor series.
-LARGEST_ANGLE, MOST_TURNS = 1e6, 3000.0
 
 
 @dataclass(frozen=True)
@@ -67,13 +61,17 @@ class FullEquations(Model):
 def integrated(
     motion: Motion, choice: MethodChoice, accuracy: float, checked: Motion
 ) -> FullEquations:
-    """The full equations at the largest tolerance or step that is sufficient; else an error."""
-    # `checked` is the same motion with general code
-    _check_length(checked, MAX_STEPS)
+    """The full equations at the largest tolerance or step that is sufficient; else an error.
+
+    `checked` is the same motion with general code. Where no check is much more accurate than the
+    run, several that are as accurate as double precision permits check each other.
+    """
+    check_length(checked, MAX_STEPS)
     if choice.step is not None:
         run = IntegrationRun(motion, choice, choice.step)
         return FullEquations.of(run, estimated_error(run, checked))
-    setting, power = accuracy / 3, 1.0
+    finest = FINEST if choice.method in SCIPY else TIGHTER * FINEST
+    setting, power = max(accuracy / 3, finest), 1.0
     if choice.is_fixed:
         setting, power = motion.duration / 200, float(load(choice.method).order)
     best = np.inf
@@ -83,12 +81,18 @@ def integrated(
         if error <= accuracy:
             return FullEquations.of(run, error)
         best = min(best, error)
-        if not choice.is_fixed and setting <= FINEST:
+        if not choice.is_fixed and setting <= finest:
             break
         factor = (RESERVE * accuracy / error) ** (1 / power) if np.isfinite(error) else 0.1
-        setting = max(setting * min(max(factor, 1e-4), 0.5), FINEST)
+        setting = max(setting * min(max(factor, 1e-4), 0.5), 0.0 if choice.is_fixed else finest)
+    if not choice.is_fixed and choice.method not in SCIPY:
+        run, error = sufficient(checked, accuracy, choice if choice.is_named else None)
+        if error <= accuracy:
+            return FullEquations.of(run, error)
+        best = min(best, error)
+    method = choice.method if choice.is_named else "double precision"
     raise NotAccurateError(
-        f"{choice.method} reaches {best:.1g} at best where {accuracy:.1g} is requested: the motion "
+        f"{method} reaches {best:.1g} at best where {accuracy:.1g} is requested: the motion "
         "loses more digits than double precision has"
     )
 
@@ -100,14 +104,10 @@ def estimated_error(run: IntegrationRun, checked: Motion) -> float:
     """
     check = _check(run, checked)
     try:
-        times, _ = run.integrate(None)
+        times = check_times(run)
     except NotAccurateError:
         _refuse_early_end(check)
         return np.inf
-    if len(times) > MOST_SAMPLES:
-        times = times[np.unique((len(times) * golden_points(MOST_SAMPLES)).astype(int))]
-    # steps are dense where the motion is fast; between two of them it may be faster
-    times = np.unique([*times, *(times[1:] + times[:-1]) / 2, *run.motion.sample_times])
     states = run.states(times)
     try:
         reference = check.states(times)
@@ -116,7 +116,7 @@ def estimated_error(run: IntegrationRun, checked: Motion) -> float:
         return np.inf
     # the check's own error counts where the run is more accurate than its tolerance
     rest = check.setting * float(np.abs(reference).max())
-    return _difference(run.motion, states, reference) + rest
+    return difference(run.motion, states, reference) + rest
 
 
 def _check(run: IntegrationRun, checked: Motion) -> IntegrationRun:
@@ -137,32 +137,12 @@ def _refuse_early_end(check: IntegrationRun) -> None:
         raise EndsEarlyError(f"{failure}: end the motion before") from failure
 
 
-def _difference(motion: Motion, one: Array, other: Array) -> float:
+def difference(motion: Motion, one: Array, other: Array) -> float:
+    """The error that the difference of two results, shape (n, state), stands for."""
     return float(MARGIN * np.abs(one - other)[:, list(motion.requested)].max())
 
 
-def by_series(motion: Motion, choice: MethodChoice, accuracy: float, times: Array) -> FullEquations:
-    """Taylor series with as many digits as are necessary; an error where even the most are not."""
-    _check_length(motion, MOST_TURNS)
-    if max(map(abs, motion.y0)) > LARGEST_ANGLE:
-        raise TooLongError(f"angles above {LARGEST_ANGLE:g} rad: reduce them by whole turns")
-    coarse, error = IntegrationRun(motion, choice, DIGITS).states(times), np.inf
-    for digits in range(DIGITS + MORE_DIGITS, MOST_DIGITS + 1, MORE_DIGITS):
-        run = IntegrationRun(motion, choice, digits)
-        before = perf_counter()
-        fine = run.states(times)
-        seconds = perf_counter() - before
-        # the result is rounded to double precision
-        error = _difference(motion, coarse, fine) + float(np.spacing(np.abs(fine).max()))
-        if error <= accuracy:
-            model = FullEquations.of(run, error)
-            return replace(model, computed=(times, fine), computing_seconds=seconds)
-        coarse = fine
-    text = f"{MOST_DIGITS} digits reach {error:.1g} where {accuracy:.1g} is requested"
-    raise NotAccurateError(text)
-
-
-def _check_length(motion: Motion, most: float) -> None:
+def check_length(motion: Motion, most: float) -> None:
     """Refuse motions of more than `most` turns, by the rates at the start."""
     jacobian = np.array(motion.module.jacobian(0.0, motion.y0, motion.params))
     if not np.isfinite(jacobian).all():

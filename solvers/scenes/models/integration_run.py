@@ -1,5 +1,6 @@
 """One integration of a motion: method, form, and tolerance, step size or digits."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,7 +9,7 @@ import numpy as np
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
-from solvers.integration.prepare import prepare
+from solvers.integration.prepare import no_compiler, prepare
 from solvers.integration.solution import Status
 from solvers.integration.timing import median_seconds
 from solvers.references.taylor import taylor
@@ -44,6 +45,7 @@ class IntegrationRun:
     motion: Motion  # its module may be a specialised one
     method_choice: MethodChoice
     setting: float  # relative tolerance, or step size in s, or number of digits
+    max_steps: int = MAX_STEPS
 
     @property
     def setting_name(self) -> str:
@@ -52,21 +54,31 @@ class IntegrationRun:
         return "digits" if choice.is_series else "h" if choice.is_fixed else "rtol"
 
     @property
+    def is_compensated(self) -> bool:
+        """Whether sums are compensated; that needs a compiled loop."""
+        return self.method_choice.compensated and not no_compiler(self.motion.module)
+
+    @property
     def options(self) -> dict[str, Any]:
         """Arguments of the integrator."""
         choice = self.method_choice
-        options = {"method": choice.method, "form": choice.form, "max_steps": MAX_STEPS}
+        options = {"method": choice.method, "form": choice.form, "max_steps": self.max_steps}
         if choice.is_fixed:
             return options | {"h": self.setting}
         # a component that starts small may grow, as next to the upright equilibrium
-        return options | {"rtol": self.setting, "atol": SMALL_STATE * self.setting}
+        options |= {"rtol": self.setting, "atol": SMALL_STATE * self.setting}
+        return options | {"compensated": True} if self.is_compensated else options
 
-    def states(self, t: Array) -> Array:
-        """Coordinates and velocities at increasing times, shape (n, state)."""
+    def states(self, t: Array, progress: Callable[[float], None] = lambda t: None) -> Array:
+        """Coordinates and velocities at increasing times, shape (n, state).
+
+        A series calls `progress` with the time in s after every step.
+        """
         if self.method_choice.is_series:
             motion, times = self.motion, t if t[0] == 0 else [0.0, *t]  # which include the start
             arguments = motion.module, motion.params, motion.y0, times, int(self.setting)
-            return taylor(*arguments, max_products=MAX_PRODUCTS)[-len(t) :]
+            states = taylor(*arguments, max_products=MAX_PRODUCTS, progress=progress)
+            return states[-len(t) :]
         return self.integrate(t)[1]
 
     def integrate(self, t: Array | None) -> tuple[Array, Array]:
@@ -77,8 +89,8 @@ class IntegrationRun:
             solution = integrate(*arguments, t_eval=t, **self.options)
         if solution.status is Status.STEP_LIMIT:
             raise TooLongError(
-                f"{method} needs more than {MAX_STEPS:.0e} steps: shorten the duration or request "
-                "less accuracy"
+                f"{method} needs more than {self.max_steps:.0e} steps: shorten the duration or "
+                "request less accuracy"
             )
         if solution.status is not Status.FINISHED:
             raise NotAccurateError(f"{method}, {self.setting:g}: {solution.message}")

@@ -27,6 +27,8 @@ class MethodChoice:
     why: str  # the reason for this choice
     seconds: float = nan  # measured, per second of motion
     step: float | None = None  # a fixed step size in s
+    compensated: bool = False  # sums, where the loop is compiled
+    is_named: bool = False  # in the scene
 
     @property
     def is_series(self) -> bool:

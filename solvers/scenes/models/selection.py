@@ -7,7 +7,8 @@ import numpy as np
 
 from solvers.references.taylor import SeriesError
 from solvers.scenes.models.catalogue import closed_forms
-from solvers.scenes.models.full_equations import by_series, integrated
+from solvers.scenes.models.extended_precision import by_series
+from solvers.scenes.models.full_equations import integrated
 from solvers.scenes.models.integration_run import NotAccurateError
 from solvers.scenes.models.method_choice import SERIES, MethodChoice, cheapest, usual_form
 from solvers.scenes.models.model import ClosedForm, Model
@@ -65,18 +66,19 @@ def select_model(
         full = integrated(specialise(motion, choice), choice, scene.accuracy, motion)
         return ModelSelection(full, declined)
     except NotAccurateError as error:
-        if scene.method or scene.form:
+        if choice.is_named:
             raise
         declined["double precision"] = str(error)
     report("full equations by Taylor series")
     why = "the motion loses more digits than double precision has"
     choice = MethodChoice(SERIES, usual_form(scene.module, SERIES), why)
     try:
-        return ModelSelection(by_series(motion, choice, scene.accuracy, scene.times), declined)
+        series = by_series(motion, choice, scene.accuracy, scene.times, report)
     except SeriesError as error:
         raise NotAccurateError(
             f"{declined['double precision']}; by Taylor series {error}"
         ) from error
+    return ModelSelection(series, declined)
 
 
 def _closed_form(model: type[ClosedForm], motion: Motion) -> ClosedForm:
@@ -103,4 +105,5 @@ def _method_choice(scene: Scene) -> MethodChoice:
         return choice
     method = scene.method or choice.method
     form = scene.form or usual_form(scene.module, method)
-    return MethodChoice(method, form, "method or form named in the scene", step=scene.step)
+    why = "method or form named in the scene"
+    return MethodChoice(method, form, why, step=scene.step, is_named=True)
