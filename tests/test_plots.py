@@ -22,7 +22,7 @@ from solvers.equations.energy import EnergyUnit
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.scenes import plots as scene_plots
-from solvers.scenes.geometry import energy_errors, mass_positions, projected
+from solvers.scenes.geometry import mass_positions, projected
 from solvers.scenes.reading import find
 from solvers.scenes.run import SceneResult, run_scene
 from solvers.scenes.scene import Scene
@@ -101,8 +101,11 @@ def test_coordinates_and_the_energy_error_are_drawn_over_the_whole_time() -> Non
     assert np.array_equal(points(angles.lines[0]), result.y[:2].T)
     (curve,) = energy.lines
     assert energy.get_yscale() == "log"
-    errors = np.maximum(np.abs(energy_errors(result)), scene_plots.LEAST)
-    assert np.array_equal(points(curve), np.column_stack([result.t, errors]))
+    energies = dp.energy_many(0.0, result.y, dp.DEFAULTS)
+    above_rest = energies[0] - dp.energy(0.0, (0, 0, 0, 0), dp.DEFAULTS)
+    errors = np.maximum(np.abs(energies - energies[0]) / above_rest, scene_plots.LEAST)
+    assert np.allclose(points(curve), np.column_stack([result.t, errors]), rtol=1e-9, atol=1e-16)
+    assert energy.get_ylabel() == "energy error / energy above rest"
     assert curve.get_linewidth() < rate.lines[0].get_linewidth()  # it is not smooth
 
 
