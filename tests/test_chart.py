@@ -21,6 +21,7 @@ from solvers.integration.timing import timed_run, work_at
 from solvers.io.figures import save
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.scenes.reading import find
+from solvers.scenes.scene import Scene
 from solvers.studies import heyoka
 from solvers.studies.work_precision import measurement, peers, plots
 from solvers.studies.work_precision.curve import Curve, Point, frontier
@@ -424,3 +425,24 @@ def test_the_command_prints_curves_reference_and_frontier(
     assert "single pendulum from 2 rad, 10 s" in capsys.readouterr().out
     assert main(["chart", "singel"]) == 2
     assert "did you mean 'single'" in capsys.readouterr().err
+
+
+def test_a_scene_that_fails_loses_no_other(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(measurement, "combinations", lambda _: [("rk4", "lagrangian", "compiled")])
+    monkeypatch.setattr(peers, "PEERS", {})
+    reference = Reference.of
+
+    def fails(scene: Scene) -> Reference:
+        if scene.name == "report":
+            raise ArithmeticError("the equations are not finite")
+        return reference(scene)
+
+    monkeypatch.setattr(Reference, "of", fails)
+    assert main(["chart", "single", "report", "--json", "--output", str(tmp_path)]) == 3
+    output, errors = capsys.readouterr()
+    assert "the equations are not finite" in errors
+    found = json.loads(output)
+    assert [c["scene"] for c in found["curves"]] == ["single"]
+    assert [*found["reference"]["scenes"]] == ["single"]

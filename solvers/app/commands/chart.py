@@ -39,20 +39,22 @@ def run(arguments: Namespace) -> int:
     from solvers.studies.work_precision.scene_curves import record
 
     results, plots = [], []
-    for scene in options.selected_scenes(arguments, DEFAULT):
-        result = _measured(scene, compiled_only=arguments.record)
-        results.append(result)
-        paths = []
-        for name, figure in result.plots().items():
-            paths.append(str(arguments.output / f"{name}.png"))
-            save(figure, Path(paths[-1]))
-        plots += paths
-        if not arguments.json:
-            print(*result.summary(), f"plots: {', '.join(paths)}", "", sep="\n", flush=True)
+    try:
+        for scene in options.selected_scenes(arguments, DEFAULT):
+            result = _measured(scene, compiled_only=arguments.record)
+            results.append(result)
+            paths = []
+            for name, figure in result.plots().items():
+                paths.append(str(arguments.output / f"{name}.png"))
+                save(figure, Path(paths[-1]))
+            plots += paths
+            if not arguments.json:
+                print(*result.summary(), f"plots: {', '.join(paths)}", "", sep="\n", flush=True)
+    finally:  # a scene that fails loses no other
+        if arguments.json and results:
+            options.print_json(_as_json(results, plots))
     if arguments.record:
         write_text(RECORD, record(results))
-    if arguments.json:
-        options.print_json(_as_json(results, plots))
     return 0
 
 
