@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 import warnings
@@ -13,6 +14,7 @@ from sharing import Shared
 from derive.verification.report.equation import Equation
 from solvers.app.cli import COMMANDS, main
 from solvers.app.commands import verify
+from solvers.app.commands.options import shipped
 from solvers.app.verdict import report
 from solvers.app.verdict.report import counted, report_verdicts, tables
 from solvers.runge_kutta.order_conditions import order
@@ -40,6 +42,26 @@ def test_help_lists_every_command_and_each_command_shows_an_example(
         text = capsys.readouterr().out
         assert "example" in text
         assert f"  holonomic {name}" in text
+
+
+@pytest.mark.parametrize(("command", "kind"), [
+    ("run", "scenes"), ("chart", "scenes"), ("stability", "scenes"), ("sweep", "sweeps"),
+])  # fmt: skip
+def test_help_describes_each_scene_and_sweep_that_ships(
+    command: str,
+    kind: str,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    with pytest.raises(SystemExit, match="0"):
+        main([command, "--help"])
+    listed = capsys.readouterr().out.partition(f"\n{kind}:\n")[2]
+    rows = dict(re.findall(r"^  (\w+) +(\w.*(?:\n {5}.*)*)", listed, re.MULTILINE))
+    assert tuple(rows) == shipped(kind)
+    assert len({*rows.values()}) == len(rows)
+    assert all(len(description.split()) >= 5 for description in rows.values())
+    assert all(len(line) <= 80 for line in listed.splitlines())
 
 
 def test_every_file_of_a_command_is_a_command() -> None:

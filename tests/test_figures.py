@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from solvers.io.figures import LIGHT, darken, panels, save, svg
@@ -40,6 +41,18 @@ def test_other_suffixes_are_refused_before_anything_is_rendered(
     with pytest.raises(ValueError, match=rf"{name}': its name must end in one of .pdf, .png, .svg"):
         save(chart(), tmp_path / name)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("width", [5, 10])
+def test_a_long_title_is_wrapped_within_the_figure(width: float) -> None:
+    words = "A title that is longer than its figure is wide:" + " and so on" * 12
+    figure, (panel,) = panels(words, size=(width, 4))
+    svg(figure)
+    (title,) = figure.texts
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    extent = title.get_window_extent(renderer)
+    assert 0 <= extent.x0 < extent.x1 <= figure.bbox.width
+    assert panel.get_tightbbox(renderer).y1 <= extent.y0
 
 
 def test_a_dark_figure_has_light_text_and_no_paper() -> None:

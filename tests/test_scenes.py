@@ -10,6 +10,7 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
+from solvers.app.scenes import load_sweep
 from solvers.io.quantity import QuantityError, quantity
 from solvers.io.toml_input import InputError
 from solvers.scenes.checks import MassMatrixWarning
@@ -218,6 +219,21 @@ def test_a_scene_in_python_is_as_strict(changes: dict[str, Any], words: str) -> 
         Scene(**{**plain, **changes})
 
 
+def test_the_default_title_is_the_whole_title_of_the_system(tmp_path: Path) -> None:
+    (tmp_path / "bead.toml").write_text(
+        'title = "Bead of 1.5 kg: on a wire, no. 2"\ncoordinates = { x = { unit = "m" } }\n'
+        'masses = [{ mass = "3/2", position = ["x", "0"] }]\npotential = "x**2"\n'
+    )
+    path = tmp_path / "scene.toml"
+    path.write_text('system = "bead.toml"\nduration = 1\ninitial = { x = 1 }\n')
+    assert read(path, load_module).title == "Bead of 1.5 kg: on a wire, no. 2"
+    path.write_text(
+        'system = "bead.toml"\nduration = 1\naxes = { x = { from = 0, to = 1, count = 2 } }\n'
+        'maps = { end = { kind = "final", of = ["x"] } }\n'
+    )
+    assert load_sweep(path).title == "Bead of 1.5 kg: on a wire, no. 2"
+
+
 def test_degrees_without_a_unit_cause_a_warning() -> None:
     with pytest.warns(UserWarning, match='theta1 = 90 is 14.3 turns: write "90 deg"'):
         scene_from(initial={"theta1": 90, "theta2": 0})
@@ -226,8 +242,9 @@ def test_degrees_without_a_unit_cause_a_warning() -> None:
 
 def test_a_scene_beside_another_is_labelled_by_the_differences() -> None:
     (one,) = scene_from(beside=[{"method": "rk4", "step": "1 ms", "initial": {"theta1": 2}}]).beside
-    assert (one.title, one.label) == ("Double pendulum", "rk4, step = 1 ms, theta1 = 2")
-    assert scene_from().title == "Double pendulum"
+    title = "Double pendulum: two point masses on rigid massless rods in a vertical plane"
+    assert (one.title, one.label) == (title, "rk4, step = 1 ms, theta1 = 2")
+    assert scene_from().title == title
 
 
 def test_a_nearly_singular_mass_matrix_is_reported_with_its_coordinate() -> None:
