@@ -5,7 +5,7 @@ import re
 import sys
 import warnings
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from typing import NoReturn
@@ -22,6 +22,14 @@ EXIT_CODES = {ValueError: 2, ArithmeticError: 3, MemoryError: 3, OSError: 4}
 
 class Parser(ArgumentParser):
     """A parser that suggests the closest choice for an unknown one."""
+
+    #: Returns a list below the help text, built only where help is printed.
+    listing: Callable[[], str] | None = None
+
+    def format_help(self) -> str:
+        """The help text, and the list below it."""
+        text = super().format_help()
+        return f"{text}\n{self.listing()}\n" if self.listing else text
 
     def error(self, message: str) -> NoReturn:
         """Print the message and a suggestion; exit with code 2."""

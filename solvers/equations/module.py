@@ -74,6 +74,11 @@ class GeneratedModule(Protocol):
     def __hash__(self) -> int: ...
 
 
+def title(module: GeneratedModule) -> str:
+    """The title of the system: the first line of the docstring, without its full stop."""
+    return str(module.__doc__).partition("\n")[0].removesuffix(".")
+
+
 def has_function(module: GeneratedModule, name: str) -> bool:
     """Whether a generated module has the function `name`, and so ``name_many``."""
     return name in module.OPERATIONS

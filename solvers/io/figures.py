@@ -53,7 +53,7 @@ def panels(
     # without pyplot, which needs a display and keeps every figure
     figure = Figure(size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
-    figure.suptitle(title)
+    figure.suptitle(title, wrap=True)
     return figure, list(axes.flat)
 
 

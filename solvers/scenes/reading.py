@@ -7,7 +7,7 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, title
 from solvers.io import toml_input
 from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError
@@ -71,8 +71,7 @@ def scene(name: str, table: Mapping[str, Any], load: Callable[[str], GeneratedMo
         raise InputError(f"[[beside]] are {len(others)}: up to {MOST} can be shown")
     for key, each in product(TABLES, (table, *others)):
         toml_input.table(key, each.get(key, {}))
-    title = str(module.__doc__).partition(":")[0].partition(".")[0]
-    table = {"title": title, **table}
+    table = {"title": title(module), **table}
     beside = tuple(_beside(module, name, table, other) for other in others)
     return _scene(module, name, table, beside)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, title
 from solvers.io import toml_input
 from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import InputError
@@ -56,7 +56,7 @@ def _sweep(path: Path, table: Mapping[str, Any], module: Callable[[str], Generat
         equations = module(str(path.parent / name) if name.endswith(".toml") else name)
     except LookupError as error:
         raise InputError(f"system = {name[:50]!r}: {error.args[0]}") from error
-    options: dict[str, Any] = {"title": str(equations.__doc__).partition(":")[0].partition(".")[0]}
+    options: dict[str, Any] = {"title": title(equations)}
     options |= {key: read(key, table[key]) for key, read in OPTIONS.items() if key in table}
     maps = {
         key: map_kinds.read(f"maps.{key}", equations, toml_input.table(f"maps.{key}", one))

@@ -28,7 +28,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     options.add_json(parser)
     record = "chart compiled loops only and record the cheapest methods, which scenes then use"
     parser.add_argument("--record", action="store_true", help=record)
-    options.add_examples(parser, "holonomic chart report --json", scenes=True)
+    options.add_examples(parser, "holonomic chart report --json")
 
 
 def run(arguments: Namespace) -> int:

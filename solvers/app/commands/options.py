@@ -5,14 +5,18 @@ from argparse import Action, ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
+from shutil import get_terminal_size
+from textwrap import TextWrapper
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from solvers.io.toml_input import names
+from solvers.io.toml_input import names, read_table
 
 if TYPE_CHECKING:
     from solvers.scenes.scene import Scene
 
+#: The folder of the folders of scenes and sweeps.
+FILES = Path(__file__).parents[2]
 #: Completion of a folder's name, for shtab.
 FOLDER = {"bash": "_shtab_compgen_dirs", "zsh": "_files -/"}
 
@@ -29,7 +33,25 @@ class Formatter(HelpFormatter):
 
 def shipped(kind: str) -> tuple[str, ...]:
     """Names of the ``scenes`` or ``sweeps`` that ship, without loading their readers."""
-    return names(Path(__file__).parents[2] / kind / "files")
+    return names(FILES / kind / "files")
+
+
+def add_list(parser: ArgumentParser, kind: str, key: str) -> None:
+    """List what ships below the help text, each file with the first sentence of a key."""
+
+    def listing() -> str:
+        width, names = get_terminal_size().columns, shipped(kind)
+        margin = max(map(len, names)) + 4
+        lines = [f"{kind}:"]
+        for name in names:
+            text = read_table(FILES / kind / "files" / f"{name}.toml", "")[key]
+            sentence = text.partition(". ")[0].rstrip(".")
+            wrapper = TextWrapper(width, subsequent_indent=" " * margin)
+            wrapper.initial_indent = f"  {name}".ljust(margin)
+            lines.append(wrapper.fill(sentence))
+        return "\n".join(lines)
+
+    setattr(parser, "listing", listing)  # noqa: B010  the attribute is that of our parser
 
 
 def complete_with(action: Action, kind: str, words: Sequence[str]) -> None:
@@ -41,10 +63,11 @@ def complete_with(action: Action, kind: str, words: Sequence[str]) -> None:
 
 
 def add_scenes(parser: ArgumentParser, default: Sequence[str]) -> None:
-    """Add the argument SCENE, which can be repeated."""
+    """Add the argument SCENE, which can be repeated, and the list of scenes."""
     meaning = f"a name, or a file that ends in .toml (default: {', '.join(default)})"
     action = parser.add_argument("scenes", nargs="*", metavar="SCENE", help=meaning)
     complete_with(action, "scenes", shipped("scenes"))
+    add_list(parser, "scenes", "note")
 
 
 def add_output(parser: ArgumentParser, contents: str, default: str = "out") -> None:
@@ -61,11 +84,10 @@ def add_json(parser: ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print JSON instead of text")
 
 
-def add_examples(parser: ArgumentParser, *examples: str, scenes: bool = False) -> None:
-    """Add examples, and the names of the scenes that ship, below the help text."""
-    listed = f"scenes: {', '.join(shipped('scenes'))}\n\n" if scenes else ""
+def add_examples(parser: ArgumentParser, *examples: str) -> None:
+    """Add examples below the help text."""
     title = "examples" if examples[1:] else "example"
-    parser.epilog = f"{listed}{title}:\n" + "\n".join(f"  {line}" for line in examples)
+    parser.epilog = f"{title}:\n" + "\n".join(f"  {line}" for line in examples)
 
 
 def selected_scenes(arguments: Namespace, default: Sequence[str]) -> "list[Scene]":

@@ -18,7 +18,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     options.add_scenes(parser, DEFAULT)
     options.add_output(parser, "tables, plots and pages")
     options.add_json(parser)
-    options.add_examples(parser, "holonomic run separatrix --json", scenes=True)
+    options.add_examples(parser, "holonomic run separatrix --json")
 
 
 def run(arguments: Namespace) -> int:

@@ -25,7 +25,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     options.add_scenes(parser, DEFAULT)
     options.add_output(parser, "plots")
     options.add_json(parser)
-    options.add_examples(parser, "holonomic stability single --json", scenes=True)
+    options.add_examples(parser, "holonomic stability single --json")
 
 
 def run(arguments: Namespace) -> int:

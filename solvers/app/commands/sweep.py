@@ -24,11 +24,10 @@ def add_arguments(parser: ArgumentParser) -> None:
         "Map many motions: a file specifies which values vary and which results are kept. An "
         "interrupted sweep resumes when the same command runs again."
     )
-    names = options.shipped("sweeps")
-    action = parser.add_argument(
-        "sweep", metavar="SWEEP", help=f"{', '.join(names)}, or a file that ends in .toml"
-    )
-    options.complete_with(action, "sweeps", names)
+    meaning = "a name, or a file that ends in .toml"
+    action = parser.add_argument("sweep", metavar="SWEEP", help=meaning)
+    options.complete_with(action, "sweeps", options.shipped("sweeps"))
+    options.add_list(parser, "sweeps", "title")
     options.add_output(parser, "the sweep", "out/SWEEP")
     parser.set_defaults(output=None)  # the name of the sweep is not known yet
     workers = "number of concurrent chunks (default: one for each processor)"
