@@ -214,6 +214,11 @@ def test_operation_counts_equal_those_of_the_generated_module() -> None:
     assert operations_on_state(dp, "rhs_rational") == 34
 
 
+def test_the_stages_of_the_demonstration_have_their_order(tmp_path: Path) -> None:
+    order = ["derive", "verify", "generate", "integrate", "chart", "stability", "map"]
+    assert [*stages.stages(tmp_path)] == order
+
+
 def test_without_a_compiler_the_map_is_left_out_with_a_message(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

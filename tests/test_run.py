@@ -244,6 +244,22 @@ def test_the_report_s_figures_are_plotted_with_a_note_on_what_is_known() -> None
         assert "error estimate" in note
 
 
+@pytest.mark.parametrize("name", ["tremor", "single"])
+def test_a_run_reports_the_model_that_it_evaluates(name: str) -> None:
+    messages: list[str] = []
+    result = run_scene(find(name, load_module), report=messages.append)
+    assert messages[-1] == result.selection.model.name
+    assert messages.count(messages[-1]) == 2  # tried, then evaluated
+
+
+def test_the_cost_is_compared_with_that_of_the_full_equations_where_they_cost_more() -> None:
+    result = run_scene(find("tremor", load_module))
+    slower = replace(result, work_seconds=1e-3, full_equations_seconds=4e-3)
+    assert [*summary(slower)][-1].endswith("; the full equations take about 4 ms, 4 times as long")
+    faster = replace(slower, full_equations_seconds=5e-4)
+    assert "full equations" not in [*summary(faster)][-1]
+
+
 def test_progress_is_shown_on_a_terminal_only_and_erased(tmp_path: Path) -> None:
     command = [
         sys.executable,

@@ -257,6 +257,17 @@ def test_a_section_equals_the_crossings_of_single_motions(tmp_path: Path) -> Non
         assert_allclose(results.maps["section"][a, b, :, :n], passes[:n, [1, 3]].T, atol=1e-6)
 
 
+def test_a_section_without_a_direction_has_crossings_in_both(tmp_path: Path) -> None:
+    axes, values = Grid({"y": [0.1]}), {"x": 0.0, "x_dot": "energy", "energy": 0.1}
+    both, up, down = (
+        run(tmp_path / name, hh, axes, 30.0, {"s": Section(("y",), 12, "x", **way)}, values=values)
+        for name, way in (("both", {}), ("up", {"direction": 1}), ("down", {"direction": -1}))
+    )
+    count = [np.isfinite(one.maps["s"]).sum() for one in (both, up, down)]
+    assert count[0] == count[1] + count[2]
+    assert min(count[1:]) >= 3
+
+
 def test_any_span_of_random_axes_is_generated_by_itself() -> None:
     axes = Random({"theta1": (-1, 2), "l1": (3, 4)}, 3 * BLOCK, seed=5)
     whole = axes.columns(0, 3 * BLOCK)

@@ -97,8 +97,13 @@ def test_an_orphan_is_reported_and_not_removed(
     (folder / "triple_pendulum.py").write_text("")
     assert checked(folder, monkeypatch) == 1
     assert f"to update it: rm {folder / 'triple_pendulum.py'}" in capsys.readouterr().out
+    (folder / "single_pendulum.py").unlink()
     assert main([]) == 0
-    assert (folder / "triple_pendulum.py").exists()
+    shown = capsys.readouterr().out
+    orphan = folder / "triple_pendulum.py"
+    assert f"nothing generates {orphan}; remove it with: rm {orphan}\n" in shown
+    assert f"wrote {folder / 'single_pendulum.py'}\n" in shown
+    assert orphan.exists()
 
 
 @pytest.mark.parametrize(
