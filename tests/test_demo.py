@@ -118,6 +118,11 @@ def test_charts_follow_the_colours_of_the_page(opened: Any) -> None:
         opened.refresh()
         charts = opened.execute_async_script(corner)
         assert len(charts) == 3
+        colours = opened.execute_script(
+            "return ['.line p', '#numbers th']"
+            ".map((one) => getComputedStyle(document.querySelector(one)).color)"
+        )
+        assert len({*colours}) == 1  # notes beside verdicts are as legible as heads of tables
         for pixel, light, dark in charts:
             if scheme == "light":
                 assert pixel == [255, 255, 255, 255]
