@@ -21,8 +21,8 @@ def _expanded_size(expression: sp.Expr, known: dict[sp.Expr, int]) -> int:
             size = sum(sizes)
         elif expression.is_Mul:
             size = prod(sizes)
-        elif expression.is_Pow and expression.exp.is_Integer and expression.exp > 0:
-            size = min(sizes[0], LARGEST + 1) ** min(int(expression.exp), 100)
+        elif expression.is_Pow and expression.exp.is_Integer:  # denominators are expanded, too
+            size = min(sizes[0], LARGEST + 1) ** min(abs(int(expression.exp)), 100)
         else:
             size = max(sizes, default=1)
         known[expression] = min(size, LARGEST + 1)

@@ -22,7 +22,7 @@ from derive.formulas.expansion import is_expandable
 MAX_MULTIPLE = 100
 
 #: Limit of the work: products of two terms of polynomials; a second or two.
-MAX_PRODUCTS = 500_000
+MAX_PRODUCTS = 200_000
 
 
 def vanishes(expression: sp.Expr) -> bool:

@@ -13,7 +13,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.expression import RELATION, ExpressionError, Scope, parse
-from derive.formulas.numeric import DIGITS, Evaluator, NoValueError
+from derive.formulas.numeric import DIGITS, Approximation, Evaluator, NoValueError
 from derive.formulas.sampling import STATES
 from derive.formulas.zero import is_positive, vanishes
 
@@ -86,6 +86,11 @@ class Context:
         """Whether all `expressions` are zero at all states, as far as the digits show."""
         return all(self._is_small(one, place) for place in self.evaluators for one in expressions)
 
+    def is_small_somewhere(self, *expressions: sp.Expr) -> bool:
+        """Whether all `expressions` are zero at one of the states."""
+        places = self.evaluators
+        return any(all(self._is_small(one, place) for one in expressions) for place in places)
+
     def agreement(self, *differences: sp.Expr) -> str | None:
         """Return "" if all `differences` are proved zero, `IN_NUMBERS` if they are zero at states.
 
@@ -114,7 +119,7 @@ class Context:
 
     def value(self, expression: sp.Expr, index: int = 0) -> sp.Expr:
         """The value of `expression` at a state."""
-        return self.evaluators[index](expression).rounded()
+        return self._approximation(expression, self.evaluators[index]).rounded()
 
     @cached_property
     def evaluators(self) -> tuple[Evaluator, ...]:
@@ -122,8 +127,11 @@ class Context:
         return tuple(map(Evaluator, self.states))
 
     def _is_small(self, expression: sp.Expr, evaluator: Evaluator) -> bool:
+        return self._approximation(expression, evaluator).is_zero
+
+    def _approximation(self, expression: sp.Expr, evaluator: Evaluator) -> Approximation:
         try:
-            return evaluator(expression).is_zero
+            return evaluator(expression)
         except (NoValueError, NotImplementedError) as error:
             raise ExpressionError(f"the formula has no value at a generic state: {error}") from None
 

@@ -43,7 +43,7 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
         reason = "has too many terms to compare them" if is_linear else NOT_LINEAR
         witness = model.motions.witness(value, sp.S.Zero)
         return verdict(verdict="wrong", witness=witness, note=f"it {reason}")
-    if model.motions.is_small(*coefficients):
+    if model.motions.is_small_somewhere(*coefficients):
         note = "it holds along every motion, but determines no acceleration"
         return verdict(verdict="wrong", note=note)
     if not is_linear and has_other_solutions(model, value):
