@@ -26,6 +26,8 @@ EVALUATOR = Evaluator({x: sp.Rational(-3, 7), y: sp.Rational(5, 4), m: sp.Intege
         (10**40 + x) ** 2 - 10**80 - 2 * 10**40 * x - x**2,
         sp.Abs(x).diff(x) + 1,
         sp.pi - 2 * sp.pi / 2,
+        sp.sinh(x) - (sp.exp(x) - sp.exp(-x)) / 2,
+        sp.Piecewise((-x, x < 0), (y, True)) - sp.Abs(x),
     ],
 )
 def test_identities_are_zero_and_small_terms_are_not(identity: sp.Expr) -> None:

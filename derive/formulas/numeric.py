@@ -52,6 +52,7 @@ class Evaluator:
     """Values of expressions at one state; equal subexpressions are evaluated once."""
 
     def __init__(self, state: Mapping[sp.Symbol, sp.Expr]) -> None:
+        self._state = state
         self._known: dict[sp.Basic, Approximation] = {}
         self._known |= {symbol: self(value) for symbol, value in state.items()}
 
@@ -73,16 +74,24 @@ class Evaluator:
             return Approximation(number, ROUNDING * abs(number))
         if expression is sp.I:
             return Approximation(mp.j)
-        operands = [self(part) for part in expression.args]
         if expression.is_Add:
-            return _sum(operands)
+            return _sum(map(self, expression.args))
         if expression.is_Mul:
-            return _product(operands)
+            return _product(map(self, expression.args))
         if expression.is_Pow and expression.exp.is_Rational:
-            return _power(operands[0], expression.exp)
+            return _power(self(expression.base), expression.exp)
         if expression.func in FUNCTIONS:
-            return FUNCTIONS[expression.func](operands[0])
-        raise NotImplementedError(f"cannot evaluate {str(expression)[:80]!r} in numbers")
+            return FUNCTIONS[expression.func](self(expression.args[0]))
+        return self._by_sympy(expression)
+
+    def _by_sympy(self, expression: sp.Expr) -> Approximation:
+        """The value of another function, such as sinh, whose error is assumed small."""
+        value = expression.xreplace(dict(self._state)).evalf(DIGITS)
+        if not value.is_number or not value.is_finite:
+            raise NotImplementedError(f"cannot evaluate {str(expression)[:80]!r} in numbers")
+        real, imaginary = (self(sp.Float(part, DIGITS)).number for part in value.as_real_imag())
+        number = mp.mpc(real, imaginary) if imaginary else real
+        return Approximation(number, TINY**2 * (1 + abs(number)))
 
 
 def solved(
