@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test docs derive bench lint types check clean
+.PHONY: help demo test campaign docs derive bench lint types check clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -13,6 +13,9 @@ demo: .venv/base  ## set up and run the demonstration: derive, verify, generate,
 
 test: .venv/ready  ## set up and run the tests
 	$(BIN)/pytest --numprocesses auto --dist worksteal
+
+campaign: .venv/ready  ## run the tests over hundreds of random cases
+	$(BIN)/pytest --numprocesses auto --dist worksteal -m campaign
 
 docs: .venv/docs  ## build the documentation site, into out/docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going --conf-dir notebooks/docs \

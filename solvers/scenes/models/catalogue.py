@@ -17,7 +17,7 @@ def load() -> dict[str, type[Model]]:
 
 
 def closed_forms() -> dict[str, type[ClosedForm]]:
-    """The models that integrate nothing, in ascending order of complexity."""
+    """The models whose states are not integrated, in ascending order of complexity."""
     return {name: model for name, model in load().items() if issubclass(model, ClosedForm)}
 
 

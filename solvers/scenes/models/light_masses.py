@@ -6,29 +6,32 @@ from typing import ClassVar, Self
 import numpy as np
 
 from solvers.references.elliptic import pendulum as exact
+from solvers.scenes.models.double_precision import check_times
+from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
+from solvers.scenes.models.method_choice import MethodChoice, usual_form
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
 from solvers.scenes.models.pendulum import ANGLES, SAME, Pendulum, rounding_errors
 
-#: Random states, iterations until a bound of velocities settles, and times of kicks.
-STATES, ITERATIONS, KICKS = 512, 4, 16
-#: Safety factor for a largest value of samples; a velocity in rad/s that counts as unbounded.
-MARGIN, UNBOUNDED = 2.0, 1e6
+#: Method and tolerance of the motion of the other coordinates, and number of kicks.
+METHOD, TOLERANCE, KICKS = "verner98", 1e-9, 16
+#: Safety factor: where the others move chaotically, their motion is another one, as likely.
+MARGIN = 2.0
 
 
 @dataclass(frozen=True)
 class PendulumAndLightMasses(Pendulum):
     """The closed form for the one angle that is requested, if the others barely affect it.
 
-    The accelerations of the others act no longer than the motion lasts, which bounds their
-    velocities; over all states within the bound the defect is the largest difference between the
-    angle's acceleration and a pendulum's. Kicks of that size, at any time, make the error: the more
-    the others act on the angle, the larger is the estimate.
+    The defect is the difference between the angle's acceleration and a pendulum's, along the motion
+    of all coordinates, which is integrated. The error is at most the effect of one kick, at any
+    time, of the size of the integral of the defect's magnitude: it assumes that the defect always
+    acts in the same direction, at the worst time.
     """
 
     name: ClassVar[str] = "pendulum and light masses"
     complexity: ClassVar[int] = 40
     applies_to: ClassVar[str] = "one requested angle, which lighter masses barely affect"
-    error_source: ClassVar[str] = "accelerations caused by the light masses; rounding"
+    error_source: ClassVar[str] = "accelerations by the light masses along the motion; rounding"
 
     @classmethod
     def of(cls, motion: Motion) -> Self:
@@ -44,12 +47,12 @@ class PendulumAndLightMasses(Pendulum):
         square = _omega_squared(motion, k)
         start, times = (motion.y0[k], motion.y0[k + n]), motion.sample_times
         states = exact(1.0, square, start, times)
-        defect = _defect(motion, k, square, states)
-        error = _effect_of_kicks(square, states, times, motion.duration * defect)
+        kick = MARGIN * _integrated_defect(motion, k, square)
+        error = _effect_of_kicks(square, states, times, kick)
         error += rounding_errors(square, start, False, times).max(axis=0)
         estimate = float(error[[i // n for i in motion.requested]].max())
         angle = module.COORDINATES[k]
-        why = f"other coordinates accelerate {angle} by at most {defect:.1g} rad/s²"
+        why = f"other coordinates change the velocity of {angle} by at most {kick:.1g} rad/s"
         return cls(k, n, start, square, 0.0, error_estimate=estimate, why=why)
 
 
@@ -68,33 +71,30 @@ def _omega_squared(motion: Motion, k: int) -> float:
     return pull / float(mass.flat[0])
 
 
-def _defect(motion: Motion, k: int, square: float, states: Array) -> float:
-    """The largest acceleration by other coordinates within the bound of their velocities."""
-    n, random = motion.n_coordinates, np.random.default_rng(2)
-    y = random.uniform(-np.pi, np.pi, (2 * n, STATES))
-    y[[k, k + n]] = states[random.integers(0, len(states), STATES)].T
-    others = [j for j in range(n) if j != k]
-    velocities = [j + n for j in others]
-    initial = np.abs(np.array(motion.y0)[velocities])
-    bound, share = initial, random.uniform(-1, 1, (n - 1, STATES))
-    defect = np.inf
-    for _ in range(ITERATIONS):
-        y[velocities] = bound[:, None] * share
-        rates = motion.module.rhs_many(0.0, y, motion.params)[n:]
-        defect = float(np.abs(rates[k] + square * np.sin(y[k])).max())
-        bound = initial + MARGIN * np.abs(rates[others]).max(axis=1) * motion.duration
-        if not bound.max() < UNBOUNDED:
-            raise OutsideDomainError("nothing bounds the velocities of the other coordinates")
-    return MARGIN * defect
+def _integrated_defect(motion: Motion, k: int, square: float) -> float:
+    """∫ |θ̈ + ω² sin θ| dt along the motion, in rad/s."""
+    choice = MethodChoice(METHOD, usual_form(motion.module, METHOD), "")
+    run = IntegrationRun(motion, choice, TOLERANCE)
+    try:
+        times = check_times(run)
+        states = run.states(times).T
+    except (NotAccurateError, TooLongError) as error:
+        reason = f"the motion of the other coordinates is not known: {error}"
+        raise OutsideDomainError(reason) from error
+    rates = motion.module.rhs_many(0.0, states, motion.params)
+    defect = np.abs(rates[k + motion.n_coordinates] + square * np.sin(states[k]))
+    return float(np.trapezoid(defect, times))
 
 
 def _effect_of_kicks(square: float, states: Array, times: Array, kick: float) -> Array:
-    """Largest changes of angle and velocity by a kick in rad/s at any of `states`."""
+    """Largest changes of angle and velocity by a kick in rad/s at any of `states` at `times`."""
     # the kick has its true size, since next to the separatrix nothing is linear
-    largest = np.zeros(2)
-    for angle, velocity in states[:: max(len(states) // KICKS, 1)]:
-        free = exact(1.0, square, (angle, velocity), times)
+    largest, duration = np.zeros(2), times[-1]
+    every = max(len(states) // KICKS, 1)
+    for t, (angle, velocity) in zip(times[::every], states[::every], strict=True):
+        after = times[times <= duration - t]
+        free = exact(1.0, square, (angle, velocity), after)
         for change in (-kick, kick):
-            difference = np.abs(exact(1.0, square, (angle, velocity + change), times) - free)
+            difference = np.abs(exact(1.0, square, (angle, velocity + change), after) - free)
             largest = np.maximum(largest, difference.max(axis=0))
     return largest

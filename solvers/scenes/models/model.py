@@ -49,7 +49,7 @@ class Model(ABC):
 
 
 class ClosedForm(Model):
-    """A model that integrates nothing."""
+    """A model whose states are not integrated."""
 
     @classmethod
     def not_applicable(cls, module: GeneratedModule) -> str:
