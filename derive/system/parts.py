@@ -19,7 +19,7 @@ class SystemDefinitionError(ValueError):
 
 def formula(value: sp.Expr | float) -> sp.Expr:
     """`value` as an exact real expression; decimals become fractions, and text is refused."""
-    if isinstance(value, sp.Expr) and not value.has(sp.I, sp.oo, -sp.oo, sp.zoo, sp.nan):
+    if isinstance(value, sp.Expr) and not _is_column_or_not_real(value):
         if value.has(AppliedUndef):
             raise SystemDefinitionError(
                 f"{str(value)[:50]!r} contains a function of time: a coordinate is a symbol x, its "
@@ -32,6 +32,11 @@ def formula(value: sp.Expr | float) -> sp.Expr:
     raise SystemDefinitionError(
         f"{str(value)[:50]!r} is not a formula: use finite real numbers and SymPy expressions"
     )
+
+
+def _is_column_or_not_real(value: sp.Expr) -> bool:
+    # SymPy's immutable matrices are expressions
+    return isinstance(value, sp.MatrixBase) or value.has(sp.I, sp.oo, -sp.oo, sp.zoo, sp.nan)
 
 
 def formulas(name: str, values: object, contents: str) -> tuple[sp.Expr, ...]:

@@ -142,6 +142,6 @@ def _value(name: str, text: str, scope: Scope) -> sp.Expr:
         value = parse(text, scope)
     except ExpressionError as error:
         raise InputError(f"{name}: {error}") from error
-    if not isinstance(value, sp.Expr):
+    if isinstance(value, sp.MatrixBase):
         raise InputError(f"{name}: {text[:50]!r} must be a number, not a vector or matrix")
     return value

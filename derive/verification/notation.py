@@ -68,5 +68,5 @@ def _coordinate(system: System, value: Value) -> tuple[sp.Symbol, sp.Symbol] | N
 def _is_position(system: System, value: Value) -> bool:
     """Whether `value` is a number that depends on coordinates, and at most on time besides."""
     others = (*system.qdot, *system.qddot, *system.p)
-    is_number = isinstance(value, sp.Expr)
+    is_number = not isinstance(value, sp.MatrixBase)  # a column is an expression, too
     return is_number and depends_on(value, system.q) and not depends_on(value, others)
