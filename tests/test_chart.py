@@ -3,6 +3,7 @@
 import json
 import math
 import operator
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -425,6 +426,11 @@ def test_the_command_prints_curves_reference_and_frontier(
     assert "single pendulum from 2 rad, 10 s" in capsys.readouterr().out
     assert main(["chart", "singel"]) == 2
     assert "did you mean 'single'" in capsys.readouterr().err
+    file = tmp_path / "measured.json"
+    monkeypatch.setattr("solvers.scenes.models.method_choice.RECORD", file)
+    assert main(["chart", "single", "--record", "--output", str(tmp_path)]) == 0
+    assert "plots: " in capsys.readouterr().out
+    assert {method for method, *_ in wanted} == {*re.findall("rk4|verner87", file.read_text())}
 
 
 def test_a_scene_that_fails_loses_no_other(

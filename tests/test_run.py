@@ -144,7 +144,9 @@ def test_specialised_code_is_generated_on_request() -> None:
     result = run_scene(scene, specialiser)
     assert result.selection.model.run.motion.module.PARAMETERS == ()
     assert "def rhs_rational(" in Path(result.specialised_module.__file__).read_text()
-    assert any("specialised code (29 operations instead of 34" in line for line in summary(result))
+    (line,) = (line for line in summary(result) if "specialised code" in line)
+    assert "specialised code (29 operations instead of 34" in line
+    assert 0.1 < float(re.findall(r"general code takes (\S+) x as long", line)[0]) < 10
     plain = run_scene(replace(scene, code=None), specialiser)
     assert plain.selection.model.run.motion.module is dp
     assert np.abs(result.y - plain.y).max() < 2 * scene.accuracy
