@@ -60,8 +60,7 @@ def syntax_tree(text: str) -> ast.expr:
     for character in "#\n\\":
         if character in text:
             raise ExpressionError(f"{character!r} has no meaning in a formula: {text[:80]!r}")
-    # with a wide letter, the parser reads a keyword as a name, and normalises it
-    source = KEYWORD.sub(lambda word: chr(ord(word[0][0]) + WIDE) + word[0][1:], text)
+    source = python_source(text)
     try:
         tree = ast.parse(source, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
@@ -71,6 +70,12 @@ def syntax_tree(text: str) -> ast.expr:
             # the digits, since the value is already rounded; `kind` is free but for text
             node.kind = ast.get_source_segment(source, node)
     return tree
+
+
+def python_source(text: str) -> str:
+    """The formula as Python's parser reads it; columns of a syntax tree are those of this text."""
+    # with a wide letter, the parser reads a keyword as a name, and normalises it
+    return KEYWORD.sub(lambda word: chr(ord(word[0][0]) + WIDE) + word[0][1:], text)
 
 
 def evaluate(node: ast.expr, text: str, scope: Scope) -> Value:

@@ -1,41 +1,157 @@
-"""Advice on wrong formulas: the first wrong term, its correction, and a numeric witness."""
+"""Advice on wrong formulas: terms to replace, the right formula, and a numeric witness.
 
+Corrections are checked before they are given: in place of the terms that they name, they make
+the formula correct. Where none do, the advice is the difference from the right formula.
+"""
+
+import ast
+import re
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
 import sympy as sp
 
 from derive.formulas.expansion import is_expandable
-from derive.formulas.expression import ExpressionError
-from derive.verification.model import Model, depends_on, variables
+from derive.formulas.expression import parse, syntax_tree
+from derive.mechanics.reduction import reduced
+from derive.verification.derived import printed_formula
+from derive.verification.goals import Goal, goals
+from derive.verification.model import Model, own_names, variables
+from derive.verification.pieces import Piece, is_sum
+from derive.verification.search import Change, Search
+from derive.verification.source_names import SourceNames
 from derive.verification.terms import (
     Term,
     Terms,
-    WrongTerm,
     common_factor,
+    corrected_terms,
     differing_functions,
-    first_wrong_term,
-    split_terms,
     terms_of_equation,
 )
-from derive.verification.verdict import Verdict
+from derive.verification.verdict import Correction, Verdict
+
+#: The number of changes of a formula that are compared in numbers, and those that are checked.
+MAX_CHANGES, MAX_CHECKED = 10, 3
+#: The number of operations in a formula whose terms are compared, or that is simplified.
+MAX_OPERATIONS = 500
+
+Corrections = tuple[Correction, ...]
 
 
-def advised(verdict: Verdict, model: Model, derived: sp.Expr | None) -> Verdict:
-    """Add advice to the verdict on a wrong formula; on an equation of motion, none is derived.
+def advised(
+    verdict: Verdict, model: Model, kind: str, name: str, holds: Callable[[str], bool]
+) -> Verdict:
+    """Add corrections to the verdict on a wrong formula, or the difference from the correct form.
 
-    In unusual quotients no term is identified.
+    Parameters
+    ----------
+    verdict : Verdict
+        With the correct form, if it is known.
+    model : Model
+        The derivation, and the names of the formula.
+    kind, name : str
+        The quantity, or ``euler_lagrange``, and its coordinate.
+    holds : callable
+        ``holds(text)``, whether a formula in place of the printed one is correct.
     """
-    terms = terms_of_equation(verdict.printed, model.context.scope)
-    value, wrong_term = sp.Add(*(term.value for term in terms)), None
-    if derived is None:
-        derived = closest_equation(terms, model)
-        wrong_term = first_wrong_term(terms, derived, variables(model.derivation.system))
-    elif is_expandable(value):
-        wrong_term = _wrong_term_of_quotient(verdict.printed, model, derived)
-    if wrong_term is None:
-        return verdict
-    return replace(verdict, wrong_term=wrong_term.text, correct_term=str(wrong_term.correct))
+    text, names = verdict.printed, SourceNames(verdict.printed, model.context.scope)
+    value = sp.Add(*(term.value for term in terms_of_equation(text, model.context.scope)))
+    aims, correct = [*goals(model, kind, name, value)], _correct_form(verdict, model, kind, name)
+    corrections: Corrections = ()
+    with suppress(NotImplementedError):
+        searches = [Search(text, names, model, goal, correct) for goal in aims]
+        proposals = _mending(text, names, model, searches, correct)
+        corrections = next((one for one, mended in proposals if holds(mended)), ())
+    state = _state(model, names, value, aims[0], correct)
+    result = replace(verdict, corrections=corrections, state=state)
+    if correct is None:
+        return result
+    equation = " = 0" if aims[0].is_equation else ""
+    result = replace(result, correction=sp.sstr(names.write(shortest(correct))) + equation)
+    if corrections:
+        return result
+    return replace(result, difference=sp.sstr(names.write(shortest(value - correct))))
+
+
+def shortest(expression: sp.Expr) -> sp.Expr:
+    """The shortest of several equal forms; long expressions stay as they are."""
+    if expression.count_ops() > MAX_OPERATIONS:
+        return expression
+    roots = [p for p in expression.atoms(sp.Pow) if not p.exp.is_Integer]
+    shorter = expression.xreplace({p: reduced(p.base) ** p.exp for p in roots})
+    forms = [expression, shorter, reduced(shorter), sp.factor_terms(shorter)]
+    forms.append(sp.factor_terms(forms[2]))
+    return min(forms, key=lambda form: int(form.count_ops()))
+
+
+def _mending(
+    text: str, names: SourceNames, model: Model, searches: Sequence[Search], correct: sp.Expr | None
+) -> Iterator[tuple[Corrections, str]]:
+    """Yield corrections of one term, and those of all terms, each with the changed formula."""
+    changes = [(one, search) for search in searches for one in search.changes()]
+    changes.sort(key=lambda pair: pair[0].cost + (pair[1] is not searches[0]))
+    checked = 0
+    for change, search in changes[:MAX_CHANGES]:
+        corrections, mended = _applied(text, change)
+        if search.is_right(mended):
+            yield corrections, mended
+            checked += 1
+        if checked == MAX_CHECKED:
+            break
+    if correct is not None and is_expandable(correct):
+        yield from _all_terms(searches[0], text, names, model, correct)
+
+
+def _all_terms(
+    search: Search, text: str, names: SourceNames, model: Model, correct: sp.Expr
+) -> Iterator[tuple[Corrections, str]]:
+    """Yield corrections of all wrong terms of a sum."""
+    pieces, scope = search.terms, model.context.scope
+    terms = [Term(p.source, p.sign * side * parse(p.source, scope), side) for p, side in pieces]
+    if correct.count_ops() > MAX_OPERATIONS:
+        return
+    corrected, missing = corrected_terms(terms, correct, variables(model.derivation.system))
+    wrong = [(pieces[terms.index(term)][0], value) for term, value in corrected]
+    if not all(piece.parent and _is_unique(text, piece) for piece, _ in wrong):
+        return
+    corrections: list[Correction] = []
+    mended = text
+    for piece, value in reversed(wrong):
+        corrections.insert(0, Correction(_shown(text, piece), sp.sstr(names.write(value))))
+        mended = _replaced(mended, piece, corrections[0].correct)
+    if missing:
+        corrections.append(Correction("", sp.sstr(names.write(missing))))
+        mended = _extended(mended, corrections[-1].correct)
+    if search.is_right(mended):
+        yield tuple(corrections), mended
+
+
+def _correct_form(verdict: Verdict, model: Model, kind: str, name: str) -> sp.Expr | None:
+    """The correct form as an expression, if it is known."""
+    if not verdict.correction:
+        return None
+    if kind == "euler_lagrange":
+        text = verdict.correction.removesuffix(" = 0")
+        return parse(text, own_names(model.derivation.system))
+    return printed_formula(model, kind, name)
+
+
+def _state(
+    model: Model, names: SourceNames, value: sp.Expr, goal: Goal, correct: sp.Expr | None
+) -> str:
+    """The first state at which a formula has not the values of the goal."""
+    context = model.motions if goal.along_motions else model.context
+    state = context.states[context.first_difference(value, goal.value)]
+    derived = goal.value if correct is None or goal.is_equation else correct
+    used = value.free_symbols | derived.free_symbols
+    used -= {*model.derivation.system.qddot}
+    numbers = (
+        f"{names.write(symbol)} = {sp.sstr(number if number.is_Rational else number.n(8))}"
+        for symbol, number in state.items()
+        if symbol in used
+    )
+    return ", ".join(numbers)
 
 
 def closest_equation(terms: Terms, model: Model) -> sp.Expr:
@@ -47,20 +163,77 @@ def closest_equation(terms: Terms, model: Model) -> sp.Expr:
     return min(candidates, key=lambda e: len(differing_functions(terms, e, state)))
 
 
-def _wrong_term_of_quotient(text: str, model: Model, derived: sp.Expr) -> WrongTerm | None:
-    """Return the first wrong term of a sum, or of a quotient: its denominator comes first."""
-    scope, state = model.context.scope, variables(model.derivation.system)
-    terms = split_terms(text, scope)
-    if len(terms) == 1:
-        numerator, denominator = sp.fraction(sp.together(terms[0].value))
-        derived_numerator, derived_denominator = sp.fraction(sp.together(derived))
-        if depends_on(denominator, state):
-            ratio = common_factor([Term("", denominator)], derived_denominator, state)
-            if not model.context.is_zero(denominator - ratio * derived_denominator):
-                return WrongTerm(str(denominator), sp.expand(ratio * derived_denominator))
-            terms, derived = [Term(text, numerator)], derived_numerator * ratio
-            printed = text.rpartition("/")[0].strip()
-            if printed[:1] == "(" and printed[-1:] == ")":
-                with suppress(ExpressionError):  # the brackets can belong to two factors
-                    terms = split_terms(printed[1:-1], scope)
-    return first_wrong_term(terms, derived, state)
+def _applied(text: str, change: Change) -> tuple[tuple[Correction, ...], str]:
+    """Corrections that say a change, and the changed formula."""
+    piece, new = change.piece, change.replacement
+    if change.is_added and piece.parent is None:
+        return (Correction("", new),), _extended(text, new)
+    if change.is_added:
+        new = f"{piece.source} - {new[1:]}" if new.startswith("-") else f"{piece.source} + {new}"
+    # a term that occurs twice, or that no reader sees as one, is named by a larger one
+    while piece.parent and not (piece.is_term and _is_unique(text, piece)):
+        start, end = piece.parent.span
+        new = _inserted(text[start : piece.span[0]], new, text[piece.span[1] : end], piece)
+        piece = piece.parent
+    if piece.sign < 0:
+        new = _negative(new)
+    return (Correction(_shown(text, piece), new),), _replaced(text, piece, new)
+
+
+def _replaced(text: str, piece: Piece, new: str) -> str:
+    """The formula with `new` in place of a piece and of the sign before it."""
+    return f"{text[: piece.start]}{'+' * (piece.sign < 0)}({new}){text[piece.end :]}"
+
+
+def _shown(text: str, piece: Piece) -> str:
+    """A piece as written, without space after its sign."""
+    return re.sub(r"^-\s+", "-", text[piece.start : piece.end])
+
+
+def _extended(text: str, missing: str) -> str:
+    """The formula with a missing term, of an equation on the left."""
+    left, equals, right = text.partition("=")
+    return f"{left} + ({missing}) {equals}{right}"
+
+
+def _inserted(before: str, new: str, after: str, piece: Piece) -> str:
+    """Put `new` in place of a piece, in brackets where they are necessary."""
+    in_brackets = before[-1:] == "(" and after[:1] == ")"
+    sign = before.rstrip()[-1:]
+    if piece.is_summand and new[0] == "-" and not _is_sum(new) and sign in ("+", "-"):
+        return f"{before.rstrip()[:-1]}{'-' if sign == '+' else '+'} {new[1:]}{after}"
+    node = syntax_tree(new)
+    bare = piece.is_summand and not is_sum(node) and new[0] != "-"
+    if bare or in_brackets or isinstance(node, ast.Name | ast.Constant | ast.Call):
+        return before + new + after
+    return f"{before}({new}){after}"
+
+
+def _is_sum(text: str) -> bool:
+    return is_sum(syntax_tree(text))
+
+
+def _negative(text: str) -> str:
+    if text == "0":
+        return text
+    if _is_sum(text):
+        return f"-({text})"
+    return text[1:] if text[0] == "-" else f"-{text}"
+
+
+def _is_unique(text: str, piece: Piece) -> bool:
+    """Whether a reader finds one term that is written like the piece."""
+    tokens = re.findall(r"\w+|\*\*|\S", text[piece.start : piece.end])
+    pattern = re.compile(r"(?<![\w.])" + r"\s*".join(map(re.escape, tokens)) + r"(?![\w.(])")
+    places = [match.span() for match in pattern.finditer(text)]
+    if tokens[0] == "-":
+        pattern = re.compile(r"\s*".join(map(re.escape, tokens)) + r"(?![\w.(])")
+        places = [match.span() for match in pattern.finditer(text)]
+    terms = [place for place in places if _is_delimited(text, *place)]
+    return (terms or places) == [(piece.start, piece.end)]
+
+
+def _is_delimited(text: str, start: int, end: int) -> bool:
+    """Whether a term begins and ends here."""
+    before, after = text[:start].rstrip()[-1:], text[end:].lstrip()[:1]
+    return (before in "(+-=," or text[start] == "-") and after in ")+-=,"

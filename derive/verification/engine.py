@@ -107,15 +107,19 @@ class Context:
 
     def witness(self, value: sp.Expr, derived: sp.Expr) -> str:
         """Both values at the first state where they differ, with as many digits as show it."""
-        states = range(len(self.states))
-        differs = (k for k in states if not self._is_small(value - derived, self.evaluators[k]))
-        index = next(differs, 0)
+        index = self.first_difference(value, derived)
         pair = [self.value(side, index) for side in (value, derived)]
         for digits in range(8, DIGITS, 4):
             texts = [sp.sstr(number.n(digits)) for number in pair]
             if texts[0] != texts[1]:
                 break
         return " instead of ".join(texts)
+
+    def first_difference(self, value: sp.Expr, derived: sp.Expr) -> int:
+        """The index of the first state where values differ."""
+        states = range(len(self.states))
+        differs = (k for k in states if not self._is_small(value - derived, self.evaluators[k]))
+        return next(differs, 0)
 
     def value(self, expression: sp.Expr, index: int = 0) -> sp.Expr:
         """The value of `expression` at a state."""

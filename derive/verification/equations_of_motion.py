@@ -36,12 +36,11 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
     coefficients = [value.diff(a) for a in system.qddot]
     is_linear = all(model.context.is_zero(c.diff(a)) for c in coefficients for a in system.qddot)
     if not model.motions.is_small(value):
-        if is_linear and is_expandable(value):
-            derived = closest_equation(terms, model)
-            witness = model.context.witness(value, derived)
-            return verdict(verdict="wrong", correction=f"{derived} = 0", witness=witness)
-        reason = "has too many terms to compare them" if is_linear else NOT_LINEAR
         witness = model.motions.witness(value, sp.S.Zero)
+        if is_linear and is_expandable(value):
+            correction = f"{closest_equation(terms, model)} = 0"
+            return verdict(verdict="wrong", correction=correction, witness=witness)
+        reason = "has too many terms to compare them" if is_linear else NOT_LINEAR
         return verdict(verdict="wrong", witness=witness, note=f"it {reason}")
     if model.motions.is_small_somewhere(*coefficients):
         note = "it holds along every motion, but determines no acceleration"

@@ -31,10 +31,15 @@ def judge_formula(
         if other.verdict in ("verified", "equivalent"):
             note = joined("it follows from the Lagrangian of the source", other.note)
             return replace(other, verdict="equivalent", note=note)
-    if not verdict.correction:
+    if verdict.verdict != "wrong":
         return verdict
-    derived = printed_formula(model, kind, name) if kind in QUANTITIES else None
-    return advised(verdict, model, derived)
+    own = source if source and kind in FROM_LAGRANGIAN else model
+
+    def holds(changed: str) -> bool:
+        result = _judged(own, label, changed, kind, name)
+        return result.verdict in ("verified", "equivalent")
+
+    return advised(verdict, own, kind, name, holds)
 
 
 def _judged(model: Model, label: str, text: str, kind: str, name: str) -> Verdict:

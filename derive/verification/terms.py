@@ -1,7 +1,7 @@
-"""Term-by-term comparison of sums, to locate the first wrong term of a printed formula."""
+"""Term-by-term comparison of sums: coefficients of functions of the state."""
 
 import ast
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -24,14 +24,6 @@ class Term:
 
 
 Terms = Collection[Term]
-
-
-@dataclass(frozen=True)
-class WrongTerm:
-    """The first wrong term of a formula as printed, empty if one is missing, and its correction."""
-
-    text: str
-    correct: sp.Expr
 
 
 def split_terms(text: str, scope: Scope, side: int = 1) -> list[Term]:
@@ -84,22 +76,31 @@ def differing_functions(terms: Terms, derived: sp.Expr, state: Symbols) -> list[
     return [f for f in {**a, **b} if sp.cancel(a.get(f, 0) - b.get(f, 0))]
 
 
-def first_wrong_term(terms: Terms, derived: sp.Expr, state: Symbols) -> WrongTerm | None:
-    """Return the first term that differs from `derived`; None if no term differs."""
+def corrected_terms(
+    terms: Sequence[Term], derived: sp.Expr, state: Symbols
+) -> tuple[list[tuple[Term, sp.Expr]], sp.Expr]:
+    """Return the wrong terms with corrections of their values, and the sum of missing terms.
+
+    With all corrections the terms have the sum `derived`. A function of the state that occurs in
+    several terms is corrected in the first.
+    """
     differing = differing_functions(terms, derived, state)
-    if not differing:
-        return None
     printed, correct = _pair(terms, derived, state)
-    by_term = [(term, coefficients(term.value, state)) for term in terms]
-    occurring = {function for _, own in by_term for function in own}
-    missing = [function for function in differing if function not in occurring]
-    for term, own in by_term:
-        if wrong := [function for function in differing if function in own]:
-            others = {f: sp.cancel(printed.get(f, 0) - own[f]) for f in wrong}
-            functions = [*wrong, *missing]
-            total = sp.Add(*((correct.get(f, 0) - others.get(f, 0)) * f for f in functions))
-            return WrongTerm(term.text, _collected(term.side * total, state))
-    return WrongTerm("", _collected(sp.Add(*(correct[f] * f for f in missing)), state))
+    changes = {f: correct.get(f, sp.S.Zero) - printed.get(f, sp.S.Zero) for f in differing}
+    corrected = []
+    for term in terms:
+        own = coefficients(term.value, state)
+        wrong = [function for function in own if function in changes]
+        if wrong:
+            for function in wrong:
+                own[function] = sp.cancel(own[function] + changes.pop(function))
+            corrected.append((term, sp.Add(*(c * f for f, c in own.items()))))
+    missing = sp.Add(*(c * f for f, c in changes.items()))
+    for k, (term, value) in enumerate(corrected):
+        if missing and not value:  # a wrong function has the place of a missing one
+            corrected[k], missing = (term, missing), sp.S.Zero
+    whole = [(term, _collected(term.side * value, state)) for term, value in corrected]
+    return whole, _collected(missing, state)
 
 
 def common_factor(

@@ -21,6 +21,14 @@ VerdictName: TypeAlias = Literal[
 
 
 @dataclass(frozen=True)
+class Correction:
+    """A wrong term as written, and the correct one; the wrong one is empty if a term is missing."""
+
+    wrong: str
+    correct: str
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The verdict on one equation, as ``holonomic verify --json`` prints it."""
 
@@ -29,9 +37,10 @@ class Verdict:
     printed: str
     correction: str = ""
     residual: str = ""  # printed minus corrected form, where they first differ
-    wrong_term: str = ""  # the first one as printed; empty if a term is missing
-    correct_term: str = ""
+    corrections: tuple[Correction, ...] = ()  # of terms; all together give a correct equation
+    difference: str = ""  # printed minus correct form, where no corrections of terms are known
     witness: str = ""  # numbers at a generic state that show the error
+    state: str = ""  # that state
     note: str = ""
 
 
@@ -44,17 +53,24 @@ def verdict_rows(verdicts: Sequence[Verdict], width: int) -> Iterator[str]:
     """Yield the lines of a table of verdicts; only correct equations are abbreviated."""
     id_width = max((len(one.id) for one in verdicts), default=0) + 2
     for one in verdicts:
-        details = {
-            "wrong term": one.wrong_term,
-            "correct term" if one.wrong_term else "missing term": one.correct_term,
-            "correct form": one.correction,
-            "residual": one.residual and f"{one.residual} = {one.witness}",
-            "value": "" if one.residual else one.witness,
-            "note": one.note,
-        }
-        lines = [f"{title}: {text}" for title, text in details.items() if text]
+        details = [*_corrections(one)]
+        details += [
+            ("correct form", one.correction),
+            ("residual", one.residual and f"{one.residual} = {one.witness}"),
+            ("difference", one.difference),
+            ("value", "" if one.residual else one.witness),
+            ("state", one.state),
+            ("note", one.note),
+        ]
+        lines = [f"{title}: {text}" for title, text in details if text]
         whole = one.verdict in ("misprint", "wrong", "unreadable")
         yield from table_row((one.id, one.verdict, one.printed, *lines), width, id_width, whole)
+
+
+def _corrections(verdict: Verdict) -> Iterator[tuple[str, str]]:
+    for one in verdict.corrections:
+        yield "wrong term", one.wrong
+        yield "correct term" if one.wrong else "missing term", one.correct
 
 
 def table_row(
