@@ -112,7 +112,8 @@ def check_light_masses(seed: int) -> float:
     return estimate / error
 
 
-@pytest.mark.parametrize("seed", range(len(SYSTEMS)))
+# in scene 113 dop853's error is 200 tolerances, and happened to equal that of the checked run
+@pytest.mark.parametrize("seed", [*range(len(SYSTEMS)), 113])
 def test_errors_stay_below_their_estimates(seed: int) -> None:
     check_scene(seed)
 
