@@ -4,21 +4,26 @@ import json
 import re
 from collections.abc import Iterator
 from contextlib import redirect_stdout
+from functools import partial
 from io import StringIO
 from math import inf
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import generated.double_pendulum as dp
 from derive.verification.report.judgement import EQUATIONS
 from solvers.app.cli import main
-from solvers.app.demo import stages
+from solvers.app.demo import motions, stages
 from solvers.app.demo.equations import FUNCTIONS
 from solvers.app.demo.page import write_page
 from solvers.app.demo.stage import Stage, table
+from solvers.app.modules import load as load_module
 from solvers.equations.module import operations_on_state
+from solvers.integration.integrate import integrate
+from solvers.scenes.reading import find
 from solvers.studies.work_precision import measurement
 
 
@@ -217,6 +222,16 @@ def test_operation_counts_equal_those_of_the_generated_module() -> None:
         "energy": 26,
     }
     assert operations_on_state(dp, "rhs_rational") == 34
+
+
+def test_the_numbers_of_the_motion_are_its_largest_errors() -> None:
+    scene = find("report", load_module)
+    difference, change = (number.value for number in motions.motion(scene).numbers)
+    run = partial(integrate, dp, (0, 5), scene.y0, dp.DEFAULTS, method="verner98", energy=True)
+    fine = run(rtol=1e-12, atol=1e-12, t_eval=scene.times)
+    above_rest = fine.energy[0] - dp.energy(0.0, (0, 0, 0, 0), dp.DEFAULTS)
+    assert change == f"{np.abs(fine.energy - fine.energy[0]).max() / above_rest:.1e}"
+    assert 1e-13 < float(difference.split()[0]) < 1e-9
 
 
 def test_the_stages_of_the_demonstration_have_their_order(tmp_path: Path) -> None:

@@ -174,6 +174,12 @@ def test_small_motion_is_its_normal_modes_up_to_the_nonlinear_terms() -> None:
         NormalModes.of(motion_from(sp, (0.1, 0), 1.0, params=(1, 2, 0.0)))
 
 
+def test_of_the_smallest_motions_only_rounding_remains() -> None:
+    motion = motion_from(dp, (1e-9, -2e-9, 0, 0), 20.0)
+    model = NormalModes.of(motion)
+    assert 1e-26 < largest_error(motion, model) <= model.error_estimate < 1e-20
+
+
 @pytest.mark.parametrize(("params", "y0", "duration"), [
     ((1, 2, 9.81), (2.0, 0.0), 60),
     ((1, 2, 9.81), (0.0, 10.0), 60),  # over and over
