@@ -50,12 +50,9 @@
        m at (d + l*sin(theta2), -l*cos(theta2))
 
    Lagrangian:
-       L = -d**2*k + d*k*l*sin(theta1) - d*k*l*sin(theta2)
-           + d*k*sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
-           + g*l*m*cos(theta1) + g*l*m*cos(theta2) - k*l**2*sin(theta1)**2/2
-           + k*l**2*sin(theta1)*sin(theta2) - k*l**2*sin(theta2)**2/2 - k*l**2*cos(theta1)**2/2
-           + k*l**2*cos(theta1)*cos(theta2) - k*l**2*cos(theta2)**2/2 + l**2*m*theta1_dot**2/2
-           + l**2*m*theta2_dot**2/2
+       L = g*l*m*cos(theta1) + g*l*m*cos(theta2)
+           - k*(-d + sqrt((l*cos(theta1) - l*cos(theta2))**2 + (d - l*sin(theta1) + l*sin(theta2))**2))**2/2
+           + l**2*m*theta1_dot**2/2 + l**2*m*theta2_dot**2/2
 
    Equations of motion:
        d**2*k*l*cos(theta1)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
@@ -169,7 +166,7 @@ static inline coupled_pendulums_real coupled_pendulums_sqrt(coupled_pendulums_re
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
-   66 operations, 8 of them on parameters alone.
+   46 operations, 4 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void coupled_pendulums_rhs(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
@@ -188,37 +185,27 @@ static inline void coupled_pendulums_rhs(
     /* terms of the parameters alone */
     const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
     const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/m;
-    const coupled_pendulums_real c2 = k*d;
-    const coupled_pendulums_real c3 = d*d;
-    const coupled_pendulums_real c4 = l*l;
-    const coupled_pendulums_real c5 = l*d;
-    const coupled_pendulums_real c6 = m*g;
-    const coupled_pendulums_real c7 = l*k;
+    const coupled_pendulums_real c2 = l*l;
+    const coupled_pendulums_real c3 = m*g;
     /* intermediate terms */
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
     const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
     const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
-    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
-    const coupled_pendulums_real x0 = cos_theta2*sin_theta1;
+    const coupled_pendulums_real x0 = cos_theta1 - cos_theta2;
+    const coupled_pendulums_real x1 = l*x0;
     const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
-    const coupled_pendulums_real x1 = cos_theta1*sin_theta2;
-    const coupled_pendulums_real x2 = l*x0 - l*x1;
-    const coupled_pendulums_real x3 = c4*cos_theta1;
-    const coupled_pendulums_real x4 = c4*sin_theta1;
-    const coupled_pendulums_real x5 =
-        c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4;
-    const coupled_pendulums_real x6 =
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + COUPLED_PENDULUMS_NUMBER(2.0)*x5;
-    const coupled_pendulums_real sqrt_x6 = coupled_pendulums_sqrt(x6);
-    const coupled_pendulums_real x7 = c7*x0 - c7*x1;
-    const coupled_pendulums_real x8 =
-        c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1;
-    const coupled_pendulums_real x9 =
-        c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7;
+    const coupled_pendulums_real x2 = sin_theta2 - sin_theta1;
+    const coupled_pendulums_real x3 = l*x2;
+    const coupled_pendulums_real x4 = d + x3;
+    const coupled_pendulums_real x5 = x0*x1 + x2*(COUPLED_PENDULUMS_NUMBER(2.0)*d + x3);
+    const coupled_pendulums_real x6 = coupled_pendulums_sqrt(c2*x0*x0 + x4*x4);
+    const coupled_pendulums_real x7 = k*(l*x5/(d + x6));
+    const coupled_pendulums_real x8 = (sin_theta1*x1 + cos_theta1*x4)*x7/x6 - c3*sin_theta1;
+    const coupled_pendulums_real x9 = (sin_theta2*x1 + cos_theta2*x4)*x7/x6 + c3*sin_theta2;
     /* outputs */
     result[0] = theta1_dot;
     result[1] = theta2_dot;
-    result[2] = -c0*(c1*x8);
+    result[2] = c0*(c1*x8);
     result[3] = -c0*(c1*x9);
     (void)t;
 }
@@ -226,7 +213,7 @@ static inline void coupled_pendulums_rhs(
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs`.
-   95 operations, 9 of them on parameters alone.
+   94 operations, 6 of them on parameters alone.
    Entry [i][j] is the derivative of rhs[i] with respect to y[j]. */
 static inline void coupled_pendulums_jacobian(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
@@ -243,38 +230,42 @@ static inline void coupled_pendulums_jacobian(
     /* terms of the parameters alone */
     const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
     const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/m;
-    const coupled_pendulums_real c2 = k*d;
-    const coupled_pendulums_real c3 = d*d;
-    const coupled_pendulums_real c4 = l*l;
-    const coupled_pendulums_real c5 = l*d;
-    const coupled_pendulums_real c6 = m*g;
-    const coupled_pendulums_real c7 = l*k;
-    const coupled_pendulums_real c8 = c7*c1;
+    const coupled_pendulums_real c2 = l*l;
+    const coupled_pendulums_real c3 = m*g;
+    const coupled_pendulums_real c4 = l*k*c1;
     /* intermediate terms */
     const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
     const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
-    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
+    const coupled_pendulums_real x0 = cos_theta1 - cos_theta2;
+    const coupled_pendulums_real x1 = l*x0;
     const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
-    const coupled_pendulums_real x0 = l*cos_theta2*sin_theta1 - l*cos_theta1*sin_theta2;
-    const coupled_pendulums_real x1 = d*cos_theta1 - x0;
-    const coupled_pendulums_real x2 = cos_theta1*cos_theta2;
-    const coupled_pendulums_real x3 = sin_theta1*sin_theta2;
-    const coupled_pendulums_real x4 = l*x2 + l*x3;
-    const coupled_pendulums_real x5 =
-        c3 + c4*cos_theta1*cos_theta1 + c4*cos_theta2*cos_theta2 + c4*sin_theta1*sin_theta1
-        + c4*sin_theta2*sin_theta2
-        + COUPLED_PENDULUMS_NUMBER(2.0)*(c5*sin_theta2 - c5*sin_theta1 - c4*x2 - c4*x3);
-    const coupled_pendulums_real sqrt_x5 = coupled_pendulums_sqrt(x5);
-    const coupled_pendulums_real x6 = sqrt_x5*sqrt_x5;
-    const coupled_pendulums_real x7 = sqrt_x5*x6;
-    const coupled_pendulums_real x8 = c7*x2 + c7*x3;
-    const coupled_pendulums_real x9 =
-        c2*(l*x1*x1 - (d*sin_theta1 + x4)*x6)/x7 + c6*cos_theta1 + c2*sin_theta1 + x8;
-    const coupled_pendulums_real x10 = x2 + x3;
-    const coupled_pendulums_real x11 = d*cos_theta2 - x0;
-    const coupled_pendulums_real x12 = c0*(c8*(x10 + d*(x1*x11 - x10*x6)/x7));
-    const coupled_pendulums_real x13 =
-        c2*(l*x11*x11 - (x4 - d*sin_theta2)*x6)/x7 + c6*cos_theta2 + x8 - c2*sin_theta2;
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
+    const coupled_pendulums_real x2 = sin_theta2 - sin_theta1;
+    const coupled_pendulums_real x3 = l*x2;
+    const coupled_pendulums_real x4 = x0*x1 + x2*(COUPLED_PENDULUMS_NUMBER(2.0)*d + x3);
+    const coupled_pendulums_real x5 = d + x3;
+    const coupled_pendulums_real x6 = coupled_pendulums_sqrt(c2*x0*x0 + x5*x5);
+    const coupled_pendulums_real x7 = l*x4/(d + x6);
+    const coupled_pendulums_real x8 = l*x7;
+    const coupled_pendulums_real x9 = sin_theta1*x1 + cos_theta1*x5;
+    const coupled_pendulums_real x10 = x9*x9;
+    const coupled_pendulums_real x11 =
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x5 + l*cos_theta1*cos_theta1);
+    const coupled_pendulums_real x12 = x6*x6;
+    const coupled_pendulums_real x13 = x7*x12;
+    const coupled_pendulums_real x14 = l*x6;
+    const coupled_pendulums_real x15 = x6*x12;
+    const coupled_pendulums_real x16 = k*(x8*x10 + x11*x13 - x14*x10)/x15 - c3*cos_theta1;
+    const coupled_pendulums_real x17 = sin_theta2*x1 + cos_theta2*x5;
+    const coupled_pendulums_real x18 = x9*x17;
+    const coupled_pendulums_real x19 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x13;
+    const coupled_pendulums_real x20 = c0*(c4*(x6*x18 + x19 - x7*x18)/x15);
+    const coupled_pendulums_real x21 = x17*x17;
+    const coupled_pendulums_real x22 =
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x5 - l*cos_theta2*cos_theta2);
+    const coupled_pendulums_real x23 = k*(x14*x21 + x22*x13 - x8*x21)/x15 + c3*cos_theta2;
     /* outputs */
     result[0] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[1] = COUPLED_PENDULUMS_NUMBER(0.0);
@@ -284,12 +275,12 @@ static inline void coupled_pendulums_jacobian(
     result[5] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[6] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[7] = COUPLED_PENDULUMS_NUMBER(1.0);
-    result[8] = -c0*(c1*x9);
-    result[9] = x12;
+    result[8] = c0*(c1*x16);
+    result[9] = x20;
     result[10] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[11] = COUPLED_PENDULUMS_NUMBER(0.0);
-    result[12] = x12;
-    result[13] = -c0*(c1*x13);
+    result[12] = x20;
+    result[13] = -c0*(c1*x23);
     result[14] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[15] = COUPLED_PENDULUMS_NUMBER(0.0);
     (void)t;
@@ -298,7 +289,7 @@ static inline void coupled_pendulums_jacobian(
 
 #ifndef HOLONOMIC_VECTOR
 /* Total energy T + V.
-   67 operations, 10 of them on parameters alone.
+   38 operations, 4 of them on parameters alone.
    Energy in J. */
 static inline void coupled_pendulums_energy(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
@@ -315,38 +306,26 @@ static inline void coupled_pendulums_energy(
     const coupled_pendulums_real d = params[3];
     const coupled_pendulums_real g = params[4];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = k*d;
-    const coupled_pendulums_real c1 = d*c0;
-    const coupled_pendulums_real c2 = l*c0;
-    const coupled_pendulums_real c3 = l*l;
-    const coupled_pendulums_real c4 = k*c3;
-    const coupled_pendulums_real c5 = m*c3;
-    const coupled_pendulums_real c6 = d*d;
-    const coupled_pendulums_real c7 = d*l;
-    const coupled_pendulums_real c8 = l*m*g;
+    const coupled_pendulums_real c0 = l*l;
+    const coupled_pendulums_real c1 = c0*m;
+    const coupled_pendulums_real c2 = l*m*g;
     /* intermediate terms */
-    const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
     const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
-    const coupled_pendulums_real x0 = cos_theta1*cos_theta1;
     const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
-    const coupled_pendulums_real x1 = cos_theta2*cos_theta2;
-    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
-    const coupled_pendulums_real x2 = c4*sin_theta1;
-    const coupled_pendulums_real x3 = sin_theta2*sin_theta2;
-    const coupled_pendulums_real x4 =
-        c4*x0 + c4*x1 + sin_theta1*x2 + c4*x3 + c5*theta1_dot*theta1_dot
-        + c5*theta2_dot*theta2_dot;
-    const coupled_pendulums_real x5 = c3*sin_theta1;
-    const coupled_pendulums_real x6 = cos_theta1*cos_theta2;
-    const coupled_pendulums_real x7 = c7*sin_theta2 - c7*sin_theta1 - c3*x6 - sin_theta2*x5;
+    const coupled_pendulums_real x0 = cos_theta1 - cos_theta2;
+    const coupled_pendulums_real x1 = x0*x0;
+    const coupled_pendulums_real x2 =
+        coupled_pendulums_sin(theta2) - coupled_pendulums_sin(theta1);
+    const coupled_pendulums_real x3 = l*x2;
+    const coupled_pendulums_real x4 = l*(l*x1 + x2*(COUPLED_PENDULUMS_NUMBER(2.0)*d + x3));
+    const coupled_pendulums_real x5 = d + x3;
+    const coupled_pendulums_real x6 = x4/(d + coupled_pendulums_sqrt(c0*x1 + x5*x5));
+    const coupled_pendulums_real x7 =
+        k*x6*x6 + c1*theta1_dot*theta1_dot + c1*theta2_dot*theta2_dot;
     const coupled_pendulums_real x8 =
-        c6 + c3*x0 + c3*x1 + sin_theta1*x5 + c3*x3 + COUPLED_PENDULUMS_NUMBER(2.0)*x7;
-    const coupled_pendulums_real x9 =
-        c1 + c2*sin_theta2 + COUPLED_PENDULUMS_NUMBER(0.5)*x4
-        - c0*coupled_pendulums_sqrt(x8) - c8*cos_theta1 - c8*cos_theta2 - c2*sin_theta1
-        - c4*x6 - sin_theta2*x2;
+        COUPLED_PENDULUMS_NUMBER(0.5)*x7 - c2*cos_theta1 - c2*cos_theta2;
     /* outputs */
-    result[0] = x9;
+    result[0] = x8;
     (void)t;
 }
 #endif
@@ -420,7 +399,7 @@ static inline void coupled_pendulums_hamiltonian_state(
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
-   69 operations, 9 of them on parameters alone.
+   49 operations, 5 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void coupled_pendulums_rhs_hamiltonian(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
@@ -439,37 +418,27 @@ static inline void coupled_pendulums_rhs_hamiltonian(
     /* terms of the parameters alone */
     const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
     const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/(l*m);
-    const coupled_pendulums_real c2 = k*d;
-    const coupled_pendulums_real c3 = d*d;
-    const coupled_pendulums_real c4 = l*l;
-    const coupled_pendulums_real c5 = l*d;
-    const coupled_pendulums_real c6 = m*g;
-    const coupled_pendulums_real c7 = l*k;
+    const coupled_pendulums_real c2 = l*l;
+    const coupled_pendulums_real c3 = m*g;
     /* intermediate terms */
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
     const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
     const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
-    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
-    const coupled_pendulums_real x0 = cos_theta2*sin_theta1;
+    const coupled_pendulums_real x0 = cos_theta1 - cos_theta2;
+    const coupled_pendulums_real x1 = l*x0;
     const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
-    const coupled_pendulums_real x1 = cos_theta1*sin_theta2;
-    const coupled_pendulums_real x2 = l*x0 - l*x1;
-    const coupled_pendulums_real x3 = c4*cos_theta1;
-    const coupled_pendulums_real x4 = c4*sin_theta1;
-    const coupled_pendulums_real x5 =
-        c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4;
-    const coupled_pendulums_real x6 =
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + COUPLED_PENDULUMS_NUMBER(2.0)*x5;
-    const coupled_pendulums_real sqrt_x6 = coupled_pendulums_sqrt(x6);
-    const coupled_pendulums_real x7 = c7*x0 - c7*x1;
-    const coupled_pendulums_real x8 =
-        c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1;
-    const coupled_pendulums_real x9 =
-        c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7;
+    const coupled_pendulums_real x2 = sin_theta2 - sin_theta1;
+    const coupled_pendulums_real x3 = l*x2;
+    const coupled_pendulums_real x4 = d + x3;
+    const coupled_pendulums_real x5 = x0*x1 + x2*(COUPLED_PENDULUMS_NUMBER(2.0)*d + x3);
+    const coupled_pendulums_real x6 = coupled_pendulums_sqrt(c2*x0*x0 + x4*x4);
+    const coupled_pendulums_real x7 = k*(l*x5/(d + x6));
+    const coupled_pendulums_real x8 = (sin_theta1*x1 + cos_theta1*x4)*x7/x6 - c3*sin_theta1;
+    const coupled_pendulums_real x9 = (sin_theta2*x1 + cos_theta2*x4)*x7/x6 + c3*sin_theta2;
     /* outputs */
     result[0] = c0*(c1*p_theta1);
     result[1] = c0*(c1*p_theta2);
-    result[2] = -l*x8;
+    result[2] = l*x8;
     result[3] = -l*x9;
     (void)t;
 }
@@ -477,7 +446,7 @@ static inline void coupled_pendulums_rhs_hamiltonian(
 
 #ifndef HOLONOMIC_VECTOR
 /* Jacobian of `rhs_hamiltonian`.
-   94 operations, 11 of them on parameters alone.
+   92 operations, 7 of them on parameters alone.
    Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j]. */
 static inline void coupled_pendulums_jacobian_hamiltonian(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
@@ -494,38 +463,42 @@ static inline void coupled_pendulums_jacobian_hamiltonian(
     /* terms of the parameters alone */
     const coupled_pendulums_real c0 =
         COUPLED_PENDULUMS_NUMBER(1.0)/(l*m)*(COUPLED_PENDULUMS_NUMBER(1.0)/l);
-    const coupled_pendulums_real c1 = k*d;
-    const coupled_pendulums_real c2 = d*d;
-    const coupled_pendulums_real c3 = l*l;
-    const coupled_pendulums_real c4 = l*d;
-    const coupled_pendulums_real c5 = m*g;
-    const coupled_pendulums_real c6 = l*k;
-    const coupled_pendulums_real c7 = k*c3;
+    const coupled_pendulums_real c1 = l*l;
+    const coupled_pendulums_real c2 = m*g;
+    const coupled_pendulums_real c3 = k*c1;
     /* intermediate terms */
     const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
     const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
-    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
+    const coupled_pendulums_real x0 = cos_theta1 - cos_theta2;
+    const coupled_pendulums_real x1 = l*x0;
     const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
-    const coupled_pendulums_real x0 = l*cos_theta2*sin_theta1 - l*cos_theta1*sin_theta2;
-    const coupled_pendulums_real x1 = d*cos_theta1 - x0;
-    const coupled_pendulums_real x2 = cos_theta1*cos_theta2;
-    const coupled_pendulums_real x3 = sin_theta1*sin_theta2;
-    const coupled_pendulums_real x4 = l*x2 + l*x3;
-    const coupled_pendulums_real x5 =
-        c2 + c3*cos_theta1*cos_theta1 + c3*cos_theta2*cos_theta2 + c3*sin_theta1*sin_theta1
-        + c3*sin_theta2*sin_theta2
-        + COUPLED_PENDULUMS_NUMBER(2.0)*(c4*sin_theta2 - c4*sin_theta1 - c3*x2 - c3*x3);
-    const coupled_pendulums_real sqrt_x5 = coupled_pendulums_sqrt(x5);
-    const coupled_pendulums_real x6 = sqrt_x5*sqrt_x5;
-    const coupled_pendulums_real x7 = sqrt_x5*x6;
-    const coupled_pendulums_real x8 = c6*x2 + c6*x3;
-    const coupled_pendulums_real x9 =
-        c1*(l*x1*x1 - (d*sin_theta1 + x4)*x6)/x7 + c5*cos_theta1 + c1*sin_theta1 + x8;
-    const coupled_pendulums_real x10 = x2 + x3;
-    const coupled_pendulums_real x11 = d*cos_theta2 - x0;
-    const coupled_pendulums_real x12 = c7*(x10 + d*(x1*x11 - x10*x6)/x7);
-    const coupled_pendulums_real x13 =
-        c1*(l*x11*x11 - (x4 - d*sin_theta2)*x6)/x7 + c5*cos_theta2 + x8 - c1*sin_theta2;
+    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
+    const coupled_pendulums_real x2 = sin_theta2 - sin_theta1;
+    const coupled_pendulums_real x3 = l*x2;
+    const coupled_pendulums_real x4 = x0*x1 + x2*(COUPLED_PENDULUMS_NUMBER(2.0)*d + x3);
+    const coupled_pendulums_real x5 = d + x3;
+    const coupled_pendulums_real x6 = coupled_pendulums_sqrt(c1*x0*x0 + x5*x5);
+    const coupled_pendulums_real x7 = l*x4/(d + x6);
+    const coupled_pendulums_real x8 = l*x7;
+    const coupled_pendulums_real x9 = sin_theta1*x1 + cos_theta1*x5;
+    const coupled_pendulums_real x10 = x9*x9;
+    const coupled_pendulums_real x11 =
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x5 + l*cos_theta1*cos_theta1);
+    const coupled_pendulums_real x12 = x6*x6;
+    const coupled_pendulums_real x13 = x7*x12;
+    const coupled_pendulums_real x14 = l*x6;
+    const coupled_pendulums_real x15 = x6*x12;
+    const coupled_pendulums_real x16 = k*(x8*x10 + x11*x13 - x14*x10)/x15 - c2*cos_theta1;
+    const coupled_pendulums_real x17 = sin_theta2*x1 + cos_theta2*x5;
+    const coupled_pendulums_real x18 = x9*x17;
+    const coupled_pendulums_real x19 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x13;
+    const coupled_pendulums_real x20 = c3*(x6*x18 + x19 - x7*x18)/x15;
+    const coupled_pendulums_real x21 = x17*x17;
+    const coupled_pendulums_real x22 =
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x5 - l*cos_theta2*cos_theta2);
+    const coupled_pendulums_real x23 = k*(x14*x21 + x22*x13 - x8*x21)/x15 + c2*cos_theta2;
     /* outputs */
     result[0] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[1] = COUPLED_PENDULUMS_NUMBER(0.0);
@@ -535,12 +508,12 @@ static inline void coupled_pendulums_jacobian_hamiltonian(
     result[5] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[6] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[7] = c0;
-    result[8] = -l*x9;
-    result[9] = x12;
+    result[8] = l*x16;
+    result[9] = x20;
     result[10] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[11] = COUPLED_PENDULUMS_NUMBER(0.0);
-    result[12] = x12;
-    result[13] = -l*x13;
+    result[12] = x20;
+    result[13] = -l*x23;
     result[14] = COUPLED_PENDULUMS_NUMBER(0.0);
     result[15] = COUPLED_PENDULUMS_NUMBER(0.0);
     (void)t;
@@ -549,7 +522,7 @@ static inline void coupled_pendulums_jacobian_hamiltonian(
 
 #ifndef HOLONOMIC_VECTOR
 /* Hamiltonian H(q, p): `energy` by momenta.
-   71 operations, 11 of them on parameters alone.
+   42 operations, 5 of them on parameters alone.
    Energy in J. */
 static inline void coupled_pendulums_energy_hamiltonian(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
@@ -566,40 +539,27 @@ static inline void coupled_pendulums_energy_hamiltonian(
     const coupled_pendulums_real d = params[3];
     const coupled_pendulums_real g = params[4];
     /* terms of the parameters alone */
-    const coupled_pendulums_real c0 = k*d;
-    const coupled_pendulums_real c1 = d*c0;
-    const coupled_pendulums_real c2 = l*c0;
-    const coupled_pendulums_real c3 = l*l;
-    const coupled_pendulums_real c4 = k*c3;
-    const coupled_pendulums_real c5 = d*d;
-    const coupled_pendulums_real c6 = l*d;
-    const coupled_pendulums_real c7 = l*m;
-    const coupled_pendulums_real c8 = c7*g;
-    const coupled_pendulums_real c9 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
-    const coupled_pendulums_real c10 = COUPLED_PENDULUMS_NUMBER(1.0)/c7;
+    const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
+    const coupled_pendulums_real c1 = l*m;
+    const coupled_pendulums_real c2 = COUPLED_PENDULUMS_NUMBER(1.0)/c1;
+    const coupled_pendulums_real c3 = c1*g;
+    const coupled_pendulums_real c4 = l*l;
     /* intermediate terms */
-    const coupled_pendulums_real sin_theta2 = coupled_pendulums_sin(theta2);
+    const coupled_pendulums_real x0 = c0*p_theta1*(c2*p_theta1) + c0*p_theta2*(c2*p_theta2);
     const coupled_pendulums_real cos_theta1 = coupled_pendulums_cos(theta1);
-    const coupled_pendulums_real x0 = cos_theta1*cos_theta1;
     const coupled_pendulums_real cos_theta2 = coupled_pendulums_cos(theta2);
-    const coupled_pendulums_real x1 = cos_theta2*cos_theta2;
-    const coupled_pendulums_real sin_theta1 = coupled_pendulums_sin(theta1);
-    const coupled_pendulums_real x2 = c4*sin_theta1;
-    const coupled_pendulums_real x3 = sin_theta2*sin_theta2;
-    const coupled_pendulums_real x4 = c3*sin_theta1;
-    const coupled_pendulums_real x5 = cos_theta1*cos_theta2;
-    const coupled_pendulums_real x6 = c6*sin_theta2 - c6*sin_theta1 - c3*x5 - sin_theta2*x4;
-    const coupled_pendulums_real x7 =
-        c5 + c3*x0 + c3*x1 + sin_theta1*x4 + c3*x3 + COUPLED_PENDULUMS_NUMBER(2.0)*x6;
+    const coupled_pendulums_real x1 = cos_theta1 - cos_theta2;
+    const coupled_pendulums_real x2 = x1*x1;
+    const coupled_pendulums_real x3 =
+        coupled_pendulums_sin(theta2) - coupled_pendulums_sin(theta1);
+    const coupled_pendulums_real x4 = l*x3;
+    const coupled_pendulums_real x5 = l*(l*x2 + x3*(COUPLED_PENDULUMS_NUMBER(2.0)*d + x4));
+    const coupled_pendulums_real x6 = d + x4;
+    const coupled_pendulums_real x7 = x5/(d + coupled_pendulums_sqrt(c4*x2 + x6*x6));
     const coupled_pendulums_real x8 =
-        c1 + c2*sin_theta2
-        + COUPLED_PENDULUMS_NUMBER(0.5)*(c4*x0 + c4*x1 + sin_theta1*x2 + c4*x3)
-        - c0*coupled_pendulums_sqrt(x7) - c8*cos_theta1 - c8*cos_theta2 - c2*sin_theta1
-        - c4*x5 - sin_theta2*x2;
-    const coupled_pendulums_real x9 =
-        c9*p_theta1*(c10*p_theta1) + c9*p_theta2*(c10*p_theta2);
+        c3*cos_theta1 + c3*cos_theta2 - COUPLED_PENDULUMS_NUMBER(0.5)*k*x7*x7;
     /* outputs */
-    result[0] = x8 + COUPLED_PENDULUMS_NUMBER(0.5)*x9;
+    result[0] = COUPLED_PENDULUMS_NUMBER(0.5)*x0 - x8;
     (void)t;
 }
 #endif
@@ -656,7 +616,7 @@ static inline void coupled_pendulums_rational_state(
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
-   68 operations, 8 of them on parameters alone.
+   48 operations, 4 of them on parameters alone.
    Time derivative of y. */
 static inline void coupled_pendulums_rhs_rational(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
@@ -677,35 +637,25 @@ static inline void coupled_pendulums_rhs_rational(
     /* terms of the parameters alone */
     const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
     const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/m;
-    const coupled_pendulums_real c2 = k*d;
-    const coupled_pendulums_real c3 = d*d;
-    const coupled_pendulums_real c4 = l*l;
-    const coupled_pendulums_real c5 = l*d;
-    const coupled_pendulums_real c6 = m*g;
-    const coupled_pendulums_real c7 = l*k;
+    const coupled_pendulums_real c2 = l*l;
+    const coupled_pendulums_real c3 = m*g;
     /* intermediate terms */
-    const coupled_pendulums_real x0 = sin_theta1*cos_theta2;
-    const coupled_pendulums_real x1 = cos_theta1*sin_theta2;
-    const coupled_pendulums_real x2 = l*x0 - l*x1;
-    const coupled_pendulums_real x3 = c4*cos_theta1;
-    const coupled_pendulums_real x4 = c4*sin_theta1;
-    const coupled_pendulums_real x5 =
-        c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4;
-    const coupled_pendulums_real x6 =
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + COUPLED_PENDULUMS_NUMBER(2.0)*x5;
-    const coupled_pendulums_real sqrt_x6 = coupled_pendulums_sqrt(x6);
-    const coupled_pendulums_real x7 = c7*x0 - c7*x1;
-    const coupled_pendulums_real x8 =
-        c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1;
-    const coupled_pendulums_real x9 =
-        c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7;
+    const coupled_pendulums_real x0 = cos_theta1 - cos_theta2;
+    const coupled_pendulums_real x1 = l*x0;
+    const coupled_pendulums_real x2 = sin_theta1 - sin_theta2;
+    const coupled_pendulums_real x3 = l*x2;
+    const coupled_pendulums_real x4 = d - x3;
+    const coupled_pendulums_real x5 = x0*x1 - x2*(COUPLED_PENDULUMS_NUMBER(2.0)*d - x3);
+    const coupled_pendulums_real x6 = coupled_pendulums_sqrt(c2*x0*x0 + x4*x4);
+    const coupled_pendulums_real x7 = k*(l*x5/(d + x6));
+    const coupled_pendulums_real x8 = (sin_theta1*x1 + cos_theta1*x4)*x7/x6 - c3*sin_theta1;
+    const coupled_pendulums_real x9 = (sin_theta2*x1 + cos_theta2*x4)*x7/x6 + c3*sin_theta2;
     /* outputs */
     result[0] = theta1_dot*cos_theta1;
     result[1] = -theta1_dot*sin_theta1;
     result[2] = theta2_dot*cos_theta2;
     result[3] = -theta2_dot*sin_theta2;
-    result[4] = -c0*(c1*x8);
+    result[4] = c0*(c1*x8);
     result[5] = -c0*(c1*x9);
     (void)t;
 }
@@ -713,7 +663,7 @@ static inline void coupled_pendulums_rhs_rational(
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-   123 operations, 8 of them on parameters alone.
+   116 operations, 5 of them on parameters alone.
    Time derivative of y: of the motion, then of the perturbation. */
 static inline void coupled_pendulums_rhs_variational(
     coupled_pendulums_real t, const coupled_pendulums_real *state,
@@ -738,49 +688,51 @@ static inline void coupled_pendulums_rhs_variational(
     /* terms of the parameters alone */
     const coupled_pendulums_real c0 = COUPLED_PENDULUMS_NUMBER(1.0)/l;
     const coupled_pendulums_real c1 = COUPLED_PENDULUMS_NUMBER(1.0)/m;
-    const coupled_pendulums_real c2 = k*d;
-    const coupled_pendulums_real c3 = d*d;
-    const coupled_pendulums_real c4 = l*l;
-    const coupled_pendulums_real c5 = l*d;
-    const coupled_pendulums_real c6 = m*g;
-    const coupled_pendulums_real c7 = l*k;
+    const coupled_pendulums_real c2 = l*l;
+    const coupled_pendulums_real c3 = m*g;
+    const coupled_pendulums_real c4 = l*k;
     /* intermediate terms */
-    const coupled_pendulums_real x0 = sin_theta1*cos_theta2;
-    const coupled_pendulums_real x1 = cos_theta1*sin_theta2;
-    const coupled_pendulums_real x2 = l*x0 - l*x1;
-    const coupled_pendulums_real x3 = d*cos_theta1 - x2;
-    const coupled_pendulums_real x4 = cos_theta1*cos_theta2;
-    const coupled_pendulums_real x5 = sin_theta1*sin_theta2;
-    const coupled_pendulums_real x6 =
-        c3 + c4*cos_theta1*cos_theta1 + c4*cos_theta2*cos_theta2 + c4*sin_theta1*sin_theta1
-        + c4*sin_theta2*sin_theta2
-        + COUPLED_PENDULUMS_NUMBER(2.0)*(c5*sin_theta2 - c5*sin_theta1 - c4*x4 - c4*x5);
-    const coupled_pendulums_real sqrt_x6 = coupled_pendulums_sqrt(x6);
-    const coupled_pendulums_real x7 = c7*x0 - c7*x1;
-    const coupled_pendulums_real x8 = c2*x3/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1;
-    const coupled_pendulums_real x9 = d*cos_theta2 - x2;
-    const coupled_pendulums_real x10 = c2*cos_theta2 + c6*sin_theta2 - c2*x9/sqrt_x6 - x7;
-    const coupled_pendulums_real x11 = l*x4 + l*x5;
-    const coupled_pendulums_real x12 = sqrt_x6*sqrt_x6;
-    const coupled_pendulums_real x13 = sqrt_x6*x12;
-    const coupled_pendulums_real x14 = c7*x4 + c7*x5;
-    const coupled_pendulums_real x15 =
-        c2*(l*x3*x3 - (d*sin_theta1 + x11)*x12)/x13 + c6*cos_theta1 + c2*sin_theta1 + x14;
-    const coupled_pendulums_real x16 = x4 + x5;
-    const coupled_pendulums_real x17 = c7*(x16 + d*(x3*x9 - x16*x12)/x13);
-    const coupled_pendulums_real x18 =
-        c2*(l*x9*x9 - (x11 - d*sin_theta2)*x12)/x13 + c6*cos_theta2 + x14 - c2*sin_theta2;
+    const coupled_pendulums_real x0 = cos_theta1 - cos_theta2;
+    const coupled_pendulums_real x1 = l*x0;
+    const coupled_pendulums_real x2 = sin_theta1 - sin_theta2;
+    const coupled_pendulums_real x3 = l*x2;
+    const coupled_pendulums_real x4 = x0*x1 - x2*(COUPLED_PENDULUMS_NUMBER(2.0)*d - x3);
+    const coupled_pendulums_real x5 = d - x3;
+    const coupled_pendulums_real x6 = coupled_pendulums_sqrt(c2*x0*x0 + x5*x5);
+    const coupled_pendulums_real x7 = l*x4/(d + x6);
+    const coupled_pendulums_real x8 = sin_theta1*x1 + cos_theta1*x5;
+    const coupled_pendulums_real x9 = x7*x8;
+    const coupled_pendulums_real x10 = sin_theta2*x1 + cos_theta2*x5;
+    const coupled_pendulums_real x11 = x7*x10;
+    const coupled_pendulums_real x12 =
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x5 + l*cos_theta1*cos_theta1);
+    const coupled_pendulums_real x13 = x6*x6;
+    const coupled_pendulums_real x14 = x7*x13;
+    const coupled_pendulums_real x15 = l*x6;
+    const coupled_pendulums_real x16 = x6*x13;
+    const coupled_pendulums_real x17 =
+        k*(l*x8*x9 + x12*x14 - x8*x8*x15)/x16 - c3*cos_theta1;
+    const coupled_pendulums_real x18 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x14;
+    const coupled_pendulums_real x19 = c4*(x6*x8*x10 + x18 - x10*x9);
+    const coupled_pendulums_real x20 = c0*(c1*(delta_theta1*x17 + delta_theta2*x19/x16));
+    const coupled_pendulums_real x21 =
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x5 - l*cos_theta2*cos_theta2);
+    const coupled_pendulums_real x22 =
+        k*(x10*x10*x15 + x21*x14 - l*x10*x11)/x16 + c3*cos_theta2;
+    const coupled_pendulums_real x23 = c0*(c1*(delta_theta1*x19/x16 - delta_theta2*x22));
     /* outputs */
     result[0] = theta1_dot*cos_theta1;
     result[1] = -theta1_dot*sin_theta1;
     result[2] = theta2_dot*cos_theta2;
     result[3] = -theta2_dot*sin_theta2;
-    result[4] = -c0*(c1*x8);
-    result[5] = -c0*(c1*x10);
+    result[4] = c0*(c1*(k*x9/x6 - c3*sin_theta1));
+    result[5] = -c0*(c1*(k*x11/x6 + c3*sin_theta2));
     result[6] = delta_theta1_dot;
     result[7] = delta_theta2_dot;
-    result[8] = -c0*(c1*(delta_theta1*x15 - delta_theta2*x17));
-    result[9] = c0*(c1*(delta_theta1*x17 - delta_theta2*x18));
+    result[8] = x20;
+    result[9] = x23;
     (void)t;
 }
 #endif

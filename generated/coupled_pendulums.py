@@ -50,12 +50,9 @@ Masses and their positions:
     m at (d + l*sin(theta2), -l*cos(theta2))
 
 Lagrangian:
-    L = -d**2*k + d*k*l*sin(theta1) - d*k*l*sin(theta2)
-        + d*k*sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
-        + g*l*m*cos(theta1) + g*l*m*cos(theta2) - k*l**2*sin(theta1)**2/2
-        + k*l**2*sin(theta1)*sin(theta2) - k*l**2*sin(theta2)**2/2 - k*l**2*cos(theta1)**2/2
-        + k*l**2*cos(theta1)*cos(theta2) - k*l**2*cos(theta2)**2/2 + l**2*m*theta1_dot**2/2
-        + l**2*m*theta2_dot**2/2
+    L = g*l*m*cos(theta1) + g*l*m*cos(theta2)
+        - k*(-d + sqrt((l*cos(theta1) - l*cos(theta2))**2 + (d - l*sin(theta1) + l*sin(theta2))**2))**2/2
+        + l**2*m*theta1_dot**2/2 + l**2*m*theta2_dot**2/2
 
 Equations of motion:
     d**2*k*l*cos(theta1)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
@@ -137,19 +134,19 @@ CALLS_FUNCTIONS = (
     "rhs_variational",
 )
 OPERATIONS = {
-    "rhs": (66, 8),
-    "jacobian": (95, 9),
-    "energy": (67, 10),
+    "rhs": (46, 4),
+    "jacobian": (94, 6),
+    "energy": (38, 4),
     "mass_matrix": (2, 2),
     "positions": (11, 0),
     "hamiltonian_state": (4, 2),
-    "rhs_hamiltonian": (69, 9),
-    "jacobian_hamiltonian": (94, 11),
-    "energy_hamiltonian": (71, 11),
+    "rhs_hamiltonian": (49, 5),
+    "jacobian_hamiltonian": (92, 7),
+    "energy_hamiltonian": (42, 5),
     "lagrangian_state": (7, 3),
     "rational_state": (4, 0),
-    "rhs_rational": (68, 8),
-    "rhs_variational": (123, 8),
+    "rhs_rational": (48, 4),
+    "rhs_variational": (116, 5),
     "equilibrium": (0, 0),
     "linear": (8, 8),
 }
@@ -197,7 +194,7 @@ def params(**values: float) -> Vector:
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    66 operations, 8 of them on parameters alone.
+    46 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
@@ -219,33 +216,24 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
+    c2 = l*l
+    c3 = m*g
     # intermediate terms
+    sin_theta1 = sin(theta1)
     cos_theta1 = cos(theta1)
     cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
-    x0 = cos_theta2*sin_theta1
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
     sin_theta2 = sin(theta2)
-    x1 = cos_theta1*sin_theta2
-    x2 = l*x0 - l*x1
-    x3 = c4*cos_theta1
-    x4 = c4*sin_theta1
-    x5 = c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4
-    x6 = (
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5
-    )
-    sqrt_x6 = sqrt(x6)
-    x7 = c7*x0 - c7*x1
-    x8 = c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1
-    x9 = c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7
+    x2 = sin_theta2 - sin_theta1
+    x3 = l*x2
+    x4 = d + x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = k*(l*(x0*x1 + x2*(2.0*d + x3))/(d + x5))
+    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
+    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
     # outputs
-    return (theta1_dot, theta2_dot, -c0*(c1*x8), -c0*(c1*x9))
+    return (theta1_dot, theta2_dot, c0*(c1*x7), -c0*(c1*x8))
 
 
 def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -258,39 +246,30 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
+    c2 = l*l
+    c3 = m*g
     # intermediate terms
+    sin_theta1 = sin(theta1)
     cos_theta1 = cos(theta1)
     cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
-    x0 = cos_theta2*sin_theta1
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
     sin_theta2 = sin(theta2)
-    x1 = cos_theta1*sin_theta2
-    x2 = l*x0 - l*x1
-    x3 = c4*cos_theta1
-    x4 = c4*sin_theta1
-    x5 = c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4
-    x6 = (
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5
-    )
-    sqrt_x6 = sqrt(x6)
-    x7 = c7*x0 - c7*x1
-    x8 = c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1
-    x9 = c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7
+    x2 = sin_theta2 - sin_theta1
+    x3 = l*x2
+    x4 = d + x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = k*(l*(x0*x1 + x2*(2.0*d + x3))/(d + x5))
+    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
+    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
     # outputs
-    return _stacked((4,), y[0], theta1_dot, theta2_dot, -c0*(c1*x8), -c0*(c1*x9))
+    return _stacked((4,), y[0], theta1_dot, theta2_dot, c0*(c1*x7), -c0*(c1*x8))
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    95 operations, 9 of them on parameters alone.
+    94 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -312,42 +291,49 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
-    c8 = c7*c1
+    c2 = l*l
+    c3 = m*g
+    c4 = l*k*c1
     # intermediate terms
     cos_theta1 = cos(theta1)
     cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
     sin_theta2 = sin(theta2)
-    x0 = l*cos_theta2*sin_theta1 - l*cos_theta1*sin_theta2
-    x1 = d*cos_theta1 - x0
-    x2 = cos_theta1*cos_theta2
-    x3 = sin_theta1*sin_theta2
-    x4 = l*x2 + l*x3
-    x5 = (
-        c3 + c4*cos_theta1*cos_theta1 + c4*cos_theta2*cos_theta2 + c4*sin_theta1*sin_theta1
-        + c4*sin_theta2*sin_theta2 + 2.0*(c5*sin_theta2 - c5*sin_theta1 - c4*x2 - c4*x3)
+    sin_theta1 = sin(theta1)
+    x2 = sin_theta2 - sin_theta1
+    x3 = l*x2
+    x4 = d + x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = l*(x0*x1 + x2*(2.0*d + x3))/(d + x5)
+    x7 = l*x6
+    x8 = sin_theta1*x1 + cos_theta1*x4
+    x9 = x8*x8
+    x10 = (
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
     )
-    sqrt_x5 = sqrt(x5)
-    x6 = sqrt_x5*sqrt_x5
-    x7 = sqrt_x5*x6
-    x8 = c7*x2 + c7*x3
-    x9 = c2*(l*x1*x1 - (d*sin_theta1 + x4)*x6)/x7 + c6*cos_theta1 + c2*sin_theta1 + x8
-    x10 = x2 + x3
-    x11 = d*cos_theta2 - x0
-    x12 = c0*(c8*(x10 + d*(x1*x11 - x10*x6)/x7))
-    x13 = c2*(l*x11*x11 - (x4 - d*sin_theta2)*x6)/x7 + c6*cos_theta2 + x8 - c2*sin_theta2
+    x11 = x5*x5
+    x12 = x6*x11
+    x13 = l*x5
+    x14 = x5*x11
+    x15 = c1*(k*(x7*x9 + x10*x12 - x13*x9)/x14 - c3*cos_theta1)
+    x16 = sin_theta2*x1 + cos_theta2*x4
+    x17 = x8*x16
+    x18 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x12
+    x19 = c0*(c4*(x5*x17 + x18 - x6*x17)/x14)
+    x20 = x16*x16
+    x21 = (
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+    )
+    x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c3*cos_theta2
     # outputs
     return (
         (0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 1.0),
-        (-c0*(c1*x9), x12, 0.0, 0.0),
-        (x12, -c0*(c1*x13), 0.0, 0.0),
+        (c0*x15, x19, 0.0, 0.0),
+        (x19, -c0*(c1*x22), 0.0, 0.0),
     )
 
 
@@ -361,36 +347,43 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
-    c8 = c7*c1
+    c2 = l*l
+    c3 = m*g
+    c4 = l*k*c1
     # intermediate terms
     cos_theta1 = cos(theta1)
     cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
     sin_theta2 = sin(theta2)
-    x0 = l*cos_theta2*sin_theta1 - l*cos_theta1*sin_theta2
-    x1 = d*cos_theta1 - x0
-    x2 = cos_theta1*cos_theta2
-    x3 = sin_theta1*sin_theta2
-    x4 = l*x2 + l*x3
-    x5 = (
-        c3 + c4*cos_theta1*cos_theta1 + c4*cos_theta2*cos_theta2 + c4*sin_theta1*sin_theta1
-        + c4*sin_theta2*sin_theta2 + 2.0*(c5*sin_theta2 - c5*sin_theta1 - c4*x2 - c4*x3)
+    sin_theta1 = sin(theta1)
+    x2 = sin_theta2 - sin_theta1
+    x3 = l*x2
+    x4 = d + x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = l*(x0*x1 + x2*(2.0*d + x3))/(d + x5)
+    x7 = l*x6
+    x8 = sin_theta1*x1 + cos_theta1*x4
+    x9 = x8*x8
+    x10 = (
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
     )
-    sqrt_x5 = sqrt(x5)
-    x6 = sqrt_x5*sqrt_x5
-    x7 = sqrt_x5*x6
-    x8 = c7*x2 + c7*x3
-    x9 = c2*(l*x1*x1 - (d*sin_theta1 + x4)*x6)/x7 + c6*cos_theta1 + c2*sin_theta1 + x8
-    x10 = x2 + x3
-    x11 = d*cos_theta2 - x0
-    x12 = c0*(c8*(x10 + d*(x1*x11 - x10*x6)/x7))
-    x13 = c2*(l*x11*x11 - (x4 - d*sin_theta2)*x6)/x7 + c6*cos_theta2 + x8 - c2*sin_theta2
+    x11 = x5*x5
+    x12 = x6*x11
+    x13 = l*x5
+    x14 = x5*x11
+    x15 = c1*(k*(x7*x9 + x10*x12 - x13*x9)/x14 - c3*cos_theta1)
+    x16 = sin_theta2*x1 + cos_theta2*x4
+    x17 = x8*x16
+    x18 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x12
+    x19 = c0*(c4*(x5*x17 + x18 - x6*x17)/x14)
+    x20 = x16*x16
+    x21 = (
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+    )
+    x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c3*cos_theta2
     # outputs
     return _stacked(
         (4, 4),
@@ -403,12 +396,12 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         1.0,
-        -c0*(c1*x9),
-        x12,
+        c0*x15,
+        x19,
         0.0,
         0.0,
-        x12,
-        -c0*(c1*x13),
+        x19,
+        -c0*(c1*x22),
         0.0,
         0.0,
     )
@@ -417,7 +410,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
-    67 operations, 10 of them on parameters alone.
+    38 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
@@ -437,38 +430,21 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = k*d
-    c1 = d*c0
-    c2 = l*c0
-    c3 = l*l
-    c4 = k*c3
-    c5 = m*c3
-    c6 = d*d
-    c7 = d*l
-    c8 = l*m*g
+    c0 = l*l
+    c1 = c0*m
+    c2 = l*m*g
     # intermediate terms
-    sin_theta2 = sin(theta2)
     cos_theta1 = cos(theta1)
-    x0 = cos_theta1*cos_theta1
     cos_theta2 = cos(theta2)
-    x1 = cos_theta2*cos_theta2
-    sin_theta1 = sin(theta1)
-    x2 = c4*sin_theta1
-    x3 = sin_theta2*sin_theta2
-    x4 = (
-        c4*x0 + c4*x1 + sin_theta1*x2 + c4*x3 + c5*theta1_dot*theta1_dot
-        + c5*theta2_dot*theta2_dot
-    )
-    x5 = c3*sin_theta1
-    x6 = cos_theta1*cos_theta2
-    x7 = c7*sin_theta2 - c7*sin_theta1 - c3*x6 - sin_theta2*x5
-    x8 = c6 + c3*x0 + c3*x1 + sin_theta1*x5 + c3*x3 + 2.0*x7
-    x9 = (
-        c1 + c2*sin_theta2 + 0.5*x4 - c0*sqrt(x8) - c8*cos_theta1 - c8*cos_theta2
-        - c2*sin_theta1 - c4*x6 - sin_theta2*x2
-    )
+    x0 = cos_theta1 - cos_theta2
+    x1 = x0*x0
+    x2 = sin(theta2) - sin(theta1)
+    x3 = l*x2
+    x4 = d + x3
+    x5 = l*(l*x1 + x2*(2.0*d + x3))/(d + sqrt(c0*x1 + x4*x4))
+    x6 = k*x5*x5 + c1*theta1_dot*theta1_dot + c1*theta2_dot*theta2_dot
     # outputs
-    return x9
+    return 0.5*x6 - c2*cos_theta1 - c2*cos_theta2
 
 
 def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -479,38 +455,21 @@ def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     theta1, theta2, theta1_dot, theta2_dot = y
     m, l, k, d, g = params
     # terms of the parameters alone
-    c0 = k*d
-    c1 = d*c0
-    c2 = l*c0
-    c3 = l*l
-    c4 = k*c3
-    c5 = m*c3
-    c6 = d*d
-    c7 = d*l
-    c8 = l*m*g
+    c0 = l*l
+    c1 = c0*m
+    c2 = l*m*g
     # intermediate terms
-    sin_theta2 = sin(theta2)
     cos_theta1 = cos(theta1)
-    x0 = cos_theta1*cos_theta1
     cos_theta2 = cos(theta2)
-    x1 = cos_theta2*cos_theta2
-    sin_theta1 = sin(theta1)
-    x2 = c4*sin_theta1
-    x3 = sin_theta2*sin_theta2
-    x4 = (
-        c4*x0 + c4*x1 + sin_theta1*x2 + c4*x3 + c5*theta1_dot*theta1_dot
-        + c5*theta2_dot*theta2_dot
-    )
-    x5 = c3*sin_theta1
-    x6 = cos_theta1*cos_theta2
-    x7 = c7*sin_theta2 - c7*sin_theta1 - c3*x6 - sin_theta2*x5
-    x8 = c6 + c3*x0 + c3*x1 + sin_theta1*x5 + c3*x3 + 2.0*x7
-    x9 = (
-        c1 + c2*sin_theta2 + 0.5*x4 - c0*sqrt(x8) - c8*cos_theta1 - c8*cos_theta2
-        - c2*sin_theta1 - c4*x6 - sin_theta2*x2
-    )
+    x0 = cos_theta1 - cos_theta2
+    x1 = x0*x0
+    x2 = sin(theta2) - sin(theta1)
+    x3 = l*x2
+    x4 = d + x3
+    x5 = l*(l*x1 + x2*(2.0*d + x3))/(d + sqrt(c0*x1 + x4*x4))
+    x6 = k*x5*x5 + c1*theta1_dot*theta1_dot + c1*theta2_dot*theta2_dot
     # outputs
-    return x9
+    return 0.5*x6 - c2*cos_theta1 - c2*cos_theta2
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -639,7 +598,7 @@ def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
 
-    69 operations, 9 of them on parameters alone.
+    49 operations, 5 of them on parameters alone.
 
     Parameters
     ----------
@@ -661,33 +620,24 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/(l*m)
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
+    c2 = l*l
+    c3 = m*g
     # intermediate terms
+    sin_theta1 = sin(theta1)
     cos_theta1 = cos(theta1)
     cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
-    x0 = cos_theta2*sin_theta1
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
     sin_theta2 = sin(theta2)
-    x1 = cos_theta1*sin_theta2
-    x2 = l*x0 - l*x1
-    x3 = c4*cos_theta1
-    x4 = c4*sin_theta1
-    x5 = c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4
-    x6 = (
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5
-    )
-    sqrt_x6 = sqrt(x6)
-    x7 = c7*x0 - c7*x1
-    x8 = c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1
-    x9 = c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7
+    x2 = sin_theta2 - sin_theta1
+    x3 = l*x2
+    x4 = d + x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = k*(l*(x0*x1 + x2*(2.0*d + x3))/(d + x5))
+    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
+    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
     # outputs
-    return (c0*(c1*p_theta1), c0*(c1*p_theta2), -l*x8, -l*x9)
+    return (c0*(c1*p_theta1), c0*(c1*p_theta2), l*x7, -l*x8)
 
 
 def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -700,39 +650,30 @@ def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/(l*m)
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
+    c2 = l*l
+    c3 = m*g
     # intermediate terms
+    sin_theta1 = sin(theta1)
     cos_theta1 = cos(theta1)
     cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
-    x0 = cos_theta2*sin_theta1
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
     sin_theta2 = sin(theta2)
-    x1 = cos_theta1*sin_theta2
-    x2 = l*x0 - l*x1
-    x3 = c4*cos_theta1
-    x4 = c4*sin_theta1
-    x5 = c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4
-    x6 = (
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5
-    )
-    sqrt_x6 = sqrt(x6)
-    x7 = c7*x0 - c7*x1
-    x8 = c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1
-    x9 = c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7
+    x2 = sin_theta2 - sin_theta1
+    x3 = l*x2
+    x4 = d + x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = k*(l*(x0*x1 + x2*(2.0*d + x3))/(d + x5))
+    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
+    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
     # outputs
-    return _stacked((4,), y[0], c0*(c1*p_theta1), c0*(c1*p_theta2), -l*x8, -l*x9)
+    return _stacked((4,), y[0], c0*(c1*p_theta1), c0*(c1*p_theta2), l*x7, -l*x8)
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    94 operations, 11 of them on parameters alone.
+    92 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -753,42 +694,49 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/(l*m)*(1.0/l)
-    c1 = k*d
-    c2 = d*d
-    c3 = l*l
-    c4 = l*d
-    c5 = m*g
-    c6 = l*k
-    c7 = k*c3
+    c1 = l*l
+    c2 = m*g
+    c3 = k*c1
     # intermediate terms
     cos_theta1 = cos(theta1)
     cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
     sin_theta2 = sin(theta2)
-    x0 = l*cos_theta2*sin_theta1 - l*cos_theta1*sin_theta2
-    x1 = d*cos_theta1 - x0
-    x2 = cos_theta1*cos_theta2
-    x3 = sin_theta1*sin_theta2
-    x4 = l*x2 + l*x3
-    x5 = (
-        c2 + c3*cos_theta1*cos_theta1 + c3*cos_theta2*cos_theta2 + c3*sin_theta1*sin_theta1
-        + c3*sin_theta2*sin_theta2 + 2.0*(c4*sin_theta2 - c4*sin_theta1 - c3*x2 - c3*x3)
+    sin_theta1 = sin(theta1)
+    x2 = sin_theta2 - sin_theta1
+    x3 = l*x2
+    x4 = d + x3
+    x5 = sqrt(c1*x0*x0 + x4*x4)
+    x6 = l*(x0*x1 + x2*(2.0*d + x3))/(d + x5)
+    x7 = l*x6
+    x8 = sin_theta1*x1 + cos_theta1*x4
+    x9 = x8*x8
+    x10 = (
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
     )
-    sqrt_x5 = sqrt(x5)
-    x6 = sqrt_x5*sqrt_x5
-    x7 = sqrt_x5*x6
-    x8 = c6*x2 + c6*x3
-    x9 = c1*(l*x1*x1 - (d*sin_theta1 + x4)*x6)/x7 + c5*cos_theta1 + c1*sin_theta1 + x8
-    x10 = x2 + x3
-    x11 = d*cos_theta2 - x0
-    x12 = c7*(x10 + d*(x1*x11 - x10*x6)/x7)
-    x13 = c1*(l*x11*x11 - (x4 - d*sin_theta2)*x6)/x7 + c5*cos_theta2 + x8 - c1*sin_theta2
+    x11 = x5*x5
+    x12 = x6*x11
+    x13 = l*x5
+    x14 = x5*x11
+    x15 = l*(k*(x7*x9 + x10*x12 - x13*x9)/x14 - c2*cos_theta1)
+    x16 = sin_theta2*x1 + cos_theta2*x4
+    x17 = x8*x16
+    x18 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x12
+    x19 = c3*(x5*x17 + x18 - x6*x17)/x14
+    x20 = x16*x16
+    x21 = (
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+    )
+    x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c2*cos_theta2
     # outputs
     return (
         (0.0, 0.0, c0, 0.0),
         (0.0, 0.0, 0.0, c0),
-        (-l*x9, x12, 0.0, 0.0),
-        (x12, -l*x13, 0.0, 0.0),
+        (x15, x19, 0.0, 0.0),
+        (x19, -l*x22, 0.0, 0.0),
     )
 
 
@@ -801,36 +749,43 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     m, l, k, d, g = params
     # terms of the parameters alone
     c0 = 1.0/(l*m)*(1.0/l)
-    c1 = k*d
-    c2 = d*d
-    c3 = l*l
-    c4 = l*d
-    c5 = m*g
-    c6 = l*k
-    c7 = k*c3
+    c1 = l*l
+    c2 = m*g
+    c3 = k*c1
     # intermediate terms
     cos_theta1 = cos(theta1)
     cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
     sin_theta2 = sin(theta2)
-    x0 = l*cos_theta2*sin_theta1 - l*cos_theta1*sin_theta2
-    x1 = d*cos_theta1 - x0
-    x2 = cos_theta1*cos_theta2
-    x3 = sin_theta1*sin_theta2
-    x4 = l*x2 + l*x3
-    x5 = (
-        c2 + c3*cos_theta1*cos_theta1 + c3*cos_theta2*cos_theta2 + c3*sin_theta1*sin_theta1
-        + c3*sin_theta2*sin_theta2 + 2.0*(c4*sin_theta2 - c4*sin_theta1 - c3*x2 - c3*x3)
+    sin_theta1 = sin(theta1)
+    x2 = sin_theta2 - sin_theta1
+    x3 = l*x2
+    x4 = d + x3
+    x5 = sqrt(c1*x0*x0 + x4*x4)
+    x6 = l*(x0*x1 + x2*(2.0*d + x3))/(d + x5)
+    x7 = l*x6
+    x8 = sin_theta1*x1 + cos_theta1*x4
+    x9 = x8*x8
+    x10 = (
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
     )
-    sqrt_x5 = sqrt(x5)
-    x6 = sqrt_x5*sqrt_x5
-    x7 = sqrt_x5*x6
-    x8 = c6*x2 + c6*x3
-    x9 = c1*(l*x1*x1 - (d*sin_theta1 + x4)*x6)/x7 + c5*cos_theta1 + c1*sin_theta1 + x8
-    x10 = x2 + x3
-    x11 = d*cos_theta2 - x0
-    x12 = c7*(x10 + d*(x1*x11 - x10*x6)/x7)
-    x13 = c1*(l*x11*x11 - (x4 - d*sin_theta2)*x6)/x7 + c5*cos_theta2 + x8 - c1*sin_theta2
+    x11 = x5*x5
+    x12 = x6*x11
+    x13 = l*x5
+    x14 = x5*x11
+    x15 = l*(k*(x7*x9 + x10*x12 - x13*x9)/x14 - c2*cos_theta1)
+    x16 = sin_theta2*x1 + cos_theta2*x4
+    x17 = x8*x16
+    x18 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x12
+    x19 = c3*(x5*x17 + x18 - x6*x17)/x14
+    x20 = x16*x16
+    x21 = (
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+    )
+    x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c2*cos_theta2
     # outputs
     return _stacked(
         (4, 4),
@@ -843,12 +798,12 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         c0,
-        -l*x9,
-        x12,
+        x15,
+        x19,
         0.0,
         0.0,
-        x12,
-        -l*x13,
+        x19,
+        -l*x22,
         0.0,
         0.0,
     )
@@ -857,7 +812,7 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
-    71 operations, 11 of them on parameters alone.
+    42 operations, 5 of them on parameters alone.
 
     Parameters
     ----------
@@ -877,37 +832,24 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
     m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = k*d
-    c1 = d*c0
-    c2 = l*c0
-    c3 = l*l
-    c4 = k*c3
-    c5 = d*d
-    c6 = l*d
-    c7 = l*m
-    c8 = c7*g
-    c9 = 1.0/l
-    c10 = 1.0/c7
+    c0 = 1.0/l
+    c1 = l*m
+    c2 = 1.0/c1
+    c3 = c1*g
+    c4 = l*l
     # intermediate terms
-    sin_theta2 = sin(theta2)
+    x0 = c0*p_theta1*(c2*p_theta1) + c0*p_theta2*(c2*p_theta2)
     cos_theta1 = cos(theta1)
-    x0 = cos_theta1*cos_theta1
     cos_theta2 = cos(theta2)
-    x1 = cos_theta2*cos_theta2
-    sin_theta1 = sin(theta1)
-    x2 = c4*sin_theta1
-    x3 = sin_theta2*sin_theta2
-    x4 = c3*sin_theta1
-    x5 = cos_theta1*cos_theta2
-    x6 = c6*sin_theta2 - c6*sin_theta1 - c3*x5 - sin_theta2*x4
-    x7 = c5 + c3*x0 + c3*x1 + sin_theta1*x4 + c3*x3 + 2.0*x6
-    x8 = (
-        c1 + c2*sin_theta2 + 0.5*(c4*x0 + c4*x1 + sin_theta1*x2 + c4*x3) - c0*sqrt(x7)
-        - c8*cos_theta1 - c8*cos_theta2 - c2*sin_theta1 - c4*x5 - sin_theta2*x2
-    )
-    x9 = c9*p_theta1*(c10*p_theta1) + c9*p_theta2*(c10*p_theta2)
+    x1 = cos_theta1 - cos_theta2
+    x2 = x1*x1
+    x3 = sin(theta2) - sin(theta1)
+    x4 = l*x3
+    x5 = d + x4
+    x6 = l*(l*x2 + x3*(2.0*d + x4))/(d + sqrt(c4*x2 + x5*x5))
+    x7 = 0.5*x0 - (c3*cos_theta1 + c3*cos_theta2 - 0.5*k*x6*x6)
     # outputs
-    return x8 + 0.5*x9
+    return x7
 
 
 def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -918,37 +860,24 @@ def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     theta1, theta2, p_theta1, p_theta2 = y
     m, l, k, d, g = params
     # terms of the parameters alone
-    c0 = k*d
-    c1 = d*c0
-    c2 = l*c0
-    c3 = l*l
-    c4 = k*c3
-    c5 = d*d
-    c6 = l*d
-    c7 = l*m
-    c8 = c7*g
-    c9 = 1.0/l
-    c10 = 1.0/c7
+    c0 = 1.0/l
+    c1 = l*m
+    c2 = 1.0/c1
+    c3 = c1*g
+    c4 = l*l
     # intermediate terms
-    sin_theta2 = sin(theta2)
+    x0 = c0*p_theta1*(c2*p_theta1) + c0*p_theta2*(c2*p_theta2)
     cos_theta1 = cos(theta1)
-    x0 = cos_theta1*cos_theta1
     cos_theta2 = cos(theta2)
-    x1 = cos_theta2*cos_theta2
-    sin_theta1 = sin(theta1)
-    x2 = c4*sin_theta1
-    x3 = sin_theta2*sin_theta2
-    x4 = c3*sin_theta1
-    x5 = cos_theta1*cos_theta2
-    x6 = c6*sin_theta2 - c6*sin_theta1 - c3*x5 - sin_theta2*x4
-    x7 = c5 + c3*x0 + c3*x1 + sin_theta1*x4 + c3*x3 + 2.0*x6
-    x8 = (
-        c1 + c2*sin_theta2 + 0.5*(c4*x0 + c4*x1 + sin_theta1*x2 + c4*x3) - c0*sqrt(x7)
-        - c8*cos_theta1 - c8*cos_theta2 - c2*sin_theta1 - c4*x5 - sin_theta2*x2
-    )
-    x9 = c9*p_theta1*(c10*p_theta1) + c9*p_theta2*(c10*p_theta2)
+    x1 = cos_theta1 - cos_theta2
+    x2 = x1*x1
+    x3 = sin(theta2) - sin(theta1)
+    x4 = l*x3
+    x5 = d + x4
+    x6 = l*(l*x2 + x3*(2.0*d + x4))/(d + sqrt(c4*x2 + x5*x5))
+    x7 = 0.5*x0 - (c3*cos_theta1 + c3*cos_theta2 - 0.5*k*x6*x6)
     # outputs
-    return x8 + 0.5*x9
+    return x7
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1046,7 +975,7 @@ def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
-    68 operations, 8 of them on parameters alone.
+    48 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
@@ -1069,35 +998,26 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
+    c2 = l*l
+    c3 = m*g
     # intermediate terms
-    x0 = sin_theta1*cos_theta2
-    x1 = cos_theta1*sin_theta2
-    x2 = l*x0 - l*x1
-    x3 = c4*cos_theta1
-    x4 = c4*sin_theta1
-    x5 = c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4
-    x6 = (
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5
-    )
-    sqrt_x6 = sqrt(x6)
-    x7 = c7*x0 - c7*x1
-    x8 = c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1
-    x9 = c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
+    x2 = sin_theta1 - sin_theta2
+    x3 = l*x2
+    x4 = d - x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = k*(l*(x0*x1 - x2*(2.0*d - x3))/(d + x5))
+    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
+    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
     # outputs
     return (
         theta1_dot*cos_theta1,
         -theta1_dot*sin_theta1,
         theta2_dot*cos_theta2,
         -theta2_dot*sin_theta2,
+        c0*(c1*x7),
         -c0*(c1*x8),
-        -c0*(c1*x9),
     )
 
 
@@ -1111,27 +1031,18 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
+    c2 = l*l
+    c3 = m*g
     # intermediate terms
-    x0 = sin_theta1*cos_theta2
-    x1 = cos_theta1*sin_theta2
-    x2 = l*x0 - l*x1
-    x3 = c4*cos_theta1
-    x4 = c4*sin_theta1
-    x5 = c5*sin_theta2 - c5*sin_theta1 - cos_theta2*x3 - sin_theta2*x4
-    x6 = (
-        c3 + cos_theta1*x3 + c4*cos_theta2*cos_theta2 + sin_theta1*x4
-        + c4*sin_theta2*sin_theta2 + 2.0*x5
-    )
-    sqrt_x6 = sqrt(x6)
-    x7 = c7*x0 - c7*x1
-    x8 = c2*(d*cos_theta1 - x2)/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1
-    x9 = c2*cos_theta2 + c6*sin_theta2 - c2*(d*cos_theta2 - x2)/sqrt_x6 - x7
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
+    x2 = sin_theta1 - sin_theta2
+    x3 = l*x2
+    x4 = d - x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = k*(l*(x0*x1 - x2*(2.0*d - x3))/(d + x5))
+    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
+    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
     # outputs
     return _stacked(
         (6,),
@@ -1140,15 +1051,15 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -theta1_dot*sin_theta1,
         theta2_dot*cos_theta2,
         -theta2_dot*sin_theta2,
+        c0*(c1*x7),
         -c0*(c1*x8),
-        -c0*(c1*x9),
     )
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    123 operations, 8 of them on parameters alone.
+    116 operations, 5 of them on parameters alone.
 
     Parameters
     ----------
@@ -1172,48 +1083,51 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
+    c2 = l*l
+    c3 = m*g
+    c4 = l*k
     # intermediate terms
-    x0 = sin_theta1*cos_theta2
-    x1 = cos_theta1*sin_theta2
-    x2 = l*x0 - l*x1
-    x3 = d*cos_theta1 - x2
-    x4 = cos_theta1*cos_theta2
-    x5 = sin_theta1*sin_theta2
-    x6 = (
-        c3 + c4*cos_theta1*cos_theta1 + c4*cos_theta2*cos_theta2 + c4*sin_theta1*sin_theta1
-        + c4*sin_theta2*sin_theta2 + 2.0*(c5*sin_theta2 - c5*sin_theta1 - c4*x4 - c4*x5)
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
+    x2 = sin_theta1 - sin_theta2
+    x3 = l*x2
+    x4 = d - x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = l*(x0*x1 - x2*(2.0*d - x3))/(d + x5)
+    x7 = sin_theta1*x1 + cos_theta1*x4
+    x8 = x6*x7
+    x9 = sin_theta2*x1 + cos_theta2*x4
+    x10 = x6*x9
+    x11 = (
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
     )
-    sqrt_x6 = sqrt(x6)
-    x7 = c7*x0 - c7*x1
-    x8 = c2*x3/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1
-    x9 = d*cos_theta2 - x2
-    x10 = c2*cos_theta2 + c6*sin_theta2 - c2*x9/sqrt_x6 - x7
-    x11 = l*x4 + l*x5
-    x12 = sqrt_x6*sqrt_x6
-    x13 = sqrt_x6*x12
-    x14 = c7*x4 + c7*x5
-    x15 = c2*(l*x3*x3 - (d*sin_theta1 + x11)*x12)/x13 + c6*cos_theta1 + c2*sin_theta1 + x14
-    x16 = x4 + x5
-    x17 = c7*(x16 + d*(x3*x9 - x16*x12)/x13)
-    x18 = c2*(l*x9*x9 - (x11 - d*sin_theta2)*x12)/x13 + c6*cos_theta2 + x14 - c2*sin_theta2
+    x12 = x5*x5
+    x13 = x6*x12
+    x14 = l*x5
+    x15 = x5*x12
+    x16 = k*(l*x7*x8 + x11*x13 - x7*x7*x14)/x15 - c3*cos_theta1
+    x17 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x13
+    x18 = c4*(x5*x7*x9 + x17 - x9*x8)
+    x19 = c0*(c1*(delta_theta1*x16 + delta_theta2*x18/x15))
+    x20 = (
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+    )
+    x21 = k*(x9*x9*x14 + x20*x13 - l*x9*x10)/x15 + c3*cos_theta2
+    x22 = c0*(c1*(delta_theta1*x18/x15 - delta_theta2*x21))
     # outputs
     return (
         theta1_dot*cos_theta1,
         -theta1_dot*sin_theta1,
         theta2_dot*cos_theta2,
         -theta2_dot*sin_theta2,
-        -c0*(c1*x8),
-        -c0*(c1*x10),
+        c0*(c1*(k*x8/x5 - c3*sin_theta1)),
+        -c0*(c1*(k*x10/x5 + c3*sin_theta2)),
         delta_theta1_dot,
         delta_theta2_dot,
-        -c0*(c1*(delta_theta1*x15 - delta_theta2*x17)),
-        c0*(c1*(delta_theta1*x17 - delta_theta2*x18)),
+        x19,
+        x22,
     )
 
 
@@ -1227,36 +1141,39 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
-    c2 = k*d
-    c3 = d*d
-    c4 = l*l
-    c5 = l*d
-    c6 = m*g
-    c7 = l*k
+    c2 = l*l
+    c3 = m*g
+    c4 = l*k
     # intermediate terms
-    x0 = sin_theta1*cos_theta2
-    x1 = cos_theta1*sin_theta2
-    x2 = l*x0 - l*x1
-    x3 = d*cos_theta1 - x2
-    x4 = cos_theta1*cos_theta2
-    x5 = sin_theta1*sin_theta2
-    x6 = (
-        c3 + c4*cos_theta1*cos_theta1 + c4*cos_theta2*cos_theta2 + c4*sin_theta1*sin_theta1
-        + c4*sin_theta2*sin_theta2 + 2.0*(c5*sin_theta2 - c5*sin_theta1 - c4*x4 - c4*x5)
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
+    x2 = sin_theta1 - sin_theta2
+    x3 = l*x2
+    x4 = d - x3
+    x5 = sqrt(c2*x0*x0 + x4*x4)
+    x6 = l*(x0*x1 - x2*(2.0*d - x3))/(d + x5)
+    x7 = sin_theta1*x1 + cos_theta1*x4
+    x8 = x6*x7
+    x9 = sin_theta2*x1 + cos_theta2*x4
+    x10 = x6*x9
+    x11 = (
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
     )
-    sqrt_x6 = sqrt(x6)
-    x7 = c7*x0 - c7*x1
-    x8 = c2*x3/sqrt_x6 + c6*sin_theta1 + x7 - c2*cos_theta1
-    x9 = d*cos_theta2 - x2
-    x10 = c2*cos_theta2 + c6*sin_theta2 - c2*x9/sqrt_x6 - x7
-    x11 = l*x4 + l*x5
-    x12 = sqrt_x6*sqrt_x6
-    x13 = sqrt_x6*x12
-    x14 = c7*x4 + c7*x5
-    x15 = c2*(l*x3*x3 - (d*sin_theta1 + x11)*x12)/x13 + c6*cos_theta1 + c2*sin_theta1 + x14
-    x16 = x4 + x5
-    x17 = c7*(x16 + d*(x3*x9 - x16*x12)/x13)
-    x18 = c2*(l*x9*x9 - (x11 - d*sin_theta2)*x12)/x13 + c6*cos_theta2 + x14 - c2*sin_theta2
+    x12 = x5*x5
+    x13 = x6*x12
+    x14 = l*x5
+    x15 = x5*x12
+    x16 = k*(l*x7*x8 + x11*x13 - x7*x7*x14)/x15 - c3*cos_theta1
+    x17 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x13
+    x18 = c4*(x5*x7*x9 + x17 - x9*x8)
+    x19 = c0*(c1*(delta_theta1*x16 + delta_theta2*x18/x15))
+    x20 = (
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+    )
+    x21 = k*(x9*x9*x14 + x20*x13 - l*x9*x10)/x15 + c3*cos_theta2
+    x22 = c0*(c1*(delta_theta1*x18/x15 - delta_theta2*x21))
     # outputs
     return _stacked(
         (10,),
@@ -1265,12 +1182,12 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -theta1_dot*sin_theta1,
         theta2_dot*cos_theta2,
         -theta2_dot*sin_theta2,
-        -c0*(c1*x8),
-        -c0*(c1*x10),
+        c0*(c1*(k*x8/x5 - c3*sin_theta1)),
+        -c0*(c1*(k*x10/x5 + c3*sin_theta2)),
         delta_theta1_dot,
         delta_theta2_dot,
-        -c0*(c1*(delta_theta1*x15 - delta_theta2*x17)),
-        c0*(c1*(delta_theta1*x17 - delta_theta2*x18)),
+        x19,
+        x22,
     )
 
 

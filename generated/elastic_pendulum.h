@@ -46,8 +46,7 @@
        m at (r*sin(theta), -r*cos(theta))
 
    Lagrangian:
-       L = g*m*r*cos(theta) - k*l**2/2 + k*l*r - k*r**2/2 + m*r**2*theta_dot**2/2
-           + m*r_dot**2/2
+       L = g*m*r*cos(theta) - k*(-l + r)**2/2 + m*r**2*theta_dot**2/2 + m*r_dot**2/2
 
    Equations of motion:
        -g*m*cos(theta) - k*l + k*r - m*r*theta_dot**2 + m*r_ddot = 0
@@ -145,7 +144,7 @@ static inline elastic_pendulum_real elastic_pendulum_sin(elastic_pendulum_real x
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
-   20 operations, 3 of them on parameters alone.
+   19 operations, 2 of them on parameters alone.
    Time derivative of y: velocities, then accelerations from M qddot = f. */
 static inline void elastic_pendulum_rhs(
     elastic_pendulum_real t, const elastic_pendulum_real *state,
@@ -162,11 +161,10 @@ static inline void elastic_pendulum_rhs(
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
     const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
-    const elastic_pendulum_real c1 = k*l;
-    const elastic_pendulum_real c2 = m*g;
+    const elastic_pendulum_real c1 = m*g;
     /* intermediate terms */
     const elastic_pendulum_real x0 =
-        m*theta_dot*theta_dot*r + (c1 + c2*elastic_pendulum_cos(theta) - k*r);
+        m*theta_dot*theta_dot*r - (k*(r - l) - c1*elastic_pendulum_cos(theta));
     const elastic_pendulum_real x1 =
         ELASTIC_PENDULUM_NUMBER(2.0)*r_dot*theta_dot + g*elastic_pendulum_sin(theta);
     /* outputs */
@@ -222,7 +220,7 @@ static inline void elastic_pendulum_jacobian(
 
 #ifndef HOLONOMIC_VECTOR
 /* Total energy T + V.
-   20 operations, 3 of them on parameters alone.
+   17 operations, 1 of them on parameters alone.
    Energy in J. */
 static inline void elastic_pendulum_energy(
     elastic_pendulum_real t, const elastic_pendulum_real *state,
@@ -238,14 +236,12 @@ static inline void elastic_pendulum_energy(
     const elastic_pendulum_real l = params[2];
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = k*l;
-    const elastic_pendulum_real c1 = l*c0;
-    const elastic_pendulum_real c2 = m*g;
+    const elastic_pendulum_real c0 = m*g;
     /* intermediate terms */
-    const elastic_pendulum_real x0 = r*r;
-    const elastic_pendulum_real x1 = c1 + k*x0 + m*r_dot*r_dot + m*theta_dot*theta_dot*x0;
+    const elastic_pendulum_real x0 = r - l;
+    const elastic_pendulum_real x1 = k*x0*x0 + m*r_dot*r_dot + m*r*r*theta_dot*theta_dot;
     const elastic_pendulum_real x2 =
-        ELASTIC_PENDULUM_NUMBER(0.5)*x1 - c0*r - c2*r*elastic_pendulum_cos(theta);
+        ELASTIC_PENDULUM_NUMBER(0.5)*x1 - c0*r*elastic_pendulum_cos(theta);
     /* outputs */
     result[0] = x2;
     (void)t;
@@ -312,7 +308,7 @@ static inline void elastic_pendulum_hamiltonian_state(
 
 #ifndef HOLONOMIC_VECTOR
 /* Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
-   20 operations, 3 of them on parameters alone.
+   20 operations, 2 of them on parameters alone.
    Time derivative of y: velocities from M qdot = p, then -dH/dq. */
 static inline void elastic_pendulum_rhs_hamiltonian(
     elastic_pendulum_real t, const elastic_pendulum_real *state,
@@ -329,16 +325,15 @@ static inline void elastic_pendulum_rhs_hamiltonian(
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
     const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
-    const elastic_pendulum_real c1 = k*l;
-    const elastic_pendulum_real c2 = m*g;
+    const elastic_pendulum_real c1 = m*g;
     /* intermediate terms */
     const elastic_pendulum_real x0 = c0*p_theta/r;
-    const elastic_pendulum_real x1 = c1 + c2*elastic_pendulum_cos(theta) - k*r + m*x0*x0/r;
+    const elastic_pendulum_real x1 = k*(r - l) - c1*elastic_pendulum_cos(theta) - m*x0*x0/r;
     /* outputs */
     result[0] = c0*p_r;
     result[1] = x0/r;
-    result[2] = x1;
-    result[3] = -c2*r*elastic_pendulum_sin(theta);
+    result[2] = -x1;
+    result[3] = -c1*r*elastic_pendulum_sin(theta);
     (void)t;
 }
 #endif
@@ -391,7 +386,7 @@ static inline void elastic_pendulum_jacobian_hamiltonian(
 
 #ifndef HOLONOMIC_VECTOR
 /* Hamiltonian H(q, p): `energy` by momenta.
-   23 operations, 4 of them on parameters alone.
+   19 operations, 2 of them on parameters alone.
    Energy in J. */
 static inline void elastic_pendulum_energy_hamiltonian(
     elastic_pendulum_real t, const elastic_pendulum_real *state,
@@ -407,17 +402,16 @@ static inline void elastic_pendulum_energy_hamiltonian(
     const elastic_pendulum_real l = params[2];
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
-    const elastic_pendulum_real c0 = k*l;
-    const elastic_pendulum_real c1 = l*c0;
-    const elastic_pendulum_real c2 = m*g;
-    const elastic_pendulum_real c3 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
+    const elastic_pendulum_real c0 = m*g;
+    const elastic_pendulum_real c1 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
     /* intermediate terms */
-    const elastic_pendulum_real x0 =
-        ELASTIC_PENDULUM_NUMBER(0.5)*(c1 + k*r*r) - c0*r - c2*r*elastic_pendulum_cos(theta);
+    const elastic_pendulum_real x0 = r - l;
     const elastic_pendulum_real x1 =
-        x0 + ELASTIC_PENDULUM_NUMBER(0.5)*(p_r*(c3*p_r) + p_theta*(c3*p_theta/r)/r);
+        ELASTIC_PENDULUM_NUMBER(0.5)*k*x0*x0 - c0*r*elastic_pendulum_cos(theta);
+    const elastic_pendulum_real x2 =
+        x1 + ELASTIC_PENDULUM_NUMBER(0.5)*(p_r*(c1*p_r) + p_theta*(c1*p_theta/r)/r);
     /* outputs */
-    result[0] = x1;
+    result[0] = x2;
     (void)t;
 }
 #endif
@@ -470,7 +464,7 @@ static inline void elastic_pendulum_rational_state(
 #endif
 
 /* Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
-   21 operations, 3 of them on parameters alone.
+   20 operations, 2 of them on parameters alone.
    Time derivative of y. */
 static inline void elastic_pendulum_rhs_rational(
     elastic_pendulum_real t, const elastic_pendulum_real *state,
@@ -488,10 +482,9 @@ static inline void elastic_pendulum_rhs_rational(
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
     const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
-    const elastic_pendulum_real c1 = k*l;
-    const elastic_pendulum_real c2 = m*g;
+    const elastic_pendulum_real c1 = m*g;
     /* intermediate terms */
-    const elastic_pendulum_real x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos_theta - k*r);
+    const elastic_pendulum_real x0 = m*theta_dot*theta_dot*r - (k*(r - l) - c1*cos_theta);
     const elastic_pendulum_real x1 =
         ELASTIC_PENDULUM_NUMBER(2.0)*r_dot*theta_dot + g*sin_theta;
     /* outputs */
@@ -504,7 +497,7 @@ static inline void elastic_pendulum_rhs_rational(
 }
 
 /* Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-   46 operations, 3 of them on parameters alone.
+   45 operations, 2 of them on parameters alone.
    Time derivative of y: of the motion, then of the perturbation. */
 static inline void elastic_pendulum_rhs_variational(
     elastic_pendulum_real t, const elastic_pendulum_real *state,
@@ -526,8 +519,7 @@ static inline void elastic_pendulum_rhs_variational(
     const elastic_pendulum_real g = params[3];
     /* terms of the parameters alone */
     const elastic_pendulum_real c0 = ELASTIC_PENDULUM_NUMBER(1.0)/m;
-    const elastic_pendulum_real c1 = k*l;
-    const elastic_pendulum_real c2 = m*g;
+    const elastic_pendulum_real c1 = m*g;
     /* intermediate terms */
     const elastic_pendulum_real x0 = m*theta_dot;
     const elastic_pendulum_real x1 = theta_dot*r;
@@ -535,7 +527,7 @@ static inline void elastic_pendulum_rhs_variational(
         ELASTIC_PENDULUM_NUMBER(2.0)*r_dot*theta_dot + g*sin_theta;
     const elastic_pendulum_real x3 = r*delta_theta_dot;
     const elastic_pendulum_real x4 =
-        delta_r*(k - theta_dot*x0) + c2*sin_theta*delta_theta
+        delta_r*(k - theta_dot*x0) + c1*sin_theta*delta_theta
         - ELASTIC_PENDULUM_NUMBER(2.0)*x0*x3;
     const elastic_pendulum_real x5 =
         g*cos_theta*r*delta_theta + ELASTIC_PENDULUM_NUMBER(2.0)*(delta_r_dot*x1 + r_dot*x3)
@@ -544,7 +536,7 @@ static inline void elastic_pendulum_rhs_variational(
     result[0] = r_dot;
     result[1] = theta_dot*cos_theta;
     result[2] = -theta_dot*sin_theta;
-    result[3] = c0*(x0*x1 + (c1 + c2*cos_theta - k*r));
+    result[3] = c0*(x0*x1 - (k*(r - l) - c1*cos_theta));
     result[4] = -x2/r;
     result[5] = delta_r_dot;
     result[6] = delta_theta_dot;

@@ -46,8 +46,7 @@ Masses and their positions:
     m at (r*sin(theta), -r*cos(theta))
 
 Lagrangian:
-    L = g*m*r*cos(theta) - k*l**2/2 + k*l*r - k*r**2/2 + m*r**2*theta_dot**2/2
-        + m*r_dot**2/2
+    L = g*m*r*cos(theta) - k*(-l + r)**2/2 + m*r**2*theta_dot**2/2 + m*r_dot**2/2
 
 Equations of motion:
     -g*m*cos(theta) - k*l + k*r - m*r*theta_dot**2 + m*r_ddot = 0
@@ -111,19 +110,19 @@ CALLS_FUNCTIONS = (
     "rational_state",
 )
 OPERATIONS = {
-    "rhs": (20, 3),
+    "rhs": (19, 2),
     "jacobian": (26, 1),
-    "energy": (20, 3),
+    "energy": (17, 1),
     "mass_matrix": (2, 0),
     "positions": (5, 0),
     "hamiltonian_state": (4, 0),
-    "rhs_hamiltonian": (20, 3),
+    "rhs_hamiltonian": (20, 2),
     "jacobian_hamiltonian": (27, 2),
-    "energy_hamiltonian": (23, 4),
+    "energy_hamiltonian": (19, 2),
     "lagrangian_state": (5, 1),
     "rational_state": (2, 0),
-    "rhs_rational": (21, 3),
-    "rhs_variational": (46, 3),
+    "rhs_rational": (20, 2),
+    "rhs_variational": (45, 2),
     "equilibrium": (4, 4),
     "linear": (7, 7),
 }
@@ -168,7 +167,7 @@ def params(**values: float) -> Vector:
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    20 operations, 3 of them on parameters alone.
+    19 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
@@ -189,10 +188,9 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/m
-    c1 = k*l
-    c2 = m*g
+    c1 = m*g
     # intermediate terms
-    x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos(theta) - k*r)
+    x0 = m*theta_dot*theta_dot*r - (k*(r - l) - c1*cos(theta))
     # outputs
     return (r_dot, theta_dot, c0*x0, -(2.0*r_dot*theta_dot + g*sin(theta))/r)
 
@@ -206,10 +204,9 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     m, k, l, g = params
     # terms of the parameters alone
     c0 = 1.0/m
-    c1 = k*l
-    c2 = m*g
+    c1 = m*g
     # intermediate terms
-    x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos(theta) - k*r)
+    x0 = m*theta_dot*theta_dot*r - (k*(r - l) - c1*cos(theta))
     # outputs
     return _stacked(
         (4,),
@@ -298,7 +295,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
-    20 operations, 3 of them on parameters alone.
+    17 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
@@ -318,14 +315,12 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     r, theta, r_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = k*l
-    c1 = l*c0
-    c2 = m*g
+    c0 = m*g
     # intermediate terms
-    x0 = r*r
-    x1 = c1 + k*x0 + m*r_dot*r_dot + m*theta_dot*theta_dot*x0
+    x0 = r - l
+    x1 = k*x0*x0 + m*r_dot*r_dot + m*r*r*theta_dot*theta_dot
     # outputs
-    return 0.5*x1 - c0*r - c2*r*cos(theta)
+    return 0.5*x1 - c0*r*cos(theta)
 
 
 def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -336,14 +331,12 @@ def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     r, theta, r_dot, theta_dot = y
     m, k, l, g = params
     # terms of the parameters alone
-    c0 = k*l
-    c1 = l*c0
-    c2 = m*g
+    c0 = m*g
     # intermediate terms
-    x0 = r*r
-    x1 = c1 + k*x0 + m*r_dot*r_dot + m*theta_dot*theta_dot*x0
+    x0 = r - l
+    x1 = k*x0*x0 + m*r_dot*r_dot + m*r*r*theta_dot*theta_dot
     # outputs
-    return 0.5*x1 - c0*r - c2*r*cos(theta)
+    return 0.5*x1 - c0*r*cos(theta)
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -454,7 +447,7 @@ def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
 
-    20 operations, 3 of them on parameters alone.
+    20 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
@@ -475,16 +468,15 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/m
-    c1 = k*l
-    c2 = m*g
+    c1 = m*g
     # intermediate terms
     x0 = c0*p_theta/r
     # outputs
     return (
         c0*p_r,
         x0/r,
-        c1 + c2*cos(theta) - k*r + m*x0*x0/r,
-        -c2*r*sin(theta),
+        -(k*(r - l) - c1*cos(theta) - m*x0*x0/r),
+        -c1*r*sin(theta),
     )
 
 
@@ -497,8 +489,7 @@ def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     m, k, l, g = params
     # terms of the parameters alone
     c0 = 1.0/m
-    c1 = k*l
-    c2 = m*g
+    c1 = m*g
     # intermediate terms
     x0 = c0*p_theta/r
     # outputs
@@ -507,8 +498,8 @@ def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         y[0],
         c0*p_r,
         x0/r,
-        c1 + c2*cos(theta) - k*r + m*x0*x0/r,
-        -c2*r*sin(theta),
+        -(k*(r - l) - c1*cos(theta) - m*x0*x0/r),
+        -c1*r*sin(theta),
     )
 
 
@@ -594,7 +585,7 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
-    23 operations, 4 of them on parameters alone.
+    19 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
@@ -614,17 +605,13 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     r, theta, p_r, p_theta = y.tolist() if hasattr(y, "tolist") else y
     m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = k*l
-    c1 = l*c0
-    c2 = m*g
-    c3 = 1.0/m
+    c0 = m*g
+    c1 = 1.0/m
     # intermediate terms
-    x0 = (
-        0.5*(c1 + k*r*r) - c0*r - c2*r*cos(theta)
-        + 0.5*(p_r*(c3*p_r) + p_theta*(c3*p_theta/r)/r)
-    )
+    x0 = r - l
+    x1 = 0.5*k*x0*x0 - c0*r*cos(theta) + 0.5*(p_r*(c1*p_r) + p_theta*(c1*p_theta/r)/r)
     # outputs
-    return x0
+    return x1
 
 
 def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -635,17 +622,13 @@ def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     r, theta, p_r, p_theta = y
     m, k, l, g = params
     # terms of the parameters alone
-    c0 = k*l
-    c1 = l*c0
-    c2 = m*g
-    c3 = 1.0/m
+    c0 = m*g
+    c1 = 1.0/m
     # intermediate terms
-    x0 = (
-        0.5*(c1 + k*r*r) - c0*r - c2*r*cos(theta)
-        + 0.5*(p_r*(c3*p_r) + p_theta*(c3*p_theta/r)/r)
-    )
+    x0 = r - l
+    x1 = 0.5*k*x0*x0 - c0*r*cos(theta) + 0.5*(p_r*(c1*p_r) + p_theta*(c1*p_theta/r)/r)
     # outputs
-    return x0
+    return x1
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -725,7 +708,7 @@ def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
-    21 operations, 3 of them on parameters alone.
+    20 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
@@ -746,10 +729,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/m
-    c1 = k*l
-    c2 = m*g
+    c1 = m*g
     # intermediate terms
-    x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos_theta - k*r)
+    x0 = m*theta_dot*theta_dot*r - (k*(r - l) - c1*cos_theta)
     # outputs
     return (
         r_dot,
@@ -767,10 +749,9 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     m, k, l, g = params
     # terms of the parameters alone
     c0 = 1.0/m
-    c1 = k*l
-    c2 = m*g
+    c1 = m*g
     # intermediate terms
-    x0 = m*theta_dot*theta_dot*r + (c1 + c2*cos_theta - k*r)
+    x0 = m*theta_dot*theta_dot*r - (k*(r - l) - c1*cos_theta)
     # outputs
     return _stacked(
         (5,),
@@ -786,7 +767,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    46 operations, 3 of them on parameters alone.
+    45 operations, 2 of them on parameters alone.
 
     Parameters
     ----------
@@ -808,21 +789,20 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/m
-    c1 = k*l
-    c2 = m*g
+    c1 = m*g
     # intermediate terms
     x0 = m*theta_dot
     x1 = theta_dot*r
     x2 = 2.0*r_dot*theta_dot + g*sin_theta
     x3 = r*delta_theta_dot
-    x4 = delta_r*(k - theta_dot*x0) + c2*sin_theta*delta_theta - 2.0*x0*x3
+    x4 = delta_r*(k - theta_dot*x0) + c1*sin_theta*delta_theta - 2.0*x0*x3
     x5 = g*cos_theta*r*delta_theta + 2.0*(delta_r_dot*x1 + r_dot*x3) - x2*delta_r
     # outputs
     return (
         r_dot,
         theta_dot*cos_theta,
         -theta_dot*sin_theta,
-        c0*(x0*x1 + (c1 + c2*cos_theta - k*r)),
+        c0*(x0*x1 - (k*(r - l) - c1*cos_theta)),
         -x2/r,
         delta_r_dot,
         delta_theta_dot,
@@ -838,14 +818,13 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     m, k, l, g = params
     # terms of the parameters alone
     c0 = 1.0/m
-    c1 = k*l
-    c2 = m*g
+    c1 = m*g
     # intermediate terms
     x0 = m*theta_dot
     x1 = theta_dot*r
     x2 = 2.0*r_dot*theta_dot + g*sin_theta
     x3 = r*delta_theta_dot
-    x4 = delta_r*(k - theta_dot*x0) + c2*sin_theta*delta_theta - 2.0*x0*x3
+    x4 = delta_r*(k - theta_dot*x0) + c1*sin_theta*delta_theta - 2.0*x0*x3
     x5 = g*cos_theta*r*delta_theta + 2.0*(delta_r_dot*x1 + r_dot*x3) - x2*delta_r
     # outputs
     return _stacked(
@@ -854,7 +833,7 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         r_dot,
         theta_dot*cos_theta,
         -theta_dot*sin_theta,
-        c0*(x0*x1 + (c1 + c2*cos_theta - k*r)),
+        c0*(x0*x1 - (k*(r - l) - c1*cos_theta)),
         -x2/r,
         delta_r_dot,
         delta_theta_dot,

@@ -3,7 +3,7 @@
 import sympy as sp
 
 from derive.codegen.graph import Graph
-from derive.codegen.node import Call, Leaf, Let, Node, Powers, Product, Sum, operands
+from derive.codegen.node import Call, Leaf, Let, Node, Powers, Product, Rewritten, Sum, operands
 from derive.codegen.translation import Translation
 from derive.formulas.functions import FUNCTIONS
 
@@ -38,7 +38,7 @@ class Differentiation:
         match node:
             case Leaf():
                 return graph.node(1)
-            case Let(value):
+            case Let(value) | Rewritten(short=value):
                 return self(value, leaf)
             case Call(function, argument):
                 outer = Translation(graph, {X.name: argument})(FUNCTIONS[function](X).diff(X))

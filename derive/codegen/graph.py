@@ -29,6 +29,7 @@ from derive.codegen.node import (
     Number,
     Operand,
     Product,
+    Rewritten,
     Solution,
     Sum,
     operands,
@@ -69,6 +70,10 @@ class Graph:
         if rest is None or isinstance(rest, Leaf | Let):
             return value
         return self._scale(self._intern(Let, rest), coefficient)
+
+    def rewritten(self, value: Node, short: Node) -> Node:
+        """`value`, differentiated by an equal formula that is `short`."""
+        return self._intern(Rewritten, value, short)
 
     def call(self, function: str, argument: Node) -> Node:
         """``function(argument)``; the sign of the argument of a sine or cosine is moved outside."""

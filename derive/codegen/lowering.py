@@ -23,6 +23,7 @@ from derive.codegen.node import (
     Let,
     Node,
     Product,
+    Rewritten,
     Solution,
     Sum,
     Terms,
@@ -88,7 +89,7 @@ class Lowering:
                 return self._register(op.Leaf((), name in self._parameters, name))
             case Constant(value) | Irrational(value):
                 return self._constant(value)
-            case Let(inner):
+            case Let(inner) | Rewritten(value=inner):
                 return self._lower(inner)
             case Call(function, argument):
                 return self._add(op.Call, [self._lower(argument)], function)

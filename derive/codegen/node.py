@@ -121,6 +121,14 @@ class Let(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Rewritten(Node):
+    """The same value by two formulas: an accurate one, and a short one for its derivatives."""
+
+    value: Node
+    short: Node
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Factorised(Node):
     """The L D Lᵀ factorisation, by a loop, of a symmetric matrix."""
 
@@ -152,6 +160,8 @@ def operands(node: Node) -> tuple[Node, ...]:
             return (argument,)
         case Let(value):
             return (value,)
+        case Rewritten(value, short):
+            return (value, short)
         case Factorised(upper):
             return upper
         case Solution(matrix, right):

@@ -19,6 +19,7 @@ from derive.codegen.node import (
     Let,
     Node,
     Product,
+    Rewritten,
     Sum,
     operands,
 )
@@ -105,6 +106,8 @@ class _Rewriting:
                 return graph.irrational(value)
             case Let(value):
                 return graph.let(self.node(value))
+            case Rewritten(value, short):
+                return graph.rewritten(self.node(value), self.node(short))
             case Call(function, argument):
                 multiples = _multiples(node, self._names)
                 if multiples is None:

@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from derive.codegen.elongation import Elongation, elongation
 from derive.codegen.graph import Graph
 from derive.codegen.node import Node
 from derive.formulas.functions import FUNCTIONS
@@ -40,6 +41,9 @@ class Translation:
         if expression.is_Rational:
             return graph.node(_fraction(expression))
         if expression.is_Add and not expression.is_number:
+            spring = elongation(expression)
+            if spring is not None:
+                return self._elongation(spring)
             return graph.sum([(self(term), 1) for term in expression.args])
         if expression.is_Mul:
             return graph.product([(self(factor), 1) for factor in expression.args])
@@ -60,6 +64,15 @@ class Translation:
             raise _unsupported(expression)
         magnitude = self.graph.irrational(_fraction(sp.Rational(abs(value))))
         return magnitude if value > 0 else -magnitude
+
+    def _elongation(self, spring: Elongation) -> Node:
+        graph = self.graph
+        length, change, rest = map(self, (spring.length, spring.change, spring.rest))
+        side = graph.sum([(length, 1), (change, 1)])
+        root = graph.call("sqrt", graph.sum([(graph.power(side, 2), 1), (rest, 1)]))
+        squares = graph.sum([(change * graph.sum([(change, 1), (length, 2)]), 1), (rest, 1)])
+        value = graph.rewritten(squares / (root + length), root - length)
+        return value * self(spring.scale)
 
     def _root(self, expression: sp.Expr) -> Node:
         """A power whose exponent is a fraction with denominator 2, 4, 8 …, by square roots."""

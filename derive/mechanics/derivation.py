@@ -17,7 +17,7 @@ import sympy as sp
 
 from derive.mechanics.independence import check_independence
 from derive.mechanics.linearisation import Energies, Linearisation
-from derive.mechanics.reduction import collected, reduced
+from derive.mechanics.reduction import collected, gathered, reduced
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.symbols import TIME
 from derive.system.system import System, as_system
@@ -144,7 +144,7 @@ class Derivation:
     @cached_property
     def potential_energy(self) -> sp.Expr:
         """V(q, t), one term for each function of the coordinates."""
-        return collected(self.system.potential_energy, *self.system.q)
+        return gathered(self.system.potential_energy, *self.system.q)
 
     @cached_property
     def lagrangian(self) -> sp.Expr:

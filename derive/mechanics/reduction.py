@@ -6,7 +6,7 @@ cos(a - b), sin² a + cos² a is 1. Squares are tried in place of doubled angles
 since sin² a costs less than (1 - cos 2a)/2 and is accurate near a = 0.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import sympy as sp
 
@@ -34,11 +34,31 @@ def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
     """`expression` expanded, one term for each function of `variables`; unchanged if too long."""
     if not is_expandable(expression):
         return expression
+    return gathered(sp.expand(expression), *variables)
+
+
+def gathered(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
+    """`expression` with one term for each function of `variables`; products of sums are kept.
+
+    The square of a difference is accurate where the difference is small, its expansion is not.
+    """
     coefficients: dict[sp.Expr, sp.Expr] = {}
-    for term in sp.Add.make_args(sp.expand(expression)):
-        coefficient, dependent = term.as_independent(*variables, as_Add=False)
+    for coefficient, dependent in _terms(expression, variables):
         coefficients[dependent] = coefficients.get(dependent, sp.S.Zero) + coefficient
     return sp.Add(*(sp.factor_terms(c) * dependent for dependent, c in coefficients.items()))
+
+
+def _terms(
+    expression: sp.Expr, variables: tuple[sp.Symbol, ...]
+) -> Iterator[tuple[sp.Expr, sp.Expr]]:
+    """Terms of a sum, also of one with a constant factor: their coefficients and functions."""
+    for term in sp.Add.make_args(expression):
+        coefficient, dependent = term.as_independent(*variables, as_Add=False)
+        if dependent.is_Add:
+            for inner, function in _terms(dependent, variables):
+                yield coefficient * inner, function
+        else:
+            yield coefficient, dependent
 
 
 def harmonics(expression: sp.Expr) -> sp.Expr:
