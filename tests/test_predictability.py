@@ -98,15 +98,9 @@ def test_the_predictable_time_does_not_depend_on_the_duration_of_the_run(toleran
         limits.append(reported_time(caught[0].message))
     assert max(limits) == pytest.approx(min(limits), rel=0.01)
     truth = taylor(dp, dp.DEFAULTS, REPORT, TIMES[TIMES < 40], digits=30)
-    run = ensemble(
-        dp,
-        (0, 40),
-        np.transpose([REPORT]),
-        dp.DEFAULTS,
-        rtol=tolerance,
-        atol=tolerance,
-        t_eval=TIMES[TIMES < 40],
-    )
+    options = {"rtol": tolerance, "atol": tolerance, "t_eval": TIMES[TIMES < 40]}
+    with pytest.warns(PredictabilityWarning, match="1 of 1 examined motions"):
+        run = ensemble(dp, (0, 40), np.transpose([REPORT]), dp.DEFAULTS, **options)
     apart = np.abs(run.samples[:, 0].T - truth).max(axis=1)
     observed = TIMES[np.argmax(apart > 1)]
     assert limits[0] == pytest.approx(observed, rel=0.3)
@@ -125,7 +119,7 @@ def test_a_regular_run_does_not_warn_however_long() -> None:
     integrate(dp, (0, 500), (0.1, 0.1, 0.0, 0.0), dp.DEFAULTS, rtol=1e-8)
     integrate(sp, (0, 2000), (1.0, 0.0), sp.DEFAULTS, rtol=1e-8)
     # changes grow in proportion to time, a thousandfold here
-    integrate(sp, (0, 2000), (1.0, 0.0), sp.DEFAULTS, rtol=1e-2, atol=1e-2)
+    integrate(sp, (0, 2000), (1.0, 0.0), sp.DEFAULTS, rtol=3e-3, atol=3e-3)
     # and at once where a mode is fast, here ten-thousandfold
     stiff = (1.0, 1e8, 1.0, 9.81)
     integrate(ep, (0, 6), (*ep.equilibrium(stiff), 0.0, 0.5), stiff, rtol=1e-3, atol=1e-3)

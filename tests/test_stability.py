@@ -223,6 +223,11 @@ def test_limits_are_bisected_whatever_the_growth() -> None:
     assert limit(lambda h: -1.0, 1.0) == inf
 
 
+def test_modes_without_inertia_are_refused_in_words() -> None:
+    with pytest.raises(ValueError, match="its matrices are singular or not finite"):
+        Modes.at_rest(sp, (1.0, 0.0, 9.81))
+
+
 def test_modes_are_those_of_the_textbook() -> None:
     # equal masses and lengths: omega² = (2 ∓ sqrt(2)) g/l (L. D. Landau, E. M. Lifshitz, § 23)
     modes = Modes.at_rest(dp, dp.DEFAULTS)

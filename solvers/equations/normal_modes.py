@@ -31,7 +31,11 @@ class Modes:
         if not has_function(module, "linear"):
             raise ValueError(f"{name} has no equilibrium: small motions have no modes")
         mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
-        squares, shapes = eigh(stiffness_matrix, mass_matrix)
+        try:
+            squares, shapes = eigh(stiffness_matrix, mass_matrix)
+        except ValueError as error:  # of LAPACK, or for numbers that are not finite
+            text = f"{name} has no modes with {params}: its matrices are singular or not finite"
+            raise ValueError(text) from error
         if squares[0] <= 0:
             reason = f"squared frequencies are {squares}"
             raise ValueError(f"{name} does not oscillate about rest with {params}: {reason}")

@@ -2,11 +2,14 @@
 
 import os
 from collections.abc import Sequence
+from warnings import warn
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration import compiled_loop, validation
+from solvers.integration.accuracy_warnings import ensemble_warnings
 from solvers.integration.ensemble_run import EnsembleRun, StopFlag
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event, Extremum
@@ -68,7 +71,8 @@ def ensemble(
     Raises
     ------
     ValueError
-        When an argument is invalid; other errors, and the warning, are those of `integrate`.
+        When an argument is invalid; other errors, and the warnings, are those of `integrate`, of
+        which predictability is examined for four motions, evenly distributed.
     solvers.integration.solution.Interrupted
         When the user interrupts; it holds the `Ensemble` up to then.
 
@@ -103,4 +107,9 @@ def ensemble(
             run.run_one_by_one()
     except KeyboardInterrupt as interruption:
         raise Interrupted(result) from interruption
+    good = np.flatnonzero(result.success)
+    own = constants[good] if len(constants) > 1 else constants
+    ends = result.t[good], result.y.T[good]
+    for warning in ensemble_warnings(problem, states[good], own, *ends):
+        warn(warning, stacklevel=2)
     return result

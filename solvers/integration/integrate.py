@@ -1,7 +1,7 @@
 """Integration of a generated module's equations of motion."""
 
 from collections.abc import Sequence
-from math import inf
+from functools import partial
 from warnings import warn
 
 import numpy as np
@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration import compiled_loop, python_loop, validation
-from solvers.integration.predictability import PredictabilityWarning, predictable_until
+from solvers.integration.accuracy_warnings import accuracy_warnings
+from solvers.integration.global_error import global_error_estimate
 from solvers.integration.problem import EventFunction, Options, Outcome, Problem
 from solvers.integration.solution import Interrupted, Solution, Status
 from solvers.integration.step_stability import step_instability
@@ -98,7 +99,10 @@ def integrate(
     Warns
     -----
     solvers.integration.predictability.PredictabilityWarning
-        When errors of the size of the tolerances grow to that of the motion before its end.
+        When errors of the size of the tolerances, or of a fixed step, grow to that of the motion
+        before its end.
+    solvers.integration.energy_change.EnergyWarning
+        When a motion that conserves its energy ends with another one.
     UserWarning
         When no compiler could build the loop, and it runs in Python.
 
@@ -121,19 +125,13 @@ def integrate(
             python_loop.run(problem, outcome)
     except KeyboardInterrupt as interruption:
         raise Interrupted(_solution(problem, outcome, energy)) from interruption
-    instability = step_instability(problem, failed=outcome.status is Status.NOT_FINITE)
+    instability = step_instability(problem, outcome)
     if instability:
         outcome.status = Status.UNSTABLE
     solution = _solution(problem, outcome, energy, instability)
-    start, end = problem.span[0], outcome.end[0]
-    until = predictable_until(problem, end) if solution.success else inf
-    if abs(until - start) < abs(end - start):
-        message = (
-            f"this trajectory is not predictable beyond t = {until:.4g}: errors of "
-            f"{problem.tolerance:.1g} have grown to its size there; reduce rtol and atol, or use "
-            "its energies and statistics only"
-        )
-        warn(message, PredictabilityWarning, stacklevel=2)
+    if solution.success:
+        for warning in accuracy_warnings(problem, *outcome.end):
+            warn(warning, stacklevel=2)
     return solution
 
 
@@ -162,4 +160,5 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = ""
         energy=energies,
         end=outcome.end,
         units=problem.units,
+        compare=partial(global_error_estimate, problem),
     )

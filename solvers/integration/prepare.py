@@ -2,11 +2,15 @@
 
 import ctypes
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import isfinite, ulp
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from solvers.equations.module import GeneratedModule
 from solvers.integration import compiled_loop, validation
+from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
@@ -102,6 +106,7 @@ class Prepared:
         module, names = problem.form.module, problem.form.ordinary
         self._positive = [k for k, p in enumerate(module.PARAMETERS) if p in module.POSITIVE]
         self._limited = [k for k, q in enumerate(names) if q in module.POSITIVE]
+        self._span_start = 0.0
         self._idle = [True]  # empty during a call; faster than a lock, and as atomic
 
     def __call__(
@@ -138,6 +143,7 @@ class Prepared:
         if start == end:
             validation.time_span(t_span)
             return tuple(self._checked(self._start))
+        self._span_start = start
         h = self._problem.h
         try:
             if h is not None and h < SHORTEST * ulp(max(abs(start), abs(end))):
@@ -176,6 +182,23 @@ class Prepared:
     def steps(self) -> int:
         """Accepted steps of the last motion."""
         return int(self._batch.motions["steps"][0])
+
+    @property
+    def warnings(self) -> list[str]:
+        """Texts of the warnings that `integrate` gives for the last motion, computed on demand.
+
+        Its end must have been reached; a call itself computes nothing for them.
+        """
+        t, end = (float(self._batch.motions[name][0]) for name in ("t", "t_end"))
+        if t != end:
+            return []
+        begin = self._span_start
+        problem = replace(
+            self._problem.with_params(list(self._params)),
+            span=(begin, end),
+            start=np.array(self._start),
+        )
+        return [str(warning) for warning in accuracy_warnings(problem, end, np.array(self._end))]
 
     @property
     def nfev(self) -> int:

@@ -119,6 +119,7 @@ class Evidence:
         return float(np.linalg.norm(apart) / offset)
 
 
+@ignore_predictability()
 def _run(scene: Scene, **options: Any) -> Solution:
     run = partial(integrate, scene.module, (0.0, scene.duration), scene.y0, scene.params)
     return run(form="lagrangian", **options)

@@ -11,6 +11,7 @@ from solvers.equations.module import GeneratedModule, function
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.layout import SOURCES
 from solvers.integration.ensemble import ensemble
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load
@@ -87,6 +88,7 @@ def _preparation(module: GeneratedModule, hy: Any) -> dict[str, float]:
         return median_times(runs, 0.0)
 
 
+@ignore_predictability()
 def _peak_share(module: GeneratedModule) -> dict[str, float]:
     """Operations per second in lanes on one core, and the largest possible number."""
     library = _peak_library()

@@ -17,6 +17,7 @@ from solvers.integration import compiled_loop, validation
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.problem import Options
 from solvers.sweeps.barrier import is_below
 from solvers.sweeps.maps.first import First
@@ -49,6 +50,7 @@ def _events(module: GeneratedModule) -> list[Event]:
     return [Event(module, e.name, e.value, terminal=True) for e in FLIP.events(module)]
 
 
+@ignore_predictability()
 def by_ensemble(
     module: GeneratedModule, method: str, tol: float, workers: int, state: Array
 ) -> Array:

@@ -16,6 +16,7 @@ from scipy.integrate import solve_ivp
 
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.ensemble import ensemble
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.studies import heyoka
 from solvers.studies.benchmarks.median_times import median_times
@@ -107,6 +108,7 @@ def many_motions(module: GeneratedModule, hy: Any) -> Curves:
     return curves
 
 
+@ignore_predictability()
 def _by_ensemble(module: GeneratedModule, starts: Array, tol: float, method: str) -> Array:
     solve = partial(ensemble, method=method, rtol=tol, atol=tol, workers=1)
     return solve(module, (0.0, END), starts.T, module.DEFAULTS).y.T

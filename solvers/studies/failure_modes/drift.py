@@ -15,6 +15,7 @@ from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
 from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import coloured, legend_beside, panels
 from solvers.io.text_table import text_table
 from solvers.studies.failure_modes.study import Load, Study
@@ -54,6 +55,7 @@ class Drift:
     largest_error: float  # the largest in the whole run
 
 
+@ignore_predictability()
 def drift(pendulum: GeneratedModule, periods: float, case: Case) -> Drift:
     """Energy error of the double pendulum over a number of periods of its slow mode."""
     params, (method, form, steps) = pendulum.DEFAULTS, case

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import prepare
 
 Array = NDArray[np.float64]
@@ -94,4 +95,5 @@ def _advance(
         return partial(prepare(module, params, form="variational", rtol=tol, atol=tol), span)
     except NoCompilerError:
         solve = partial(integrate, form="variational", backend="python", t_eval=[INTERVAL])
-        return lambda y: solve(module, span, y, params, rtol=tol, atol=tol).y[:, -1]
+        run = ignore_predictability()(solve)
+        return lambda y: run(module, span, y, params, rtol=tol, atol=tol).y[:, -1]

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import coloured, columns, panels
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load as load_method
@@ -32,6 +33,7 @@ class Growth:
     measured: float
 
 
+@ignore_predictability()
 def growth(pendulum: GeneratedModule, method: str, steps_per_period: float) -> Growth:
     """Growth of a small oscillation of the single pendulum, predicted from R(z) and measured."""
     length, gravity = pendulum.DEFAULTS[1:]

@@ -12,6 +12,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import COLOURS, columns, panels
 from solvers.io.text_table import text_table
 from solvers.references.elliptic import pendulum as exact_solution
@@ -35,6 +36,7 @@ class Sensitivity:
     error: float  # largest error of a run, in rad and rad/s
 
 
+@ignore_predictability()
 def sensitivity(module: GeneratedModule) -> list[Sensitivity]:
     """Errors of runs, and the growth of small errors in the motion itself."""
     # the fall from a distance δ takes ln(const/δ)/ω, so that a change of δ shifts it by 1/(ωδ);
@@ -68,6 +70,7 @@ class Departure:
     measured: float
 
 
+@ignore_predictability()
 def departures(module: GeneratedModule) -> list[Departure]:
     """Motions from the bottom at the speed of the separatrix."""
     # with energy k² (1 on the separatrix) the quarter period is K(k²)/ω or K(1/k²)/(kω), and
@@ -97,6 +100,7 @@ class Upright:
     measured: float
 
 
+@ignore_predictability()
 def upright(module: GeneratedModule) -> Upright:
     """Release from rest at the floating-point number nearest to π.
 

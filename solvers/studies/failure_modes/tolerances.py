@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from solvers.integration.ensemble import ensemble
+from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import coloured, columns, legend_beside, panels
 from solvers.io.text_table import text_table
 from solvers.references.taylor import taylor
@@ -41,6 +42,7 @@ class Tolerances(Study[list[ToleranceAccuracy]]):
     methods: tuple[str, ...] = METHODS
     motions: int = MOTIONS
 
+    @ignore_predictability()
     def run(self, load: Load) -> list[ToleranceAccuracy]:
         pendulum = load("double_pendulum")
         generator = np.random.default_rng(3)

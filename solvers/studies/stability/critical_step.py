@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from solvers.equations.module import GeneratedModule, function
 from solvers.equations.normal_modes import Modes
 from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
@@ -147,6 +148,7 @@ def _small_motion(
     rounding = ROUNDINGS * modes.size(np.finfo(float).eps * rest)
     size = modes.size(start - rest)
 
+    @ignore_predictability()
     def growth(h: float) -> float:
         half = STEPS // 2 * h
         solve = partial(integrate, method=method, form="lagrangian", h=h)

@@ -1,0 +1,65 @@
+"""The change of an energy that the system keeps: evidence, at no cost, of a useless result."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.equations.forms import Form
+from solvers.equations.module import GeneratedModule, function, has_function
+from solvers.integration.predictability import PredictabilityWarning
+from solvers.integration.solution import Array
+
+#: The tolerable change, in units of the motion's energy. In 10,000 runs of twelve systems every
+#: larger change had errors above a tenth of the motion, and errors below 0.3 only at tolerances
+#: of 0.1.
+TOLERABLE = 1.0
+
+
+class EnergyWarning(PredictabilityWarning):
+    """The energy of a motion that conserves it has changed by more than itself."""
+
+
+def conserves_energy(module: GeneratedModule) -> bool:
+    """Whether the energy of every motion is constant."""
+    changes = has_function(module, "power") or "energy" in module.TIMED
+    return has_function(module, "energy") and not changes
+
+
+def energies(form: Form, y: Array) -> Array:
+    """Energies in J of ordinary states in columns."""
+    with np.errstate(all="ignore"):
+        return np.asarray(form.module.energy_many(0.0, y[: len(form.module.STATE)], form.params))
+
+
+def motion_energy(form: Form, start: Array) -> Array:
+    """The energy in J that motions from states in columns have: what a large change is.
+
+    The largest of kinetic energy, potential energy, and energy above that of the equilibrium,
+    where one is known.
+    """
+    n = len(form.module.COORDINATES)
+    own, at_rest = energies(form, start), start.copy()
+    at_rest[n:] = 0.0
+    potential = energies(form, at_rest)
+    above = own - _at_equilibrium(form.module, form.params, n)
+    parts = [np.abs(part) for part in np.broadcast_arrays(own - potential, potential, above)]
+    return np.asarray(np.fmax.reduce(parts))
+
+
+def _at_equilibrium(module: GeneratedModule, params: Sequence[Any], n: int) -> Any:
+    """The energy of the equilibrium in J; NaN where none is known."""
+    if not has_function(module, "equilibrium"):
+        return np.nan
+    name = "equilibrium_many" if any(map(np.ndim, params)) else "equilibrium"
+    q = np.asarray(function(module, name)(params))
+    return module.energy_many(0.0, np.concatenate([q, np.zeros_like(q)]), params)
+
+
+def changed_energy(form: Form, start: Array, end: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Energies in J of start and end, states in columns, and whether they differ intolerably."""
+    before, after = energies(form, start), energies(form, end)
+    with np.errstate(all="ignore"):
+        tolerable = np.abs(after - before) <= TOLERABLE * motion_energy(form, start)
+    return before, after, ~tolerable
