@@ -3,6 +3,7 @@
 import re
 from functools import partial
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ import generated.single_pendulum as sp
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import PredictabilityWarning
+from solvers.integration.predictability import PredictabilityWarning, ignore_predictability
 from solvers.integration.solution import Status
 from solvers.references.taylor import taylor
 
@@ -104,6 +105,27 @@ def test_the_predictable_time_does_not_depend_on_the_duration_of_the_run(toleran
     apart = np.abs(run.samples[:, 0].T - truth).max(axis=1)
     observed = TIMES[np.argmax(apart > 1)]
     assert limits[0] == pytest.approx(observed, rel=0.3)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"method": "verner98", "rtol": 1e-7, "atol": 1e-7},
+        {"method": "dp54", "rtol": 1e-5, "atol": 1e-5},
+        {"method": "RK45", "rtol": 1e-7, "atol": 1e-7},
+        {"method": "rk4", "h": 0.01},
+        {"method": "gauss2", "h": 0.01, "form": "hamiltonian"},
+    ],
+)
+def test_the_predictable_time_is_the_observed_one_for_every_method(options: dict[str, Any]) -> None:
+    fine = {"method": "verner98", "rtol": 1e-13, "atol": 1e-13, "t_eval": TIMES[TIMES < 30]}
+    with ignore_predictability():
+        reference = integrate(dp, (0, 30), REPORT, dp.DEFAULTS, **fine).y
+    with pytest.warns(PredictabilityWarning) as caught:
+        run = integrate(dp, (0, 30), REPORT, dp.DEFAULTS, t_eval=TIMES[TIMES < 30], **options)
+    apart = np.abs(run.y - reference).max(axis=0)
+    observed = TIMES[np.argmax(apart > 1)]
+    assert reported_time(caught[0].message) == pytest.approx(observed, rel=0.25)
 
 
 def test_the_predictable_time_is_known_backwards_and_up_to_an_event() -> None:

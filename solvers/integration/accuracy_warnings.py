@@ -10,7 +10,6 @@ from solvers.integration.predictability import (
     PredictabilityWarning,
     is_ignored,
     predictable_until,
-    usual_error,
 )
 from solvers.integration.problem import Problem
 from solvers.integration.solution import Array
@@ -35,9 +34,8 @@ def accuracy_warnings(problem: Problem, t: float, y: Array) -> Iterator[Predicta
     begin, until = problem.span[0], predictable_until(problem, t)
     if abs(until - begin) < abs(t - begin):
         yield PredictabilityWarning(
-            f"this trajectory is not predictable beyond t = {until:.4g}: errors of "
-            f"{usual_error(problem):.1g} have grown to its size there; {_remedy(problem)}, or use "
-            "its energies and statistics only"
+            f"this trajectory is not predictable beyond t = {until:.4g}: its errors have grown to "
+            f"its size there; {_remedy(problem)}, or use its energies and statistics only"
         )
 
 

@@ -99,8 +99,7 @@ def integrate(
     Warns
     -----
     solvers.integration.predictability.PredictabilityWarning
-        When errors of the size of the tolerances, or of a fixed step, grow to that of the motion
-        before its end.
+        When errors grow to the size of the motion before its end.
     solvers.integration.energy_change.EnergyWarning
         When a motion that conserves its energy ends with another one.
     UserWarning

@@ -10,26 +10,23 @@ from math import inf
 import numpy as np
 
 from solvers.equations.module import has_function
+from solvers.integration import compiled_loop, python_loop
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.compiled_loop import loop, obstacle
-from solvers.integration.problem import Options, Problem
-from solvers.integration.solution import Array
+from solvers.integration.problem import Options, Outcome, Problem
+from solvers.integration.solution import Array, Status
 from solvers.runge_kutta.catalogue import load
-from solvers.runge_kutta.stepper import Stepper
-from solvers.runge_kutta.tableau import Tableau
 
 #: Method and tolerance for linear perturbations, most steps, and steps per call.
 METHOD, TOLERANCE, MOST_STEPS, CHUNK = "verner87", 1e-9, 20_000, 500
 #: In the first steps every change grows, at once where a mode is fast.
 FIRST_STEPS = 10
-#: The usual ratio of an error to the tolerance, or to the error of a fixed step.
-ERROR_RATIO = 10.0
-#: The number of fixed steps whose errors are measured.
-MEASURED_STEPS = 8
-#: The largest initial error, whatever the tolerance, whose growth to 1 counts.
-LARGEST_ERROR = 0.05
+#: Natural logarithm of the growth after which the error of the run is measured.
+GROWN = 3.0
+#: How much finer tolerances are for that, the finest of them, and parts of a fixed step.
+FINER, FINEST, PARTS = 1e3, 1e-14, 4
 #: In regular motion changes grow in proportion to time; chaos outgrows this power of time.
 POWER = 1.5
 
@@ -65,46 +62,16 @@ def is_ignored() -> bool:
     return _IS_IGNORED.get()
 
 
-def usual_error(problem: Problem) -> float:
-    """A usual error of a state after some steps: a multiple of the tolerance.
-
-    For fixed steps it is a multiple of the largest difference between one of the first steps and
-    two of half its length.
-    """
-    local = problem.tolerance if problem.h is None else _step_error(problem)
-    return min(ERROR_RATIO * max(local, float(np.finfo(float).eps)), LARGEST_ERROR)
-
-
-def _step_error(problem: Problem) -> float:
-    form, method, (begin, end) = problem.form, problem.method, problem.span
-    assert isinstance(method, Tableau)
-    assert problem.h is not None
-    h, t, largest = float(np.copysign(problem.h, end - begin)), begin, 0.0
-    stepper = Stepper(method, form.rhs, form.jacobian)
-    try:
-        y = form.from_ordinary(t, problem.start)
-        for _ in range(min(MEASURED_STEPS, max(1, int(abs(end - begin) / problem.h)))):
-            first = stepper.derivative(t, y)
-            whole = stepper.step(t, y, h, first)[0]
-            half = stepper.step(t, y, h / 2, first)[0]
-            middle = stepper.derivative(t + h / 2, half)
-            halves = stepper.step(t + h / 2, half, h / 2, middle)[0]
-            largest = max(largest, float(np.abs(whole - halves).max()))
-            t, y = t + h, form.normalised(whole)
-    except ArithmeticError:
-        return np.inf
-    return largest
-
-
 def predictable_until(problem: Problem, end: float) -> float:
     """The time in s from which on usual errors are as large as the motion.
 
-    There a linear perturbation of the initial state, by the variational equations, has grown by
-    the reciprocal of `usual_error` since the first few steps, and faster than in regular motion.
-    Its size is that of its coordinates in the metric of the mass matrix, which stays finite where
-    coordinates are singular, as at the pole of a sphere. A perturbation that is not integrated to
-    the end is extrapolated. The result is infinity if there is no such time before `end`, or if it
-    is unknown: without a compiled loop.
+    The error of the run is measured where a linear perturbation of the initial state, by the
+    variational equations, has grown by e^3, and faster than in regular motion: the same method
+    runs with finer tolerances or steps. From there on the error grows as the perturbation does.
+    The size of a perturbation is that of its coordinates in the metric of the mass matrix, which
+    stays finite where coordinates are singular, as at the pole of a sphere. A perturbation that is
+    not integrated to the end is extrapolated. The result is infinity if there is no such time
+    before `end`, or if it is unknown: without a compiled loop.
     """
     begin, module = problem.span[0], problem.form.module
     if begin == end or "variational" not in module.FORMS or not has_function(module, "mass_matrix"):
@@ -130,7 +97,7 @@ def predictable_until(problem: Problem, end: float) -> float:
     start = problem.start[: len(module.STATE)]
     states = np.array([[*start, *np.ones_like(start)]])
     batch = Batch(program, variational, states, capacity=CHUNK, pauses=True)
-    allowed, direction = np.log(1 / usual_error(problem)), float(np.sign(end - begin))
+    allowed, direction = inf, float(np.sign(end - begin))
     base, elapsed, growth = 0.0, np.empty(0), np.empty(0)
     status = None
     while status is None:
@@ -148,13 +115,37 @@ def predictable_until(problem: Problem, end: float) -> float:
         if len(rows):
             elapsed, growth = np.abs(rows["t"] - begin), size - base
         is_chaotic = growth > POWER * np.log(elapsed / first)
+        grown = np.flatnonzero(is_chaotic & (growth >= GROWN))
+        if grown.size and allowed == inf:
+            k = grown[0]
+            allowed = growth[k] - np.log(_error_at(problem, begin + direction * elapsed[k]))
         unpredictable = elapsed[is_chaotic & (growth >= allowed)]
         if unpredictable.size:
             return begin + direction * float(unpredictable[0])
-    if not elapsed.size or not is_chaotic[-1]:
+    if not elapsed.size or not is_chaotic[-1] or allowed == inf:
         return inf
     after = float(allowed / growth[-1] * elapsed[-1])
     return inf if after >= abs(end - begin) else begin + direction * after
+
+
+def _error_at(problem: Problem, t: float) -> float:
+    """The error of a run at time `t`, at most 1: its difference from a finer one."""
+    run = replace(problem, span=(problem.span[0], t), samples=np.array([t]), events=[])
+    if run.h is None:
+        finer = replace(run, rtol=max(run.rtol / FINER, FINEST), atol=run.atol / FINER)
+    else:
+        finer = replace(run, h=run.h / PARTS)
+    ends = []
+    for one in (run, replace(finer, max_steps=PARTS * run.max_steps)):
+        outcome = Outcome.at_start(one)
+        if obstacle(one) or one.backend == "python":
+            python_loop.run(one, outcome)
+        else:
+            compiled_loop.run(one, outcome, loop(one))
+        if outcome.status is not Status.FINISHED:
+            return 1.0
+        ends.append(outcome.end[1])
+    return min(max(float(np.abs(ends[0] - ends[1]).max()), np.finfo(float).eps), 1.0)
 
 
 def _log_size(problem: Problem, t: Array, y: Array) -> Array:

@@ -78,11 +78,6 @@ class Problem:
         return {name: self.form.module.UNITS[name] for name in self.form.ordinary}
 
     @property
-    def tolerance(self) -> float:
-        """The larger of the relative and absolute tolerances."""
-        return max(self.rtol, float(self.atol.max()))
-
-    @property
     def description(self) -> str:
         """Method, form and step control in words."""
         title = self.method.title if isinstance(self.method, Tableau) else self.method
