@@ -42,11 +42,14 @@ class Truth:
         )
         self.q = [q.name for q in self.system.q]
 
-    def state(self, rng: Random, params: State | None = None) -> State:
-        """A random state: parameters, coordinates, velocities, accelerations, time, momenta."""
-        uniform = lambda a, b: mp.mpf(rng.uniform(a, b))  # noqa: E731
-        state = params or {p.name: uniform(0.7, 1.7) for p in self.system.params}
-        state = {**state, "t": uniform(0.2, 0.9)}
+    def state(self, rng: Random, constants: State | None = None) -> State:
+        """A random state: parameters, time, coordinates, velocities, accelerations, momenta."""
+
+        def uniform(low: float, high: float) -> Any:
+            return mp.mpf(rng.uniform(low, high))
+
+        state = {p.name: uniform(0.7, 1.7) for p in self.system.params} | {"t": uniform(0.2, 0.9)}
+        state |= constants or {}
         for q in self.system.q:
             sign = 1 if q.is_positive else rng.choice((-1, 1))
             state[q.name] = sign * uniform(0.2, 0.6)
@@ -61,6 +64,11 @@ class Truth:
         function = self._functions[quantity]
         value = function(*(state[name] for name in self._arguments))
         return list(value) if isinstance(value, mp.matrix) and quantity != "mass" else value
+
+    def another(self, rng: Random, state: State) -> State:
+        """A state with the same parameters at the same time."""
+        names = [p.name for p in self.system.params]
+        return self.state(rng, {name: state[name] for name in (*names, "t")})
 
     def accelerations(self, state: State) -> list[Any]:
         return list(mp.lu_solve(self.value("mass", state), mp.matrix(self.value("forcing", state))))
@@ -95,9 +103,17 @@ class Truth:
             if (base := word.removesuffix(suffix)) != word and base in self.names:
                 path = partial(self._along, self.names[base], state)
                 return mp.diff(path, 0, order)
-        if word.startswith("p_") and self.names.get(word[2:]) in self.q:
-            return state[f"p_{self.names[word[2:]]}"]
+        if word.startswith("p_") and word[2:] in self.names:
+            return self._momentum(self.names[word[2:]], state)
         return state[word]
+
+    def _momentum(self, text: str, state: State) -> Any:
+        """The momentum of a function of one coordinate."""
+        for q in self.q:
+            slope = mp.diff(lambda x, q=q: self._own(text, {**state, q: x}), state[q])
+            if slope:
+                return state[f"p_{q}"] / slope
+        raise KeyError(text)
 
     def _own(self, text: str, state: State) -> Any:
         """The value of a formula in the names of the system."""

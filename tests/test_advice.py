@@ -5,7 +5,9 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from advice_campaign import Outcome, formulas, is_right, mutants, outcome
+from advice_campaign import Outcome, outcome
+from formula_mutants import mutants
+from formula_truth import formulas, is_right
 
 from derive import Derivation, load
 from derive.verification.model import Model

@@ -24,9 +24,9 @@ from derive.verification.source_names import SourceNames
 from derive.verification.terms import (
     Term,
     Terms,
-    common_factor,
+    closest_factor,
+    coefficients,
     corrected_terms,
-    differing_functions,
     terms_of_equation,
 )
 from derive.verification.verdict import Correction, Verdict
@@ -156,11 +156,12 @@ def _state(
 
 def closest_equation(terms: Terms, model: Model) -> sp.Expr:
     """Return the derived equation of motion, times a factor, from which `terms` differ least."""
-    system = model.derivation.system
+    system, equations = model.derivation.system, model.derivation.euler_lagrange
     state = variables(system)
-    equations = model.derivation.euler_lagrange
-    candidates = [e * common_factor(terms, e, state, system.qddot) for e in equations]
-    return min(candidates, key=lambda e: len(differing_functions(terms, e, state)))
+    printed = coefficients(sp.Add(*(term.value for term in terms)), state)
+    factors = [closest_factor(printed, coefficients(e, state), system.qddot) for e in equations]
+    index = min(range(len(factors)), key=lambda k: factors[k][0])
+    return equations[index] * factors[index][1]
 
 
 def _applied(text: str, change: Change) -> tuple[tuple[Correction, ...], str]:

@@ -65,15 +65,18 @@ def coefficients(expression: sp.Expr, state: Symbols) -> Coefficients:
     return {f: reduced for f, coefficient in totals.items() if (reduced := sp.cancel(coefficient))}
 
 
-def _pair(terms: Terms, derived: sp.Expr, state: Symbols) -> tuple[Coefficients, Coefficients]:
-    total = sp.Add(*(term.value for term in terms))
-    return coefficients(total, state), coefficients(derived, state)
+def closest_factor(
+    printed: Coefficients, correct: Coefficients, decisive: Symbols
+) -> tuple[int, sp.Expr]:
+    """Return by which factor most terms differ from correct ones, and how many still differ.
 
-
-def differing_functions(terms: Terms, derived: sp.Expr, state: Symbols) -> list[sp.Expr]:
-    """Functions of the state that have different coefficients in the sum and in `derived`."""
-    a, b = _pair(terms, derived, state)
-    return [f for f in {**a, **b} if sp.cancel(a.get(f, 0) - b.get(f, 0))]
+    In a tie, terms with decisive symbols such as accelerations decide.
+    """
+    shared = [function for function in printed if function in correct]
+    shared.sort(key=lambda function: not function.free_symbols & {*decisive})
+    ratios = [sp.cancel(printed[function] / correct[function]) for function in shared]
+    factor = max(ratios, key=ratios.count, default=sp.S.One)
+    return len({*printed, *correct}) - ratios.count(factor), factor
 
 
 def corrected_terms(
@@ -84,9 +87,12 @@ def corrected_terms(
     With all corrections the terms have the sum `derived`. A function of the state that occurs in
     several terms is corrected in the first.
     """
-    differing = differing_functions(terms, derived, state)
-    printed, correct = _pair(terms, derived, state)
-    changes = {f: correct.get(f, sp.S.Zero) - printed.get(f, sp.S.Zero) for f in differing}
+    printed = coefficients(sp.Add(*(term.value for term in terms)), state)
+    correct = coefficients(derived, state)
+    pairs = {
+        f: (correct.get(f, sp.S.Zero), printed.get(f, sp.S.Zero)) for f in {**printed, **correct}
+    }
+    changes = {f: change for f, (a, b) in pairs.items() if (change := sp.cancel(a - b))}
     corrected = []
     for term in terms:
         own = coefficients(term.value, state)
@@ -101,18 +107,6 @@ def corrected_terms(
             corrected[k], missing = (term, missing), sp.S.Zero
     whole = [(term, _collected(term.side * value, state)) for term, value in corrected]
     return whole, _collected(missing, state)
-
-
-def common_factor(
-    terms: Terms, derived: sp.Expr, state: Symbols, decisive: Symbols = ()
-) -> sp.Expr:
-    """Return the factor, made of parameters, by which most terms differ from those of `derived`."""
-    printed, correct = _pair(terms, derived, state)
-    shared = [function for function in printed if function in correct]
-    # in a tie, terms with decisive symbols such as accelerations decide
-    shared.sort(key=lambda function: not function.free_symbols & {*decisive})
-    ratios = [sp.cancel(printed[function] / correct[function]) for function in shared]
-    return max(ratios, key=ratios.count, default=sp.S.One)
 
 
 def _collected(expression: sp.Expr, state: Symbols) -> sp.Expr:
