@@ -17,7 +17,7 @@ from solvers.equations.module import GeneratedModule, function, has_function
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
 from solvers.references.taylor import taylor
-from solvers.scenes.models.integration_run import NotAccurateError, TooLongError
+from solvers.scenes.models.integration_run import EndsEarlyError, NotAccurateError, TooLongError
 from solvers.scenes.models.light_masses import PendulumAndLightMasses
 from solvers.scenes.models.motion import Motion
 from solvers.scenes.models.selection import motion_of, select_model
@@ -79,7 +79,7 @@ def check_scene(seed: int) -> None:
     scene = random_scene(seed)
     try:
         model = select_model(scene, lambda motion, _: motion, lambda _: None).model
-    except (NotAccurateError, TooLongError):
+    except (EndsEarlyError, NotAccurateError, TooLongError):
         return
     if model.run and model.run.method_choice.is_series:
         return  # its estimate compares numbers of digits
