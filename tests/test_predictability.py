@@ -10,6 +10,7 @@ import pytest
 
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
+import generated.henon_heiles as hh
 import generated.single_pendulum as sp
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
@@ -140,6 +141,8 @@ def test_the_predictable_time_is_known_backwards_and_up_to_an_event() -> None:
 def test_a_regular_run_does_not_warn_however_long() -> None:
     integrate(dp, (0, 500), (0.1, 0.1, 0.0, 0.0), dp.DEFAULTS, rtol=1e-8)
     integrate(sp, (0, 2000), (1.0, 0.0), sp.DEFAULTS, rtol=1e-8)
+    # exactly at rest on a saddle there is no error that could grow
+    integrate(hh, (0, 100), {"x": 0.0, "y": 1.0}, (), rtol=1e-8)
     # changes grow in proportion to time, a thousandfold here
     integrate(sp, (0, 2000), (1.0, 0.0), sp.DEFAULTS, rtol=3e-3, atol=3e-3)
     # and at once where a mode is fast, here ten-thousandfold

@@ -57,9 +57,14 @@ def _at_equilibrium(module: GeneratedModule, params: Sequence[Any], n: int) -> A
     return module.energy_many(0.0, np.concatenate([q, np.zeros_like(q)]), params)
 
 
-def changed_energy(form: Form, start: Array, end: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Energies in J of start and end, states in columns, and whether they differ intolerably."""
+def changed_energy(
+    form: Form, start: Array, end: Array, tolerable: float = TOLERABLE
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Energies in J of start and end, states in columns, and whether they differ intolerably.
+
+    A `tolerable` change is given in units of the motion's energy.
+    """
     before, after = energies(form, start), energies(form, end)
     with np.errstate(all="ignore"):
-        tolerable = np.abs(after - before) <= TOLERABLE * motion_energy(form, start)
-    return before, after, ~tolerable
+        is_tolerable = np.abs(after - before) <= tolerable * motion_energy(form, start)
+    return before, after, ~is_tolerable

@@ -118,7 +118,10 @@ def predictable_until(problem: Problem, end: float) -> float:
         grown = np.flatnonzero(is_chaotic & (growth >= GROWN))
         if grown.size and allowed == inf:
             k = grown[0]
-            allowed = growth[k] - np.log(_error_at(problem, begin + direction * elapsed[k]))
+            error = _error_at(problem, begin + direction * float(elapsed[k]))
+            if not error:  # as exactly at rest, where nothing grows
+                return inf
+            allowed = growth[k] - np.log(error)
         unpredictable = elapsed[is_chaotic & (growth >= allowed)]
         if unpredictable.size:
             return begin + direction * float(unpredictable[0])
@@ -144,8 +147,8 @@ def _error_at(problem: Problem, t: float) -> float:
             compiled_loop.run(one, outcome, loop(one))
         if outcome.status is not Status.FINISHED:
             return 1.0
-        ends.append(outcome.end[1])
-    return min(max(float(np.abs(ends[0] - ends[1]).max()), np.finfo(float).eps), 1.0)
+        ends.append(outcome.end[1][: len(problem.form.module.STATE)])
+    return min(float(np.abs(ends[0] - ends[1]).max()), 1.0)
 
 
 def _log_size(problem: Problem, t: Array, y: Array) -> Array:

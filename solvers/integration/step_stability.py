@@ -20,7 +20,7 @@ def step_instability(problem: Problem, outcome: Outcome) -> str:
 
     It gives the time until which the run is good, and the largest stable step size. The modes are
     those of the equations linearised at the start, except those that grow by themselves. For a run
-    that failed, with numbers that are not finite or an energy that has changed, less growth
+    that failed, with numbers that are not finite or a thousand times its energy, less growth
     suffices, and modes at the equilibrium count, too. The text is empty, too, if steps are
     controlled, or if the module has no Jacobian.
     """
@@ -54,13 +54,13 @@ def step_instability(problem: Problem, outcome: Outcome) -> str:
 
 
 def _has_failed(problem: Problem, outcome: Outcome) -> bool:
-    """Whether a run ended with numbers that are not finite, or with another energy."""
+    """Whether a run ended with numbers that are not finite, or a thousand times its energy."""
     if outcome.status is Status.NOT_FINITE:
         return True
     if outcome.status is not Status.FINISHED or not conserves_energy(problem.form.module):
         return False
     start, end = problem.start[:, np.newaxis], outcome.end[1][:, np.newaxis]
-    return bool(changed_energy(problem.form, start, end)[2][0])
+    return bool(changed_energy(problem.form, start, end, UNSTABLE)[2][0])
 
 
 def _last_good_time(problem: Problem, outcome: Outcome) -> float:
