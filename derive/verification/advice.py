@@ -61,7 +61,7 @@ def advised(
     corrections: Corrections = ()
     with suppress(NotImplementedError):
         searches = [Search(text, names, model, goal, correct) for goal in aims]
-        proposals = _mending(text, names, model, searches, correct)
+        proposals = _mending(text, names, model, searches, value, correct)
         corrections = next((one for one, mended in proposals if holds(mended)), ())
     state = _state(model, names, value, aims[0], correct)
     result = replace(verdict, corrections=corrections, state=state)
@@ -76,7 +76,7 @@ def advised(
 
 def shortest(expression: sp.Expr) -> sp.Expr:
     """The shortest of several equal forms; long expressions stay as they are."""
-    if expression.count_ops() > MAX_OPERATIONS:
+    if expression.count_ops() > MAX_OPERATIONS or not is_expandable(expression):
         return expression
     roots = [p for p in expression.atoms(sp.Pow) if not p.exp.is_Integer]
     shorter = expression.xreplace({p: reduced(p.base) ** p.exp for p in roots})
@@ -86,7 +86,12 @@ def shortest(expression: sp.Expr) -> sp.Expr:
 
 
 def _mending(
-    text: str, names: SourceNames, model: Model, searches: Sequence[Search], correct: sp.Expr | None
+    text: str,
+    names: SourceNames,
+    model: Model,
+    searches: Sequence[Search],
+    value: sp.Expr,
+    correct: sp.Expr | None,
 ) -> Iterator[tuple[Corrections, str]]:
     """Yield corrections of one term, and those of all terms, each with the changed formula."""
     changes = [(one, search) for search in searches for one in search.changes()]
@@ -99,7 +104,7 @@ def _mending(
             checked += 1
         if checked == MAX_CHECKED:
             break
-    if correct is not None and is_expandable(correct):
+    if correct is not None and all(map(is_expandable, (value, correct))):
         yield from _all_terms(searches[0], text, names, model, correct)
 
 

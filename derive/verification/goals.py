@@ -33,7 +33,9 @@ def goals(model: Model, kind: str, name: str, value: sp.Expr) -> Iterator[Goal]:
     foreign = frozenset((*system.qddot, *(system.qdot if kind in CANONICAL else system.p)))
     derived = QUANTITIES[kind](model, name)
     yield Goal(derived, kind == "accelerations", foreign)
-    if kind in UP_TO_A_CONSTANT and is_expandable(value):
+    if not is_expandable(value):
+        return
+    if kind in UP_TO_A_CONSTANT:
         shift = _constant(value, model) - _constant(derived, model)
         if shift:
             yield Goal(derived + shift, False, foreign)
