@@ -281,7 +281,7 @@ def test_any_span_of_random_axes_is_generated_by_itself() -> None:
 
 def test_a_motion_that_fails_has_a_status_and_no_values(tmp_path: Path) -> None:
     axes = Grid({"theta1": [0.1, 3.0], "theta2": [0.1, 3.0]})
-    results = run(tmp_path, dp, axes, 10.0, {"end": Final(("theta1",))}, max_steps=150)
+    results = run(tmp_path, dp, axes, 10.0, {"end": Final(("theta1",))}, max_steps=200)
     assert results.count == {"finished": 1, "step limit": 3}
     assert np.isnan(results.maps["end"]).ravel().tolist() == [False, True, True, True]
 
