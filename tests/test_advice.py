@@ -10,6 +10,7 @@ from formula_mutants import mutants
 from formula_truth import formulas, is_right
 
 from derive import Derivation, load
+from derive.verification.advice import MAX_LENGTH
 from derive.verification.model import Model
 from derive.verification.quantities import judge_formula
 from derive.verification.verdict import Verdict
@@ -114,6 +115,15 @@ def test_the_difference_is_given_where_no_term_mends_the_formula() -> None:
     for formula in (right, result.correction):
         verdict = judge_formula(model("double_pendulum"), "", formula, "accelerations", "theta1")
         assert verdict.verdict == "verified"
+
+
+def test_a_very_long_formula_has_a_difference_only() -> None:
+    text = str(model("chain_12").derivation.lagrangian).replace("cos(theta1)", "sin(theta1)", 1)
+    assert len(text) > MAX_LENGTH
+    result = judged("chain_12", "lagrangian", "", text)
+    assert result.corrections == ()
+    assert "sin(theta1)" in result.difference
+    assert len(result.difference) < 200
 
 
 @pytest.mark.parametrize("error", ["1e-3", "1e-9", "1e-25"])

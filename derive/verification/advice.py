@@ -33,6 +33,8 @@ from derive.verification.verdict import Correction, Verdict
 
 #: The number of changes of a formula that are compared in numbers, and those that are checked.
 MAX_CHANGES, MAX_CHECKED = 10, 3
+#: The number of characters of a formula that is searched, which takes seconds.
+MAX_LENGTH = 5000
 #: The number of operations in a formula whose terms are compared, or that is simplified.
 MAX_OPERATIONS = 500
 
@@ -60,7 +62,8 @@ def advised(
     aims, correct = [*goals(model, kind, name, value)], _correct_form(verdict, model, kind, name)
     corrections: Corrections = ()
     with suppress(NotImplementedError):
-        searches = [Search(text, names, model, goal, correct) for goal in aims]
+        searchable = aims if len(text) <= MAX_LENGTH else []
+        searches = [Search(text, names, model, goal, correct) for goal in searchable]
         proposals = _mending(text, names, model, searches, value, correct)
         corrections = next((one for one, mended in proposals if holds(mended)), ())
     state = _state(model, names, value, aims[0], correct)
@@ -104,7 +107,7 @@ def _mending(
             checked += 1
         if checked == MAX_CHECKED:
             break
-    if correct is not None and all(map(is_expandable, (value, correct))):
+    if searches and correct is not None and all(map(is_expandable, (value, correct))):
         yield from _all_terms(searches[0], text, names, model, correct)
 
 
