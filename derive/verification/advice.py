@@ -4,8 +4,6 @@ Corrections are checked before they are given: in place of the terms that they n
 the formula correct. Where none do, the advice is the difference from the right formula.
 """
 
-import ast
-import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -13,13 +11,13 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.formulas.expansion import is_expandable
-from derive.formulas.expression import parse, syntax_tree
+from derive.formulas.expression import parse
 from derive.mechanics.reduction import reduced
 from derive.verification.derived import printed_formula
 from derive.verification.goals import Goal, goals
 from derive.verification.model import Model, own_names, variables
-from derive.verification.pieces import Piece, is_sum
-from derive.verification.search import Change, Search
+from derive.verification.replacement import applied, extended, is_unique, replaced, shown
+from derive.verification.search import Search
 from derive.verification.source_names import SourceNames
 from derive.verification.terms import (
     Term,
@@ -37,8 +35,6 @@ MAX_CHANGES, MAX_CHECKED = 10, 3
 MAX_LENGTH = 5000
 #: The number of operations in a formula whose terms are compared, or that is simplified.
 MAX_OPERATIONS = 500
-
-Corrections = tuple[Correction, ...]
 
 
 def advised(
@@ -60,7 +56,7 @@ def advised(
     text, names = verdict.printed, SourceNames(verdict.printed, model.context.scope)
     value = sp.Add(*(term.value for term in terms_of_equation(text, model.context.scope)))
     aims, correct = [*goals(model, kind, name, value)], _correct_form(verdict, model, kind, name)
-    corrections: Corrections = ()
+    corrections: tuple[Correction, ...] = ()
     with suppress(NotImplementedError):
         searchable = aims if len(text) <= MAX_LENGTH else []
         searches = [Search(text, names, model, goal, correct) for goal in searchable]
@@ -95,13 +91,13 @@ def _mending(
     searches: Sequence[Search],
     value: sp.Expr,
     correct: sp.Expr | None,
-) -> Iterator[tuple[Corrections, str]]:
+) -> Iterator[tuple[tuple[Correction, ...], str]]:
     """Yield corrections of one term, and those of all terms, each with the changed formula."""
     changes = [(one, search) for search in searches for one in search.changes()]
     changes.sort(key=lambda pair: pair[0].cost + (pair[1] is not searches[0]))
     checked = 0
     for change, search in changes[:MAX_CHANGES]:
-        corrections, mended = _applied(text, change)
+        corrections, mended = applied(text, change)
         if search.is_right(mended):
             yield corrections, mended
             checked += 1
@@ -113,7 +109,7 @@ def _mending(
 
 def _all_terms(
     search: Search, text: str, names: SourceNames, model: Model, correct: sp.Expr
-) -> Iterator[tuple[Corrections, str]]:
+) -> Iterator[tuple[tuple[Correction, ...], str]]:
     """Yield corrections of all wrong terms of a sum."""
     pieces, scope = search.terms, model.context.scope
     terms = [Term(p.source, p.sign * side * parse(p.source, scope), side) for p, side in pieces]
@@ -121,16 +117,16 @@ def _all_terms(
         return
     corrected, missing = corrected_terms(terms, correct, variables(model.derivation.system))
     wrong = [(pieces[terms.index(term)][0], value) for term, value in corrected]
-    if not all(piece.parent and _is_unique(text, piece) for piece, _ in wrong):
+    if not all(piece.parent and is_unique(text, piece) for piece, _ in wrong):
         return
     corrections: list[Correction] = []
     mended = text
     for piece, value in reversed(wrong):
-        corrections.insert(0, Correction(_shown(text, piece), sp.sstr(names.write(value))))
-        mended = _replaced(mended, piece, corrections[0].correct)
+        corrections.insert(0, Correction(shown(text, piece), sp.sstr(names.write(value))))
+        mended = replaced(mended, piece, corrections[0].correct)
     if missing:
         corrections.append(Correction("", sp.sstr(names.write(missing))))
-        mended = _extended(mended, corrections[-1].correct)
+        mended = extended(mended, corrections[-1].correct)
     if search.is_right(mended):
         yield tuple(corrections), mended
 
@@ -170,79 +166,3 @@ def closest_equation(terms: Terms, model: Model) -> sp.Expr:
     factors = [closest_factor(printed, coefficients(e, state), system.qddot) for e in equations]
     index = min(range(len(factors)), key=lambda k: factors[k][0])
     return equations[index] * factors[index][1]
-
-
-def _applied(text: str, change: Change) -> tuple[tuple[Correction, ...], str]:
-    """Corrections that say a change, and the changed formula."""
-    piece, new = change.piece, change.replacement
-    if change.is_added and piece.parent is None:
-        return (Correction("", new),), _extended(text, new)
-    if change.is_added:
-        new = f"{piece.source} - {new[1:]}" if new.startswith("-") else f"{piece.source} + {new}"
-    # a term that occurs twice, or that no reader sees as one, is named by a larger one
-    while piece.parent and not (piece.is_term and _is_unique(text, piece)):
-        start, end = piece.parent.span
-        new = _inserted(text[start : piece.span[0]], new, text[piece.span[1] : end], piece)
-        piece = piece.parent
-    if piece.sign < 0:
-        new = _negative(new)
-    return (Correction(_shown(text, piece), new),), _replaced(text, piece, new)
-
-
-def _replaced(text: str, piece: Piece, new: str) -> str:
-    """The formula with `new` in place of a piece and of the sign before it."""
-    return f"{text[: piece.start]}{'+' * (piece.sign < 0)}({new}){text[piece.end :]}"
-
-
-def _shown(text: str, piece: Piece) -> str:
-    """A piece as written, without space after its sign."""
-    return re.sub(r"^-\s+", "-", text[piece.start : piece.end])
-
-
-def _extended(text: str, missing: str) -> str:
-    """The formula with a missing term, of an equation on the left."""
-    left, equals, right = text.partition("=")
-    return f"{left} + ({missing}) {equals}{right}"
-
-
-def _inserted(before: str, new: str, after: str, piece: Piece) -> str:
-    """Put `new` in place of a piece, in brackets where they are necessary."""
-    in_brackets = before[-1:] == "(" and after[:1] == ")"
-    sign = before.rstrip()[-1:]
-    if piece.is_summand and new[0] == "-" and not _is_sum(new) and sign in ("+", "-"):
-        return f"{before.rstrip()[:-1]}{'-' if sign == '+' else '+'} {new[1:]}{after}"
-    node = syntax_tree(new)
-    bare = piece.is_summand and not is_sum(node) and new[0] != "-"
-    if bare or in_brackets or isinstance(node, ast.Name | ast.Constant | ast.Call):
-        return before + new + after
-    return f"{before}({new}){after}"
-
-
-def _is_sum(text: str) -> bool:
-    return is_sum(syntax_tree(text))
-
-
-def _negative(text: str) -> str:
-    if text == "0":
-        return text
-    if _is_sum(text):
-        return f"-({text})"
-    return text[1:] if text[0] == "-" else f"-{text}"
-
-
-def _is_unique(text: str, piece: Piece) -> bool:
-    """Whether a reader finds one term that is written like the piece."""
-    tokens = re.findall(r"\w+|\*\*|\S", text[piece.start : piece.end])
-    pattern = re.compile(r"(?<![\w.])" + r"\s*".join(map(re.escape, tokens)) + r"(?![\w.(])")
-    places = [match.span() for match in pattern.finditer(text)]
-    if tokens[0] == "-":
-        pattern = re.compile(r"\s*".join(map(re.escape, tokens)) + r"(?![\w.(])")
-        places = [match.span() for match in pattern.finditer(text)]
-    terms = [place for place in places if _is_delimited(text, *place)]
-    return (terms or places) == [(piece.start, piece.end)]
-
-
-def _is_delimited(text: str, start: int, end: int) -> bool:
-    """Whether a term begins and ends here."""
-    before, after = text[:start].rstrip()[-1:], text[end:].lstrip()[:1]
-    return (before in "(+-=," or text[start] == "-") and after in ")+-=,"
