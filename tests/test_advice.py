@@ -117,6 +117,19 @@ def test_the_difference_is_given_where_no_term_mends_the_formula() -> None:
         assert verdict.verdict == "verified"
 
 
+@pytest.mark.parametrize("term", [
+    "sqrt(-2)*m*theta", "tan(theta)**90", "exp(exp(9)*theta)", "sqrt(sin(theta) - 2)",
+    "log(-m)*theta", "(theta + m)**(1/3)", "sqrt(theta**2)*theta",
+    "theta/(theta - theta_dot)**20", "cos(sin(theta))", "theta**2*0.1",
+])  # fmt: skip
+def test_unusual_terms_get_advice_that_mends_or_none(term: str) -> None:
+    right = "m*l**2*theta_dot**2/2 + m*g*l*cos(theta)"
+    result = judge_formula(model("single_pendulum"), "", f"{right} + {term}", "lagrangian")
+    assert result.verdict == "wrong"
+    if result.corrections:
+        assert [(one.wrong, one.correct) for one in result.corrections] == [(term, "0")]
+
+
 def test_a_very_long_formula_has_a_difference_only() -> None:
     text = str(model("chain_12").derivation.lagrangian).replace("cos(theta1)", "sin(theta1)", 1)
     assert len(text) > MAX_LENGTH

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derive.verification.samples import Numbers
+from derive.verification.samples import Numbers, power, quotient
 
 #: Largest relative difference of equal numbers, and largest exponent and denominator.
 CLOSE, MAX_EXPONENT, MAX_DENOMINATOR = 1e-7, 8, 360
@@ -109,10 +109,10 @@ class Monomials:
         ratios = []
         for k in self._states:
             factors = [(factor.values[k], float(exponent)) for factor, exponent in powers]
-            if any(base < 0 and exponent % 1 for base, exponent in factors):
-                return None
-            ratio = values[k] / math.prod(math.pow(*pair) for pair in factors)
+            ratio = quotient(values[k], math.prod(power(*pair) for pair in factors))
             ratios.append(abs(ratio) if up_to_sign else ratio)
+        if not all(map(math.isfinite, ratios)):
+            return None
         coefficient = Fraction(ratios[0]).limit_denominator(MAX_DENOMINATOR)
         if any(abs(ratio - coefficient) > CLOSE * abs(ratio) for ratio in ratios):
             return None

@@ -45,10 +45,10 @@ class Samples:
 
     def _value(self, expression: sp.Expr) -> Numbers:
         if expression.is_number:
-            return [float(expression)] * self.count
+            return [_number(expression)] * self.count
         parts = [self(part) for part in expression.args]
         if expression.is_Add:
-            return [math.fsum(terms) for terms in zip(*parts, strict=True)]
+            return [sum(terms) for terms in zip(*parts, strict=True)]
         if expression.is_Mul:
             return [math.prod(factors) for factors in zip(*parts, strict=True)]
         if expression.is_Pow:
@@ -65,6 +65,13 @@ class Samples:
         states = [[[one[k] for one in row] for row in entries] for k in range(self.count)]
         for symbol, values in zip(qddot, zip(*map(_solved, states), strict=True), strict=True):
             self._known[symbol] = [*values]
+
+
+def _number(expression: sp.Expr) -> float:
+    try:
+        return float(expression)
+    except (TypeError, OverflowError):  # complex, or very large
+        return math.nan
 
 
 def power(base: float, exponent: float) -> float:

@@ -101,6 +101,8 @@ class Search:
         sides = self._sides
         other = sides[1].value if len(sides) > 1 else self._samples(self._goal.value)
         states = [k for k in range(STATES) if math.isfinite(sides[0].value[k] + other[k])]
+        if len(states) < COMPARED:
+            raise NotImplementedError("the formula has no value at most states")
         yield from sides[0].walk(other, states[:COMPARED])
         if len(sides) > 1:
             yield from sides[1].walk(sides[0].value, states[:COMPARED])
