@@ -72,4 +72,4 @@ def test_models_are_declined_for_true_reasons_where_there_are_no_linear_equation
     assert turning["quadrature"] == "gyroscopic forces act"
     hanging = declined(Scene(spherical, spherical.DEFAULTS, (1.0, 0, 0, 1.0), 1.0))
     reason = "the mass matrix is not positive definite at the equilibrium"
-    assert hanging["normal modes"] == reason
+    assert hanging["normal modes"].endswith(reason)

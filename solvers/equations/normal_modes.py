@@ -33,9 +33,12 @@ class Modes:
         mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
         try:
             squares, shapes = eigh(stiffness_matrix, mass_matrix)
-        except ValueError as error:  # of LAPACK, or for numbers that are not finite
-            text = f"{name} has no modes with {params}: its matrices are singular or not finite"
-            raise ValueError(text) from error
+        except np.linalg.LinAlgError as error:
+            text = "the mass matrix is not positive definite at the equilibrium"
+            raise ValueError(f"{name} has no modes with {params}: {text}") from error
+        except ValueError as error:
+            text = "its matrices are not finite at the equilibrium"
+            raise ValueError(f"{name} has no modes with {params}: {text}") from error
         if squares[0] <= 0:
             reason = f"squared frequencies are {squares}"
             raise ValueError(f"{name} does not oscillate about rest with {params}: {reason}")

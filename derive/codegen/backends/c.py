@@ -236,10 +236,12 @@ class CBackend(Backend):
         lengths["parameters"] = len(system.params)
         functions = "\n".join(map(self._function, contents.functions)).rstrip("\n")
         has_loops = f"{system.name}_factorise(" in functions
+        if has_loops:
+            loops = LOOPS.format(system=system.name, guard=guard, block=BLOCK)
+            functions = loops + functions
         numbers = NUMBERS if f"{guard}_NUMBER(" in functions else ""
         called = {name for f in contents.functions for name in f.lowering.functions}
         calls = "\n".join(CALL.format(system=system.name, name=name) for name in sorted(called))
-        loops = LOOPS if has_loops else ""
         return HEADER.format(
             system=system,
             guard=guard,
@@ -252,7 +254,7 @@ class CBackend(Backend):
             indices="\n".join(_indices(contents)),
             numbers=numbers.format(system=system.name, guard=guard),
             calls=CALLS.format(calls=calls) if called else "",
-            functions=loops.format(system=system.name, guard=guard, block=BLOCK) + functions,
+            functions=functions,
         )
 
     def _function(self, function: Function) -> str:

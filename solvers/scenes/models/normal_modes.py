@@ -52,9 +52,6 @@ class NormalModes(ClosedForm):
         motion.require_inertia()
         try:
             modes = Modes.at_rest(motion.module, motion.params)
-        except np.linalg.LinAlgError as error:
-            reason = "the mass matrix is not positive definite at the equilibrium"
-            raise OutsideDomainError(reason) from error
         except ValueError as error:
             raise OutsideDomainError(str(error)) from error
         equilibrium = np.array(function(motion.module, "equilibrium")(motion.params))
