@@ -7,6 +7,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
+from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.module import GeneratedModule, function, has_function
 
 Array = NDArray[np.float64]
@@ -59,10 +60,8 @@ def energy_unit(module: GeneratedModule, params: Sequence[float], first: float) 
 
 def energy_at_rest(module: GeneratedModule, params: Sequence[float]) -> float | None:
     """Energy of the system at its equilibrium in J; None if no equilibrium is known."""
-    if not has_function(module, "equilibrium"):
-        return None
-    q = function(module, "equilibrium")(params)
-    return float(module.energy(0.0, (*q, *[0.0] * len(q)), params))
+    y = equilibrium_state(module, params)
+    return None if y is None else float(module.energy(0.0, y.tolist(), params))
 
 
 def energy_error(

@@ -1,13 +1,11 @@
 """The change of an energy that the system keeps: evidence, at no cost, of a useless result."""
 
-from collections.abc import Sequence
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule, function, has_function
+from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.predictability import PredictabilityWarning
 from solvers.integration.solution import Array
 
@@ -43,18 +41,10 @@ def motion_energy(form: Form, start: Array) -> Array:
     own, at_rest = energies(form, start), start.copy()
     at_rest[n:] = 0.0
     potential = energies(form, at_rest)
-    above = own - _at_equilibrium(form.module, form.params, n)
+    rest = equilibrium_state(form.module, form.params)
+    above = own - (np.nan if rest is None else energies(form, rest))
     parts = [np.abs(part) for part in np.broadcast_arrays(own - potential, potential, above)]
     return np.asarray(np.fmax.reduce(parts))
-
-
-def _at_equilibrium(module: GeneratedModule, params: Sequence[Any], n: int) -> Any:
-    """The energy of the equilibrium in J; NaN where none is known."""
-    if not has_function(module, "equilibrium"):
-        return np.nan
-    name = "equilibrium_many" if any(map(np.ndim, params)) else "equilibrium"
-    q = np.asarray(function(module, name)(params))
-    return module.energy_many(0.0, np.concatenate([q, np.zeros_like(q)]), params)
 
 
 def changed_energy(

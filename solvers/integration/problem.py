@@ -50,7 +50,7 @@ class Problem:
     atol: Array
     samples: Array | None  # times of the states to record; None for the end of every step
     events: list[EventFunction]
-    limits: list[Any]  # events that end the motion where a positive coordinate falls to 0
+    limits: list[EventFunction]  # events that end the motion where a positive coordinate falls to 0
     max_steps: int
     options: Options  # as given
 

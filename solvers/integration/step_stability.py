@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import function as module_function
+from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.module import has_function
 from solvers.integration.energy_change import changed_energy, conserves_energy
 from solvers.integration.problem import Outcome, Problem
@@ -30,9 +30,8 @@ def step_instability(problem: Problem, outcome: Outcome) -> str:
     (begin, end), failed = problem.span, _has_failed(problem, outcome)
     duration = abs(end - begin)
     places = [problem.start[: len(module.STATE)]]
-    if failed and has_function(module, "equilibrium"):
-        q = module_function(module, "equilibrium")(problem.form.params)
-        places.append(np.array([*q, *[0.0] * len(q)]))
+    if failed and (rest := equilibrium_state(module, problem.form.params)) is not None:
+        places.append(rest)
     rates = np.concatenate([_rates(problem, place) for place in places])
     function = StabilityFunction.of(method)
     growth = _growth(function, rates, h) * duration
