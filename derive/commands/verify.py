@@ -24,7 +24,7 @@ def verify(names: Sequence[str], *, as_json: bool) -> int:
     for name in names:
         try:
             derivations[name] = judge(name)
-        except ValueError as error:  # the other files are judged nevertheless
+        except ValueError as error:  # the other files are still judged
             derivations[name] = None
             print(f"holonomic verify: {error}", file=sys.stderr)
     judged = [one for one in derivations.values() if one]

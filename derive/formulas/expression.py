@@ -6,9 +6,11 @@ values, with names from the caller's scope. Sizes are limited before anything is
 
 import ast
 import keyword
+import operator
 import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
+from functools import reduce
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -49,7 +51,28 @@ def parse(text: str, scope: Scope) -> Value:
     Numbers are exact (``1/2`` is one half, ``9.81`` is 981/100), ``(a, b)`` is a
     column and ``[[a, b], [c, d]]`` a matrix.
     """
-    return evaluate(syntax_tree(text), text.strip(), scope)
+    text = text.strip()
+    try:
+        value = _Evaluator(text, scope).value(syntax_tree(text))
+    except ExpressionError:
+        raise
+    except RecursionError:
+        raise ExpressionError("the formula is nested too deeply: name its parts") from None
+    except NoValueError as error:
+        raise ExpressionError(f"{text[:80]!r} has no finite value: {error}") from None
+    except Exception as error:  # SymPy raises many types for invalid operations
+        raise ExpressionError(f"{text[:80]!r} cannot be computed: {error}") from None
+    if value.has(sp.zoo, sp.nan, sp.oo):
+        raise ExpressionError(f"{text[:80]!r} has no finite value: it divides by zero")
+    return value
+
+
+def number(text: str, scope: Scope) -> sp.Expr:
+    """Parse a formula whose value is a number: neither a column nor a matrix."""
+    value = parse(text, scope)
+    if isinstance(value, sp.MatrixBase):  # which is an expression, too, if it is immutable
+        raise ExpressionError(f"{text.strip()[:50]!r} is a column or matrix, not a number")
+    return value
 
 
 def syntax_tree(text: str) -> ast.expr:
@@ -65,34 +88,37 @@ def syntax_tree(text: str) -> ast.expr:
         tree = ast.parse(source, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise ExpressionError(f"cannot parse {text[:80]!r} as a formula: {error}") from None
+    line = source.encode()  # columns are counted in bytes
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant):
             # the digits, since the value is already rounded; `kind` is free but for text
-            node.kind = ast.get_source_segment(source, node)
+            node.kind = line[node.col_offset : node.end_col_offset].decode()
     return tree
+
+
+def is_sum(node: ast.expr) -> bool:
+    """Whether a part of a formula is a sum or a difference."""
+    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
+
+
+def summands(node: ast.expr) -> list[tuple[ast.expr, int]]:
+    """The terms of a sum and their signs; brackets behind a sign stay whole."""
+    terms: list[tuple[ast.expr, int]] = []
+    while isinstance(node, ast.BinOp) and is_sum(node):
+        terms.append((node.right, 1 if isinstance(node.op, ast.Add) else -1))
+        node = node.left
+    match node:
+        case ast.UnaryOp(op=ast.USub(), operand=operand) if not is_sum(operand):
+            terms.append((operand, -1))
+        case _:
+            terms.append((node, 1))
+    return terms[::-1]
 
 
 def python_source(text: str) -> str:
     """The formula as Python's parser reads it; columns of a syntax tree are those of this text."""
     # with a wide letter, the parser reads a keyword as a name, and normalises it
     return KEYWORD.sub(lambda word: chr(ord(word[0][0]) + WIDE) + word[0][1:], text)
-
-
-def evaluate(node: ast.expr, text: str, scope: Scope) -> Value:
-    """Evaluate the syntax tree of `text`, or a part of it."""
-    try:
-        value = _Evaluator(text, scope).value(node)
-    except ExpressionError:
-        raise
-    except RecursionError:
-        raise ExpressionError("the formula is nested too deeply: name its parts") from None
-    except NoValueError as error:
-        raise ExpressionError(f"{text[:80]!r} has no finite value: {error}") from None
-    except Exception as error:  # SymPy raises many types for invalid operations
-        raise ExpressionError(f"{text[:80]!r} cannot be computed: {error}") from None
-    if value.has(sp.zoo, sp.nan, sp.oo):
-        raise ExpressionError(f"{text[:80]!r} has no finite value: it divides by zero")
-    return value
 
 
 class _Evaluator:
@@ -117,10 +143,10 @@ class _Evaluator:
                 return -self.value(operand)
             case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
                 return _power(self.value(base), self.value(exponent))
-            case ast.BinOp(left=left, op=ast.Add(), right=right):
-                return self.value(left) + self.value(right)
-            case ast.BinOp(left=left, op=ast.Sub(), right=right):
-                return self.value(left) - self.value(right)
+            case ast.BinOp(op=ast.Add() | ast.Sub()):
+                terms = [sign * self.value(term) for term, sign in summands(node)]
+                has_matrix = any(isinstance(term, sp.MatrixBase) for term in terms)
+                return reduce(operator.add, terms) if has_matrix else sp.Add(*terms)
             case ast.BinOp(left=left, op=ast.Mult(), right=right):
                 return self.value(left) * self.value(right)
             case ast.BinOp(left=left, op=ast.Div(), right=right):

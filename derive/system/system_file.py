@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, ExpressionError, parse
+from derive.formulas.expression import FUNCTIONS, ExpressionError, number
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import Coordinate, Parameter, PointMass, RigidBody, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
@@ -139,9 +139,6 @@ def _symbol(name: str, system: str, *, positive: bool) -> sp.Symbol:
 
 def _value(name: str, text: str, scope: Scope) -> sp.Expr:
     try:
-        value = parse(text, scope)
+        return number(text, scope)
     except ExpressionError as error:
         raise InputError(f"{name}: {error}") from error
-    if isinstance(value, sp.MatrixBase):
-        raise InputError(f"{name}: {text[:50]!r} must be a number, not a vector or matrix")
-    return value

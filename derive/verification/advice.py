@@ -15,17 +15,16 @@ from derive.formulas.expression import parse
 from derive.mechanics.reduction import reduced
 from derive.verification.derived import printed_formula
 from derive.verification.goals import Goal, goals
-from derive.verification.model import Model, own_names, variables
+from derive.verification.model import Model, variables
 from derive.verification.replacement import applied, extended, is_unique, replaced, shown
 from derive.verification.search import Search
 from derive.verification.source_names import SourceNames
 from derive.verification.terms import (
     Term,
-    Terms,
     closest_factor,
     coefficients,
     corrected_terms,
-    terms_of_equation,
+    difference,
 )
 from derive.verification.verdict import Correction, Verdict
 
@@ -45,7 +44,7 @@ def advised(
     Parameters
     ----------
     verdict : Verdict
-        With the correct form, if it is known.
+        Without a note if the correct form can be derived.
     model : Model
         The derivation, and the names of the formula.
     kind, name : str
@@ -54,8 +53,9 @@ def advised(
         ``holds(text)``, whether a formula in place of the printed one is correct.
     """
     text, names = verdict.printed, SourceNames(verdict.printed, model.context.scope)
-    value = sp.Add(*(term.value for term in terms_of_equation(text, model.context.scope)))
-    aims, correct = [*goals(model, kind, name, value)], _correct_form(verdict, model, kind, name)
+    value = difference(text, model.context.scope)
+    aims = [*goals(model, kind, name, value)]
+    correct = None if verdict.note else _correct_form(model, kind, name, value)
     corrections: tuple[Correction, ...] = ()
     with suppress(NotImplementedError):
         searchable = aims if len(text) <= MAX_LENGTH else []
@@ -64,6 +64,10 @@ def advised(
         corrections = next((one for one, mended in proposals if holds(mended)), ())
     state = _state(model, names, value, aims[0], correct)
     result = replace(verdict, corrections=corrections, state=state)
+    if correct is None and not verdict.note:
+        size = f"{len(model.derivation.system.q)} × {len(model.derivation.system.q)}"
+        note = f"the correct formula is not derived: it requires the inverse of M, {size}"
+        return replace(result, note=note)
     if correct is None:
         return result
     equation = " = 0" if aims[0].is_equation else ""
@@ -112,11 +116,11 @@ def _all_terms(
 ) -> Iterator[tuple[tuple[Correction, ...], str]]:
     """Yield corrections of all wrong terms of a sum."""
     pieces, scope = search.terms, model.context.scope
-    terms = [Term(p.source, p.sign * side * parse(p.source, scope), side) for p, side in pieces]
+    terms = [Term(p.sign * side * parse(p.source, scope), side) for p, side in pieces]
     if correct.count_ops() > MAX_OPERATIONS:
         return
     corrected, missing = corrected_terms(terms, correct, variables(model.derivation.system))
-    wrong = [(pieces[terms.index(term)][0], value) for term, value in corrected]
+    wrong = [(pieces[index][0], value) for index, value in corrected.items()]
     if not all(piece.parent and is_unique(text, piece) for piece, _ in wrong):
         return
     corrections: list[Correction] = []
@@ -131,13 +135,10 @@ def _all_terms(
         yield tuple(corrections), mended
 
 
-def _correct_form(verdict: Verdict, model: Model, kind: str, name: str) -> sp.Expr | None:
-    """The correct form as an expression, if it is known."""
-    if not verdict.correction:
-        return None
+def _correct_form(model: Model, kind: str, name: str, value: sp.Expr) -> sp.Expr | None:
+    """The correct form of a formula; None if it requires a large inverse."""
     if kind == "euler_lagrange":
-        text = verdict.correction.removesuffix(" = 0")
-        return parse(text, own_names(model.derivation.system))
+        return _closest_equation(value, model)
     return printed_formula(model, kind, name)
 
 
@@ -158,11 +159,11 @@ def _state(
     return ", ".join(numbers)
 
 
-def closest_equation(terms: Terms, model: Model) -> sp.Expr:
-    """Return the derived equation of motion, times a factor, from which `terms` differ least."""
+def _closest_equation(value: sp.Expr, model: Model) -> sp.Expr:
+    """The derived equation of motion, times a factor, from which a wrong one differs least."""
     system, equations = model.derivation.system, model.derivation.euler_lagrange
     state = variables(system)
-    printed = coefficients(sp.Add(*(term.value for term in terms)), state)
+    printed = coefficients(value, state)
     factors = [closest_factor(printed, coefficients(e, state), system.qddot) for e in equations]
     index = min(range(len(factors)), key=lambda k: factors[k][0])
     return equations[index] * factors[index][1]

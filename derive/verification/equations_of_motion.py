@@ -9,11 +9,10 @@ import sympy as sp
 from derive.formulas.expansion import is_expandable
 from derive.formulas.expression import ExpressionError
 from derive.formulas.numeric import independent, solved
-from derive.verification.advice import closest_equation
 from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on
 from derive.verification.other_solutions import has_other_solutions
-from derive.verification.terms import terms_of_equation
+from derive.verification.terms import difference
 from derive.verification.verdict import Verdict
 
 #: Largest ratio of factors that counts as zero.
@@ -27,8 +26,7 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
     if text.count("=") > 1:
         raise ExpressionError(f"an equation has one equals sign, not {text.count('=')}")
     system, verdict = model.derivation.system, partial(Verdict, label, printed=text)
-    terms = terms_of_equation(text, model.context.scope)
-    value = sp.Add(*(term.value for term in terms))
+    value = difference(text, model.context.scope)
     if not depends_on(value.xreplace(model.momenta), system.qddot):
         if depends_on(value, system.p) and (note := model.context.agreement(value)) is not None:
             return verdict(verdict="definition", note=joined("it defines a momentum", note))
@@ -38,8 +36,7 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
     if not model.motions.is_small(value):
         witness = model.motions.witness(value, sp.S.Zero)
         if is_linear and is_expandable(value):
-            correction = f"{closest_equation(terms, model)} = 0"
-            return verdict(verdict="wrong", correction=correction, witness=witness)
+            return verdict(verdict="wrong", witness=witness)
         reason = "has too many terms to compare them" if is_linear else NOT_LINEAR
         return verdict(verdict="wrong", witness=witness, note=f"it {reason}")
     if model.motions.is_small_somewhere(*coefficients):
@@ -88,7 +85,7 @@ def _row(model: Model, text: str) -> tuple[sp.Expr, ...]:
     The definition of a conserved momentum implies that its rate is zero.
     """
     system, L = model.derivation.system, model.lagrangian
-    value = _value(model, text)
+    value = difference(text, model.context.scope)
     if depends_on(value.xreplace(model.momenta), system.qddot):
         return _factors(model, [value.diff(a) for a in system.qddot])
     rates = [L.diff(q) + f for q, f in zip(system.q, system.applied, strict=True)]
@@ -102,10 +99,6 @@ def _factors(model: Model, coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ..
     """Solve Mᵀ λ = c: an equation with coefficients c is Σ λ_i times the derived equation i."""
     matrix, column = model.derivation.mass_matrix, sp.Matrix(coefficients)
     return solved(matrix, column, model.motions.evaluators[0])
-
-
-def _value(model: Model, text: str) -> sp.Expr:
-    return sp.Add(*(term.value for term in terms_of_equation(text, model.context.scope)))
 
 
 def _agreement(model: Model, value: sp.Expr, coefficients: Sequence[sp.Expr]) -> str | None:

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import sympy as sp
-
-from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.expression import FUNCTIONS, number, parse
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.specialisation import substituted
 from derive.system.catalogue import load, published
@@ -78,10 +76,7 @@ def _with_equal_parameters(table: Table, system: System) -> System:
     for name, text in table.entries("equal").items():
         if name not in symbols:
             raise InputError(f"equal.{name[:50]}: parameters are {', '.join(symbols)}")
-        value = parsed(f"equal.{name}", text, symbols | FUNCTIONS)
-        if isinstance(value, sp.MatrixBase):
-            raise InputError(f"equal.{name}: {text[:50]!r} is a column or matrix, not a number")
-        values[symbols[name]] = value
+        values[symbols[name]] = parsed(f"equal.{name}", text, symbols | FUNCTIONS, number)
     return substituted(system, values)
 
 

@@ -1,6 +1,6 @@
 """The names of a source: formulas in the names of the system, with derivatives and momenta."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 from unicodedata import normalize
 
@@ -38,10 +38,10 @@ def normalised(name: str) -> str:
     return normalize("NFKC", name)
 
 
-def parsed(key: str, text: str, scope: Scope) -> Value:
+def parsed(key: str, text: str, scope: Scope, read: Callable[[str, Scope], Value] = parse) -> Value:
     """The value of the formula at a key of a file; an `InputError` names the key."""
     try:
-        return parse(text, scope)
+        return read(text, scope)
     except ExpressionError as error:
         raise InputError(f"{key}: {error}") from error
 

@@ -10,7 +10,7 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from derive.formulas.expression import Scope, python_source, syntax_tree
+from derive.formulas.expression import Scope, is_sum, python_source, summands, syntax_tree
 from derive.verification.samples import Numbers, Samples, applied, power, quotient
 
 OPERATIONS: dict[type[ast.operator], Callable[[float, float], float]] = {
@@ -175,11 +175,6 @@ class Pieces:
         return start, spaces + len(line[: node.end_col_offset].decode())
 
 
-def is_sum(node: ast.expr) -> bool:
-    """Whether a part of a formula is a sum or a difference."""
-    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
-
-
 def has_bracket(node: ast.expr) -> bool:
     """Whether a product contains a sum, outside functions."""
     match node:
@@ -188,18 +183,6 @@ def has_bracket(node: ast.expr) -> bool:
         case ast.UnaryOp(operand=operand):
             return has_bracket(operand)
     return False
-
-
-def summands(node: ast.expr, sign: int = 1) -> Iterator[tuple[ast.expr, int]]:
-    """Yield the terms of a sum with their signs; brackets on the right of a sign stay whole."""
-    match node:
-        case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as symbol, right=right):
-            yield from summands(left, sign)
-            yield right, sign if isinstance(symbol, ast.Add) else -sign
-        case ast.UnaryOp(op=ast.USub(), operand=operand) if not is_sum(operand):
-            yield operand, -sign
-        case _:
-            yield node, sign
 
 
 def _smallest(values: Numbers, count: int) -> Sequence[int]:

@@ -3,8 +3,8 @@
 import ast
 import re
 
-from derive.formulas.expression import syntax_tree
-from derive.verification.pieces import Piece, is_sum
+from derive.formulas.expression import is_sum, syntax_tree
+from derive.verification.pieces import Piece
 from derive.verification.search import Change
 from derive.verification.verdict import Correction
 

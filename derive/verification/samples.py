@@ -6,7 +6,9 @@ from random import Random
 from typing import TypeAlias
 
 import sympy as sp
+from mpmath import fp
 
+from derive.formulas import functions
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -16,7 +18,7 @@ from derive.verification.model import Model
 Numbers: TypeAlias = list[float]
 
 FUNCTIONS: dict[str, Callable[[float], float]] = {
-    name: getattr(math, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt")
+    name: getattr(math, name) for name in functions.FUNCTIONS
 } | {"Abs": abs}
 
 
@@ -60,11 +62,13 @@ class Samples:
     def _solve(self, derivation: Derivation) -> None:
         """Set accelerations to those of the motion."""
         qddot, M, f = derivation.system.qddot, derivation.mass_matrix, derivation.forcing
-        n = range(len(qddot))
-        entries = [[self(M[i, j]) for j in n] + [self(f[i])] for i in n]
-        states = [[[one[k] for one in row] for row in entries] for k in range(self.count)]
-        for symbol, values in zip(qddot, zip(*map(_solved, states), strict=True), strict=True):
-            self._known[symbol] = [*values]
+        rows, column = [[self(entry) for entry in row] for row in M.tolist()], [*map(self, f)]
+        solutions = [
+            fp.lu_solve([[entry[k] for entry in row] for row in rows], [one[k] for one in column])
+            for k in range(self.count)
+        ]
+        for i, symbol in enumerate(qddot):
+            self._known[symbol] = [solution[i] for solution in solutions]
 
 
 def _number(expression: sp.Expr) -> float:
@@ -101,17 +105,3 @@ def applied(name: str, values: Numbers) -> Numbers:
 
 def _symbols(system: System) -> Sequence[sp.Symbol]:
     return (*system.params, *system.q, *system.qdot, *system.qddot, TIME)
-
-
-def _solved(rows: list[list[float]]) -> list[float]:
-    """Solve M x = f, with the rows of M and f side by side; M is positive definite."""
-    n = len(rows)
-    for i in range(n):
-        for j in range(i + 1, n):
-            factor = rows[j][i] / rows[i][i]
-            rows[j] = [a - factor * b for a, b in zip(rows[j], rows[i], strict=True)]
-    solution = [0.0] * n
-    for i in reversed(range(n)):
-        known = math.fsum(rows[i][j] * solution[j] for j in range(i + 1, n))
-        solution[i] = (rows[i][n] - known) / rows[i][i]
-    return solution

@@ -13,13 +13,14 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, parse
+from derive.formulas.expression import ExpressionError, is_sum
 from derive.verification.goals import Goal
 from derive.verification.model import Model, depends_on
 from derive.verification.monomials import CLOSE, Monomial, Monomials
-from derive.verification.pieces import Piece, Pieces, is_sum
+from derive.verification.pieces import Piece, Pieces
 from derive.verification.samples import Numbers, Samples, quotient
 from derive.verification.source_names import SourceNames
+from derive.verification.terms import difference
 from derive.verification.vocabulary import Vocabulary
 
 #: States in all, and those at which required values are compared.
@@ -76,10 +77,9 @@ class Search:
     def is_right(self, text: str) -> bool:
         """Whether a formula has the values of the goal; an equation holds along motions only."""
         try:
-            sides = [parse(side, self._scope) for side in text.split("=")]
+            value = difference(text, self._scope)
         except ExpressionError:  # a correction with a function that formulas do not have
             return False
-        value = sides[0] - sum(sides[1:])
         if not _are_close(self._samples(value), self._samples(self._goal.value)):
             return False
         return not self._goal.is_equation or not _are_close(

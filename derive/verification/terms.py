@@ -1,12 +1,11 @@
 """Term-by-term comparison of sums: coefficients of functions of the state."""
 
-import ast
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Scope, evaluate, syntax_tree
+from derive.formulas.expression import Scope, number
 from derive.mechanics.reduction import collected, harmonics
 
 #: Coefficients, which depend on parameters only, by the function of the state that they multiply.
@@ -18,42 +17,14 @@ Symbols = Collection[sp.Symbol]
 class Term:
     """A term of a printed sum, or of the difference of the sides of an equation."""
 
-    text: str  # as printed, with its sign
     value: sp.Expr
-    side: int = 1  # -1 on the right of an equation
+    side: int  # -1 on the right of an equation
 
 
-Terms = Collection[Term]
-
-
-def split_terms(text: str, scope: Scope, side: int = 1) -> list[Term]:
-    """Split a formula into its terms, in printed order."""
-    text = text.strip()
-    terms = []
-    for sign, node in _summands(syntax_tree(text), 1):
-        printed = f"{'' if sign > 0 else '-'}{ast.unparse(node)}"
-        value = side * sign * evaluate(node, text, scope)
-        if isinstance(value, sp.MatrixBase):
-            raise ExpressionError(f"{printed[:50]!r} is a column or matrix, not a number")
-        terms.append(Term(printed, value, side))
-    return terms
-
-
-def terms_of_equation(text: str, scope: Scope) -> list[Term]:
-    """Split the difference of the sides of an equation; without an equals sign, a formula."""
+def difference(text: str, scope: Scope) -> sp.Expr:
+    """Left minus right side of an equation; the value of a formula without an equals sign."""
     left, equals, right = text.partition("=")
-    return split_terms(left, scope) + (split_terms(right, scope, -1) if equals else [])
-
-
-def _summands(node: ast.expr, sign: int) -> Iterator[tuple[int, ast.expr]]:
-    match node:
-        case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as operator, right=right):
-            yield from _summands(left, sign)
-            yield from _summands(right, sign if isinstance(operator, ast.Add) else -sign)
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            yield from _summands(operand, -sign)
-        case _:
-            yield sign, node
+    return number(left, scope) - (number(right, scope) if equals else sp.S.Zero)
 
 
 def coefficients(expression: sp.Expr, state: Symbols) -> Coefficients:
@@ -81,8 +52,8 @@ def closest_factor(
 
 def corrected_terms(
     terms: Sequence[Term], derived: sp.Expr, state: Symbols
-) -> tuple[list[tuple[Term, sp.Expr]], sp.Expr]:
-    """Return the wrong terms with corrections of their values, and the sum of missing terms.
+) -> tuple[dict[int, sp.Expr], sp.Expr]:
+    """Return corrections of wrong terms, as printed, by index, and the sum of missing terms.
 
     With all corrections the terms have the sum `derived`. A function of the state that occurs in
     several terms is corrected in the first.
@@ -93,19 +64,19 @@ def corrected_terms(
         f: (correct.get(f, sp.S.Zero), printed.get(f, sp.S.Zero)) for f in {**printed, **correct}
     }
     changes = {f: change for f, (a, b) in pairs.items() if (change := sp.cancel(a - b))}
-    corrected = []
-    for term in terms:
+    corrected: dict[int, sp.Expr] = {}
+    for index, term in enumerate(terms):
         own = coefficients(term.value, state)
         wrong = [function for function in own if function in changes]
         if wrong:
             for function in wrong:
                 own[function] = sp.cancel(own[function] + changes.pop(function))
-            corrected.append((term, sp.Add(*(c * f for f, c in own.items()))))
+            corrected[index] = sp.Add(*(c * f for f, c in own.items()))
     missing = sp.Add(*(c * f for f, c in changes.items()))
-    for k, (term, value) in enumerate(corrected):
+    for index, value in corrected.items():
         if missing and not value:  # a wrong function has the place of a missing one
-            corrected[k], missing = (term, missing), sp.S.Zero
-    whole = [(term, _collected(term.side * value, state)) for term, value in corrected]
+            corrected[index], missing = missing, sp.S.Zero
+    whole = {k: _collected(terms[k].side * value, state) for k, value in corrected.items()}
     return whole, _collected(missing, state)
 
 
