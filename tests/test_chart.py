@@ -82,7 +82,7 @@ def test_the_error_of_the_reference_is_estimated_with_fewer_digits(
 def test_curves_contain_the_error_relative_to_the_reference(truth: Reference) -> None:
     wanted = [
         ("rk4", "lagrangian", "compiled"),
-        ("verner87", "rational", "compiled"),
+        ("verner853", "rational", "compiled"),
         ("dp54", "hamiltonian", "python"),
         ("DOP853", "lagrangian", "scipy"),
     ]
@@ -386,8 +386,8 @@ def test_systems_of_every_kind_are_charted(
 def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Path) -> None:
     wanted = [
         ("rk4", "lagrangian", "compiled"),
-        ("verner87", "rational", "compiled"),
-        ("verner87", "rational", "python"),
+        ("verner853", "rational", "compiled"),
+        ("verner853", "rational", "python"),
         ("DOP853", "rational", "scipy"),
     ]
     found = curves(find("report", load_module), truth, wanted)
@@ -400,14 +400,14 @@ def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Pat
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000
     text = "\n".join(study.summary())
     assert "reference: Taylor series, 32 digits, own error" in text
-    assert "verner87, rational " in text
+    assert "verner853, rational " in text
     assert "rk4: error falls as h^4" in text
 
 
 def test_the_command_prints_curves_reference_and_frontier(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    wanted = [("rk4", "lagrangian", "compiled"), ("verner87", "rational", "compiled")]
+    wanted = [("rk4", "lagrangian", "compiled"), ("verner853", "rational", "compiled")]
     monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
     monkeypatch.setattr(peers, "PEERS", {})
     assert main(["chart", "report", "single", "--json", "--output", str(tmp_path)]) == 0
@@ -420,7 +420,7 @@ def test_the_command_prints_curves_reference_and_frontier(
         assert all(keys <= set(p) for p in c["points"])
     assert found["reference"]["method"] == "Taylor series, 32 digits"
     assert 0 < found["reference"]["global_error"] < 1e-14
-    assert {row["method"] for row in found["frontier"]} <= {"rk4", "verner87"}
+    assert {row["method"] for row in found["frontier"]} <= {"rk4", "verner853"}
     assert {Path(path).name for path in found["pictures"]} == {p.name for p in tmp_path.iterdir()}
     assert main(["chart", "single", "--output", str(tmp_path)]) == 0
     assert "single pendulum from 2 rad, 10 s" in capsys.readouterr().out
@@ -430,7 +430,7 @@ def test_the_command_prints_curves_reference_and_frontier(
     monkeypatch.setattr("solvers.scenes.models.method_choice.RECORD", file)
     assert main(["chart", "single", "--record", "--output", str(tmp_path)]) == 0
     assert "plots: " in capsys.readouterr().out
-    assert {method for method, *_ in wanted} == {*re.findall("rk4|verner87", file.read_text())}
+    assert {method for method, *_ in wanted} == {*re.findall("rk4|verner853", file.read_text())}
 
 
 def test_a_scene_that_fails_loses_no_other(

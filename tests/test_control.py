@@ -117,7 +117,7 @@ def test_estimates_notice_a_kink_wherever_it_is_in_the_step(name: str) -> None:
 def test_an_estimate_blind_to_half_of_the_step_exceeds_this_bound() -> None:
     # of the weights of order 6 that Verner's stages allow, those of the published pair: the
     # stages with nodes up to 0.465 hardly count
-    tableau = load("verner87")
+    tableau = load("verner853")
     late = np.array([0, 0, 0, 0, 0, 1e-4, -1e-4, 0.572, -0.256, 0.370, -0.686, 0])
     b_hat = tuple(Decimal(float(b) - e) for b, e in zip(tableau.b, late, strict=True))
     assert error_over_estimate(replace(tableau, b_hat=b_hat, b_low=())) > 300

@@ -63,7 +63,7 @@ def test_rk3_and_rk4_grow_beyond_their_interval_and_not_within(method: str) -> N
 
 
 def test_stiff_scenes_shorten_the_steps_of_explicit_methods_only() -> None:
-    methods = ("rk4", "verner87", "gauss2", "radau3")
+    methods = ("rk4", "verner853", "gauss2", "radau3")
     costs = stiffness.Stiffness((30.0, 300.0), methods).run(load)
     for family in ("short second rod", "light first mass", "stiff spring"):
         steps = {
@@ -73,7 +73,7 @@ def test_stiff_scenes_shorten_the_steps_of_explicit_methods_only() -> None:
             for k in (0, 1)
             if (c.ratio > 150) == bool(k)
         }
-        for method in ("rk4", "verner87"):  # ten times as fast, ten times the steps, about
+        for method in ("rk4", "verner853"):  # ten times as fast, ten times the steps, about
             assert 6 < steps[method, 1] / steps[method, 0] < 16, (family, method)
         for method in ("gauss2", "radau3"):
             assert steps[method, 1] <= 1.5 * steps[method, 0], (family, method)
@@ -109,7 +109,7 @@ def test_the_crossover_is_where_costs_are_equal() -> None:
 
 
 def test_energy_drifts_steadily_with_rk_and_stays_bounded_with_gauss() -> None:
-    cases = [case for case in CASES if case[0] in ("rk4", "verner87", "gauss1", "gauss2")]
+    cases = [case for case in CASES if case[0] in ("rk4", "verner853", "gauss1", "gauss2")]
     for found in EnergyDrift(2000, tuple(cases)).run(load):
         if found.method.startswith("gauss"):
             assert abs(found.exponent) < 0.01

@@ -52,7 +52,7 @@ def test_no_evaluation_exceeds_those_of_the_last_step() -> None:
 def test_invalid_options_of_solve_ivp_are_refused(options: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must"):
         solve_ivp(
-            sp.rhs, (0, 1), (1, 0), method=ode_solver("verner87"), args=(sp.DEFAULTS,), **options
+            sp.rhs, (0, 1), (1, 0), method=ode_solver("verner853"), args=(sp.DEFAULTS,), **options
         )
 
 

@@ -59,7 +59,7 @@ def test_a_blow_up_in_finite_time_ends_with_the_results_so_far(lanes: int, tmp_p
 @ignore_predictability()
 def test_coarse_fixed_steps_never_return_nan(form: str) -> None:
     rng = np.random.default_rng(4)
-    for method in ("rk1", "heun", "midpoint", "rk4", "verner87"):
+    for method in ("rk1", "heun", "midpoint", "rk4", "verner853"):
         starts = (rng.uniform(-3, 3, (60, 4)) * [1, 1, 1, 1e3]).T
         for h in (0.5, 1.0, 2.0):
             solution = ensemble(dp, (0, 10), starts, dp.DEFAULTS, method=method, h=h, form=form)

@@ -454,7 +454,7 @@ def test_every_model_is_selected_by_a_scene_that_ships() -> None:
 
 def test_the_cheapest_method_is_the_recorded_one() -> None:
     choice = cheapest(dp, dp.DEFAULTS, 1e-9)
-    assert (choice.method, choice.form) == ("verner87", "rational")
+    assert (choice.method, choice.form) == ("verner853", "rational")
     assert "as measured in scene 'report'" in choice.why
     assert choice.seconds > 0
     assert mode_spread(dp, dp.DEFAULTS) == pytest.approx(1 + 2**0.5)

@@ -26,7 +26,7 @@ HOSTILE = (
 
 @pytest.fixture(scope="module")
 def tracks() -> tuple[Track, Track]:
-    return track_of("verner87"), track_of("rk1", 0.01)
+    return track_of("verner853"), track_of("rk1", 0.01)
 
 
 @pytest.fixture(scope="module")
@@ -222,9 +222,9 @@ def test_each_run_has_its_canvas_and_its_entry_in_the_legend(
 ) -> None:
     for count in (1, 2):
         player.open(tracks[:count])
-        assert player.texts("figcaption") == ["verner87", "rk1"][:count]
+        assert player.texts("figcaption") == ["verner853", "rk1"][:count]
         assert player.js(f"document.querySelectorAll('{PANELS}').length") == count
-        assert player.texts("#legend li") == ["verner87: 0", "rk1: 0"][:count]
+        assert player.texts("#legend li") == ["verner853: 0", "rk1: 0"][:count]
         for colour in AFTER_TWO[:count]:
             assert (player.pixels(CHART) == colour).all(-1).sum() > 100
 

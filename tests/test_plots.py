@@ -291,8 +291,8 @@ def data(panel: Axes) -> dict[str, list[list[float]]]:
 def test_work_precision_diagrams_show_the_runs_of_each_curve() -> None:
     fast = curve("rk4", "rational", "compiled")
     slow = curve("rk4", "lagrangian", "compiled")
-    ours = curve("verner87", "rational", "compiled", "rtol")
-    python = curve("verner87", "lagrangian", "python", "rtol")
+    ours = curve("verner853", "rational", "compiled", "rtol")
+    python = curve("verner853", "lagrangian", "python", "rtol")
     peer = curve("taylor", "lagrangian", "heyoka", "rtol")
     chart = chart_plots.work_precision("title", [fast, slow, ours, python, peer])
     seconds, calls, choices, peers = chart.axes
@@ -300,12 +300,12 @@ def test_work_precision_diagrams_show_the_runs_of_each_curve() -> None:
     def costs(one: Curve, work: str) -> list[list[float]]:
         return [[getattr(p, work), p.global_error] for p in one.points]
 
-    fastest = {"rk4": fast, "verner87": ours}
+    fastest = {"rk4": fast, "verner853": ours}
     assert data(seconds) == {name: costs(c, "work_seconds") for name, c in fastest.items()}
     assert data(calls) == {name: costs(c, "work_rhs") for name, c in fastest.items()}
     assert data(choices) == {
-        "verner87, compiled, rational": costs(ours, "work_seconds"),
-        "verner87, python, lagrangian": costs(python, "work_seconds"),
+        "verner853, compiled, rational": costs(ours, "work_seconds"),
+        "verner853, python, lagrangian": costs(python, "work_seconds"),
     }
     assert [*data(peers).values()] == [costs(ours, "work_seconds"), costs(peer, "work_seconds")]
     labels = ["time / s", "calls of the right-hand side", "time / s", "time / s"]

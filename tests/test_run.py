@@ -41,7 +41,7 @@ def test_the_json_contains_the_model_the_reason_and_the_final_state(
     assert set(result) >= KEYS
     assert (result["model"], result["method"], result["form"]) == (
         "full equations",
-        "verner87",
+        "verner853",
         "rational",
     )
     truth = taylor(dp, dp.DEFAULTS, find("report", load_module).y0, [0, 5])[-1]

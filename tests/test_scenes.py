@@ -136,7 +136,7 @@ def test_invalid_scenes_are_refused_with_a_remedy(changes: dict[str, object], wo
         scene_from(**changes)
 
 
-@pytest.mark.parametrize("method", ["LSODA", "verner87"])
+@pytest.mark.parametrize("method", ["LSODA", "verner853"])
 def test_methods_that_control_their_steps_need_none(method: str) -> None:
     assert (scene_from(method=method).method, scene_from(method=method).step) == (method, None)
 

@@ -60,7 +60,7 @@ def operations(name: str, function: str, **values: float) -> int:
 def test_specialised_code_has_the_same_values(
     module: ModuleType, params: tuple[float, ...], form: str
 ) -> None:
-    special = specialiser(module, params, MethodChoice("verner87", form, ""))
+    special = specialiser(module, params, MethodChoice("verner853", form, ""))
     suffix = "" if form == "lagrangian" else f"_{form}"
     states = np.random.default_rng(4).uniform(0.2, 2.0, (20, len(module.STATE)))
     if form == "rational":
@@ -80,7 +80,7 @@ def test_folded_numbers_are_exact_and_rounded_once() -> None:
         rational = dp.rational_state(0.0, y, dp.DEFAULTS)
         fine = dp.rhs_rational(0, [mpf(x) for x in rational], exact)
         found = specialiser(
-            dp, (1.3, 0.7, 1.1, 0.9, 9.81), MethodChoice("verner87", "rational", "")
+            dp, (1.3, 0.7, 1.1, 0.9, 9.81), MethodChoice("verner853", "rational", "")
         )
         coarse = found.rhs_rational(0, rational, ())
         assert max(abs(a - b) for a, b in zip(fine, coarse, strict=True)) < 4e-15
@@ -132,11 +132,11 @@ def test_folded_parameters_cost_nothing_and_zeros_vanish() -> None:
 
 
 def test_only_functions_that_a_scene_needs_exist() -> None:
-    assert required_functions("verner87", "rational") == ("rhs_rational",)
+    assert required_functions("verner853", "rational") == ("rhs_rational",)
     assert required_functions("gauss2", "lagrangian") == ("rhs", "jacobian")
     assert required_functions("radau3", "hamiltonian")[-1] == "jacobian_hamiltonian"
     assert required_functions("LSODA", "lagrangian") == ("rhs",)
-    special = specialiser(dp, dp.DEFAULTS, MethodChoice("verner87", "rational", ""))
+    special = specialiser(dp, dp.DEFAULTS, MethodChoice("verner853", "rational", ""))
     functions = {name for name in vars(special) if callable(getattr(special, name))}
     assert {f for f in functions if f.startswith("rhs")} == {"rhs_rational", "rhs_rational_many"}
     assert not any("jacobian" in f or "energy" in f or "positions" in f for f in functions)
@@ -145,7 +145,7 @@ def test_only_functions_that_a_scene_needs_exist() -> None:
 @pytest.mark.parametrize(
     ("method", "form", "h"),
     [
-        ("verner87", "rational", None),
+        ("verner853", "rational", None),
         ("dop853", "hamiltonian", None),
         ("gauss2", "lagrangian", 1e-3),
     ],

@@ -17,7 +17,7 @@ from solvers.player.track import MOST_SAMPLES, Track
 
 @pytest.fixture(scope="module")
 def tracks() -> list[Track]:
-    return [track_of("verner87")]
+    return [track_of("verner853")]
 
 
 def motions(path: Path) -> list[dict[str, Any]]:

@@ -24,7 +24,7 @@ def ensemble(
     y0: Values,
     params: Values,
     *,
-    method: str = "verner87",
+    method: str = "verner853",
     form: str | None = None,
     rtol: float = 1e-9,
     atol: float = 1e-12,

@@ -23,7 +23,7 @@ def integrate(
     y0: Values,
     params: Values,
     *,
-    method: str = "verner87",
+    method: str = "verner853",
     form: str | None = None,
     rtol: float = 1e-9,
     atol: ArrayLike = 1e-12,

@@ -23,7 +23,7 @@ def ode_solver(method: str) -> type[OdeSolver]:
     Parameters
     ----------
     method : str
-        An explicit method that estimates its error, such as ``verner87``.
+        An explicit method that estimates its error, such as ``verner853``.
 
     Returns
     -------
@@ -41,8 +41,8 @@ def ode_solver(method: str) -> type[OdeSolver]:
     Examples
     --------
     >>> from scipy.integrate import solve_ivp
-    >>> verner87 = ode_solver("verner87")
-    >>> solution = solve_ivp(lambda t, y: -y, (0, 1), [1.0], method=verner87, rtol=1e-10)
+    >>> verner853 = ode_solver("verner853")
+    >>> solution = solve_ivp(lambda t, y: -y, (0, 1), [1.0], method=verner853, rtol=1e-10)
     >>> round(float(solution.y[0, -1]), 6)
     0.367879
     """

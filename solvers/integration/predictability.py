@@ -20,7 +20,7 @@ from solvers.integration.solution import Array, Status
 from solvers.runge_kutta.catalogue import load
 
 #: Method and tolerance for linear perturbations, most steps, and steps per call.
-METHOD, TOLERANCE, MOST_STEPS, CHUNK = "verner87", 1e-9, 20_000, 500
+METHOD, TOLERANCE, MOST_STEPS, CHUNK = "verner853", 1e-9, 20_000, 500
 #: In the first steps every change grows, at once where a mode is fast.
 FIRST_STEPS = 10
 #: Natural logarithm of the growth after which the error of the run is measured.

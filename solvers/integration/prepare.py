@@ -35,7 +35,7 @@ def prepare(
     module: GeneratedModule,
     params: Values,
     *,
-    method: str = "verner87",
+    method: str = "verner853",
     form: str | None = None,
     rtol: float = 1e-9,
     atol: float = 1e-12,

@@ -25,7 +25,7 @@ def shortest_step(begin: float, end: float) -> float:
 class Options:
     """Options of `integrate`, `ensemble` and `prepare`, before any check; documented there."""
 
-    method: str = "verner87"
+    method: str = "verner853"
     form: str | None = None
     rtol: float = 1e-9
     atol: ArrayLike = 1e-12
@@ -50,7 +50,7 @@ class Problem:
     atol: Array
     samples: Array | None  # times of the states to record; None for the end of every step
     events: list[EventFunction]
-    limits: list[EventFunction]  # events that end the motion where a positive coordinate falls to 0
+    limits: Sequence[EventFunction]  # end the motion where a positive coordinate falls to 0
     max_steps: int
     options: Options  # as given
 

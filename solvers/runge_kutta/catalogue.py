@@ -28,7 +28,7 @@ def load(name: str) -> Tableau:
     Parameters
     ----------
     name : str
-        One of `names`, such as ``verner87``; SciPy's methods are not among them.
+        One of `names`, such as ``verner853``; SciPy's methods are not among them.
 
     Returns
     -------

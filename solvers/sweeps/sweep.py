@@ -70,7 +70,7 @@ class Sweep:
     maps: Mapping[str, Map]
     duration: float
     values: Mapping[str, float | str] = field(default_factory=dict)
-    method: str = "verner87"
+    method: str = "verner853"
     rtol: float = 1e-9
     atol: float = 1e-12
     max_steps: int = 1_000_000

@@ -31,7 +31,7 @@ ERROR = 1e-6
 #: Methods whose stability regions are plotted, with labels.
 PLOTTED = {"rk1": "Euler", "dp54": "Dormand-Prince", "dop853": "DOP853", "rk4": "RK4"}
 #: Methods whose limits are listed.
-LISTED = ("rk1", "midpoint", "rk3", "rk4", "dp54", "dop853", "verner87", "gauss2", "radau3")
+LISTED = ("rk1", "midpoint", "rk3", "rk4", "dp54", "dop853", "verner853", "gauss2", "radau3")
 
 
 def cost(scene: Scene) -> Stage:

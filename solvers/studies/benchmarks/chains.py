@@ -81,7 +81,7 @@ def _integration(module: GeneratedModule, hy: Any) -> dict[str, float]:
     _, _, equations = heyoka.chain(hy, LENGTH)
     reference = taylor(module, params, start, [0.0, END], 20)[-1]
     runs: dict[str, Callable[[], Any]] = {}
-    for tol, method in product((1e-8, 1e-9, 1e-10), ("dop853", "verner87")):
+    for tol, method in product((1e-8, 1e-9, 1e-10), ("dop853", "verner853")):
         ready = prepare(module, params, method=method, rtol=tol, atol=tol)
         runs[f"holonomic, {method}, {tol}"] = partial(ready, (0.0, END), start)
     integrate = partial(heyoka.single, hy, equations, start, params, END)

@@ -23,7 +23,7 @@ from solvers.studies.benchmarks.motions import END, METHODS, MOTIONS, START
 #: Global errors at which programs are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 #: The method whose operations are counted.
-METHOD = "verner87"
+METHOD = "verner853"
 
 
 def figures(module: GeneratedModule, lambdified: Callable[..., object], hy: Any) -> dict[str, Any]:

@@ -52,7 +52,7 @@ def comparison(module: GeneratedModule, hy: Any, nb: Any) -> dict[str, Any]:
         "holonomic": {
             f"{method}, {tol:g}": partial(programs.by_ensemble, module, method, tol, 1)
             for tol in (1e-8, 1e-9)
-            for method in ("verner87", "verner98")
+            for method in ("verner853", "verner98")
         },
         "heyoka": {
             f"{name}, {tol:g}": partial(programs.by_heyoka, hy, system, params, tol)

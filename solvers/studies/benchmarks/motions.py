@@ -32,7 +32,7 @@ Runs = dict[str, Callable[[], Array]]
 START, END = (pi / 2, pi, 0.0, 0.0), 5.0
 FINAL = (2.2280642400930692, -0.2670447339117043, -1.9694093323354762, -2.9859792219408772)
 #: Methods, and the tolerances below which they take far too many steps.
-METHODS = {"bs32": 1e-5, "dp54": 1e-9, "tsit54": 1e-9, "dop853": 0, "verner87": 0, "verner98": 0}
+METHODS = {"bs32": 1e-5, "dp54": 1e-9, "tsit54": 1e-9, "dop853": 0, "verner853": 0, "verner98": 0}
 MOTIONS = 4096
 #: Errors of heyoka are about its tolerance, ours a multiple: its tolerances reach further.
 HEYOKA_POWER = 8 / 7

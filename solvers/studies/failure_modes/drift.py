@@ -29,7 +29,7 @@ START = (0.5, 0.6, 0.0, 0.0)
 CASES: tuple[Case, ...] = (
     ("rk4", "lagrangian", 60),
     ("dp54", "lagrangian", 40),
-    ("verner87", "lagrangian", 15),
+    ("verner853", "lagrangian", 15),
     ("radau3", "lagrangian", 20),
     ("gauss1", "hamiltonian", 60),
     ("gauss2", "hamiltonian", 30),

@@ -21,9 +21,9 @@ from solvers.studies.failure_modes.study import Load, Study
 #: Initial distances from the upright equilibrium in rad, and the duration of the motion in s.
 DISTANCES, DURATION = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7), 10.0
 #: Method and tolerance of these motions.
-METHOD, TOLERANCE = "verner87", 1e-10
+METHOD, TOLERANCE = "verner853", 1e-10
 #: Methods and tolerances of motions on the separatrix.
-METHODS, TOLERANCES = ("dp54", "verner87", "verner98"), (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+METHODS, TOLERANCES = ("dp54", "verner853", "verner98"), (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 
 @dataclass(frozen=True)

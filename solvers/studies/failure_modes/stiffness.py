@@ -18,7 +18,7 @@ from solvers.studies.failure_modes.study import Load, Study
 
 #: Approximate ratios of the fast to the slow frequency.
 RATIOS = (3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
-EXPLICIT, IMPLICIT = ("rk4", "dp54", "verner87"), ("gauss2", "gauss3", "radau2", "radau3")
+EXPLICIT, IMPLICIT = ("rk4", "dp54", "verner853"), ("gauss2", "gauss3", "radau2", "radau3")
 #: Tolerances of methods with step control, and numbers of steps of the others, by rising cost.
 TOLERANCES, STEPS = 10.0 ** -np.arange(1, 9, 0.5), np.ceil(10 * 2 ** np.arange(0, 18, 0.5))
 #: Requested accuracy of the slow angle at the end, in rad, and the duration in s.

@@ -16,7 +16,7 @@ from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import SCIPY
 from solvers.studies.failure_modes.study import Load, Study
 
-METHODS = ("bs32", "dp54", "tsit54", "dop853", "verner87", "verner98", *SCIPY)
+METHODS = ("bs32", "dp54", "tsit54", "dop853", "verner853", "verner98", *SCIPY)
 TOLERANCES = (1e-4, 1e-7, 1e-10)
 #: Number of motions from rest at random angles with random parameters, and their duration in s.
 MOTIONS, DURATION = 24, 3.0

@@ -13,10 +13,10 @@ from solvers.studies.work_precision.measurement import FORMS, REPORT_METHODS
 from solvers.studies.work_precision.peers import PEERS
 
 #: The plotted methods, one curve each; the others are close to one of them.
-METHODS = "rk1 midpoint rk3 rk4 bs32 dp54 tsit54 dop853 verner87 verner98 gauss3 radau3".split()
+METHODS = "rk1 midpoint rk3 rk4 bs32 dp54 tsit54 dop853 verner853 verner98 gauss3 radau3".split()
 STYLES = ("-", "--", ":")
 #: The method whose forms and backends are compared.
-EXAMPLE = "verner87"
+EXAMPLE = "verner853"
 #: Backends of this package and of SciPy, and a method for each.
 BACKENDS = {"compiled": EXAMPLE, "python": EXAMPLE, "scipy": "DOP853"}
 ERROR = "global error / rad, rad/s"
