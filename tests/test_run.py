@@ -39,11 +39,8 @@ def test_the_json_contains_the_model_the_reason_and_the_final_state(
     assert run("report", "--json", folder=tmp_path) == 0
     result = json.loads(capsys.readouterr().out)
     assert set(result) >= KEYS
-    assert (result["model"], result["method"], result["form"]) == (
-        "full equations",
-        "verner853",
-        "rational",
-    )
+    assert (result["model"], result["form"]) == ("full equations", "rational")
+    assert result["method"] in ("verner853", "verner98")  # whichever the record has as cheaper
     truth = taylor(dp, dp.DEFAULTS, find("report", load_module).y0, [0, 5])[-1]
     assert list(result["final_state"]) == [*dp.STATE]
     assert (

@@ -163,7 +163,7 @@ def test_a_scene_runs_a_system_file(tmp_path: Path) -> None:
     (('"m*g*height"', '"m*g*x_dot"'), "the potential depends on x_dot: it must be a function"),
     (('"m*g*height"', "true"), "must be a text in quotes"),
     (('"m*g*height"', '"(m, g)"'), "potential: '.m, g.' is a column or matrix, not a number"),
-    (("height = ", "pair = '(x, x)'\nheight = "), "definitions.pair: .* must be a number"),
+    (("height = ", "pair = '(x, x)'\nheight = "), "definitions.pair: .* is a column or matrix"),
     (('mass = "m"', 'mass = "(m, m)"'), "'.m, m.' is a column or matrix, not a number"),
     (('"m*g*height"', '"' + "(" * 9000 + "m" + ")" * 9000 + '"'), "cannot parse|nested too deeply"),
     (("potential", "potentail"), "unknown key 'potentail' in .*did you mean 'potential'"),
