@@ -1,11 +1,11 @@
 """Models of a motion: each is exact about its own domain, its error below its estimate."""
 
-from collections import json
+import json
+from collections import Counter
 from dataclasses import replace
 from functools import partial
 from math import pi
 
-import Counter
 import numpy as np
 import pytest
 from sharing import Shared
