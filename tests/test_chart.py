@@ -79,6 +79,16 @@ def test_the_error_of_the_reference_is_estimated_with_fewer_digits(
     assert 1e-10 < Reference.of(find("report", load_module)).global_error < 1e-4
 
 
+def test_the_error_of_the_reference_is_at_least_its_last_rounding(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("solvers.studies.work_precision.reference.FEWER", 32)
+    single = load_module("single_pendulum")
+    found = Reference.of(Scene(single, single.DEFAULTS, (-1.5, -3.0), 0.25))
+    assert found.end.max() < 0  # the largest number is negative
+    assert found.global_error == np.spacing(np.abs(found.end).max())
+
+
 def test_curves_contain_the_error_relative_to_the_reference(truth: Reference) -> None:
     wanted = [
         ("rk4", "lagrangian", "compiled"),

@@ -21,14 +21,16 @@ from solvers.references.taylor import taylor
 from solvers.scenes.models import equilibrium, full_equations, normal_modes, quadrature
 from solvers.scenes.models.catalogue import closed_forms, load
 from solvers.scenes.models.equilibrium import Equilibrium
+from solvers.scenes.models.extended_precision import by_series
 from solvers.scenes.models.full_equations import estimated_error
 from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
 from solvers.scenes.models.light_masses import PendulumAndLightMasses
 from solvers.scenes.models.method_choice import RECORD, MethodChoice, cheapest
 from solvers.scenes.models.motion import Motion, OutsideDomainError
 from solvers.scenes.models.normal_modes import NormalModes
+from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 from solvers.scenes.models.pendulum import Pendulum
-from solvers.scenes.models.quadrature import Quadrature, orbit
+from solvers.scenes.models.quadrature import Orbit, Quadrature, orbit
 from solvers.scenes.models.selection import ModelSelection, select_model
 from solvers.scenes.reading import find
 from solvers.scenes.scene import Scene
@@ -229,6 +231,15 @@ def test_a_light_bob_has_no_effect_and_a_heavy_one_has() -> None:
         PendulumAndLightMasses.of(motion_from(dp, (1.5, 0.3, 0, 1), 3, params))
 
 
+def test_accelerations_by_a_light_bob_add_up_although_their_signs_change() -> None:
+    # the integral of the acceleration is a fifteenth of the integral of its magnitude
+    params = (1.0, 1e-9, 2.0, 2.0, 9.81)
+    motion = motion_from(dp, (1.5, 0.3, 0, 1), 0.684, params, (0, 2))
+    model = PendulumAndLightMasses.of(motion)
+    error = largest_error(motion, model)
+    assert error < model.error_estimate < 10 * error
+
+
 @pytest.mark.parametrize(("module", "params", "y0"), [
     (dp, (1, 1, 2, 2, 0), (0, 1.5, 2, -3)),  # the shape rotates
     (dp, (1, 0.3, 2, 1, 0), (0, 0.5, 2, 2.5)),  # it swings
@@ -269,6 +280,22 @@ def test_the_error_of_turning_points_is_estimated() -> None:
         y0 = (1e-4, share * 1e-4 * (params[2] / params[1]) ** 0.5)
         motion = motion_from(sp, y0, 1.0, params, (0,))
         assert largest_error(motion, model := Quadrature.of(motion)) <= model.error_estimate < 1e-9
+
+
+def test_an_error_of_the_period_counts_by_the_fastest_motion(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    delay = 1e-6
+
+    def late(reduced: ReducedMotion) -> Orbit:
+        one = orbit(reduced)
+        time = replace(one.time, mean=(1 + delay) * one.time.mean)
+        return replace(one, time=time, period_error=delay)
+
+    monkeypatch.setattr(quadrature, "orbit", late)
+    motion = motion_from(sp, (2.0, 0.0), 30.0)
+    error = largest_error(motion, model := Quadrature.of(motion))
+    assert 1e-4 < error < model.error_estimate < 1.1 * error
 
 
 def test_quadrature_refuses_motions_outside_its_domain() -> None:
@@ -330,6 +357,16 @@ def test_where_double_precision_is_insufficient_series_have_more_digits() -> Non
     assert np.abs(end - fine).max() <= selection.model.error_estimate < 1e-13
     with pytest.raises(NotAccurateError, match="dop853 reaches"):
         selected(replace(scene, method="dop853"))
+
+
+def test_a_series_in_double_precision_has_the_rounding_of_its_largest_number() -> None:
+    # both coordinate and velocity are negative all the time
+    motion = motion_from(sp, (-1.5, -3.0), 0.25)
+    choice = MethodChoice("taylor", "lagrangian", "")
+    times = np.array([0.0, 0.125, 0.25])
+    model = by_series(motion, choice, 1e-15, times, lambda _: None)
+    largest = np.abs(model.states(times)).max()
+    assert model.error_estimate == np.spacing(largest) == 2.0**-51
 
 
 def test_a_scene_can_name_model_method_and_step() -> None:
