@@ -217,6 +217,40 @@ def test_the_energy_chart_has_a_logarithmic_scale_and_selects_any_time(
     assert player.texts("#legend li") == ["at rest: 1.0 × 10⁻²", "at rest: 1.0 × 10⁻⁵"]
 
 
+def test_a_motion_may_start_at_any_time(player: Player) -> None:
+    player.open([replace(at_rest(), t=10 + at_rest().t)])
+    assert player.time == 10
+    middle = 44 + (player.find(CHART).rect["width"] - 44 - 14) / 2  # between the margins
+    player.drag(CHART, 100, middle)
+    assert player.time == pytest.approx(12.5, abs=0.02)
+
+
+def test_the_energy_chart_ends_at_the_powers_of_ten_around_all_errors(player: Player) -> None:
+    player.open([at_rest(error=3e-5), at_rest(error=2e-9)])
+    image = player.pixels(CHART)
+    first, second = (np.median(np.nonzero((image == c).all(-1))[0]) for c in AFTER_ONE)
+    decade = (len(image) - 8 - 36) / 5  # from 1e-9 to 1e-4, between the margins
+    assert first - 8 == pytest.approx(np.log10(1e-4 / 3e-5) * decade, abs=1.5)
+    assert second - first == pytest.approx(np.log10(3e-5 / 2e-9) * decade, abs=1.5)
+
+
+def test_marks_are_round_and_paths_end_at_their_times(player: Player) -> None:
+    t = np.linspace(0, 5, 6)
+    player.open([Track("across", t, np.array([[t, 0 * t]]), (), (), t, UNIT)])
+    sources = "".join((page.SOURCES / name).read_text() for name in page.SCRIPTS[:3])
+    spacings, marks, path, ranges, corners = player.driver.execute_script(f"""{sources}
+        const view = new View(boundingBox(), 400, 300);
+        return [[0.02, 0.021, 0.3, 0.5, 6, 10].map(roundSpacing),
+          ticks(-0.31, 0.4, 0.2).map(({{ text }}) => text), pathOf(tracks[0], 0, 1.5, 3.25),
+          view.visibleRanges(), [[view.left, view.bottom], [view.right, view.top]]
+          .map(([x, y]) => [(x - view.middle[0]) / view.scale + 2.5,
+            (view.middle[1] - y) / view.scale])]""")
+    assert spacings == pytest.approx([0.02, 0.05, 0.5, 0.5, 10, 10])
+    assert marks == ["−0.2", "0.0", "0.2", "0.4"]
+    assert path == [[1.5, 0], [2, 0], [3, 0], [3.25, 0]]
+    assert np.array(ranges) == pytest.approx(np.transpose(corners))  # marks stay in the frame
+
+
 def test_each_run_has_its_canvas_and_its_entry_in_the_legend(
     player: Player, tracks: tuple[Track, Track]
 ) -> None:
