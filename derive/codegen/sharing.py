@@ -6,10 +6,11 @@ that the result depends on the operations alone. A queue with deferred
 corrections keeps the work nearly linear in the number of pairs.
 """
 
+from collections import Counter
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
-from itertools import combinations
 
 from derive.codegen.operation import Operation, Product, Sum
 
@@ -20,9 +21,10 @@ ONE = Fraction(1)
 
 def share_pairs(operations: dict[int, Operation]) -> None:
     """Rewrite `operations` in place until no pair of operands is computed twice."""
+    common = _common_operands(operations)
     holders: dict[Pair, set[int]] = {}
     for number, operation in operations.items():
-        for pair in _pairs(operation):
+        for pair in _pairs(operation, common, operation.operands):
             holders.setdefault(pair, set()).add(number)
     queue = [(-len(numbers), pair) for pair, numbers in holders.items() if len(numbers) > 1]
     heapify(queue)
@@ -38,28 +40,58 @@ def share_pairs(operations: dict[int, Operation]) -> None:
             known[shared] = len(operations)
             operations[len(operations)] = shared
         number = known[shared]
+        is_sum, a, b, _ = pair
+        common.add((is_sum, number))
         for holder in sorted(holders[pair] - {number}):
-            for old in _pairs(operations[holder]):
+            # pairs of other operands stay
+            for old in _pairs(operations[holder], common, (a, b, number)):
                 holders[old].discard(holder)
             known.pop(operations[holder], None)
             operations[holder] = _without(operations[holder], pair, number)
             known.setdefault(operations[holder], holder)
-            for new in _pairs(operations[holder]):
+            for new in _pairs(operations[holder], common, (a, b, number)):
                 holders.setdefault(new, set()).add(holder)
                 if len(holders[new]) > 1:
                     heappush(queue, (-len(holders[new]), new))
-        holders[pair] = {number}
+        holders[pair].add(number)
+        if len(holders[pair]) > 1:  # a product that contains the pair twice
+            heappush(queue, (-len(holders[pair]), pair))
 
 
-def _pairs(operation: Operation) -> set[Pair]:
+def _common_operands(operations: dict[int, Operation]) -> set[tuple[bool, int]]:
+    """Whether it is in sums, and an operand of several of them or of several products."""
+    counts = Counter(
+        (isinstance(operation, Sum), operand)
+        for operation in operations.values()
+        if isinstance(operation, Sum | Product)
+        for operand in {*operation.operands}
+    )
+    return {
+        (is_sum, operand)
+        for (is_sum, operand), count in counts.items()
+        # a sum in a sum can turn out to be a pair of others
+        if count > 1 or isinstance(operations[operand], Sum if is_sum else Product)
+    }
+
+
+def _pairs(
+    operation: Operation, common: Collection[tuple[bool, int]], changed: Collection[int]
+) -> Iterator[Pair]:
+    """The pairs of common operands of a sum or product, of which at least one has `changed`."""
     match operation:
         case Product(operands):
-            return {(False, a, b, ONE) for a, b in combinations(sorted(operands), 2)}
+            coefficients: tuple[Fraction, ...] = (ONE,) * len(operands)
         case Sum(operands, _, coefficients):
-            terms = sorted(zip(operands, coefficients, strict=True))
-            return {(True, a, b, cb / ca) for (a, ca), (b, cb) in combinations(terms, 2)}
+            pass
         case _:
-            return set()
+            return
+    is_sum = isinstance(operation, Sum)
+    pairs = sorted(zip(operands, coefficients, strict=True))
+    terms = [(n, c, n in changed) for n, c in pairs if (is_sum, n) in common]
+    for k, (b, cb, b_changed) in enumerate(terms):
+        for a, ca, a_changed in terms[:k]:
+            if a_changed or b_changed:
+                yield is_sum, a, b, cb / ca if is_sum else ONE
 
 
 def _operation_of(pair: Pair, operations: dict[int, Operation]) -> Operation:
