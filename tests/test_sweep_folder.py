@@ -201,8 +201,8 @@ def test_a_damaged_chunk_is_repeated(
         flipped = whole[:200] + bytes([whole[200] ^ 1]) + whole[201:]
         chunk.write_bytes({"truncated": whole[:-9], "flipped": flipped, "empty": b""}[damage])
     done = []
-    real = pool.run_chunk
-    monkeypatch.setattr(pool, "run_chunk", lambda *given: done.append(1) or real(*given))
+    real = pool.run_equal_chunk
+    monkeypatch.setattr(pool, "run_equal_chunk", lambda *given: done.append(1) or real(*given))
     sweep(DEFINITION, tmp_path)
     assert files(tmp_path) == expected
     assert len(done) == 1
@@ -258,7 +258,7 @@ def test_a_changed_manifest_is_refused(
     (tmp_path / "sweep.json").write_text(changed)
     with pytest.raises(
         FolderError,
-        match=r"is no manifest of a sweep|contains another sweep|in format 1, .* reads format 2",
+        match=r"is no manifest of a sweep|contains another sweep|in format 1, .* reads format 3",
     ):
         sweep(DEFINITION, tmp_path)
     assert files(tmp_path) == expected | {"sweep.json": changed.encode()}
@@ -278,7 +278,10 @@ def test_a_folder_with_other_files_is_refused_and_they_are_kept(tmp_path: Path) 
     mine = [out / ".hidden", out / "chunks" / "notes.npy", out / "chunks" / ".git"]
     for path in mine:
         path.write_text("mine")
-    left = [out / ".flip.npy.12", out / "chunks" / ".07-0123456789abcdef.npy.12"]
+    killed = subprocess.Popen(["true"])
+    killed.wait()
+    name = f".07-0123456789abcdef.npy.{killed.pid}"
+    left = [out / f".flip.npy.{killed.pid}", out / "chunks" / name]
     for path in left:
         path.write_text("left by a killed process")
     sweep(DEFINITION, out)

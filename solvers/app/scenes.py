@@ -131,9 +131,10 @@ def sweep(
     Raises
     ------
     ValueError
-        If there is no such sweep, its file has a mistake, or the folder contains another sweep.
+        If there is no such sweep, its file has a mistake, or the folder contains another sweep or
+        one with other arithmetic, so that results would differ in their last bits.
     OSError
-        If a file cannot be written.
+        If a file cannot be written, or the workers of the pool are lost.
     KeyboardInterrupt
         If the user interrupts; completed chunks are kept, and the same call resumes the sweep.
 

@@ -54,12 +54,16 @@ def is_temporary(path: Path) -> bool:
     return TEMPORARY.fullmatch(path.name) is not None
 
 
+def is_abandoned(path: Path) -> bool:
+    """Whether a name is that of a temporary file of a process that no longer runs."""
+    process = TEMPORARY.fullmatch(path.name)
+    return process is not None and not _is_running(int(process[1]))
+
+
 def remove_abandoned(folder: Path) -> None:
     """Remove temporary files of processes that no longer run."""
-    for path in folder.iterdir():
-        process = TEMPORARY.fullmatch(path.name)
-        if process and not _is_running(int(process[1])):
-            path.unlink(missing_ok=True)
+    for path in filter(is_abandoned, folder.iterdir()):
+        path.unlink(missing_ok=True)
 
 
 def _is_running(process: int) -> bool:

@@ -9,7 +9,9 @@ all chunks one NumPy file for each map is written.
 import fcntl
 import hashlib
 import json
+import os
 import re
+import reprlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from errno import ENOSPC
@@ -23,11 +25,14 @@ import numpy as np
 from numpy.lib.format import dtype_to_descr, write_array_header_1_0
 from numpy.typing import NDArray
 
-from solvers.io.atomic_write import replacing, write_text
+from solvers.io.atomic_write import is_abandoned, replacing, write_text
+from solvers.sweeps.arithmetic import DIGEST
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import chunk_length
 
-MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 2
+MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 3
+#: Bytes of the largest manifest.
+MAX_BYTES = 1_000_000
 #: Hexadecimal digits of a digest in a file's name.
 DIGITS = 16
 #: Names of chunks, and of files that are being written.
@@ -45,6 +50,7 @@ class Folder:
     def __init__(self, path: Path, sweep: Sweep) -> None:
         self.path, self._sweep = path, sweep
         self._motions, self._dtype, self._length = sweep.motions, sweep.dtype, 0
+        self.arithmetic: dict[str, str] = {}  # of the process that began the sweep
         self._own = {"motions": sweep.motions, "definition": json.loads(json.dumps(sweep.as_json))}
 
     @contextmanager
@@ -52,39 +58,49 @@ class Folder:
         """Lock the folder for one process, which may write to it."""
         self._check_new()
         (self.path / CHUNKS).mkdir(parents=True, exist_ok=True)
-        with open(self.path / CHUNKS / "lock", "wb") as lock:
+        # for reading, too: to open a FIFO for writing would wait for a reader
+        number = os.open(self.path / CHUNKS / "lock", os.O_RDWR | os.O_CREAT, 0o666)
+        with open(number, "rb") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError as error:
                 raise FolderError(
                     f"another process works in {self.path}: wait for it, or give another --output"
                 ) from error
-            self._claim()
+            if not self.is_new:
+                self.check()
+            self._remove_remains()
             yield
 
-    def _claim(self) -> None:
-        """Write the manifest or compare it; remove what killed processes have left."""
-        manifest = self.path / MANIFEST
-        if manifest.exists():
-            self.check()
-        else:
-            self._length = chunk_length(self._sweep)
-            record = {"format": FORMAT, "chunk": self._length, **self._own}
-            write_text(manifest, json.dumps(record, indent=2, ensure_ascii=False) + "\n")
+    @property
+    def is_new(self) -> bool:
+        """Whether no sweep was begun in the folder."""
+        return not (self.path / MANIFEST).exists()
+
+    def begin(self, evaluations: float, arithmetic: dict[str, str]) -> None:
+        """Write the manifest; arguments as `solvers.sweeps.arithmetic.first_motions` returns."""
+        self._length, self.arithmetic = chunk_length(self._sweep, evaluations), arithmetic
+        record = {"format": FORMAT, "chunk": self._length, "arithmetic": arithmetic, **self._own}
+        text = json.dumps(record, indent=2, ensure_ascii=False) + "\n"
+        write_text(self.path / MANIFEST, text)
+
+    def _remove_remains(self) -> None:
+        """Remove damaged chunks, and what killed processes have left."""
         for file in [*self.path.iterdir(), *(self.path / CHUNKS).iterdir()]:
             is_damaged = CHUNK.fullmatch(file.name) and file not in self.completed.values()
-            if is_damaged or TEMPORARY.fullmatch(file.name):
-                file.unlink()
+            is_left = TEMPORARY.fullmatch(file.name) and is_abandoned(file)
+            if (is_damaged or is_left) and not file.is_dir():
+                file.unlink(missing_ok=True)
 
     def _check_new(self) -> None:
         """Refuse a new folder that holds other files, or whose disk is too small."""
-        if (self.path / MANIFEST).exists():
+        if not self.is_new:
             return
-        for file in self.path.iterdir() if self.path.is_dir() else ():
+        chunks = self.path.glob(f"{CHUNKS}/*.npy")  # of which sweep?
+        for file in [*self.path.iterdir(), *chunks] if self.path.is_dir() else ():
             if file.name != CHUNKS and not TEMPORARY.fullmatch(file.name):
-                raise FolderError(
-                    f"{self.path} holds {file.name} and no sweep: give another --output"
-                )
+                name = file.relative_to(self.path)
+                raise FolderError(f"{self.path} holds {name} and no sweep: give another --output")
         above = next(p for p in (self.path, *self.path.absolute().parents) if p.exists())
         needed, free = 2 * self._motions * self._dtype.itemsize, disk_usage(above).free
         if needed > free:
@@ -102,7 +118,7 @@ class Folder:
                 f"{self.path} contains another sweep ({different}): "
                 "choose another --output, or delete it"
             )
-        self._length = manifest["chunk"]
+        self._length, self.arithmetic = manifest["chunk"], manifest["arithmetic"]
 
     @property
     def chunks(self) -> int:
@@ -116,14 +132,22 @@ class Folder:
     @cached_property
     def completed(self) -> dict[int, Path]:
         """The chunks that are there and undamaged."""
-        chunks = {}
-        for file in sorted((self.path / CHUNKS).glob("*.npy")):
-            chunk, _, digest = file.stem.partition("-")
-            if CHUNK.fullmatch(file.name) and _digest(file.read_bytes()) == digest:
-                start, stop = self.span(int(chunk))
-                if np.load(file, mmap_mode="r").shape == (stop - start,):
-                    chunks[int(chunk)] = file
-        return chunks
+        files = sorted((self.path / CHUNKS).glob("*.npy"))
+        return {int(file.name.partition("-")[0]): file for file in files if self._is_chunk(file)}
+
+    def _is_chunk(self, file: Path) -> bool:
+        """Whether a file is a chunk of this sweep, and undamaged."""
+        if not CHUNK.fullmatch(file.name) or not file.is_file():
+            return False
+        chunk, _, digest = file.stem.partition("-")
+        content = file.read_bytes()
+        if int(chunk) >= self.chunks or _digest(content) != digest:
+            return False
+        start, stop = self.span(int(chunk))
+        zeros = _npy(np.zeros(stop - start, self._dtype))
+        data = (stop - start) * self._dtype.itemsize
+        # headers are compared, not read: readers of NumPy files fail in many ways
+        return len(content) == len(zeros) and content[:-data] == zeros[:-data]
 
     def store(self, chunk: int, motions: NDArray[np.void]) -> None:
         """Write a chunk."""
@@ -176,8 +200,9 @@ def _npy(array: NDArray[Any]) -> bytes:
 def _manifest(path: Path) -> dict[str, Any]:
     """The manifest in a file."""
     manifest: dict[str, Any] = {}
-    with suppress(OSError, ValueError, TypeError):
-        manifest = dict(json.loads(path.read_bytes()))
+    with suppress(OSError, ValueError, TypeError, RecursionError):
+        if path.is_file() and path.stat().st_size <= MAX_BYTES:
+            manifest = dict(json.loads(path.read_bytes()))
     counts = [manifest.get(key) for key in ("format", "chunk", "motions")]
     if all(type(n) is int and n > 0 for n in counts):
         if counts[0] != FORMAT:
@@ -185,7 +210,9 @@ def _manifest(path: Path) -> dict[str, Any]:
                 f"{path.parent} holds a sweep in format {counts[0]}, and this version reads format "
                 f"{FORMAT}: give another --output, or remove it"
             )
-        if isinstance(manifest.get("definition"), dict):
+        arithmetic = manifest.get("arithmetic")
+        has_digest = isinstance(arithmetic, dict) and isinstance(arithmetic.get(DIGEST), str)
+        if isinstance(manifest.get("definition"), dict) and has_digest:
             return manifest
     problem = "is no manifest of a sweep" if path.exists() else "does not exist"
     raise FolderError(f"{path} {problem}: give the --output of a sweep, or a new folder")
@@ -208,4 +235,5 @@ def _difference(other: Any, own: Any, path: str = "") -> str:
             if inner := _difference(other[key], own[key], f"{path}{key}."):
                 return inner
         return ""
-    return "" if other == own else f"{path.rstrip('.')} {other!r}, not {own!r}"
+    values = f"{reprlib.repr(other)}, not {reprlib.repr(own)}"
+    return "" if other == own else f"{path.rstrip('.')} {values}"

@@ -125,6 +125,8 @@ def _from_file(path: Path, module: GeneratedModule) -> Table:
         raise InputError(
             f"axes = {path.name!r} must be a file that ends in .csv, or a table [axes]"
         )
+    if path.exists() and not path.is_file():
+        raise InputError(f"axes = {path.name!r} is no file")
     try:
         with open(path, encoding="utf-8-sig", newline="") as file:  # as spreadsheets write it
             rows = [row for row in csv.reader(file) if row]

@@ -11,6 +11,8 @@ from solvers.sweeps.results import Results
 from solvers.sweeps.sweep import Sweep
 
 THREADS = Pool()
+#: Number of motions that are integrated first, to estimate times and to compare the arithmetic.
+SAMPLE = 64
 
 
 def sweep(
@@ -22,11 +24,15 @@ def sweep(
 ) -> Results:
     """Compute the maps of a sweep in a folder, as `solvers.sweep` does."""
     stored = Folder(Path(folder), definition)
+    sample = definition.axes.subset(SAMPLE)
     with stored.locked():
+        if stored.is_new:
+            stored.begin(*pool.first_motions(definition, sample))
         chunks = {*range(stored.chunks)} - {*stored.completed}
         missing = {stored.span(chunk): chunk for chunk in sorted(chunks)}
         rate = Rate(definition.motions, sum(stop - start for start, stop in missing))
-        with closing(pool.completed(definition, [*missing])) as completed:
+        results = pool.completed(definition, [*missing], sample, stored.arithmetic)
+        with closing(results) as completed:
             for span, chunk in completed:
                 stored.store(missing[span], chunk)
                 report(rate(len(chunk)))

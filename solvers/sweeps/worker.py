@@ -1,4 +1,4 @@
-"""Chunks of a sweep: their length; a chunk is computed in a thread or on another machine."""
+"""Chunks of a sweep: their length, and their computation in a thread or on another machine."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,8 +19,6 @@ from solvers.sweeps.sweep import Sweep
 
 #: Longest duration of a chunk in s, approximately, and its overhead.
 CHUNK, COST = 1.0, 0.004
-#: Number of motions that are timed.
-TRIALS = 64
 #: Seconds for each evaluation of a right-hand side of n components: this times n^1.5.
 EVALUATION = 0.25e-9
 #: Largest number of bytes for the states of a chunk; its working memory is about ten times as much.
@@ -30,13 +28,25 @@ MAX_BYTES = 8e6
 def run_chunk(
     sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
 ) -> NDArray[np.void]:
-    """Integrate motions and compute their maps."""
+    """Integrate motions and compute their maps; NaN for motions that fail."""
+    chunk, runs, motions = computed(sweep, columns, stop)
+    if motions:
+        failed = runs[~motions.success]
+        for name in sweep.maps:
+            chunk[name][failed] = np.nan
+    return chunk
+
+
+def computed(
+    sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
+) -> tuple[NDArray[np.void], NDArray[np.intp], Ensemble | None]:
+    """A chunk with maps of all motions, the indices of those integrated, and these, if any."""
     module, maps = sweep.module, sweep.maps
     starts, params, status = initial_states(sweep, columns)
     chunk = np.zeros(len(status), sweep.dtype)
     for name in sweep.dtype.names or ():
         chunk[name] = status if name == "status" else columns.get(name, np.nan)
-    runs = np.flatnonzero(status == 0)
+    runs, motions = np.flatnonzero(status == 0), None
     if len(runs):
         starts, params = starts[runs], [column[runs] for column in params]
         motions = integrated(sweep, starts, params, stop)
@@ -47,10 +57,7 @@ def run_chunk(
             chunk[name][runs] = one.values(Motions(module, starts, params, motions, events))
         for end, code in CODES.items():
             chunk["status"][runs[motions.status == end]] = code
-        failed = runs[~motions.success]
-        for name in maps:
-            chunk[name][failed] = np.nan
-    return chunk
+    return chunk, runs, motions
 
 
 def integrated(
@@ -72,17 +79,21 @@ def integrated(
     return motions
 
 
-def chunk_length(sweep: Sweep) -> int:
-    """Number of motions in a chunk: about a second of work, less in short sweeps."""
+def mean_evaluations(sweep: Sweep, columns: Mapping[str, Array]) -> float:
+    """Mean number of evaluations of the right-hand side for each of some motions."""
+    chunk, _, motions = computed(sweep, columns)
+    return (1 + int(motions.nfev.sum() if motions else 0)) / len(chunk)
+
+
+def chunk_length(sweep: Sweep, evaluations: float) -> int:
+    """Number of motions in a chunk: about a second of work, less in short sweeps.
+
+    `evaluations` is the mean number for each motion.
+    """
     # in short sweeps chunks cost as much as waiting for the last of them; time follows from the
     # number of evaluations, not from the clock, so that a sweep is always divided in the same way
-    starts, params, status = initial_states(sweep, sweep.axes.subset(TRIALS))
-    runs = status == 0
-    evaluations = 1
-    if runs.any():
-        evaluations += int(integrated(sweep, starts[runs], [p[runs] for p in params]).nfev.sum())
-    size = starts.shape[1]
-    each = evaluations / len(status) * EVALUATION * size**1.5
+    size = len(sweep.module.STATE) * (2 if sweep.form == "variational" else 1)
+    each = evaluations * EVALUATION * size**1.5
     events = sum(one.occurrences * len(one.events(sweep.module)) for one in sweep.maps.values())
     most = MAX_BYTES / (8 * size * (1 + sweep.samples + events))
     seconds = min(CHUNK, (COST * each * sweep.motions) ** 0.5)

@@ -51,6 +51,8 @@ class Kernel:
         self.run = library.run  # releases the global interpreter lock
         self.run.restype, self.run.argtypes = None, [ctypes.POINTER(Task)]
         self.single = None if lanes else library.single
+        library.fuses_products.restype = ctypes.c_int64
+        self.fuses_products = bool(library.fuses_products())
         self.trajectory, self.row = record("Trajectory", sizes), record("Row", sizes)
         self.evaluations_per_step = tableau.stages - tableau.is_fsal
         self.is_explicit = tableau.is_explicit

@@ -328,3 +328,11 @@ void run(Task *task)
         }
     }
 }
+
+/* Whether the compiler fused a product with a sum, which decides the last bits of results. */
+int64_t fuses_products(void);
+int64_t fuses_products(void)
+{
+    const volatile double x = 1 + 0x1p-30;
+    return x*x - (1 + 0x1p-29) != 0;
+}
