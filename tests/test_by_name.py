@@ -76,9 +76,9 @@ def test_states_of_ensembles_have_the_axes_of_generated_functions() -> None:
     ({"theta": 1.0, "phi": 0.0}, {}, "y0 has no 'phi'; known names: theta, theta_dot"),
     ({"theta_dot": 1.0}, {}, "y0 lacks theta: only velocities may be left out"),
     ({}, {}, "y0 lacks theta"),
-    ({"theta": "1"}, {}, r"y0\['theta'\] = 1 must be real numbers"),
-    ({"theta": True}, {}, r"y0\['theta'\] = True must be real numbers"),
-    ({"theta": float("nan")}, {}, "y0 = .* must be finite"),
+    ({"theta": "1"}, {}, "theta = '1' must be a finite real number in rad"),
+    ({"theta": True}, {}, "theta = True must be a finite real number"),
+    ({"theta": float("nan")}, {}, "theta = nan must be a finite real number"),
     ({"theta": [1.0, 2.0]}, {}, r"y0 has shape \(2, 2\): give 2 numbers, theta, theta_dot"),
     ({"theta": 1.0}, {"G": 9.81}, "params has no 'G' .did you mean 'g'"),
     ({"theta": 1.0}, {1: 9.81}, "params has no 1"),
@@ -115,8 +115,9 @@ def test_a_prepared_run_takes_other_parameters_for_a_call() -> None:
     for params in (on_earth, list(on_earth), np.array(on_earth), {"m2": 3.0}):
         assert run((0, 2), Y0, params) == expected
         assert run((0, 2), Y0) == default
-    for params in ((1.0, 2.0), (1.0, 1.0, 1.0, 1.0, float("inf")), {"gravity": 1.0}):
-        with pytest.raises(ValueError, match="params"):
+    infinite = (1.0, 1.0, 1.0, 1.0, float("inf"))
+    for params in ((1.0, 2.0), infinite, {"gravity": 1.0}):
+        with pytest.raises(ValueError, match=r"params|g = inf must be"):
             run((0, 2), Y0, params)
         assert run((0, 2), Y0) == default
 

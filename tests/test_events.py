@@ -83,7 +83,7 @@ def test_flat_and_discontinuous_events_are_located() -> None:
 def test_invalid_events_are_refused() -> None:
     for arguments, message in (
         (("theta3", 0.0), "did you mean 'theta2'"),
-        (("theta1", float("nan")), "must be a finite number"),
+        (("theta1", float("nan")), "must be a finite real number"),
         (("theta1", 0.0, 2), "direction = 2"),
     ):
         with pytest.raises(ValueError, match=message):

@@ -310,18 +310,18 @@ def test_ensembles_of_no_motions_or_over_no_time_are_valid() -> None:
     ):
         with pytest.raises(ValueError, match=message):
             ensemble(sp, (0, 1), [[1.0], [0.0]], sp.DEFAULTS, **arguments)
-    with pytest.raises(ValueError, match="must be a finite number"):
+    with pytest.raises(ValueError, match="theta = 'a' must be a finite real number in rad"):
         Event(sp, "theta", "a")
 
 
 def test_a_prepared_run_names_the_invalid_argument() -> None:
     run = prepare(sp, sp.DEFAULTS)
     for span, start, message in (
-        ((0, 0), (float("nan"), 0), "y0 = .* must be finite"),
-        ((float("inf"),) * 2, (1, 0), "t_span = .* must be finite"),
-        ((0, 1), (None, 0), "y0 = .* must be real numbers"),
-        ((0, 1), ("1", 0), "y0 = .* must be real numbers"),
-        (("0", 1), (1, 0), "t_span = .* must be real numbers"),
+        ((0, 0), (float("nan"), 0), "theta = nan must be a finite real number"),
+        ((float("inf"),) * 2, (1, 0), r"t_span\[0\] = inf must be a finite real number in s"),
+        ((0, 1), (None, 0), "theta = None must be a finite real number"),
+        ((0, 1), ("1", 0), "theta = '1' must be a finite real number"),
+        (("0", 1), (1, 0), r"t_span\[0\] = '0' must be a finite real number"),
         ((0, 1, 2), (1, 0), "t_span has shape"),
         ((0, 1), 1.0, "y0 has shape"),
         ((0, 1), (1, 2, 3), "y0 has shape"),

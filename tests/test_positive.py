@@ -49,7 +49,7 @@ def swept(**axes: list[float]) -> Sweep:
     ],
 )
 def test_a_negative_mass_is_refused(run: Callable[[], Any]) -> None:
-    with pytest.raises(ValueError, match=r"m2 = -1\.0 must be positive, in kg"):
+    with pytest.raises(ValueError, match=r"m2(\[1\])? = -1\.0 must be positive, in kg"):
         run()
 
 
@@ -69,7 +69,7 @@ def test_a_motion_does_not_start_outside_the_domain_of_a_coordinate(length: floa
         partial(Scene, ep, ep.DEFAULTS, start, 1.0),
         partial(swept, r=[1.0, length]),
     ):
-        with pytest.raises(ValueError, match=f"r = {length} must be positive, in m"):
+        with pytest.raises(ValueError, match=rf"r(\[0\])? = {length} must be positive, in m"):
             run()
 
 

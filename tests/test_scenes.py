@@ -206,9 +206,9 @@ def test_a_scene_has_the_values_of_its_file(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("changes", "words"), [
     ({"y0": (1, 2, 3)}, r"y0 has shape \(3,\): give 4 numbers, theta1"),
-    ({"y0": (1, 2, float("nan"), 0)}, "must be finite"),
+    ({"y0": (1, 2, float("nan"), 0)}, "theta1_dot = nan must be a finite real number in rad/s"),
     ({"params": (1, -1, 2, 2, 9.81)}, "m2 = -1.0 must be positive, in kg"),
-    ({"duration": float("inf")}, "must be positive"),
+    ({"duration": float("inf")}, "duration = inf must be a finite real number"),
     ({"outputs": ("theta9",)}, "outputs name 'theta9'"),
     ({"method": "rk4", "step": -1.0}, "step = -1.0 must be positive"),
 ])  # fmt: skip

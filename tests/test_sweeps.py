@@ -312,7 +312,7 @@ def test_a_module_that_does_not_ship_travels_as_text(tmp_path: Path) -> None:
     ({"values": {"theta1": 1.0}}, "theta1 varies and has the value 1.0"),
     ({"values": {"l1": -1.0}}, "l1 = -1.0 must be positive"),
     ({"axes": Grid({"theta1": [1], "theta2": [1], "l1": [1, 0]})}, "l1 = 0.0 must be positive"),
-    ({"values": {"theta1_dot": np.inf}}, "must be a finite number"),
+    ({"values": {"theta1_dot": np.inf}}, "theta1_dot = inf must be a finite real number"),
     ({"values": {"theta1_dot": "energy"}}, "an energy requires a velocity"),
     ({"values": {"energy": 1.0}}, "an energy requires a velocity"),
     ({"values": {"energy": 1.0, "l1": "energy"}}, "determines one velocity"),
@@ -348,7 +348,7 @@ def test_energy_errors_need_a_conserved_energy() -> None:
 @pytest.mark.parametrize(("axes", "words"), [
     (lambda: Grid({}), "nothing varies"),
     (lambda: Grid({"theta1": []}), "finite numbers, at least one"),
-    (lambda: Grid({"theta1": [1, np.nan]}), "finite numbers"),
+    (lambda: Grid({"theta1": [1, np.nan]}), r"theta1\[1\] = nan must be a finite real number"),
     (lambda: Table({"theta1": [1, 2], "theta2": [1]}), "different lengths"),
     (lambda: Random({"theta1": (0, 1)}, 0, 1), "count = 0 must be from 1"),
     (lambda: Random({"theta1": (0, 1)}, 5, -1), "seed = -1 must be from 0"),

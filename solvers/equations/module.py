@@ -5,7 +5,6 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any, Protocol, cast
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Numbers = Iterable[float]
@@ -110,19 +109,6 @@ def operations_on_state(module: GeneratedModule, name: str) -> int:
     """Operations of a call, without those on parameters alone, which are done once a run."""
     total, on_parameters = module.OPERATIONS[name]
     return total - on_parameters
-
-
-def check_sign(
-    module: GeneratedModule, name: str, values: ArrayLike, *, absent: bool = True
-) -> None:
-    """Refuse values of a parameter or coordinate that are declared positive and are not.
-
-    Where parts may be `absent`, a parameter of 0 passes, such as a mass that does not exist.
-    """
-    least = float(np.min(np.asarray(values, float), initial=np.inf))
-    allows_zero = absent and name in module.PARAMETERS
-    if name in module.POSITIVE and not (least >= 0 if allows_zero else least > 0):
-        raise ValueError(f"{name} = {least} must be positive, in {module.UNITS[name]}")
 
 
 def depends_on_time(module: GeneratedModule) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import Values
 from solvers.integration import compiled_loop, validation
 from solvers.integration.accuracy_warnings import ensemble_warnings
 from solvers.integration.ensemble_run import EnsembleRun, StopFlag
@@ -15,7 +16,6 @@ from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Options
 from solvers.integration.solution import Interrupted
-from solvers.integration.validation import Values
 
 
 def ensemble(
@@ -53,7 +53,7 @@ def ensemble(
     t_eval : array_like of shape (times,), optional
         Times in s at which states are recorded; none by default.
     events : Event or sequence of Event, optional
-        Events to locate.
+        Events to locate. Functions, as in `integrate`, are possible in Python only.
     occurrences : int, optional
         How many occurrences of each event to store, counted from the start; with an `Extremum`,
         2 or more.
@@ -75,6 +75,11 @@ def ensemble(
         which predictability is examined for four motions, evenly distributed.
     solvers.integration.solution.Interrupted
         When the user interrupts; it holds the `Ensemble` up to then.
+
+    Warns
+    -----
+    UserWarning
+        When the motions are integrated in Python, one after another; it states the reason.
 
     Examples
     --------

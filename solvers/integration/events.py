@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import real_number
 from solvers.io.suggestion import did_you_mean
 
 
@@ -52,10 +52,11 @@ class Event:
             hint = did_you_mean(str(self.name), self.module.STATE)
             known = ", ".join(self.module.STATE)
             raise ValueError(f"no component is called {self.name!r}{hint}; known names: {known}")
-        if isinstance(self.value, bool) or not _is_finite(self.value):
-            raise ValueError(f"value = {self.value!r} of {self.name} must be a finite number")
+        real_number(f"value of {self.name}", self.value, self.module.UNITS[self.name])
         if self.direction not in (0, 1, -1):
             raise ValueError(f"direction = {self.direction!r} must be 0, 1 or -1")
+        if not isinstance(self.terminal, bool | np.bool_):
+            raise ValueError(f"terminal = {self.terminal!r} must be True or False")
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -128,10 +129,3 @@ class Limit(Event):
     value: float = 0.0
     direction: int = -1
     terminal: bool = True
-
-
-def _is_finite(value: object) -> bool:
-    try:
-        return isfinite(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        return False

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import Values
 from solvers.integration import compiled_loop, python_loop, validation
 from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.global_error import global_error_estimate
 from solvers.integration.problem import EventFunction, Options, Outcome, Problem
 from solvers.integration.solution import Interrupted, Solution, Status
 from solvers.integration.step_stability import step_instability
-from solvers.integration.validation import Values
 
 
 def integrate(

@@ -5,12 +5,13 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
+from solvers.equations.quantities import positive, real_number, real_numbers
 from solvers.integration.problem import shortest_step
 from solvers.integration.python_loop import Accepted, Attempts, Point, Rejected
 from solvers.integration.validation import tolerances
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.step_control import Controller
-from solvers.runge_kutta.stepper import Array, Stepper
+from solvers.runge_kutta.stepper import Array, Stepper, evaluated
 from solvers.runge_kutta.tableau import Tableau
 
 #: Options of the solver classes, with SciPy's default values.
@@ -46,7 +47,7 @@ def ode_solver(method: str) -> type[OdeSolver]:
     >>> round(float(solution.y[0, -1]), 6)
     0.367879
     """
-    tableau = load(method)
+    tableau = load(str(method))
     if not tableau.b_hat or not tableau.is_explicit:
         raise ValueError(f"method {method!r} is implicit, or does not estimate its error")
     return type(method, (_Method,), {"name": method, "tableau": tableau})
@@ -65,14 +66,17 @@ class _Method(OdeSolver):
     ) -> None:
         if unknown := sorted(given.keys() - OPTIONS):
             raise ValueError(f"method {self.name!r} has no option {', '.join(unknown)}")
-        super().__init__(fun, t0, y0, t_bound, vectorized)
+        super().__init__(
+            lambda t, y: evaluated("right-hand side", fun, t, y, y.shape),
+            *(real_number("t_span[0]", t0, "s"), real_numbers("y0", y0)),
+            real_number("t_span[1]", t_bound, "s", finite=False),
+            vectorized,
+        )
         options: dict[str, Any] = OPTIONS | given
-        duration, first_step = abs(t_bound - t0), options["first_step"]
-        if not np.isfinite(t0) or np.isnan(t_bound):
-            raise ValueError(f"t_span = {(t0, t_bound)} must be numbers, with a finite start")
-        for name in ("max_step", "first_step"):
-            if options[name] is not None and not options[name] > 0:
-                raise ValueError(f"{name} = {options[name]} must be positive")
+        duration, first_step = abs(self.t_bound - t0), options["first_step"]
+        positive("max_step", options["max_step"], finite=False)
+        if first_step is not None:
+            positive("first_step", first_step)
         if first_step is not None and first_step > duration:
             raise ValueError(f"first_step = {first_step} must be at most {duration}, all of t_span")
         limits = tolerances(options["rtol"], options["atol"], self.n)

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import REAL, Values
 from solvers.integration import compiled_loop, validation
 from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.compiled.compiler import NoCompilerError
@@ -16,7 +17,6 @@ from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.problem import SHORTEST, Options, Problem
 from solvers.integration.solution import Status
-from solvers.integration.validation import Values
 
 Numbers: TypeAlias = Sequence[float] | Mapping[str, float]
 #: The result of the C function for a span or state that is not finite.
@@ -134,8 +134,13 @@ class Prepared:
             self._has_defaults = params is None
         try:
             start, end = t_span
-            self._start[:] = list(y0)  # type: ignore[arg-type]
-        except (TypeError, ValueError):
+            values = list(y0)
+            are_real = REAL.issuperset(map(type, values)) and {type(start), type(end)} <= REAL
+            if are_real:
+                self._start[:] = values  # type: ignore[assignment]
+        except (TypeError, ValueError, OverflowError):
+            are_real = False
+        if not are_real:
             start, end = validation.time_span(t_span)
             self._start[:] = self._checked(y0)
         if self._limited and not all(self._start[k] > 0 for k in self._limited):
@@ -149,7 +154,7 @@ class Prepared:
             if h is not None and h < SHORTEST * ulp(max(abs(start), abs(end))):
                 validation.step_size(h, t_span)
             code = self._single(self._task, start, end, self._from, self._to)
-        except (ctypes.ArgumentError, TypeError):
+        except (ctypes.ArgumentError, OverflowError):
             code = NOT_NUMBERS
         if code == NOT_NUMBERS:
             validation.time_span(t_span)
@@ -166,11 +171,12 @@ class Prepared:
 
     def _set_params(self, params: Numbers) -> None:
         try:
-            self._params[:] = list(params)  # type: ignore[arg-type]
-            values = self._params
-            if all(map(isfinite, values)) and all(values[k] >= 0 for k in self._positive):
+            values: list[Any] = list(params)
+            are_signed = all(values[k] >= 0 for k in self._positive)
+            if are_signed and REAL.issuperset(map(type, values)) and all(map(isfinite, values)):
+                self._params[:] = values
                 return
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, LookupError, OverflowError):
             pass  # a mapping, or invalid
         self._params[:] = validation.parameters(self._problem.form.module, params).tolist()
 

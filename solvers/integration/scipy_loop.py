@@ -9,7 +9,7 @@ from scipy import integrate
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
-from solvers.runge_kutta.stepper import NotFiniteError
+from solvers.runge_kutta.stepper import NotFiniteError, Rhs, evaluated
 
 
 def run(problem: Problem, outcome: Outcome) -> None:
@@ -42,11 +42,11 @@ def _solver(problem: Problem, outcome: Outcome, y0: Array) -> integrate.OdeSolve
 
     def rhs(t: float, z: Array) -> Array:
         outcome.nfev += 1
-        return _finite(form.rhs, t, z)
+        return _finite("right-hand side", form.rhs, t, z, z.shape)
 
     def jacobian(t: float, z: Array) -> Array:
         outcome.njev += 1
-        return _finite(form.jacobian, t, z)
+        return _finite("Jacobian", form.jacobian, t, z, (len(z), len(z)))
 
     options = {"rtol": problem.rtol, "atol": problem.atol}
     if form.has_jacobian and method in ("Radau", "BDF", "LSODA"):
@@ -65,10 +65,10 @@ def _state_within(problem: Problem, solver: integrate.OdeSolver) -> Callable[[fl
     return state
 
 
-def _finite(function: Callable[[float, Array], Array], t: float, z: Array) -> Array:
+def _finite(what: str, function: Rhs, t: float, z: Array, shape: tuple[int, ...]) -> Array:
     """The value of `function`; SciPy would not end, or report success, with NaN or infinity."""
     try:
-        value = function(t, z)
+        value = evaluated(what, function, t, z, shape)
     except ArithmeticError as error:
         raise NotFiniteError(f"at t = {t}, y = {z}: {error}") from error
     if not (np.isfinite(z).all() and np.isfinite(value).all()):

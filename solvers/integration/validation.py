@@ -1,31 +1,31 @@
 """Checks of the arguments of an integration, before anything runs."""
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeAlias
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule, check_sign, state_names
+from solvers.equations.module import GeneratedModule, state_names
+from solvers.equations.quantities import Values, quantities, real_number, real_numbers
 from solvers.integration.events import Limit
 from solvers.integration.problem import Options, Problem, shortest_step
 from solvers.integration.solution import Array
-from solvers.io.suggestion import counted, did_you_mean
+from solvers.io.suggestion import counted, shortened
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.runge_kutta.tableau import Tableau
 
-#: Numbers in the order of their names, or by name.
-Values: TypeAlias = ArrayLike | Mapping[str, Any]
 #: The largest count that loops can reach exactly.
 MOST = 2**53
 
 
 def check_module(module: object) -> None:
-    """Refuse the name of a system in the place of its module."""
-    if isinstance(module, str):
-        known = f"such as solvers.load({module[:50]!r}) returns"
-        raise ValueError(f"module = {module[:50]!r} must be a generated module, {known}")
+    """Refuse what is not a module, such as the name of a system."""
+    if not hasattr(module, "PARAMETERS"):
+        name = module[:50] if isinstance(module, str) else "double_pendulum"
+        known = f"such as solvers.load({name!r}) returns"
+        raise ValueError(f"module = {shortened(module)} must be a generated module, {known}")
 
 
 def problem(
@@ -35,6 +35,7 @@ def problem(
     check_module(module)
     if options.backend not in (None, "compiled", "python"):
         raise ValueError(f"backend {options.backend!r} must be 'compiled' or 'python'")
+    check_flag("compensated", options.compensated)
     if options.compensated and options.backend == "python":
         raise ValueError("compensated = True needs a compiled loop, not backend 'python'")
     span, method, name = time_span(t_span), options.method, options.form or "lagrangian"
@@ -66,21 +67,19 @@ def problem_at_rest(
 
 def parameters(module: GeneratedModule, values: Values) -> Array:
     """Parameters in the order of the module; a mapping is completed by default values."""
-    result = numbers("params", _parameters(module, values), module.PARAMETERS)
-    return _checked(module, result, module.PARAMETERS)
+    return _vector("params", _parameters(module, values), module.PARAMETERS)
 
 
 def initial_state(module: GeneratedModule, values: Values, form: str = "lagrangian") -> Array:
     """A state in the order of the module; a mapping may leave out velocities, which are 0."""
-    names = state_names(module, form)
-    return _checked(module, numbers("y0", _states(module, values, form), names), names)
+    return _vector("y0", _states(module, values, form), state_names(module, form))
 
 
 def parameter_rows(module: GeneratedModule, values: Values, motions: int) -> Array:
     """Parameters, component first, as rows: one for all motions or one for each."""
-    array = np.asarray(_parameters(module, values))
+    array = _parameters(module, values)
     columns = array[:, np.newaxis] if array.ndim == 1 else array
-    rows = _checked(module, _rows("params", columns, module.PARAMETERS), module.PARAMETERS)
+    rows = _rows("params", columns, module.PARAMETERS)
     if len(rows) not in (1, motions):
         raise ValueError(
             f"params holds values for {counted(len(rows), 'motion')}, but y0 has {motions}"
@@ -90,82 +89,51 @@ def parameter_rows(module: GeneratedModule, values: Values, motions: int) -> Arr
 
 def state_rows(module: GeneratedModule, values: Values, form: str) -> Array:
     """Initial states, component first, as rows."""
-    names = state_names(module, form)
-    return _checked(module, _rows("y0", _states(module, values, form), names), names)
+    return _rows("y0", _states(module, values, form), state_names(module, form))
 
 
-def _checked(module: GeneratedModule, values: Array, names: Sequence[str]) -> Array:
-    """The values, of which the last axis has these names, if their signs are as declared."""
-    for k, name in enumerate(names):
-        check_sign(module, name, values[..., k])
-    return values
-
-
-def _parameters(module: GeneratedModule, values: Values) -> ArrayLike:
+def _parameters(module: GeneratedModule, values: Values) -> Array:
     defaults = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
-    return _in_order("params", values, module.PARAMETERS, defaults)
+    return quantities(module, "params", module.PARAMETERS, values, defaults)
 
 
-def _states(module: GeneratedModule, values: Values, form: str) -> ArrayLike:
+def _states(module: GeneratedModule, values: Values, form: str) -> Array:
     velocities = module.STATE[len(module.COORDINATES) :]
     defaults = dict.fromkeys([*velocities, *(f"delta_{name}" for name in velocities)], 0.0)
-    return _in_order("y0", values, state_names(module, form), defaults)
+    return quantities(module, "y0", state_names(module, form), values, defaults)
 
 
-def _in_order(
-    what: str, values: Values, names: Sequence[str], defaults: Mapping[str, float]
-) -> ArrayLike:
-    """The values of a mapping in the order of `names`, completed by `defaults`; others as given."""
-    if not isinstance(values, Mapping):
-        return values
-    for name in values:
-        if name not in names:
-            hint, known = did_you_mean(str(name), names), ", ".join(names) or "none"
-            raise ValueError(f"{what} has no {name!r}{hint}; known names: {known}")
-    missing = [name for name in names if name not in values and name not in defaults]
-    if missing:
-        raise ValueError(f"{what} lacks {', '.join(missing)}: only velocities may be left out")
-    columns = [_floats(f"{what}[{name!r}]", values.get(name, defaults.get(name))) for name in names]
-    try:
-        return np.array(np.broadcast_arrays(*columns))
-    except ValueError as error:
-        shapes = ", ".join(f"{n}: {c.shape}" for n, c in zip(names, columns, strict=True))
-        raise ValueError(f"the values of {what} differ in shape: {shapes}") from error
-
-
-def numbers(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
-    """`values` as a new array of finite floats, one for each name in `expected`."""
-    array = _floats(name, values)
+def _vector(name: str, array: Array, expected: Sequence[str]) -> Array:
+    """An array of one number for each name in `expected`."""
     if array.shape != (len(expected),):
         raise ValueError(
             f"{name} has shape {array.shape}: give {len(expected)} numbers, {', '.join(expected)}"
         )
-    return _finite(name, array)
+    return array
 
 
-def _rows(name: str, values: ArrayLike, expected: Sequence[str]) -> Array:
-    """Finite floats of shape (components, n) as an array of n rows."""
-    array, size = _floats(name, values), len(expected)
+def _rows(name: str, array: Array, expected: Sequence[str]) -> Array:
+    """An array of shape (components, n) as one of n rows."""
+    size = len(expected)
     if array.ndim != 2 or len(array) != size:
         hint = f"the first axis must hold the {size} components, {', '.join(expected)}"
         if array.ndim == 2 and array.shape[1] == size:
             hint += f"; transpose it: {name}.T"
         raise ValueError(f"{name} has shape {array.shape}: {hint}")
-    return np.ascontiguousarray(_finite(name, array).T)
+    return np.ascontiguousarray(array.T)
 
 
 def time_span(values: ArrayLike) -> tuple[float, float]:
     """Start and end."""
-    start, end = numbers("t_span", values, ("t_start", "t_end")).tolist()
+    start, end = _vector("t_span", real_numbers("t_span", values, "s"), ("start", "end")).tolist()
     return start, end
 
 
 def times(values: ArrayLike, span: tuple[float, float]) -> Array:
     """Times within `span`, in the order of the integration."""
-    array = _floats("t_eval", values)
+    array = real_numbers("t_eval", values, "s")
     if array.ndim != 1:
         raise ValueError(f"t_eval has shape {array.shape}: give a list of times")
-    _finite("t_eval", array)
     low, high = sorted(span)
     outside = array[(array < low) | (array > high)]
     if outside.size:
@@ -192,27 +160,27 @@ def step_control(
 
 def tolerances(rtol: float, atol: ArrayLike, size: int) -> tuple[float, Array]:
     """Tolerances, of which one at least is positive in every component."""
-    array, relative = _floats("atol", atol), _floats("rtol", rtol)
+    array, relative = real_numbers("atol", atol), real_number("rtol", rtol)
     for name, value in (("rtol", relative), ("atol", array)):
-        if np.any(_finite(name, value) < 0):
+        if np.any(value < 0):
             raise ValueError(f"{name} = {value} must not be negative")
-    if relative.ndim or array.shape not in ((), (size,)):
-        raise ValueError(f"rtol must be a number, atol a number or {size} of them")
+    if array.shape not in ((), (size,)):
+        raise ValueError(f"atol must be a number or {size} of them")
     if relative == 0 and np.any(array == 0):
         raise ValueError("rtol and atol are both 0: no step is short enough; make one positive")
     if 0 < relative < 4 * np.finfo(float).eps:
         raise ValueError(f"rtol = {relative} is below the resolution of numbers, 9e-16")
-    return float(relative), array
+    return relative, array
 
 
 def step_size(h: float, span: tuple[float, float]) -> float:
     """A fixed step size: positive, and large enough to change the time."""
-    array, shortest = _floats("h", h), shortest_step(*span)
-    if array.ndim or not np.isfinite(array) or array <= 0:
+    size, shortest = real_number("h", h, "s"), shortest_step(*span)
+    if size <= 0:
         raise ValueError(f"h = {h} must be a positive number (the direction follows from t_span)")
-    if array < shortest and span[0] != span[1]:
+    if size < shortest and span[0] != span[1]:
         raise ValueError(f"h = {h} is below the resolution {shortest} of times in {span}")
-    return float(array)
+    return size
 
 
 def count(name: str, value: object, least: int) -> int:
@@ -224,32 +192,19 @@ def count(name: str, value: object, least: int) -> int:
     return int(value)
 
 
-def check_positive(**numbers: float | None) -> None:
-    """Raise `ValueError` for the first number that is not positive and finite; None passes."""
-    for name, number in numbers.items():
-        if number is not None and not (np.isfinite(number) and number > 0):
-            raise ValueError(f"{name} = {number} must be positive")
+def check_flag(name: str, value: object) -> None:
+    """Refuse anything but True and False."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} = {shortened(value)} must be True or False")
 
 
 def event_functions(events: object, module: GeneratedModule) -> list[Callable[..., float]]:
     """Events as a list of functions; events of another module are refused."""
     functions: list[Any] = list(events) if isinstance(events, Sequence) else [events]
     if not all(map(callable, functions)):
-        raise ValueError(f"events = {events!r} must be functions event(t, y), one or a list")
+        allowed = "must be functions event(t, y), one or a list: leave it out for none"
+        raise ValueError(f"events = {shortened(events)} {allowed}")
     for event in functions:
         if getattr(event, "name", None) and getattr(event, "module", module) is not module:
             raise ValueError(f"{event.name} of {event.module.__name__} is not of {module.__name__}")
     return functions
-
-
-def _floats(name: str, values: Any) -> Array:
-    array = np.asarray(values)
-    if array.dtype.kind not in "iuf":
-        raise ValueError(f"{name} = {str(values)[:60]} must be real numbers")
-    return np.array(array, dtype=float)
-
-
-def _finite(name: str, array: Array) -> Array:
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} = {array} must be finite")
-    return array

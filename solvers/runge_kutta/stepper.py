@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.io.suggestion import shortened
 from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
@@ -26,6 +27,21 @@ class NotFiniteError(ArithmeticError):
 
 class NoConvergenceError(ArithmeticError):
     """The stage equations of an implicit method were not solved."""
+
+
+def evaluated(what: str, function: Rhs, t: float, y: Array, shape: tuple[int, ...]) -> Array:
+    """The value of a function of time and state, which must be real numbers of this shape."""
+    value = function(t, y)
+    try:
+        array = np.asarray(value)
+    except ValueError:  # parts of different lengths
+        array = np.empty(0)
+    if array.shape != shape or array.dtype.kind not in "biuf":
+        raise ValueError(
+            f"the {what} at t = {t}, y = {y} is {shortened(value)}: it must return real numbers of "
+            f"shape {shape}"
+        )
+    return array.astype(float)
 
 
 class Stepper:
@@ -47,7 +63,7 @@ class Stepper:
         if not np.isfinite(y).all():
             raise NotFiniteError(f"the state at t = {t} is {y}")
         try:
-            value = np.asarray(self._rhs(t, y), dtype=float)
+            value = evaluated("right-hand side", self._rhs, t, y, y.shape)
         except ArithmeticError as error:
             raise NotFiniteError(f"the right-hand side at t = {t}, y = {y}: {error}") from error
         if not np.isfinite(value).all():
@@ -80,7 +96,7 @@ class Stepper:
         assert self._jacobian is not None
         stages, n = len(self._b), len(y)
         self.njev += 1
-        J = np.asarray(self._jacobian(t, y), dtype=float)
+        J = evaluated("Jacobian", self._jacobian, t, y, (n, n))
         matrix = np.eye(stages * n) - h * np.kron(self._A, J)
         k = np.tile(first, (stages, 1))
         times = [t + c * h for c in self._c]

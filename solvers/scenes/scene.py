@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import positive
 from solvers.integration import validation
 from solvers.io.toml_input import whole
 from solvers.scenes import checks
@@ -102,6 +103,7 @@ class Scene:
     beside: tuple["Scene", ...] = ()
 
     def __post_init__(self) -> None:
+        validation.check_module(self.module)
         state = self.module.STATE
         completed = {
             "params": tuple(validation.parameters(self.module, self.params).tolist()),
@@ -111,7 +113,8 @@ class Scene:
         }
         for name, value in completed.items():
             object.__setattr__(self, name, value)
-        validation.check_positive(duration=self.duration, accuracy=self.accuracy, step=self.step)
+        for name in ("duration", "accuracy", *(["step"] if self.step is not None else [])):
+            positive(name, getattr(self, name))
         checks.check_accuracy(self.accuracy)
         checks.check_masses(self.module, self.params, self.y0)
         checks.check_method(self.module, self.method, self.form, self.step, self.duration)

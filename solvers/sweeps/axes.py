@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Self, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.quantities import real_numbers
 from solvers.integration import validation
 
 Array: TypeAlias = NDArray[np.float64]
@@ -194,8 +195,10 @@ class Random(Axes):
     def __post_init__(self) -> None:
         validation.count("count", self.count, 1)
         validation.count("seed", self.seed, 0)
-        limits = {name: (float(low), float(high)) for name, (low, high) in self.limits.items()}
-        _columns(limits)
+        limits = {name: tuple(ends.tolist()) for name, ends in _columns(self.limits).items()}
+        for name, ends in limits.items():
+            if len(ends) != 2:
+                raise ValueError(f"{name} = {ends} must be two limits, lowest and highest")
         object.__setattr__(self, "limits", limits)
 
     @property
@@ -225,8 +228,8 @@ class Random(Axes):
 def _columns(values: Mapping[str, Any]) -> dict[str, Array]:
     if not values:
         raise ValueError("nothing varies: name at least one coordinate, velocity or parameter")
-    columns = {name: np.array(column, float, ndmin=1) for name, column in values.items()}
+    columns = {name: np.atleast_1d(real_numbers(name, given)) for name, given in values.items()}
     for name, column in columns.items():
-        if column.ndim != 1 or not len(column) or not np.isfinite(column).all():
+        if column.ndim != 1 or not len(column):
             raise ValueError(f"{name} must be a list of finite numbers, at least one")
     return columns

@@ -1,9 +1,9 @@
 """Consistency of the parts of a sweep."""
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
 
-from solvers.equations.module import GeneratedModule, check_sign
+from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import quantity
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.maps import Map
@@ -42,12 +42,11 @@ def check_names(module: GeneratedModule, axes: Axes, values: Values) -> None:
     for name in module.COORDINATES:
         if name not in (*varied, *values):
             raise ValueError(f"{name} is missing: give its value or an axis")
-    for name, value in values.items():
-        if value != FROM_ENERGY and (isinstance(value, str) or not isfinite(value)):
-            raise ValueError(f"{name} = {value!r} must be a finite number")
-    for name, low in {**values, **axes.smallest}.items():
-        if not isinstance(low, str):
-            check_sign(module, name, low, absent=False)
+    for name, value in {**values, **axes.smallest}.items():
+        if isinstance(value, str) and value == FROM_ENERGY:
+            continue
+        if quantity(module, name, value, absent=False).ndim:
+            raise ValueError(f"{name} = {value!r} must be one number")
 
 
 def check_energy(module: GeneratedModule, given: Sequence[str], values: Values) -> None:

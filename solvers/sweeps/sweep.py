@@ -14,6 +14,7 @@ import numpy as np
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
+from solvers.equations.quantities import positive
 from solvers.integration import validation
 from solvers.integration.problem import Options
 from solvers.runge_kutta.catalogue import load, names
@@ -78,8 +79,9 @@ class Sweep:
     title: str = "a sweep"
 
     def __post_init__(self) -> None:
-        validation.check_positive(duration=self.duration)
-        if not load(self.method).b_hat:
+        validation.check_module(self.module)
+        positive("duration", self.duration)
+        if not load(str(self.method)).b_hat:
             able = ", ".join(name for name in names() if load(name).b_hat)
             raise ValueError(
                 f"method = {self.method!r} does not estimate its error: use one of {able}"
