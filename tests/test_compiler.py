@@ -1,12 +1,13 @@
-"""Compiled code: right, cached, and never loaded from where it cannot be trusted."""
+"""Compiled code: right, cached, and never loaded before it is known to work."""
 
 import ctypes
-import os
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +15,11 @@ import pytest
 from handwritten import handwritten
 
 import generated.double_pendulum as dp
-from solvers.integration.compiled import compiler
-from solvers.integration.compiled.compiler import LIBRARY, TIME_LIMIT, NoCompilerError, build
+from solvers.integration.compiled import compilation, compiler
+from solvers.integration.compiled.compilation import LIBRARY
+from solvers.integration.compiled.compiler import NoCompilerError, build
 from solvers.integration.compiled.native import native_rhs
-from solvers.io.build_cache import DIGESTS, cache_folder
+from solvers.io.build_cache import DIGESTS, _seal
 from solvers.studies.benchmarks.double_pendulum import _peak_library
 
 ROOT = Path(__file__).parent.parent
@@ -112,56 +114,6 @@ def test_nothing_is_left_beside_finished_libraries(own_cache: Path) -> None:
         assert {path.name for path in entry.iterdir()} == {LIBRARY, DIGESTS}
 
 
-def test_remains_of_killed_builds_are_removed_and_running_builds_are_not(own_cache: Path) -> None:
-    build(SOURCE)
-    ages = {"running": 2 * TIME_LIMIT, "killed": 11 * TIME_LIMIT}  # a build tries two compilers
-    for name, age in ages.items():
-        (own_cache / f"build-{name}").mkdir()
-        os.utime(own_cache / f"build-{name}", (time.time() - age,) * 2)
-    build(SOURCE + "\n")
-    assert [path.name for path in own_cache.glob("build-*")] == ["build-running"]
-
-
-def unusable(cache: Path, kind: str, tmp_path: Path) -> None:
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
-    match kind:
-        case "open to all":
-            cache.mkdir()
-            cache.chmod(0o777)
-        case "a link":
-            cache.symlink_to(elsewhere)
-        case "a file":
-            cache.write_text("")
-
-
-@pytest.mark.parametrize("kind", ["open to all", "a link", "a file"])
-def test_a_cache_that_others_could_write_to_is_not_used(
-    kind: str, own_cache: Path, tmp_path: Path
-) -> None:
-    unusable(own_cache, kind, tmp_path)
-    assert cache_folder() != own_cache
-    library = build(SOURCE)
-    assert not library.path.is_relative_to(tmp_path)
-    assert answer(library.path) == 42
-
-
-def test_a_cache_of_another_user_is_not_used(
-    own_cache: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    own_cache.mkdir(mode=0o700)
-    assert cache_folder() == own_cache
-    user = os.getuid()
-    monkeypatch.setattr(os, "getuid", lambda: user + 1)
-    assert cache_folder() != own_cache
-
-
-def test_without_a_home_it_still_works(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("XDG_CACHE_HOME")
-    monkeypatch.setenv("HOME", "/proc/no-such-folder")
-    assert answer(build(SOURCE).path) == 42
-
-
 def fake_compiler(folder: Path, script: str) -> tuple[str, ...]:
     path = folder / "cc"
     path.write_text(f"#!/bin/sh\n{script}\n")
@@ -176,21 +128,132 @@ def fake_compiler(folder: Path, script: str) -> tuple[str, ...]:
         ("exit 3", "exit 3"),
         ("exit 0", "wrote no library"),
         (": > library.so", "wrote no library"),
-        ("sleep 60; true", "did not end within"),
+        ("echo text > library.so", "does not work: .*file too short"),
+        ("echo 'int other;' > source.c; {cc} $@", "does not work: .*undefined symbol: LIBRARY_KEY"),
+        ("echo 'char LIBRARY_KEY[] = {{1, 0}};' > source.c; {cc} $@", "it is another one"),
+        ("{cc} $@; truncate -s 9000 library.so", "does not work: "),
+        ("{cc} $@; printf '\\267' | dd of=library.so bs=1 seek=18 conv=notrunc", "does not work: "),
+        ("sleep 60; true", "did not end within 0.5 s"),
+        ("yes >&2", "did not end within 0.5 s"),
+        ("sleep 2 & exit 1", "exit 1"),
     ],
 )
-def test_after_a_failing_compiler_the_next_is_tried(
+def test_after_a_failing_compiler_the_next_is_used_with_a_notice(
     script: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    broken, working = fake_compiler(tmp_path, script), (str(shutil.which("cc")),)
-    monkeypatch.setattr(compiler, "TIME_LIMIT", 0.5 if "sleep" in script else 60)
+    working = (str(shutil.which("cc")),)
+    broken = fake_compiler(tmp_path, script.format(cc=working[0]))
+    if {"sleep", "yes"} & {*script.split()}:
+        monkeypatch.setattr(compilation, "PATIENCE", 0.5)
+        monkeypatch.setattr(compilation, "TRIAL_LIMIT", 0.5)
     monkeypatch.setattr(compiler, "compilers", lambda: iter([broken]))
     with pytest.raises(NoCompilerError, match=message):
         build(SOURCE)
     monkeypatch.setattr(compiler, "compilers", lambda: iter([broken, working]))
-    library = build(SOURCE)
+    with pytest.warns(UserWarning, match=f"^compiling with {working[0]}: .*{message}"):
+        library = build(SOURCE)
     assert library.compiler == working[0]
     assert answer(library.path) == 42
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [("__builtin_trap();", "ended by SIG"), ("for (;;) {}", "it did not return within 0.5 s")],
+)
+def test_a_library_that_cannot_be_called_is_not_kept(
+    body: str, message: str, own_cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compilation, "PROBE_LIMIT", 0.5)
+    with pytest.raises(NoCompilerError, match=message):
+        build(f"{SOURCE}void probe(void);\nvoid probe(void) {{ {body} }}\n")
+    assert [*own_cache.iterdir()] == []
+
+
+def test_a_library_of_another_program_is_replaced() -> None:
+    other, library = build(SOURCE.replace("42", "13")), build(SOURCE)
+    folder = library.path.parent
+    shutil.rmtree(folder)
+    shutil.copytree(other.path.parent, folder)
+    assert answer(build(SOURCE).path) == 42
+    # also with a seal under the name of the first one
+    content = other.path.read_bytes()
+    library.path.unlink()
+    library.path.write_bytes(content)
+    (folder / DIGESTS).write_text(_seal(folder.name, {LIBRARY: content}))
+    assert build(SOURCE).path.read_bytes() != content
+
+
+def counting(folder: Path, script: str) -> tuple[str, ...]:
+    return fake_compiler(folder, f"echo >> {folder}/calls\n{script}")
+
+
+def calls(folder: Path) -> int:
+    return len((folder / "calls").read_text())
+
+
+@pytest.mark.parametrize("script", ["exit 1", "sleep 60"])
+def test_a_broken_compiler_is_tried_once_in_a_process_its_threads_and_forks(
+    script: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken = counting(tmp_path, script)
+    monkeypatch.setattr(compiler, "compilers", lambda: iter([broken]))
+    monkeypatch.setattr(compilation, "PATIENCE", 0.3)
+    monkeypatch.setattr(compilation, "TRIAL_LIMIT", 0.3)
+
+    with ThreadPoolExecutor(4) as threads:
+        assert all(threads.map(fails, range(8)))
+    with ProcessPoolExecutor(2, get_context("fork")) as processes:
+        assert all(processes.map(fails, range(8, 12)))
+    assert calls(tmp_path) == 2  # the program and a small one
+
+
+def fails(k: int) -> bool:
+    with pytest.raises(NoCompilerError):
+        build(f"{SOURCE}/* {k} */")
+    return True
+
+
+def test_an_invalid_program_does_not_stop_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = counting(tmp_path, f"exec {shutil.which('cc')} $@")
+    monkeypatch.setattr(compiler, "compilers", lambda: iter([own]))
+    for _ in range(2):
+        with pytest.raises(NoCompilerError, match="#error here"):
+            build("#error here")
+    assert calls(tmp_path) == 2
+    assert answer(build(SOURCE).path) == 42
+
+
+def test_a_slow_compiler_that_works_is_given_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compilation, "PATIENCE", 0.2)
+    monkeypatch.setattr(compilation, "PROBE_LIMIT", 20)
+    script = f"grep -q trial source.c || sleep 0.6\nexec {shutil.which('cc')} $@"
+    monkeypatch.setattr(compiler, "compilers", lambda: iter([counting(tmp_path, script)]))
+    assert answer(build(SOURCE).path) == 42
+
+
+@pytest.mark.parametrize("name", ["CPATH", "C_INCLUDE_PATH"])
+def test_headers_of_the_environment_are_not_included(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "stdint.h").write_text("#include_next <stdint.h>\n#define int32_t int16_t\n")
+    monkeypatch.setenv(name, str(tmp_path))
+    library = build(f"#include <stdint.h>\n{SOURCE.replace('42', '40 + sizeof(int32_t)')}")
+    assert answer(library.path) == 44
+
+
+@pytest.mark.parametrize("name", ["GCC_EXEC_PREFIX", "COMPILER_PATH", "LIBRARY_PATH"])
+def test_programs_and_libraries_of_the_environment_are_not_used(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for program in ("as", "ld", "cc1", "collect2", "libm.so"):
+        (tmp_path / program).write_text("#!/bin/sh\nexit 1\n")
+        (tmp_path / program).chmod(0o755)
+    monkeypatch.setenv(name, f"{tmp_path}/")
+    assert answer(build(SOURCE).path) == 42
 
 
 def test_without_a_compiler_the_message_names_what_to_install(

@@ -1,7 +1,5 @@
 """Code for one scene: folded parameters, required functions only, the same motion."""
 
-import os
-import time
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
@@ -24,7 +22,6 @@ from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefiniti
 from derive.system.system import System
 from solvers.app.modules import generator_text, specialiser
 from solvers.equations.specialise import required_functions, specialised_module
-from solvers.integration.compiled.compiler import TIME_LIMIT
 from solvers.integration.integrate import integrate
 from solvers.io.build_cache import cache_folder
 from solvers.scenes.models.method_choice import MethodChoice
@@ -189,11 +186,3 @@ def test_a_module_is_generated_once_and_again_when_damaged() -> None:
     get()
     assert len(made) == 4
     assert {path.name.split("-")[0] for path in (cache_folder()).iterdir()} == {"module"}
-
-
-def test_generating_a_module_removes_remains_of_killed_builds_and_no_running_build() -> None:
-    for name, age in {"running": 2 * TIME_LIMIT, "killed": 11 * TIME_LIMIT}.items():
-        (cache_folder() / f"build-{name}").mkdir()
-        os.utime(cache_folder() / f"build-{name}", (time.time() - age,) * 2)
-    specialiser(sp, sp.DEFAULTS, MethodChoice("rk4", "lagrangian", ""))
-    assert [path.name for path in cache_folder().glob("build-*")] == ["build-running"]

@@ -21,7 +21,8 @@ def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]
     write_text(paths["table"], table(results[0]))
     for n, result in enumerate(results[1:], 2):
         paths[f"table {n}"] = write_text(folder / f"{scene.name}_{n}.csv", table(result))
-    if module := results[0].specialised_module:
-        paths["code"] = Path(module.__file__ or "")
+    module = results[0].specialised_module
+    if module and module.__file__:  # it has no file where none can be written
+        paths["code"] = Path(module.__file__)
     Page(scene.title, full_note(results), tracks(results)).write(paths["page"])
     return paths

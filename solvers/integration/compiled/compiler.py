@@ -1,20 +1,20 @@
 """C code to shared libraries, by the first compiler that works, built once."""
 
+import ctypes
 import hashlib
 import os
 import platform
 import shutil
-import signal
-import subprocess
-import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, field
+from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from warnings import warn
 
-from solvers.io.build_cache import NotMovedError, cache_folder, folder_in_place, is_intact
+from solvers.integration.compiled.command import CommandError
+from solvers.integration.compiled.compilation import LIBRARY, Attempts, Compilation
+from solvers.io.build_cache import NoPlaceError, built_folder
 
 #: ``-ffast-math`` would switch the whole process to flushing small numbers to zero.
 #: Vectors are explicit in the source: loops over a small state are slower when vectorised.
@@ -22,43 +22,68 @@ FLAGS = (
     *("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC"),
     *("-fno-tree-vectorize", "-Wno-psabi"),
 )
-#: Time limit of a compiler in s, and the file that it writes.
-TIME_LIMIT, LIBRARY = 120, "library.so"
+_attempts = Attempts()
 
 
-class NoCompilerError(RuntimeError):
+class NoCompilerError(OSError):
     """No compiler built the library; the message lists those tried and their errors."""
 
 
 @dataclass(frozen=True)
 class Library:
-    """A shared library on disk, whose digest has just been checked."""
+    """A shared library that was loaded; its digest and its key have been checked."""
 
     path: Path
     compiler: str  # the command that built it
+    functions: ctypes.CDLL = field(compare=False, repr=False)
 
 
 def build(source: str, *, reproducible: bool = False) -> Library:
     """The library of a complete C99 program, from the cache or by the first of `compilers`.
 
-    Reproducible libraries fuse no products and sums: every compiler gives the same bits, at
-    some cost of speed.
+    If the program has a function ``void probe(void)``, it is called once, in another process,
+    before a new library is used.
+
+    Parameters
+    ----------
+    source : str
+        The program.
+    reproducible : bool, optional
+        Whether no products and sums are fused: every compiler gives the same bits then, at some
+        cost of speed.
+
+    Raises
+    ------
+    NoCompilerError
+        When no compiler builds a library that works.
     """
     flags = (*FLAGS, "-ffp-contract=off" if reproducible else "-ffp-contract=fast")
-    folder, errors = cache_folder(), []
+    errors: list[str] = []
     for compiler in compilers():
-        entry = folder / _key(source, compiler, flags)
         try:
-            if not is_intact(entry):
-                _build(source, compiler, flags, entry)
-        except (_CompilerError, NotMovedError) as error:
+            library = _library(Compilation(source, compiler, flags, _key(source, compiler, flags)))
+        except CommandError as error:
             errors.append(f"{compiler[0]}: {error}")
-            continue
-        return Library(entry / LIBRARY, " ".join(compiler))
+        except NoPlaceError as error:
+            raise NoCompilerError(str(error)) from error
+        else:
+            if errors:
+                warn(f"compiling with {library.compiler}: {'; '.join(errors)}", stacklevel=2)
+            return library
     tried = "; ".join(errors) or "none was found"
     raise NoCompilerError(
         f"no C compiler built the library ({tried}): install one as `cc`, or the package ziglang"
     )
+
+
+def _library(compilation: Compilation) -> Library:
+    """A library from the cache or built, and loaded."""
+    key, fill = compilation.key, partial(_attempts.run, compilation)
+    path = built_folder(key, fill, mark=key.encode(), is_loaded=True) / LIBRARY
+    try:
+        return Library(path, " ".join(compilation.command), ctypes.CDLL(str(path)))
+    except OSError as error:
+        raise CommandError(f"its library cannot be loaded: {error}") from error
 
 
 def compilers() -> Iterator[tuple[str, ...]]:
@@ -66,13 +91,17 @@ def compilers() -> Iterator[tuple[str, ...]]:
     path = shutil.which("cc")
     if path:
         yield (os.path.abspath(path),)
-    if find_spec("ziglang"):
-        yield (sys.executable, "-m", "ziglang", "cc")
+    package = find_spec("ziglang")
+    if package and package.origin:
+        yield (str(Path(package.origin).with_name("zig")), "cc")
 
 
 def _key(source: str, compiler: Sequence[str], flags: Sequence[str]) -> str:
     """A digest of the source, the compiler, the flags and the processor."""
-    status = Path(compiler[0]).stat()
+    try:
+        status = Path(compiler[0]).stat()
+    except OSError as error:
+        raise CommandError(f"cannot be run: {error.strerror}") from error
     parts = (source, *compiler, str(status.st_mtime_ns), str(status.st_size), *flags, _processor())
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
 
@@ -85,39 +114,3 @@ def _processor() -> str:
         lines = []
     features = next((line for line in lines if line.startswith(("flags", "Features"))), "")
     return f"{platform.system()} {platform.machine()} {platform.processor()} {features}"
-
-
-class _CompilerError(Exception):
-    """A compiler did not build the library."""
-
-
-def _build(source: str, compiler: Sequence[str], flags: Sequence[str], entry: Path) -> None:
-    """Build a library in the cache."""
-    with folder_in_place(entry, 10 * TIME_LIMIT) as ready:
-        folder = ready.parent
-        (folder / "source.c").write_text(source, encoding="utf-8")
-        _run([*compiler, *flags, "-shared", "-o", LIBRARY, "source.c", "-lm"], folder)
-        if not (folder / LIBRARY).is_file() or not (folder / LIBRARY).stat().st_size:
-            raise _CompilerError("wrote no library")
-        os.replace(folder / LIBRARY, ready / LIBRARY)
-
-
-def _run(command: Sequence[str], folder: Path) -> None:
-    """Run a compiler, and end it with all its children if it exceeds the time limit."""
-    nowhere, pipe = subprocess.DEVNULL, subprocess.PIPE
-    options: dict[str, Any] = {"stdin": nowhere, "stdout": nowhere, "stderr": pipe}
-    try:
-        process = subprocess.Popen(command, cwd=folder, start_new_session=True, **options)
-    except OSError as error:
-        raise _CompilerError(f"cannot be run: {error.strerror}") from error
-    try:
-        _, output = process.communicate(timeout=TIME_LIMIT)
-    except subprocess.TimeoutExpired as error:
-        raise _CompilerError(f"did not end within {TIME_LIMIT} s") from error
-    finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
-    if process.returncode:
-        message = output.decode(errors="replace").strip()[-300:]
-        raise _CompilerError(message or f"exit {process.returncode}")

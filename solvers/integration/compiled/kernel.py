@@ -46,7 +46,7 @@ class Kernel:
         sizes = source.sizes(tableau, **extent)
         text = program(source, tableau, lanes=vectors, **extent)
         self.library = build(text, reproducible=reproducible)
-        library = ctypes.CDLL(str(self.library.path))
+        library = self.library.functions
         check(library, sizes)
         self.run = library.run  # releases the global interpreter lock
         self.run.restype, self.run.argtypes = None, [ctypes.POINTER(Task)]

@@ -30,6 +30,7 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 {motion_h}
 {within_step_h}
 {integrator_c}
+{probe_h}
 {single}"""
 
 #: Conversion between ordinary states and those of the form, for single motions.
@@ -140,7 +141,7 @@ def program(
         to_ordinary="\n".join(f"    {line}" for line in equations.to_ordinary),
         single_h=_source("single.h"),
     )
-    files = ("lanes.h", "step.h", "motion.h", "within_step.h", "integrator.c")
+    files = ("lanes.h", "step.h", "motion.h", "within_step.h", "integrator.c", "probe.h")
     return PROGRAM.format(
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
         header=equations.header,

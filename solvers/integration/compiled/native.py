@@ -15,6 +15,14 @@ void rhs(double t, const double *y, double *dy, const double *params)
 {{
     {rhs}(t, y, params, dy);
 }}
+
+void probe(void);
+void probe(void)
+{{
+    const double y[{state}] = {{0.5}}, params[{parameters} + 1] = {{0.5}};
+    double dy[{state}];
+    rhs(0.0, y, dy, params);
+}}
 """
 
 
@@ -87,9 +95,10 @@ def native_rhs(
         When no compiler could build it.
     """
     source = equations(module, form)
-    text = source.header + WRAPPER.format(rhs=source.rhs)
+    sizes = {"state": source.state, "parameters": source.parameters}
+    text = source.header + WRAPPER.format(rhs=source.rhs, **sizes)
     library = build(text, reproducible=reproducible)
-    function = ctypes.CDLL(str(library.path)).rhs
+    function = library.functions.rhs
     function.restype = None
     function.argtypes = [ctypes.c_double, *[ctypes.c_void_p] * 3]
     address = ctypes.cast(function, ctypes.c_void_p).value

@@ -59,7 +59,7 @@ class Calls:
     """Repeated calls of a compiled right-hand side; `rates` has the result of the last one."""
 
     def __init__(self, text: str, state: int, params: Sequence[float], each: int) -> None:
-        self._library = ctypes.CDLL(str(build(text).path))
+        self._library = build(text).functions
         self._library.calls.restype = None
         self._y, self.rates = np.linspace(0.3, 0.9, state), np.zeros(state)
         self._params, self._each, self.repetitions = np.array(params), each, 2000

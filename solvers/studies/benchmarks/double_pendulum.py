@@ -115,7 +115,7 @@ def _peak_library() -> ctypes.CDLL:
     sources = SOURCES / "lanes.h", files(__package__) / "peak.c"
     parts = ["#include <math.h>\n#include <stdint.h>"]
     parts += [source.read_text(encoding="utf-8") for source in sources]
-    library = ctypes.CDLL(str(build("\n".join(parts)).path))
+    library = build("\n".join(parts)).functions
     library.peak.argtypes, library.peak.restype = [ctypes.c_int64], ctypes.c_double
     library.operations.restype = ctypes.c_int64
     return library

@@ -1,0 +1,120 @@
+"""The compilation of a library by one compiler, which is trusted only once the library works."""
+
+import os
+import sys
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from solvers.integration.compiled.command import CommandError, running
+from solvers.io.build_cache import BUILD_PREFIX
+
+#: The file that a compiler writes, and its longest time in s.
+LIBRARY, TIME_LIMIT = "library.so", 120.0
+#: After this time in s a compiler must prove that it still works, by a small program in a few s.
+PATIENCE, TRIAL_LIMIT = 15.0, 5.0
+#: Longest time in s of the call of a new library.
+PROBE_LIMIT = 15.0
+TRIAL = "int trial(void);\nint trial(void) { return 0; }\n"
+#: Bytes that must be free: compilers report a full disk as an error of their own.
+ROOM = 4_000_000
+#: The end of every program: a library in the place of another is recognised by its key.
+KEY = '\nconst char LIBRARY_KEY[] = "{key}";\n'
+#: Loads a library and calls its function ``probe``, in a process that may crash.
+PROBE = """
+import ctypes, sys
+try:
+    library = ctypes.CDLL(sys.argv[1])
+    key = ctypes.c_char.in_dll(library, "LIBRARY_KEY")
+except (OSError, ValueError) as error:
+    sys.exit(str(error))
+if ctypes.string_at(ctypes.addressof(key)) != sys.argv[2].encode():
+    sys.exit("it is another one")
+getattr(library, "probe", int)()
+"""
+
+
+class TimeLimitError(CommandError):
+    """A compiler did not end in time."""
+
+
+@dataclass(frozen=True)
+class Compilation:
+    """A program, the command that compiles it, and the key of the library."""
+
+    source: str
+    command: tuple[str, ...]  # the compiler
+    flags: tuple[str, ...]
+    key: str
+
+    def run(self, ready: Path, *, is_trial: bool = False) -> None:
+        """Build the library in `ready`; the folder above it is for temporary files.
+
+        `CommandError` if the compiler fails, and `OSError` if the disk is full.
+        """
+        folder = ready.parent
+        (folder / "room").write_bytes(bytes(ROOM))
+        (folder / "room").unlink()
+        text = self.source + KEY.format(key=self.key)
+        (folder / "source.c").write_text(text, encoding="utf-8")
+        output = folder / LIBRARY
+        command = *self.command, *self.flags, "-shared", "-o", output.name, "source.c", "-lm"
+        with running(command, folder) as compiler:
+            limit = TRIAL_LIMIT if is_trial else PATIENCE
+            if not compiler.ends_within(limit):
+                if is_trial or not self.compiler_works(ready):
+                    raise TimeLimitError(f"did not end within {limit:g} s")
+                if not compiler.ends_within(TIME_LIMIT):
+                    raise TimeLimitError(f"did not end within {TIME_LIMIT:g} s")
+        if not output.is_file() or not output.stat().st_size:
+            raise CommandError("wrote no library")
+        self._probe(output)
+        os.replace(output, ready / LIBRARY)
+
+    def _probe(self, library: Path) -> None:
+        command = sys.executable, "-I", "-S", "-c", PROBE, str(library), self.key
+        try:
+            with running(command, library.parent) as process:
+                if not process.ends_within(PROBE_LIMIT):
+                    raise CommandError(f"it did not return within {PROBE_LIMIT:g} s")
+        except CommandError as error:
+            raise CommandError(f"wrote a library that does not work: {error}") from error
+
+    def compiler_works(self, ready: Path) -> bool:
+        """Whether the compiler builds a library of a program of two lines."""
+        trial = Compilation(TRIAL, self.command, self.flags, "trial")
+        with TemporaryDirectory(prefix=BUILD_PREFIX, dir=ready.parent.parent) as folder:
+            try:
+                (ready := Path(folder, "ready")).mkdir()
+                trial.run(ready, is_trial=True)
+            except CommandError:
+                return False
+        return True
+
+
+class Attempts:
+    """The failed compilations of this process and its forks, none of which is repeated."""
+
+    def __init__(self) -> None:
+        self._errors: dict[tuple[str, ...] | str, str] = {}
+        self.renew_lock()
+        os.register_at_fork(after_in_child=self.renew_lock)
+
+    def renew_lock(self) -> None:
+        """Forget the threads that wait: a fork has none of them."""
+        self._lock = threading.Lock()
+
+    def run(self, compilation: Compilation, ready: Path) -> None:
+        """Run one compilation at a time, unless it has failed before, or its compiler."""
+        key, command = compilation.key, compilation.command
+        with self._lock:
+            if error := self._errors.get(command) or self._errors.get(key):
+                raise CommandError(error)
+            try:
+                compilation.run(ready)
+            except CommandError as error:
+                is_slow = isinstance(error, TimeLimitError)
+                works = not is_slow and compilation.compiler_works(ready)
+                self._errors[key if works else command] = str(error)
+                raise
