@@ -1,6 +1,7 @@
 """Compiled loops that are interrupted, lack a compiler, or cannot solve the problem."""
 
 import os
+import platform
 import signal
 import threading
 from collections.abc import Callable
@@ -10,12 +11,14 @@ import pytest
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
+from solvers.app.cli import main
 from solvers.integration.compiled import compiler
 from solvers.integration.compiled.kernel import kernel
 from solvers.integration.ensemble import ensemble
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
+from solvers.integration.ode_solver import ode_solver
 from solvers.integration.prepare import prepare
 from solvers.integration.solution import Interrupted, Solution, Status
 
@@ -88,6 +91,48 @@ def test_without_a_compiler_it_runs_in_python_with_a_warning(
         with pytest.raises(compiler.NoCompilerError, match="install one as `cc`"):
             forced()
     kernel.cache_clear()
+
+
+def test_benchmarks_without_a_compiler_end_with_the_reason(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(compiler, "compilers", lambda: iter(()))
+    kernel.cache_clear()
+    assert main(["bench"]) == 4
+    kernel.cache_clear()
+    message = capsys.readouterr().err
+    assert message.startswith("holonomic bench: no C compiler built the library (none was found)")
+    assert message.count("\n") == 1
+
+
+FLUSH = """
+void flush(int on);
+void flush(int on)
+{
+    const unsigned bits = 0x8040, now = __builtin_ia32_stmxcsr();
+    __builtin_ia32_ldmxcsr(on ? now | bits : now & ~bits);
+}
+"""
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="switches flushing on as x86-64 does")
+@pytest.mark.parametrize("bits", ["0x8000", "0x0040", "0x8040"])
+def test_a_process_that_sets_small_numbers_to_zero_is_warned(bits: str) -> None:
+    flush = compiler.build(FLUSH.replace("0x8040", bits)).functions.flush
+    runs: dict[str, Callable[[], object]] = {
+        "integrate": lambda: integrate(sp, (0, 0.1), (1.0, 0.0), sp.DEFAULTS),
+        "ensemble": lambda: ensemble(sp, (0, 0.1), [[1.0] * 2, [0.0] * 2], sp.DEFAULTS),
+        "prepare": lambda: prepare(sp, sp.DEFAULTS),
+        "ode_solver": lambda: ode_solver("verner853"),
+    }
+    for run in runs.values():
+        run()
+        flush(1)
+        try:
+            with pytest.warns(UserWarning, match="sets numbers below 2.2e-308 to zero"):
+                run()
+        finally:
+            flush(0)
 
 
 def test_problems_that_cannot_be_compiled_run_in_python() -> None:

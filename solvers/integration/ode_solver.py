@@ -8,6 +8,7 @@ from scipy.integrate import DenseOutput, OdeSolver
 from solvers.equations.quantities import positive, real_number, real_numbers
 from solvers.integration.problem import shortest_step
 from solvers.integration.python_loop import Accepted, Attempts, Point, Rejected
+from solvers.integration.subnormal import warn_if_flushed
 from solvers.integration.validation import tolerances
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.step_control import Controller
@@ -47,6 +48,7 @@ def ode_solver(method: str) -> type[OdeSolver]:
     >>> round(float(solution.y[0, -1]), 6)
     0.367879
     """
+    warn_if_flushed()
     tableau = load(str(method))
     if not tableau.b_hat or not tableau.is_explicit:
         raise ValueError(f"method {method!r} is implicit, or does not estimate its error")

@@ -12,6 +12,7 @@ from solvers.equations.quantities import Values, quantities, real_number, real_n
 from solvers.integration.events import Limit
 from solvers.integration.problem import Options, Problem, shortest_step
 from solvers.integration.solution import Array
+from solvers.integration.subnormal import warn_if_flushed
 from solvers.io.suggestion import counted, shortened
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.runge_kutta.tableau import Tableau
@@ -33,6 +34,7 @@ def problem(
 ) -> Problem:
     """The problem that `integrate` solves, from its arguments, all of which are checked."""
     check_module(module)
+    warn_if_flushed()
     if options.backend not in (None, "compiled", "python"):
         raise ValueError(f"backend {options.backend!r} must be 'compiled' or 'python'")
     check_flag("compensated", options.compensated)

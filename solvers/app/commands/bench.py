@@ -31,6 +31,7 @@ def run(arguments: Namespace) -> int:
     results = {}
     if unknown := {*arguments.parts} - {*PARTS}:
         raise ValueError(f"PART must be one of {', '.join(PARTS)}, not {min(unknown)[:50]!r}")
+    _check_compiler()
     for part in [part for part in PARTS if part in (arguments.parts or PARTS)]:
         results[part], lines = _results(part, arguments.output)
         if not arguments.json:
@@ -38,6 +39,15 @@ def run(arguments: Namespace) -> int:
     if arguments.json:
         options.print_json(results)
     return 0
+
+
+def _check_compiler() -> None:
+    """Raise `NoCompilerError` before anything is measured."""
+    from solvers.app.modules import load
+    from solvers.integration.prepare import prepare
+
+    module = load("double_pendulum")
+    prepare(module, module.DEFAULTS)
 
 
 def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
