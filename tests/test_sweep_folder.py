@@ -9,7 +9,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import CancelledError, Executor, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -29,7 +30,7 @@ from solvers.sweeps.axes import Grid, Random
 from solvers.sweeps.folder import Folder, FolderError
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
-from solvers.sweeps.pool import Pool
+from solvers.sweeps.pool import LostWorkersError, Pool
 from solvers.sweeps.reading import find
 from solvers.sweeps.run import partial_results, sweep
 from solvers.sweeps.sweep import Sweep
@@ -39,6 +40,7 @@ HOLONOMIC = str(Path(sys.executable).parent / "holonomic")
 ANGLES = np.linspace(-3, 3, 40)
 MAPS = {"flip": First({"theta1": (-np.pi, np.pi)}), "end": Final(("theta1",))}
 DEFINITION = Sweep(dp, Grid({"theta1": ANGLES, "theta2": ANGLES}), MAPS, 3.0)
+LONG = FILE.replace("duration = 30", "duration = 3000")
 #: The address of a scheduler, and the processes of its workers.
 Cluster: TypeAlias = tuple[str, list["subprocess.Popen[bytes]"]]
 
@@ -344,6 +346,51 @@ def test_chunks_completed_before_a_failure_are_kept(
     assert files(tmp_path) == expected
 
 
+@pytest.mark.parametrize("error", [CancelledError(), BrokenProcessPool("a process ended")])
+def test_an_executor_that_fails_is_reported_and_the_sweep_resumes(
+    error: Exception, tmp_path: Path, expected: dict[str, bytes]
+) -> None:
+    for after in (0, 5):  # at the first motions, and later
+        with pytest.raises(LostWorkersError, match="the same call resumes the sweep"):
+            sweep(DEFINITION, tmp_path, pool=Pool(Failing(after, error), 1))
+    sweep(DEFINITION, tmp_path)
+    assert files(tmp_path) == expected
+
+
+def test_a_cluster_without_workers_and_one_that_dies_are_reported(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    path, out, file = write_sweep(tmp_path, LONG), tmp_path / "out", tmp_path / "scheduler.json"
+    quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    dask = [sys.executable, "-m", "distributed.cli.dask_"]
+
+    def start(kind: str, *arguments: str) -> "subprocess.Popen[bytes]":
+        command = [*dask[:-1], f"{dask[-1]}{kind}", *arguments, "--no-dashboard"]
+        return subprocess.Popen([*command, "--host", "127.0.0.1"], **quiet)
+
+    processes = [start("scheduler", "--port", "0", "--scheduler-file", str(file))]
+    try:
+        while not file.exists():
+            time.sleep(0.05)
+        address = json.loads(file.read_text())["address"]
+        argv = [HOLONOMIC, "sweep", str(path), "--output", str(out), "--scheduler", address]
+        run = subprocess.Popen(argv, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        assert run.stderr is not None
+        assert run.stderr.readline().startswith(b"holonomic sweep: there are no workers: ")
+        processes.append(start("worker", address, "--nthreads", "1", "--no-nanny"))
+        while not list(out.glob("chunks/*.npy")):
+            time.sleep(0.05)
+        processes[0].kill()
+        _, errors = run.communicate(timeout=60)
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+    assert run.returncode == 4
+    (line,) = errors.decode().splitlines()
+    assert line.startswith(f"holonomic sweep: the cluster at {address} is gone")
+    assert line.endswith("the same command resumes the sweep")
+
+
 def test_a_full_disk_leaves_no_incomplete_file(tmp_path: Path) -> None:
     path = write_sweep(tmp_path)
     command = [HOLONOMIC, "sweep", str(path), "--output"]
@@ -361,9 +408,6 @@ import sys; from solvers.app.cli import main; sys.exit(main(['sweep', {str(path)
     assert not (tmp_path / "full" / "end.npy").exists()
     subprocess.run([*command, str(tmp_path / "full")], check=True, stdout=subprocess.DEVNULL)
     assert files(tmp_path / "full") == files(tmp_path / "whole")
-
-
-LONG = FILE.replace("duration = 30", "duration = 3000")
 
 
 def test_an_interrupted_sweep_stops_at_once_and_resumes(tmp_path: Path) -> None:

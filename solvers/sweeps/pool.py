@@ -126,8 +126,8 @@ class Pool:
                 yield executor
         except (BrokenExecutor, CancelledError) as error:
             raise LostWorkersError(
-                "the workers are lost: completed chunks are kept, and the same command resumes "
-                "the sweep"
+                "the workers are gone: completed chunks are kept, and the same call resumes the "
+                "sweep"
             ) from error
 
     def _wait(self, futures: Collection[Future[Any]]) -> Collection[Future[Any]]:
@@ -137,7 +137,11 @@ class Pool:
             if done:
                 return done
             if self.threads and not self.threads():
-                warn("there are no workers: the sweep waits until some are started", stacklevel=2)
+                warn(
+                    "there are no workers: the sweep waits until one is started; where holonomic "
+                    "is not installed workers end at once",
+                    stacklevel=2,
+                )
 
 
 def _outline(sweep: Sweep) -> Sweep:

@@ -1,5 +1,6 @@
 """``holonomic sweep``."""
 
+import logging
 import sys
 import time
 from argparse import ArgumentParser, Namespace
@@ -83,17 +84,25 @@ def run(arguments: Namespace) -> int:
 @contextmanager
 def _pool(arguments: Namespace) -> "Iterator[Pool]":
     """Threads of this process, or the cluster behind a scheduler."""
-    from solvers.sweeps.pool import Pool
+    from solvers.sweeps.pool import LostWorkersError, Pool
 
     address, workers = arguments.scheduler, arguments.workers
     if address is None:
         yield Pool(workers=workers)
         return
     distributed: Any = options.required_package("distributed", "cluster")
+    logging.disable()  # the exceptions suffice
     try:
-        client = distributed.Client(address, timeout=PATIENCE)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise OSError(f"no scheduler answers at {address}: {error}") from error
-    with client:
-        threads = sum(client.nthreads().values())
-        yield Pool(client.get_executor(), workers or max(threads, 1))
+        try:
+            client = distributed.Client(address, timeout=PATIENCE)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise OSError(f"no scheduler answers at {address}: {error}") from error
+        with client:
+            yield Pool(client.get_executor(), workers, lambda: sum(client.nthreads().values()))
+    except (LostWorkersError, distributed.scheduler.KilledWorker) as error:
+        raise LostWorkersError(
+            f"the cluster at {address} is gone, or its workers fail: completed chunks are kept, "
+            "and the same command resumes the sweep"
+        ) from error
+    finally:
+        logging.disable(logging.NOTSET)
