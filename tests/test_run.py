@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import time
+from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,11 +17,13 @@ from matplotlib.figure import Figure
 
 import generated.double_pendulum as dp
 from solvers.app.cli import main
+from solvers.app.commands.options import selected_scenes
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.io.notation import symbol
 from solvers.references.taylor import taylor
 from solvers.scenes.geometry import ELEVATION, projected, tracks
+from solvers.scenes.output import file_names
 from solvers.scenes.plots import _labelled, default_pictures, figure
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
@@ -53,6 +56,54 @@ def test_the_json_contains_the_model_the_reason_and_the_final_state(
     names = {Path(path).name for path in result["files"].values()}
     assert names == {"report.csv", "report.png", "report.html"}
     assert names == {path.name for path in tmp_path.iterdir()}
+
+
+SCENE = """
+system = "single_pendulum"
+duration = 1
+[initial]
+theta = 0.1
+"""
+BESIDE = "[[beside]]\nlabel = 'longer'\nparameters = { l = 2 }\n"
+
+
+@pytest.mark.parametrize(("command", "first", "second", "file"), [
+    ("run", "a", "other/a", "a.csv"),
+    ("run", "a", "a_2", "a_2.csv"),  # the table of the second run in a.toml
+    ("run", "a_2", "a", "a_2.csv"),
+    ("run", "a", "A", "A.csv"),  # where the file system does not distinguish them
+    ("run", "a", "A_2", "A_2.csv"),
+    ("run", "\u00e9", "e\u0301", "e\u0301.csv"),
+    ("chart", "a", "other/A", "A"),
+    ("stability", "a", "other/a", "a"),
+])  # fmt: skip
+def test_scenes_that_would_write_the_same_file_are_refused_before_the_work(
+    command: str,
+    first: str,
+    second: str,
+    file: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    paths = [tmp_path / f"{name}.toml" for name in (first, second)]
+    for path in paths:
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(SCENE + BESIDE * (path.stem == "a"))
+    assert main([command, *map(str, paths), "--output", str(tmp_path / "out")]) == 2
+    names = " and ".join(repr(path.stem) for path in paths)
+    message = f"the scenes {names} would both write {file}: rename one of them"
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_scenes_with_other_files_are_accepted(tmp_path: Path) -> None:
+    paths = [tmp_path / f"{name}.toml" for name in ("a", "a_3", "ab")]
+    for path in paths:
+        path.write_text(SCENE + BESIDE)
+    arguments = Namespace(scenes=[*map(str, paths)], output=tmp_path)
+    scenes = selected_scenes(arguments, (), lambda scene: file_names(scene).values())
+    tables = [name for one in scenes for name in file_names(one).values() if name.endswith("csv")]
+    assert tables == ["a.csv", "a_2.csv", "a_3.csv", "a_3_2.csv", "ab.csv", "ab_2.csv"]
 
 
 def test_a_prescribed_method_is_reported_with_its_error_and_the_runs_beside_it(

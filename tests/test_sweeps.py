@@ -302,6 +302,8 @@ def test_a_module_that_does_not_ship_travels_as_text(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("changes", "words"), [
     ({"maps": {}}, "no maps"),
     ({"maps": {"status": Lyapunov()}}, "'status' cannot be a map's name"),
+    ({"maps": {"Status": Lyapunov()}}, "'Status' cannot be a map's name"),
+    ({"maps": {"a": Final(("theta1",)), "A": Lyapunov()}}, "nor the name of another map"),
     ({"maps": {"l1": Lyapunov()}, "axes": Grid({"theta1": [1], "theta2": [1], "l1": [1]})},
      "cannot be a map's name"),
     ({"maps": {"a": Samples(("theta1",), 5), "b": Samples(("theta1",), 6)}}, "the same number"),

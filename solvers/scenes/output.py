@@ -9,20 +9,26 @@ from solvers.player.page import Page
 from solvers.scenes.geometry import tracks
 from solvers.scenes.plots import figure, full_note
 from solvers.scenes.run import SceneResult
+from solvers.scenes.scene import Scene
 from solvers.scenes.summary import table
+
+
+def file_names(scene: Scene) -> dict[str, str]:
+    """Names of the files of a scene and the scenes beside it, by their contents."""
+    endings = {"table": ".csv", "picture": ".png", "page": ".html"}
+    endings |= {f"table {n}": f"_{n}.csv" for n in range(2, len(scene.beside) + 2)}
+    return {contents: f"{scene.name}{ending}" for contents, ending in endings.items()}
 
 
 def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]:
     """Write tables, a plot and a page of a scene and the scenes beside it; return their paths."""
     scene = results[0].scene
-    endings = {"table": "csv", "picture": "png", "page": "html"}
-    paths = {name: folder / f"{scene.name}.{ending}" for name, ending in endings.items()}
+    paths = {contents: folder / name for contents, name in file_names(scene).items()}
     save(figure(results), paths["picture"])
     write_text(paths["table"], table(results[0]))
     for n, result in enumerate(results[1:], 2):
-        paths[f"table {n}"] = write_text(folder / f"{scene.name}_{n}.csv", table(result))
-    module = results[0].specialised_module
-    if module and module.__file__:  # it has no file where none can be written
-        paths["code"] = Path(module.__file__)
+        write_text(paths[f"table {n}"], table(result))
+    if module := results[0].specialised_module:
+        paths["code"] = Path(module.__file__ or "")
     Page(scene.title, full_note(results), tracks(results)).write(paths["page"])
     return paths

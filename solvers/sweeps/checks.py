@@ -74,12 +74,15 @@ def check_maps(
     if len(counts) > 1:
         raise ValueError(f"maps have {sorted(counts)} samples: all must have the same number")
     reserved = (STATUS, ENERGY, *module.STATE, *module.PARAMETERS)
+    taken = {*map(str.casefold, reserved)}  # names of files, whose case may not count
     for name, one in maps.items():
-        if not name.isidentifier() or len(name) > MAX_LENGTH or name in reserved:
+        if not name.isidentifier() or len(name) > MAX_LENGTH or name.casefold() in taken:
             raise ValueError(
                 f"{name[:MAX_LENGTH]!r} cannot be a map's name: use up to {MAX_LENGTH} letters, "
-                f"digits and _, and none of {', '.join(reserved)}"
+                f"digits and _, and none of {', '.join(reserved)}, nor the name of another map, in "
+                "upper or lower case"
             )
+        taken.add(name.casefold())
         try:
             one.check(module, axes, values)
         except ValueError as error:

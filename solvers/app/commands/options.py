@@ -2,13 +2,14 @@
 
 import json
 from argparse import Action, ArgumentParser, HelpFormatter, Namespace
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
 from shutil import get_terminal_size
 from textwrap import TextWrapper
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
+from unicodedata import normalize
 
 from solvers.io.toml_input import names, read_table
 
@@ -90,12 +91,29 @@ def add_examples(parser: ArgumentParser, *examples: str) -> None:
     parser.epilog = f"{title}:\n" + "\n".join(f"  {line}" for line in examples)
 
 
-def selected_scenes(arguments: Namespace, default: Sequence[str]) -> "list[Scene]":
-    """The requested scenes, each once, or the default ones; the output folder is created."""
+def selected_scenes(
+    arguments: Namespace,
+    default: Sequence[str],
+    files: "Callable[[Scene], Iterable[str]]" = lambda scene: [scene.name],
+) -> "list[Scene]":
+    """The requested scenes, each once, or the default ones; the output folder is created.
+
+    `ValueError` where two of them would write the same one of their `files`.
+    """
     from solvers.app.modules import load
     from solvers.scenes.reading import find
 
     scenes = [find(name, load) for name in dict.fromkeys(arguments.scenes or default)]
+    writers: dict[str, Scene] = {}
+    for scene in scenes:
+        for file in files(scene):
+            # some file systems do not distinguish cases, or forms of accented letters
+            other = writers.setdefault(normalize("NFC", file).casefold(), scene)
+            if other is not scene:
+                raise ValueError(
+                    f"the scenes {other.name!r} and {scene.name!r} would both write {file}: rename "
+                    "one of them, or run them with a different --output each"
+                )
     arguments.output.mkdir(parents=True, exist_ok=True)
     return scenes
 

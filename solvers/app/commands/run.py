@@ -1,7 +1,6 @@
 """``holonomic run``."""
 
 from argparse import ArgumentParser, Namespace
-from collections import Counter
 
 from solvers.app.commands import options
 
@@ -25,16 +24,12 @@ def run(arguments: Namespace) -> int:
     """Run the scenes, write their files and print summaries."""
     from solvers.app.modules import specialiser
     from solvers.io.progress import Progress
-    from solvers.scenes.output import write_files
+    from solvers.scenes.output import file_names, write_files
     from solvers.scenes.run import run_scene
     from solvers.scenes.summary import figures, summary
 
     results = []
-    scenes = options.selected_scenes(arguments, DEFAULT)
-    (name, count), *_ = Counter(scene.name for scene in scenes).most_common()
-    if count > 1:
-        raise ValueError(f"two scenes are called {name!r} and would write the same files")
-    for scene in scenes:
+    for scene in options.selected_scenes(arguments, DEFAULT, lambda one: file_names(one).values()):
         with Progress() as report:
             first, *beside = (run_scene(one, specialiser, report) for one in (scene, *scene.beside))
             report("plots")
