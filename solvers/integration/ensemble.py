@@ -9,13 +9,16 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
-from solvers.integration import compiled_loop, validation
+from solvers.integration import compiled_loop, memory, validation
 from solvers.integration.accuracy_warnings import ensemble_warnings
 from solvers.integration.ensemble_run import EnsembleRun, StopFlag
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Options
 from solvers.integration.solution import Interrupted
+
+#: Most threads of one ensemble.
+MOST_WORKERS = 1024
 
 
 def ensemble(
@@ -100,8 +103,14 @@ def ensemble(
     extremes = any(isinstance(event, Extremum) for event in problem.events)
     occurrences = validation.count("occurrences", occurrences, 2 if extremes else 1)
     processors = len(os.sched_getaffinity(0))
-    threads = validation.count("workers", processors if workers is None else workers, 1)
+    threads = validation.count(
+        "workers", processors if workers is None else workers, 1, MOST_WORKERS
+    )
     problem, program = compiled_loop.select(problem, lanes=True)
+    components = len(problem.start)
+    rows = len(states) * (1 + np.size(times) + len(problem.events) * occurrences)
+    remedy = "integrate fewer motions at once, or record fewer times and occurrences"
+    memory.check_memory(f"{rows} states of {len(states)} motions", rows, components, remedy)
     loop = f"compiled by {program.library.compiler}" if program else "python"
     result = Ensemble.empty(problem, len(states), occurrences, loop)
     run = EnsembleRun(problem, states, constants, result, stop or StopFlag())

@@ -1,11 +1,11 @@
 """The integration of many motions: in vector lanes over all cores, or one by one in Python."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from solvers.integration import python_loop
 from solvers.integration.compiled.kernel import Batch, Kernel
@@ -14,6 +14,9 @@ from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Extremum
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array, Status
+
+#: Rows whose states are computed at once.
+BLOCK = 100_000
 
 
 class StopFlag:
@@ -93,17 +96,15 @@ class EnsembleRun:
         result.status[at_limit & (result.status == Status.EVENT)] = Status.OUTSIDE_DOMAIN
         result.steps[:], result.rejected[:] = motions["steps"], motions["rejected"]
         result.nfev[:] = batch.nfev
-        for k in range(len(result.t_eval)):
-            reached = np.flatnonzero(motions["rows"] > k)
-            result.samples[:, reached, k] = batch.ordinary(batch.rows[reached, k], reached).T
+        for motion, k, rows in _blocks(batch.rows, motions["rows"]):
+            result.samples[:, motion, k] = batch.ordinary(rows, motion).T
         result.occurred[:] = motions["occurred"][:, :events]
         extremes = batch.extremes_only[:events]
         stored = np.where(extremes, np.minimum(result.occurred, 2), result.occurred)
-        for event, k in np.ndindex(result.t_events.shape[1:]):
-            with_event = np.flatnonzero(stored[:, event] > k)
-            rows = batch.event_rows[with_event, event, k]
-            result.t_events[with_event, event, k] = rows["t"]
-            result.y_events[:, with_event, event, k] = batch.ordinary(rows, with_event).T
+        for event in range(events):
+            for motion, k, rows in _blocks(batch.event_rows[:, event], stored[:, event]):
+                result.t_events[motion, event, k] = rows["t"]
+                result.y_events[:, motion, event, k] = batch.ordinary(rows, motion).T
 
     def run_one_by_one(self) -> None:
         """Integrate the motions in Python."""
@@ -141,6 +142,18 @@ class EnsembleRun:
     def _set_growth(self, changes: Array, scale: ArrayLike = 0.0) -> None:
         before = self.states[:, len(self.result.units) // 2 :]
         self.result.growth[:] = _log_length(changes, scale) - _log_length(before)
+
+
+def _blocks(
+    rows: NDArray[np.void], counts: NDArray[np.int64]
+) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.void]]]:
+    """Motions, numbers and content of the first `counts` rows of each motion, in blocks."""
+    width = max(BLOCK // len(rows), 1) if len(rows) else 1
+    end = min(rows.shape[1], int(counts.max(initial=0)))
+    for first in range(0, end, width):
+        numbers = np.arange(first, min(first + width, end))
+        motion, k = np.nonzero(numbers < counts[:, np.newaxis])
+        yield motion, first + k, rows[motion, first + k]
 
 
 def _stored(event: EventFunction, states: Sequence[Array]) -> Sequence[int]:

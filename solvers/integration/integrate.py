@@ -1,6 +1,7 @@
 """Integration of a generated module's equations of motion."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from warnings import warn
 
@@ -12,6 +13,7 @@ from solvers.equations.quantities import Values
 from solvers.integration import compiled_loop, python_loop, validation
 from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.global_error import global_error_estimate
+from solvers.integration.memory import limit_steps
 from solvers.integration.problem import EventFunction, Options, Outcome, Problem
 from solvers.integration.solution import Interrupted, Solution, Status
 from solvers.integration.step_stability import step_instability
@@ -116,6 +118,7 @@ def integrate(
     options = Options(method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated)
     problem = validation.problem(module, t_span, y0, params, options)
     problem, program = compiled_loop.select(problem, lanes=False)
+    problem = replace(problem, max_steps=limit_steps(problem))
     outcome = Outcome.at_start(problem)
     try:
         if program:
@@ -140,6 +143,8 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = ""
     if outcome.status is not Status.FINISHED:
         state = ", ".join(f"{name} = {x:.6g}" for name, x in zip(problem.units, y, strict=True))
         detail = f" (t = {t}, {state})" if not detail else f" ({detail})"
+    if outcome.status is Status.STEP_LIMIT and problem.max_steps < problem.options.max_steps:
+        detail += ": the states of more steps do not fit into memory, give times t_eval"
     states, energies = rows.T[: len(form.module.STATE)], None
     if energy:
         energies = np.asarray(form.module.energy_many(times, states, form.params))

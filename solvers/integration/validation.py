@@ -10,6 +10,7 @@ from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, state_names
 from solvers.equations.quantities import Values, quantities, real_number, real_numbers
 from solvers.integration.events import Limit
+from solvers.integration.memory import check_times
 from solvers.integration.problem import Options, Problem, shortest_step
 from solvers.integration.solution import Array
 from solvers.integration.subnormal import warn_if_flushed
@@ -49,6 +50,7 @@ def problem(
         raise ValueError("atol can be an array in form 'lagrangian' only")
     if tableau is not None and not tableau.is_explicit and not form.has_jacobian:
         raise ValueError(f"method {method!r} needs a Jacobian, which form {name!r} does not have")
+    check_times(options.t_eval, len(start))
     samples = None if options.t_eval is None else times(options.t_eval, span)
     events = event_functions(options.events, module)
     max_steps = count("max_steps", options.max_steps, 0)
@@ -185,12 +187,12 @@ def step_size(h: float, span: tuple[float, float]) -> float:
     return size
 
 
-def count(name: str, value: object, least: int) -> int:
-    """A whole number, `least` or more."""
+def count(name: str, value: object, least: int, most: int = MOST) -> int:
+    """A whole number from `least` to `most`."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         raise ValueError(f"{name} = {value!r} must be a whole number, {least} or more")
-    if not least <= value <= MOST:
-        raise ValueError(f"{name} = {value} must be from {least} to {MOST}")
+    if not least <= value <= most:
+        raise ValueError(f"{name} = {shortened(value)} must be from {least} to {most}")
     return int(value)
 
 
