@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,11 @@ import generated.single_pendulum as sp
 from solvers import Event, StopFlag, ensemble, integrate
 from solvers.integration.solution import Status
 from solvers.io import xarray_dataset
+from solvers.sweeps import pool, worker
+from solvers.sweeps.axes import Grid
+from solvers.sweeps.maps.final import Final
+from solvers.sweeps.run import sweep
+from solvers.sweeps.sweep import Sweep
 
 Y0 = {"r": 1.1, "theta": 0.5}
 
@@ -140,3 +146,37 @@ def test_a_stop_flag_stops_its_own_ensembles_only(backend: str, duration: float)
     assert Status.INTERRUPTED in results["long"].status
     stopped = ensemble(sp, (0, 1), start, {}, stop=flag, **options)
     assert set(stopped.status) == {Status.INTERRUPTED}
+
+
+def test_a_sweep_that_fails_stops_no_other_motions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "COST", 1e-6)  # so that there are several chunks
+    angles = np.linspace(-2, 2, 200)
+    definition = Sweep(sp, Grid({"theta": angles}), {"end": Final(("theta",))}, duration=2.0)
+    is_running, has_failed, results = threading.Event(), threading.Event(), {}
+
+    def event(t: float, y: Any) -> float:
+        is_running.set()
+        assert has_failed.wait(60)
+        return float(y[0])
+
+    def other() -> None:
+        results["other"] = ensemble(
+            sp, (0, 1), {"theta": [0.1, 0.2]}, {}, events=event, backend="python"
+        )
+
+    def failing(*job: Any) -> None:
+        raise ArithmeticError("planted")
+
+    thread = threading.Thread(target=other)
+    thread.start()
+    assert is_running.wait(60)
+    with monkeypatch.context() as patch:
+        patch.setattr(pool, "run_equal_chunk", failing)
+        with pytest.raises(ArithmeticError, match="planted"):
+            sweep(definition, tmp_path / "failing")
+    has_failed.set()
+    thread.join()
+    assert results["other"].success.all()
+    assert np.isfinite(sweep(definition, tmp_path / "other").maps["end"]).all()
