@@ -4,6 +4,7 @@ import json
 import math
 import operator
 import re
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -16,9 +17,10 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.app.cli import main
+from solvers.app.commands.chart import _measured
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form, fastest_form
-from solvers.integration.timing import timed_run, work_at
+from solvers.integration.timing import TimedRun, timed_run, work_at
 from solvers.io.figures import save
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.scenes.reading import find
@@ -34,7 +36,7 @@ from solvers.studies.work_precision.findings import (
 )
 from solvers.studies.work_precision.measurement import combinations, curves
 from solvers.studies.work_precision.reference import Reference
-from solvers.studies.work_precision.scene_curves import SceneCurves
+from solvers.studies.work_precision.scene_curves import SceneCurves, record
 
 REPORT = find("report", load_module)
 
@@ -271,6 +273,68 @@ def test_installed_programs_have_curves(truth: Reference) -> None:
     assert peers.curves(find("report", load_module), truth, lambda _: None) == []
 
 
+def test_lsoda_gets_no_tolerance_of_which_it_warns(truth: Reference) -> None:
+    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
+    settings: dict[str, list[float]] = {"lsoda": [], "dop853": []}
+
+    def solver(name: str) -> Callable[..., tuple[np.ndarray, bool]]:
+        def solve(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
+            settings[name] += [rtol] if rtol not in settings[name] else []
+            return np.array([end]), True
+
+        return solve
+
+    program = ModuleType("numbalsoda")
+    vars(program).update({name: solver(name) for name in settings})
+    peers.curves(REPORT, truth, lambda name: program if name == "numbalsoda" else None)
+    assert settings["lsoda"] == pytest.approx(10.0 ** -np.arange(1, 13), abs=0)
+    assert settings["dop853"] == pytest.approx(10.0 ** -np.arange(1, 15), abs=0)
+
+
+def test_the_loop_for_numba_is_rk4(truth: Reference, monkeypatch: pytest.MonkeyPatch) -> None:
+    tuples = ModuleType("numba.np.unsafe.ndarray")
+    vars(tuples)["to_fixed_tuple"] = lambda stage, size: tuple(stage[:size])
+    monkeypatch.setitem(sys.modules, tuples.__name__, tuples)
+    monkeypatch.setattr(peers, "STEPS", np.array([500, 1000]))
+    monkeypatch.setattr(peers, "median_seconds", lambda _: 1e-3)
+    program = ModuleType("numba")
+    vars(program)["njit"] = lambda function: function
+    (one,) = peers.curves(REPORT, truth, lambda name: program if name == "numba" else None)
+    assert (one.backend, one.method) == ("numba", "rk4")
+    assert [(p.setting, p.work_rhs) for p in one.points] == [
+        ({"h": 0.01}, 2000),
+        ({"h": 0.005}, 4000),
+    ]
+    coarse, fine = (p.global_error for p in one.points)
+    assert fine < 1e-5
+    assert coarse / fine > 0.9 * 2**4
+
+
+@pytest.mark.parametrize(("combination", "longest"), [
+    (("rk4", "lagrangian", "compiled"), 0.5),  # of the report: until rounding dominates
+    (("rk4", "rational", "compiled"), 0.02),
+    (("rk4", "lagrangian", "python"), 0.1),
+    (("rk4_38", "lagrangian", "compiled"), 0.02),
+])  # fmt: skip
+def test_a_curve_ends_where_the_next_run_would_take_too_long(
+    combination: tuple[str, str, str],
+    longest: float,
+    truth: Reference,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    limits = {"compiled": 0.02, "python": 0.1, "scipy": 0.1}
+    monkeypatch.setattr(measurement, "LONGEST", limits)
+    monkeypatch.setattr(measurement, "LONGEST_REPORT", 0.5)
+
+    def run(*_: object, h: float, **__: object) -> TimedRun:
+        return TimedRun(1e-3 / h, 1, 1, truth.end)  # proportional to the number of steps
+
+    monkeypatch.setattr(measurement, "timed_run", run)
+    (one,) = curves(REPORT, truth, [combination])
+    *_, before, last = (p.work_seconds for p in one.points)
+    assert before == last / 2 <= longest / 2 < last <= longest
+
+
 class Expression:
     """A number in another program's arithmetic, which the functions of ``math`` refuse."""
 
@@ -412,6 +476,35 @@ def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Pat
     assert "reference: Taylor series, 32 digits, own error" in text
     assert "verner853, rational " in text
     assert "rk4: error falls as h^4" in text
+
+
+def test_the_calls_of_numba_s_loop_are_no_finding(truth: Reference) -> None:
+    ours = curve("rk4", "rational", "compiled", point(1, 1e-1), point(2, 1e-3))
+    loop = curve("rk4", "rational", "numba", point(0.3, 1e-1), point(0.4, 1e-5))
+    lines = [*SceneCurves.of(REPORT, truth, [ours, loop]).summary()]
+    # the loop needs fewest calls for every error, and no other curve reaches the smallest ones
+    assert "in calls of the right-hand side: " in lines
+    assert all("numba" not in line for line in lines if line.startswith("in calls"))
+    (calls,) = (
+        line for line in SceneCurves.of(REPORT, truth, [ours]).summary() if line.startswith("in ca")
+    )
+    assert calls == "in calls of the right-hand side: 1e-01: 100 (rk4)"
+
+
+def test_a_record_measures_compiled_loops_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    wanted = [("rk4", "lagrangian", backend) for backend in ("compiled", "python")]
+    other = curve("taylor", "lagrangian", "heyoka", point(1.0, 1e-3))
+    monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
+    monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(6))
+    monkeypatch.setattr(peers, "curves", lambda *_: [other])
+    single = load_module("single_pendulum")
+    scene = Scene(single, single.DEFAULTS, (1.0, 0.0), 0.2)
+    full, compiled = (_measured(scene, compiled_only=only) for only in (False, True))
+    assert [one.backend for one in full.curves] == ["compiled", "python", "heyoka"]
+    assert [one.backend for one in compiled.curves] == ["compiled"]
+    (row,) = json.loads(record([compiled]))
+    assert (row["scene"], row["system"], row["duration"]) == ("scene", "single_pendulum", 0.2)
+    assert row["spread"] == 1
 
 
 def test_the_command_prints_curves_reference_and_frontier(
