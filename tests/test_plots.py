@@ -275,6 +275,37 @@ def test_angles_are_wrapped_to_half_a_turn_on_either_side() -> None:
     assert wrapped(angles) == pytest.approx([0, 3, 3.5 - 2 * PI, 2 * PI - 3.5, 7 - 2 * PI])
 
 
+def test_directions_are_shown_between_half_turns(tmp_path: Path) -> None:
+    axes = Grid({"theta": [0.1, 0.3], "theta_dot": [9.0, 10.0, 11.0]})  # over and over
+    results, chart = drawn(tmp_path / "a", axes, {"end": Final(("theta",))}, 3.0)
+    angles = results.maps["end"][:, :, 0]
+    assert angles.min() > 2 * PI
+    image = one_panel(chart).images[0]
+    assert np.array_equal(image.get_array(), wrapped(angles).T)
+    assert (image.cmap.name, image.norm.vmin, image.norm.vmax) == ("twilight", -PI, PI)
+    assert np.allclose(image.get_extent(), [0, 0.4, 8.5, 11.5])  # of two values, too
+    # a section: its angles and nothing else
+    maps = {"both": Section(sp.STATE, 4, "theta_dot", 8.9), "one": Section(("theta",), 4, "theta")}
+    axes = Grid({"theta": [0.1, 0.3], "theta_dot": [9.5]})
+    results, chart = drawn(tmp_path / "b", axes, maps, 3.0)
+    both, one = panels_of(chart)
+    angles, rates = results.maps["both"][0, 0]
+    assert np.nanmax(angles) > 2 * PI
+    assert np.array_equal(points(both.lines[0]), np.c_[wrapped(angles), rates], equal_nan=True)
+    assert (one.get_xlabel(), one.get_ylabel()) == (r"$\theta$ / rad",) * 2
+
+
+@pytest.mark.parametrize(("lengths", "extent"), [
+    ([1.0], [0.5, 1.5]), ([1.0, 2.0], [0.5, 2.5]), ([1.0, 2.0, 3.0], [0.5, 3.5]),
+])  # fmt: skip
+def test_few_values_have_pixels_around_them(
+    lengths: list[float], extent: list[float], tmp_path: Path
+) -> None:
+    axes = Grid({"theta": [0.1, 0.2], "l": lengths})
+    _, chart = drawn(tmp_path, axes, {"end": Final(("theta_dot",))}, 0.1)
+    assert np.allclose(one_panel(chart).images[0].get_extent(), [0.05, 0.25, *extent])
+
+
 def curve(method: str, form: str, backend: str, name: str = "h") -> Curve:
     settings = (0.1, 0.01, 0.001)
     return Curve("s", method, form, backend, [
@@ -342,7 +373,7 @@ def critical(method: str, limit: float) -> CriticalStep:
 
 
 def test_stability_regions_show_the_eigenvalues_at_the_longest_stable_step() -> None:
-    frequencies, eigenvalues = np.array([1.0, 4.0]), np.array([0.5j, -0.2 + 0.1j])
+    frequencies, eigenvalues = np.array([1.0, 2.0, 4.0]), np.array([0.5j, -0.2 + 0.1j])
     steps = [critical("rk4", 0.7), critical("rk4_38", 0.7), critical("gauss1", inf)]
     chart = regions("title", steps, frequencies, eigenvalues)
     explicit, implicit = panels_of(chart)
@@ -351,7 +382,7 @@ def test_stability_regions_show_the_eigenvalues_at_the_longest_stable_step() -> 
     for panel, h in ((explicit, 0.7), (implicit, 1 / 4)):
         along, modes = (line for line in panel.lines if line.get_marker() in (".", "o"))
         assert np.allclose(points(along), h * np.c_[eigenvalues.real, eigenvalues.imag])
-        assert np.allclose(points(modes), h * np.c_[[0] * 4, [1, 4, -1, -4]])
+        assert np.allclose(points(modes), h * np.c_[[0] * 6, [1, 2, 4, -1, -2, -4]])
         assert (panel.get_xlim(), panel.get_ylim()) == ((-7, 4), (-7, 7))
     lines = {"R": steps[0].function}
     for panel in (explicit, implicit, *boundaries(lines).axes):
