@@ -197,6 +197,8 @@ def test_specialised_code_is_generated_on_request() -> None:
     assert 0.1 < float(re.findall(r"general code takes (\S+) x as long", line)[0]) < 10
     plain = run_scene(replace(scene, code=None), specialiser)
     assert plain.selection.model.run.motion.module is dp
+    assert result.general_code_seconds > 0
+    assert np.isnan(plain.general_code_seconds)  # there is no other code to compare with
     assert np.abs(result.y - plain.y).max() < 2 * scene.accuracy
     with pytest.raises(ValueError, match="needs a specialiser"):
         run_scene(scene)

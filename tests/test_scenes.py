@@ -234,6 +234,13 @@ def test_the_default_title_is_the_whole_title_of_the_system(tmp_path: Path) -> N
     assert load_sweep(path).title == "Bead of 1.5 kg: on a wire, no. 2"
 
 
+def test_the_accuracy_is_1e_6_by_default_and_1e_13_at_most() -> None:
+    assert scene_from().accuracy == 1e-6
+    assert scene_from(accuracy=1e-13).accuracy == 1e-13
+    assert (scene_from().label, scene_from().samples) == (scene_from().title, 0)
+    assert [len(scene_from(**change).times) for change in ({}, {"samples": 7})] == [501, 7]
+
+
 def test_degrees_without_a_unit_cause_a_warning() -> None:
     with pytest.warns(UserWarning, match='theta1 = 90 is 14.3 turns: write "90 deg"'):
         scene_from(initial={"theta1": 90, "theta2": 0})

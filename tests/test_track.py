@@ -81,6 +81,18 @@ def test_a_page_without_runs_is_refused_at_once() -> None:
         Page("", "", [])
 
 
+def test_energy_errors_of_different_units_share_no_axis() -> None:
+    other = replace(REST, energy_unit="J")
+    with pytest.raises(ValueError, match=f"are '{UNIT}', 'J', but they share an axis"):
+        Page("", "", [REST, other])
+    Page("", "", [other, other])
+
+
+def test_two_samples_suffice_and_the_unit_is_plain_text() -> None:
+    ends = Track("a", np.array([0.0, 1.0]), np.ones((1, 2, 2)), (), (), np.zeros(2), "<b>T</b>")
+    assert "relative to the &lt;b&gt;T&lt;/b&gt;" in Page("", "", [ends]).html
+
+
 @pytest.mark.parametrize("step", ["fsync", "replace"])
 def test_a_failed_write_leaves_the_old_page_and_nothing_else(
     step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
