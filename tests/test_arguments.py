@@ -182,5 +182,6 @@ def test_an_ensemble_warns_where_an_event_keeps_it_from_being_compiled() -> None
         motions = ensemble(dp, (0, 1), BY_NAME, PARAMS, events=lambda t, y: y[0])
     quiet = ensemble(dp, (0, 1), BY_NAME, PARAMS, events=lambda t, y: y[0], backend="python")
     compiled = ensemble(dp, (0, 1), BY_NAME, PARAMS, events=Event(dp, "theta1", 0.0))
+    assert ensemble(dp, (0, 1), BY_NAME, PARAMS, method="RK45").success.all()  # as requested
     assert np.array_equal(motions.t_events, quiet.t_events)
     assert motions.t_events == pytest.approx(compiled.t_events, abs=1e-8)

@@ -52,7 +52,7 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     reason = "it is to run in Python" if problem.backend == "python" else obstacle(problem)
     if reason and must_compile:
         raise ValueError(f"no compiled loop can solve this problem: {reason}")
-    if reason and lanes and problem.backend is None:
+    if reason and lanes and problem.backend is None and isinstance(problem.method, Tableau):
         warn(f"integrating one motion after another in Python: {reason}", stacklevel=3)
     if reason:
         return problem, None
