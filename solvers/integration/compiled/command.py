@@ -52,7 +52,8 @@ def running(command: Sequence[str], folder: Path) -> Iterator[Command]:
     """Run a command in a folder; at the end of the context all its processes are ended."""
     environment = {name: os.environ[name] for name in PASSED_ON if name in os.environ}
     environment |= {"LC_ALL": "C", "TMPDIR": str(folder), "ZIG_LOCAL_CACHE_DIR": str(folder)}
-    environment["ZIG_GLOBAL_CACHE_DIR"] = str(folder.parent / "zig")  # it needs no home folder
+    # ziglang needs no home folder, and not the headers of the system's compiler, which may hang
+    environment |= {"ZIG_GLOBAL_CACHE_DIR": str(folder.parent / "zig"), "CC": "false"}
     nowhere, pipe = subprocess.DEVNULL, subprocess.PIPE
     try:
         process = subprocess.Popen(
