@@ -87,6 +87,7 @@ def test_the_error_of_the_reference_is_at_least_its_last_rounding(
     monkeypatch.setattr("solvers.studies.work_precision.reference.FEWER", 32)
     single = load_module("single_pendulum")
     found = Reference.of(Scene(single, single.DEFAULTS, (-1.5, -3.0), 0.25))
+    assert [*found.differences] == ["extrapolated midpoint rule", "elliptic functions"]
     assert found.end.max() < 0  # the largest number is negative
     assert found.global_error == np.spacing(np.abs(found.end).max())
 

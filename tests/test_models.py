@@ -20,6 +20,7 @@ from solvers.integration.predictability import ignore_predictability
 from solvers.references.taylor import taylor
 from solvers.scenes.models import equilibrium, full_equations, normal_modes, quadrature
 from solvers.scenes.models.catalogue import closed_forms, load
+from solvers.scenes.models.double_precision import check_times
 from solvers.scenes.models.equilibrium import Equilibrium
 from solvers.scenes.models.extended_precision import by_series
 from solvers.scenes.models.full_equations import estimated_error
@@ -197,6 +198,14 @@ def test_a_single_pendulum_has_a_closed_form(params, y0, duration) -> None:
     assert largest_error(motion, model) <= model.error_estimate
 
 
+@pytest.mark.parametrize("angle", [0.3, 2.0, 10 * pi + 0.3, 10 * pi + 2.0])
+def test_a_mirrored_motion_has_the_same_estimate(angle: float) -> None:
+    right, left = (
+        Pendulum.of(motion_from(sp, (sign * angle, sign * 0.1), 8.0)) for sign in (1, -1)
+    )
+    assert left.error_estimate == pytest.approx(right.error_estimate, rel=0.03, abs=0)
+
+
 def test_near_the_separatrix_the_estimate_contains_rounding() -> None:
     for duration in (5, 8, 10, 12):
         motion = motion_from(sp, (0.0, 6.0 - 1e-12), duration, (1, 1, 9.0))
@@ -227,6 +236,8 @@ def test_a_light_bob_has_no_effect_and_a_heavy_one_has() -> None:
         motion_from(dp, (1.5, 0.3, 0, 1), 3, (1.0, 1e-2, 2.0, 2.0, 9.81), (0, 2))
     )
     assert heavy.error_estimate > 1
+    with pytest.raises(OutsideDomainError, match="1 of 1 coordinates are requested"):
+        PendulumAndLightMasses.of(motion_from(sp, (1.5, 0.0), 3))
     with pytest.raises(OutsideDomainError, match="2 of 2 coordinates are requested"):
         PendulumAndLightMasses.of(motion_from(dp, (1.5, 0.3, 0, 1), 3, params))
 
@@ -369,6 +380,14 @@ def test_a_series_in_double_precision_has_the_rounding_of_its_largest_number() -
     assert model.error_estimate == np.spacing(largest) == 2.0**-51
 
 
+def test_series_take_angles_of_up_to_a_million() -> None:
+    times, choice = np.array([0.0, 0.01]), MethodChoice("taylor", "lagrangian", "")
+    by_series(motion_from(sp, (-1e6, 0.0), 0.01), choice, 1e-9, times, lambda _: None)
+    beyond = motion_from(sp, (np.nextafter(-1e6, -2e6), 0.0), 0.01)
+    with pytest.raises(TooLongError, match=r"angles above 1e\+06 rad"):
+        by_series(beyond, choice, 1e-9, times, lambda _: None)
+
+
 def test_a_scene_can_name_model_method_and_step() -> None:
     still = find("rest", load_module)
     assert selected(still).model.name == "rest"
@@ -427,6 +446,13 @@ def test_a_spring_that_bounces_is_not_at_rest(offset: float) -> None:
     start, params = (4 / 3 + offset, 1e-10, 0, 0), (1, 29.43, 1, 9.81)
     with pytest.raises(OutsideDomainError, match="leaves the initial state"):
         Equilibrium.of(motion_from(ep, start, 128 * 2 * pi / 29.43**0.5, params))
+
+
+def test_a_run_is_compared_at_the_ends_and_in_the_middle_of_its_steps() -> None:
+    run = IntegrationRun(motion_from(sp, (1.0, 1.0), 5.0), MethodChoice("rk4", "rational", ""), 0.5)
+    times = check_times(run)
+    assert set(np.arange(0, 5.25, 0.25)) <= set(times)
+    assert set(run.motion.sample_times) <= set(times)
 
 
 def test_estimates_include_fast_and_rare_events() -> None:

@@ -210,6 +210,18 @@ def test_a_damaged_chunk_is_repeated(
     assert len(done) == 1
 
 
+def test_the_progress_counts_motions_that_are_stored_already(tmp_path: Path) -> None:
+    reports: list[str] = []
+    sweep(DEFINITION, tmp_path, report=reports.append)
+    sorted((tmp_path / "chunks").glob("*.npy"))[5].unlink()
+    again: list[str] = []
+    sweep(DEFINITION, tmp_path, report=again.append)
+    for report in (reports[-1], *again):
+        assert report.startswith("1,600 of 1,600, ")
+        assert report.endswith(" a second, 0 s left")
+    assert len(again) == 1
+
+
 @pytest.mark.parametrize(("change", "words"), [
     ({"duration": 4.0}, "duration 3.0, not 4.0"),
     ({"rtol": 1e-8}, "rtol 1e-09, not "),
