@@ -14,7 +14,7 @@ demo: .venv/base  ## set up and run the demonstration: derive, verify, generate,
 test: .venv/ready  ## set up and run the tests
 	$(BIN)/pytest --numprocesses auto --dist worksteal
 
-campaign: .venv/ready  ## run the tests over hundreds of random cases
+campaign: .venv/ready  ## run the tests over thousands of random cases
 	$(BIN)/pytest --numprocesses auto --dist worksteal -m campaign
 
 docs: .venv/docs  ## build the documentation site, into out/docs

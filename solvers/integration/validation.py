@@ -36,6 +36,10 @@ def problem(
     """The problem that `integrate` solves, from its arguments, all of which are checked."""
     check_module(module)
     warn_if_flushed()
+    for name in ("method", "form", "backend"):
+        value = getattr(options, name)
+        if not isinstance(value, str if name == "method" else str | None):
+            raise ValueError(f"{name} = {shortened(value)} must be a name, as a str")
     if options.backend not in (None, "compiled", "python"):
         raise ValueError(f"backend {options.backend!r} must be 'compiled' or 'python'")
     check_flag("compensated", options.compensated)
