@@ -30,7 +30,13 @@ def check_memory(what: str, rows: int, components: int, remedy: str) -> None:
 
 def check_times(t_eval: object, components: int) -> None:
     """Refuse more times than states fit into memory."""
-    count = np.size(t_eval) if isinstance(t_eval, np.ndarray | list | tuple) else 0
+    match t_eval:
+        case np.ndarray():
+            count = t_eval.size
+        case list() | tuple():
+            count = len(t_eval)
+        case _:
+            count = 0  # refused later
     check_memory(f"the states at {count} times t_eval", count, components, "give fewer times")
 
 
