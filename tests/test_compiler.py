@@ -15,9 +15,10 @@ import pytest
 from handwritten import handwritten
 
 import generated.double_pendulum as dp
-from solvers.integration.compiled import compilation, compiler
+from solvers.integration.compiled import compilation, compiler, kernel, native
 from solvers.integration.compiled.compilation import LIBRARY
 from solvers.integration.compiled.compiler import NoCompilerError, build
+from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.native import native_rhs
 from solvers.io.build_cache import DIGESTS, _seal
 from solvers.studies.benchmarks.double_pendulum import _peak_library
@@ -169,6 +170,26 @@ def test_a_library_that_cannot_be_called_is_not_kept(
     assert [*own_cache.iterdir()] == []
 
 
+@pytest.mark.parametrize("lanes", [False, True])
+def test_loops_and_right_hand_sides_are_called_before_they_are_kept(
+    lanes: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def trapped(*arguments: object, **options: object) -> str:
+        text = program(*arguments, **options)  # type: ignore[arg-type]
+        function = "static __attribute__((noinline)) mask advance("
+        assert function in text  # a step
+        i = text.index("{", text.index(function)) + 1
+        return f"{text[:i]} __builtin_trap(); {text[i:]}"
+
+    monkeypatch.setattr(kernel, "program", trapped)
+    with pytest.raises(NoCompilerError, match="does not work: ended by SIG"):
+        kernel.Kernel(dp, "rational", "rk4", lanes=lanes)
+    wrapper = native.WRAPPER.replace("params, dy);", "params, dy); __builtin_trap();")
+    monkeypatch.setattr(native, "WRAPPER", wrapper)
+    with pytest.raises(NoCompilerError, match="does not work: ended by SIG"):
+        native_rhs(dp)
+
+
 def test_a_library_of_another_program_is_replaced() -> None:
     other, library = build(SOURCE.replace("42", "13")), build(SOURCE)
     folder = library.path.parent
@@ -249,9 +270,9 @@ def test_headers_of_the_environment_are_not_included(
 def test_programs_and_libraries_of_the_environment_are_not_used(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for program in ("as", "ld", "cc1", "collect2", "libm.so"):
-        (tmp_path / program).write_text("#!/bin/sh\nexit 1\n")
-        (tmp_path / program).chmod(0o755)
+    for file in ("as", "ld", "cc1", "collect2", "libm.so"):
+        (tmp_path / file).write_text("#!/bin/sh\nexit 1\n")
+        (tmp_path / file).chmod(0o755)
     monkeypatch.setenv(name, f"{tmp_path}/")
     assert answer(build(SOURCE).path) == 42
 

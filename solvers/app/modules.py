@@ -41,8 +41,11 @@ def load(name: str) -> GeneratedModule:
         If the file does not exist or does not describe a system.
     derive.codegen.translation.UnsupportedFunctionError
         If its equations contain an unsupported power, such as ``x**(5/3)``.
-    OSError
-        If the module cannot be written to the cache.
+
+    Warns
+    -----
+    UserWarning
+        If the module can be written to no folder: it has no C header then, and runs in Python.
 
     Examples
     --------
@@ -81,8 +84,11 @@ def build(system: "System") -> GeneratedModule:
         If `system` is not a system, such as the path of a system file.
     derive.codegen.translation.UnsupportedFunctionError
         If its equations contain an unsupported power.
-    OSError
-        If the module cannot be written to the cache.
+
+    Warns
+    -----
+    UserWarning
+        If the module can be written to no folder: it has no C header then, and runs in Python.
 
     Examples
     --------

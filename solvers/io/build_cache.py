@@ -99,7 +99,10 @@ def cache_folder() -> Path:
 def _temporary_folder(root: str | None) -> Path:
     """A folder in `root` or the usual folder of temporary files, until this process ends."""
     root = os.path.realpath(root or tempfile.gettempdir())
-    folder = Path(tempfile.mkdtemp(prefix="holonomic-", dir=root))
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="holonomic-", dir=root))
+    except OSError as error:  # without the random name: equal warnings are shown once
+        raise OSError(error.errno, error.strerror, root) from error
     atexit.register(_remove_own, folder, os.getpid())
     _check_private(folder)
     return folder

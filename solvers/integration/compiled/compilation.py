@@ -74,7 +74,7 @@ class Compilation:
         os.replace(output, ready / LIBRARY)
 
     def _probe(self, library: Path) -> None:
-        command = sys.executable, "-I", "-S", "-c", PROBE, str(library), self.key
+        command = sys.executable or "python3", "-I", "-S", "-c", PROBE, str(library), self.key
         try:
             with running(command, library.parent) as process:
                 if not process.ends_within(PROBE_LIMIT):
