@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
 from derive.verification.report.judgement import EQUATIONS
 from solvers.app.cli import main
-from solvers.app.demo import motions, stages
-from solvers.app.demo.equations import FUNCTIONS
+from solvers.app.demo import motions, stages, verdicts
+from solvers.app.demo.equations import FUNCTIONS, generation
 from solvers.app.demo.page import write_page
 from solvers.app.demo.stage import Stage, table
 from solvers.app.modules import load as load_module
@@ -226,12 +227,47 @@ def test_operation_counts_equal_those_of_the_generated_module() -> None:
 
 def test_the_numbers_of_the_motion_are_its_largest_errors() -> None:
     scene = find("report", load_module)
-    difference, change = (number.value for number in motions.motion(scene).numbers)
+    stage = motions.motion(scene)
+    difference, change = (number.value for number in stage.numbers)
     run = partial(integrate, dp, (0, 5), scene.y0, dp.DEFAULTS, method="verner98", energy=True)
     fine = run(rtol=1e-12, atol=1e-12, t_eval=scene.times)
     above_rest = fine.energy[0] - dp.energy(0.0, (0, 0, 0, 0), dp.DEFAULTS)
-    assert change == f"{np.abs(fine.energy - fine.energy[0]).max() / above_rest:.1e}"
-    assert 1e-13 < float(difference.split()[0]) < 1e-9
+    error = np.abs(fine.energy - fine.energy[0]).max() / above_rest
+    assert change == f"{error:.1e}"
+    other = solve_ivp(
+        dp.rhs, (0, 5), scene.y0, "DOP853", rtol=1e-12, atol=1e-12, args=(dp.DEFAULTS,)
+    )
+    apart = np.abs(fine.y[:, -1] - other.y[:, -1]).max()
+    assert difference == f"{apart:.1e} rad or rad/s"
+    assert stage.lines[0].startswith("after 5 s: theta1 = 2.22806424")
+    text = f"difference from SciPy's DOP853 {apart:.1g}, energy error {error:.1g}"
+    assert stage.lines[2] == text
+    assert 1e-13 < apart < 1e-9
+
+
+def test_the_generated_code_is_shown_with_its_operations() -> None:
+    stage = generation(dp)
+    assert stage.lines[1] == "operations: rhs 32, rhs_hamiltonian 35, jacobian 85, energy 26"
+    row = "<td>rhs_rational</td><td>rational form, in sines and cosines</td><td>39</td>"
+    assert row in stage.html
+    for name in ("rhs", "rhs_rational"):
+        summary = f"<summary>{name}, as generated</summary><pre>def {name}("
+        assert stage.html.count(summary) == 1
+    assert [number.value for number in stage.numbers] == ["32"]
+
+
+def test_programs_and_claims_are_listed_with_their_reasons() -> None:
+    equations = [{"id": "2.1", "verdict": "verified"}, {"id": "2.2", "verdict": "verified"}]
+    programs = [{"stops": []}, {"stops": ["no import", "x < 1 is wrong"]}]
+    claims = [{"id": "C1", "claim": "RK4 is best", "verdict": "contradicted", "number": "5 < 9"}]
+    html = verdicts._section(equations, programs, claims)
+    assert html.startswith(
+        "<p>Of 2 equations, <strong>2</strong> hold as printed. Of 1 objectives, claims and "
+        "recommendations, <strong>1</strong> do not hold.</p>"
+    )
+    assert "<td>C1</td><td>RK4 is best</td><td>contradicted</td><td>5 &lt; 9</td>" in html
+    rows = ("program 1", "runs as printed"), ("program 2", "no import; x &lt; 1 is wrong")
+    assert all(f"<tr><td>{name}</td><td>{text}</td></tr>" in html for name, text in rows)
 
 
 def test_the_stages_of_the_demonstration_have_their_order(tmp_path: Path) -> None:
@@ -246,13 +282,22 @@ def test_without_a_compiler_the_map_is_left_out_with_a_message(
     for name in ("derivation", "verification", "generation", "motion", "cost", "limits"):
         monkeypatch.setattr(stages, name, lambda *_: Stage(("a line",), "<p>content</p>"))
     assert main(["demo", "--output", str(tmp_path)]) == 0
-    assert "left out: no C compiler" in capsys.readouterr().out
+    text = capsys.readouterr().out
+    assert "left out: no C compiler" in text
+    seconds = re.findall(r"^ *(?:\d \w+)? +([\d.-]+) s", text, re.MULTILINE)
+    assert len(seconds) == 7
+    assert all(0 <= float(time) < 60 for time in seconds)
     assert 'id="chart"' in (tmp_path / "demo.html").read_text(encoding="utf-8")
     assert 'id="map"' not in (tmp_path / "demo.html").read_text(encoding="utf-8")
 
 
 def test_text_in_tables_is_escaped() -> None:
     assert "<b>" not in table(("<b>",), [("<b>",)])
+
+
+def test_tables_of_four_columns_are_stacked_on_narrow_screens() -> None:
+    kinds = [table(["head"] * n, [["cell"] * n]).partition(">")[0] for n in (3, 4, 5)]
+    assert kinds == ["<table", '<table class="stacks"', '<table class="stacks"']
 
 
 def test_the_page_is_written_atomically(demo: tuple[str, Path], tmp_path: Path) -> None:
