@@ -369,6 +369,25 @@ def test_an_executor_that_fails_is_reported_and_the_sweep_resumes(
     assert files(tmp_path) == expected
 
 
+@pytest.mark.parametrize("error", [ConnectionError("closed"), RuntimeError("closed")])
+def test_a_connection_that_breaks_between_chunks_is_reported(
+    error: Exception, tmp_path: Path
+) -> None:
+    calls = 0
+
+    def threads() -> int:
+        nonlocal calls
+        calls += 1
+        if calls > 3:
+            raise error
+        return 1
+
+    executor = Failing(1000, error)
+    with pytest.raises(LostWorkersError, match="the same call resumes the sweep"):
+        sweep(DEFINITION, tmp_path, pool=Pool(executor, threads=threads))
+    assert len(list(tmp_path.glob("chunks/*.npy"))) > 1
+
+
 def test_a_cluster_without_workers_and_one_that_dies_are_reported(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     path, out, file = write_sweep(tmp_path, LONG), tmp_path / "out", tmp_path / "scheduler.json"

@@ -30,6 +30,7 @@ from solvers.sweeps.sweep import Sweep
 Span: TypeAlias = tuple[int, int]
 #: Seconds without a result after which a pool checks that there are workers.
 PATIENCE = 3.0
+LOST = "the workers are gone: completed chunks are kept, and the same call resumes the sweep"
 
 
 class LostWorkersError(OSError):
@@ -76,7 +77,7 @@ class Pool:
     def size(self) -> int:
         """Number of chunks that are computed at the same time."""
         if self.workers is None and self.threads:
-            return max(self.threads(), 1)
+            return max(self._current_threads(), 1)
         return self.workers or len(os.sched_getaffinity(0))
 
     def first_motions(
@@ -125,10 +126,14 @@ class Pool:
             with nullcontext(self.executor) if self.executor else own as executor:
                 yield executor
         except (BrokenExecutor, CancelledError) as error:
-            raise LostWorkersError(
-                "the workers are gone: completed chunks are kept, and the same call resumes the "
-                "sweep"
-            ) from error
+            raise LostWorkersError(LOST) from error
+
+    def _current_threads(self) -> int:
+        assert self.threads is not None
+        try:
+            return self.threads()
+        except (OSError, RuntimeError) as error:  # no connection, or a closed one
+            raise LostWorkersError(LOST) from error
 
     def _wait(self, futures: Collection[Future[Any]]) -> Collection[Future[Any]]:
         """The futures that are done, at least one; a warning if there are no workers."""
@@ -136,7 +141,7 @@ class Pool:
             done, _ = wait(futures, PATIENCE if self.threads else None, FIRST_COMPLETED)
             if done:
                 return done
-            if self.threads and not self.threads():
+            if not self._current_threads():
                 warn(
                     "there are no workers: the sweep waits until one is started; where holonomic "
                     "is not installed workers end at once",
