@@ -29,7 +29,7 @@ def verify(names: Sequence[str], *, as_json: bool) -> int:
             print(f"holonomic verify: {error}", file=sys.stderr)
     judged = [one for one in derivations.values() if one]
     if as_json:
-        print(json.dumps(list(map(asdict, judged)), indent=2, ensure_ascii=False))
+        print(json.dumps(list(map(asdict, judged)), indent=2))  # in ASCII: valid in every encoding
     else:
         texts = ["\n".join(_lines(one, table_width())) for one in judged]
         if len(derivations) > 1:

@@ -1,6 +1,5 @@
 """The command ``holonomic``: parser, exit codes and warnings."""
 
-import os
 import re
 import sys
 import warnings
@@ -8,10 +7,14 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from solvers.app.commands.options import Formatter, required_package
 from solvers.io.suggestion import did_you_mean
+from solvers.io.terminal import standard_streams
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
 
 #: Modules of `solvers.app.commands`, in the order of the help text.
 COMMANDS = "systems derive verify demo run sweep chart stability bench".split()
@@ -31,6 +34,10 @@ class Parser(ArgumentParser):
         text = super().format_help()
         return f"{text}\n{self.listing()}\n" if self.listing else text
 
+    def print_help(self, file: "SupportsWrite[str] | None" = None) -> None:
+        """Print the help text; `OSError` where that fails, which the base class ignores."""
+        print(self.format_help(), end="", file=file)
+
     def error(self, message: str) -> NoReturn:
         """Print the message and a suggestion; exit with code 2."""
         if choice := re.search(r"invalid choice: '(.*)' \(choose from (.*)\)$", message):
@@ -43,20 +50,20 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     0 done, 1 a check failed, 130 interrupted; `EXIT_CODES` for errors.
     """
-    parser = command_parser()
-    arguments = parser.parse_args(argv)
-    name = f"holonomic {arguments.command or ''}".rstrip()
-    with _warnings_as_lines(name):
-        try:
-            return int(arguments.run(arguments))
-        except KeyboardInterrupt:
-            return 130
-        except BrokenPipeError:  # the reader has closed the pipe; do not fail when flushing
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return 0
-        except tuple(EXIT_CODES) as error:
-            print(f"{name}: {error}", file=sys.stderr)
-            return next(code for kind, code in EXIT_CODES.items() if isinstance(error, kind))
+    name = "holonomic"
+    try:
+        with standard_streams():
+            arguments = command_parser().parse_args(argv)
+            name = f"holonomic {arguments.command or ''}".rstrip()
+            with _warnings_as_lines(name):
+                return int(arguments.run(arguments))
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:  # the reader needs no more
+        return 0
+    except tuple(EXIT_CODES) as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return next(code for kind, code in EXIT_CODES.items() if isinstance(error, kind))
 
 
 def command_parser() -> ArgumentParser:

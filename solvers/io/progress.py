@@ -1,13 +1,14 @@
 """Progress: one line on a terminal, updated while a command runs."""
 
+import os
 import sys
 import threading
 import time
 
 #: Seconds before the first line, and between updates.
 FIRST, NEXT = 1.0, 0.2
-#: Length of the line.
-WIDTH = 78
+#: Largest length of the line, and number of columns of a terminal that does not report it.
+WIDTH, COLUMNS = 78, 80
 
 
 class Progress:
@@ -39,10 +40,17 @@ class Progress:
     def _report(self) -> None:
         wait = FIRST
         while not self._stop.wait(wait):
-            line, wait = f"{self._text}, {time.monotonic() - self._since:.0f} s"[:WIDTH], NEXT
-            print(f"\r{line:<{WIDTH}}", end="", file=sys.stderr, flush=True)
+            text, width = f"{self._text}, {time.monotonic() - self._since:.0f} s", _width()
+            print(f"\r{text[:width]:<{width}}", end="", file=sys.stderr, flush=True)
+            wait = NEXT
         if wait == NEXT:
-            print(f"\r{'':<{WIDTH}}\r", end="", file=sys.stderr, flush=True)
+            print(f"\r{'':<{_width()}}\r", end="", file=sys.stderr, flush=True)
+
+
+def _width() -> int:
+    """Length of a line that fits the terminal, which the user may resize."""
+    columns = os.get_terminal_size(sys.stderr.fileno()).columns or COLUMNS
+    return min(columns - 1, WIDTH)  # a full line would move some terminals to the next
 
 
 class Rate:

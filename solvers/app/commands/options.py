@@ -122,7 +122,7 @@ def print_json(results: Any) -> None:
     """Print results as JSON; numbers that are not finite become null."""
     from solvers.io.json_values import jsonable
 
-    print(json.dumps(jsonable(results), indent=2, ensure_ascii=False))
+    print(json.dumps(jsonable(results), indent=2))  # in ASCII: valid in every encoding
 
 
 def optional_package(name: str) -> ModuleType | None:
