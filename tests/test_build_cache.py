@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import cache_from_source
 from pathlib import Path
 from py_compile import compile as write_bytecode
@@ -19,6 +20,7 @@ from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.kernel import kernel
 from solvers.integration.integrate import integrate
 from solvers.io import build_cache
+from solvers.io.atomic_write import write_text
 from solvers.io.build_cache import ABANDONED, DIGESTS, NoPlaceError, built_folder, cache_folder
 
 TEXT = "some text\n"
@@ -308,3 +310,11 @@ def test_bytecode_beside_a_cached_module_is_not_loaded() -> None:
     os.utime(other, (path.stat().st_mtime,) * 2)
     write_bytecode(str(other), cache_from_source(str(path)))
     assert plain().VALUE == 1
+
+
+def test_threads_that_write_one_file_all_succeed(tmp_path: Path) -> None:
+    path, texts = tmp_path / "file.png", [str(k) * 100_000 for k in range(8)]
+    with ThreadPoolExecutor(8) as threads:
+        assert [*threads.map(lambda text: write_text(path, text), texts)] == [path] * 8
+    assert path.read_text() in texts
+    assert [*tmp_path.iterdir()] == [path]

@@ -5,9 +5,10 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from secrets import token_hex
 from typing import IO
 
-#: Names of files being written: a dot, the final name, and the number of the process.
+#: Names of files being written: random digits, the final name, and the number of the process.
 TEMPORARY = re.compile(r"\..+\.(\d+)")
 
 
@@ -31,7 +32,8 @@ def write_texts(folder: Path, texts: Mapping[str, str]) -> None:
 def replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file to write to, which replaces `path` when it is complete; folders are created."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    # threads may write the same file, and so may processes of other machines with this number
+    temporary = path.with_name(f".{token_hex(4)}-{path.name}.{os.getpid()}")
     try:
         with open(temporary, "wb") as file:
             yield file
