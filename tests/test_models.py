@@ -182,6 +182,10 @@ def test_of_the_smallest_motions_only_rounding_remains() -> None:
     motion = motion_from(dp, (1e-9, -2e-9, 0, 0), 20.0)
     model = NormalModes.of(motion)
     assert 1e-26 < largest_error(motion, model) <= model.error_estimate < 1e-20
+    # of a length that stays the same but for rounding
+    stretched = motion_from(ep, (1.24525 + 1e-9, 0, 0, 0), 20.0, (1, 40, 1, 9.81), (0,))
+    estimate = NormalModes.of(stretched).error_estimate
+    assert largest_error(stretched, NormalModes.of(stretched)) < estimate < 1e-13
 
 
 @pytest.mark.parametrize(("params", "y0", "duration"), [
@@ -204,6 +208,15 @@ def test_a_mirrored_motion_has_the_same_estimate(angle: float) -> None:
         Pendulum.of(motion_from(sp, (sign * angle, sign * 0.1), 8.0)) for sign in (1, -1)
     )
     assert left.error_estimate == pytest.approx(right.error_estimate, rel=0.03, abs=0)
+
+
+def test_a_mirrored_motion_is_affected_as_much_by_a_light_bob() -> None:
+    speed, params = 2 * (9.81 / 2) ** 0.5 - 1e-9, (1, 1e-9, 2, 2, 9.81)  # next to the separatrix
+    right, left = (
+        PendulumAndLightMasses.of(motion_from(dp, (0, s, s * speed, 0), 20.0, params, (0, 2)))
+        for s in (1, -1)
+    )
+    assert left.error_estimate == pytest.approx(right.error_estimate, rel=0.01)
 
 
 def test_near_the_separatrix_the_estimate_contains_rounding() -> None:
@@ -475,6 +488,18 @@ def test_a_motion_that_takes_too_long_is_refused_at_once() -> None:
         selected(Scene(sp, sp.DEFAULTS, (1.0, 1.0), 1e9, model="full"))
 
 
+def test_a_model_that_fails_numerically_is_declined_and_the_next_is_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def fails(_: Motion) -> NormalModes:
+        raise np.linalg.LinAlgError("DLASCLS parameter number 4 had an illegal value")
+
+    monkeypatch.setattr(NormalModes, "of", fails)
+    selection = selected(Scene(sp, sp.DEFAULTS, (1.0, 0.0), 0.1))
+    assert selection.declined["normal modes"] == "its matrices are singular or not finite"
+    assert selection.model.name == "pendulum"
+
+
 def test_a_model_is_selected_exactly_when_its_error_is_below_the_requested_accuracy() -> None:
     scene = find("small", load_module)
     estimate = selected(scene).model.error_estimate
@@ -540,4 +565,5 @@ def test_an_orbit_is_periodic_apart_from_its_rotation() -> None:
     turned = second - first
     assert turned[2:] == pytest.approx([0, 0], abs=1e-10)
     assert turned[0] == pytest.approx(turned[1], abs=1e-10)
+    assert 1e-16 < result.period_error < 1e-12
     assert abs(turned[0]) > 1

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PathCollection
 from matplotlib.colors import LogNorm, to_rgba
 from matplotlib.contour import ContourSet
@@ -19,6 +20,7 @@ import generated.henon_heiles as hh
 import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
 from solvers.equations.energy import EnergyUnit
+from solvers.io.figures import panels
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.scenes import plots as scene_plots
@@ -39,7 +41,7 @@ from solvers.sweeps.maps.samples import Samples
 from solvers.sweeps.maps.section import Section
 from solvers.sweeps.plots.figure import figure
 from solvers.sweeps.plots.panels import CURVES, MARKED
-from solvers.sweeps.plots.quantity import wrapped
+from solvers.sweeps.plots.quantity import add_colour_bar, wrapped
 from solvers.sweeps.run import sweep
 from solvers.sweeps.sweep import Sweep
 
@@ -390,3 +392,16 @@ def test_stability_regions_show_the_eigenvalues_at_the_longest_stable_step() -> 
         ends = [points(line).tolist() for line in panel.lines]
         assert [[0, 0], [1, 0]] in ends  # the axes through zero
         assert [[0, 0], [0, 1]] in ends
+
+
+@pytest.mark.parametrize(("high", "marks"), [
+    (20.0, [0.5, 1, 2, 5, 10, 20]), (400.0, [0.5, 1, 2, 5, 10, 20, 50, 100, 200]),
+    (2000.0, [1, 10, 100, 1000]),
+])  # fmt: skip
+def test_a_logarithmic_colour_bar_has_round_marks(high: float, marks: list[float]) -> None:
+    chart, (panel,) = panels("", size=(5, 5))
+    add_colour_bar(panel, ScalarMappable(LogNorm(0.5, high)), "time / s")
+    axis = chart.axes[1].yaxis
+    shown = [x for x in axis.get_major_locator()() if 0.5 <= x <= high]
+    assert shown == pytest.approx(marks)
+    assert axis.get_major_formatter()(0.02, 0) == "0.02"
