@@ -274,6 +274,16 @@ def test_installed_programs_have_curves(truth: Reference) -> None:
     assert peers.curves(find("report", load_module), truth, lambda _: None) == []
 
 
+def test_energy_that_a_force_changes_is_not_misleading() -> None:
+    driven = load_module("driven_pendulum")
+    scene = Scene(driven, driven.DEFAULTS, (1.0, 0.0), 1e-6)
+    assert measurement.unit_of_energy(scene).is_relative
+    wrong = Curve("s", "dop853", "lagrangian", "compiled", [point(1.0, 1e-3, 0.0)])
+    wrong = replace(wrong, points=[replace(wrong.points[0], global_error=1.0)])
+    truth = Reference(np.array(scene.y0), 1e-15, {})
+    assert misleading_energy([wrong], scene, truth) is None
+
+
 def test_lsoda_gets_no_tolerance_of_which_it_warns(truth: Reference) -> None:
     end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
     settings: dict[str, list[float]] = {"lsoda": [], "dop853": []}

@@ -114,3 +114,17 @@ def test_the_summary_names_compensated_sums() -> None:
 
     result = run_scene(replace(find("report", load_module), accuracy=2e-13, beside=()))
     assert "verner98, rational form, rtol = 2e-15, compensated sums" in list(summary(result))[1]
+
+
+def test_the_first_sufficient_run_is_selected_else_the_best(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    distances = 5.0, 3.0, 1.0, 2.0, 4.0  # of verner98 in three forms, tsit54, dop853
+    monkeypatch.setattr(double_precision, "_distance", lambda _, k: distances[k])
+    motion = motion_of(replace(LONG, duration=0.1))
+    for accuracy, best in ((25.0, 0), (13.0, 1), (5.0, 2), (0.0, 2)):
+        run, error = sufficient(motion, accuracy)
+        assert error == double_precision.MARGIN * distances[best]
+        assert run.method_choice.method == "verner98"
+        if not best:
+            assert run.method_choice.form == "rational"  # the fastest

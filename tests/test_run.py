@@ -111,6 +111,9 @@ def test_a_prescribed_method_is_reported_with_its_error_and_the_runs_beside_it(
 ) -> None:
     assert run("program_3", "--json", folder=tmp_path) == 0
     result = json.loads(capsys.readouterr().out)
+    scene = find("program_3", load_module)
+    labels = [run.label for run in (scene, *scene.beside)]
+    assert [run["label"] for run in (result, *result["beside"])] == labels
     assert (result["method"], result["setting"], result["accuracy_met"]) == (
         "rk4",
         {"h": 0.01},

@@ -8,6 +8,7 @@ from sweep_file import FILE, write_sweep
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.io.toml_input import InputError
+from solvers.sweeps.axes import Random
 from solvers.sweeps.reading import find
 
 
@@ -88,3 +89,11 @@ def test_the_command_reports_unknown_sweeps_and_options(capsys: pytest.CaptureFi
     assert "none.toml: there is no such file" in capsys.readouterr().err
     assert main(["sweep", "flips", "--workers", "0"]) == 2
     assert "workers = 0 must be from 1" in capsys.readouterr().err
+
+
+def test_random_axes_have_the_count_and_the_seed_of_the_file(tmp_path: Path) -> None:
+    text = FILE.replace(", count = 120", "")
+    for seed, line in ((0, ""), (7, "seed = 7")):
+        random = f"[random]\ncount = 5\n{line}\n[axes]"
+        axes = find(str(write_sweep(tmp_path, text.replace("[axes]", random))), load_module).axes
+        assert axes == Random({"theta1": (-3, 3), "theta2": (-3, 3)}, 5, seed)

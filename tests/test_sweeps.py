@@ -318,6 +318,8 @@ def test_a_module_that_does_not_ship_travels_as_text(tmp_path: Path) -> None:
     ({"values": {"theta1_dot": "energy"}}, "an energy requires a velocity"),
     ({"values": {"energy": 1.0}}, "an energy requires a velocity"),
     ({"values": {"energy": 1.0, "l1": "energy"}}, "determines one velocity"),
+    ({"values": {"energy": 1.0, "theta1_dot": "energy", "theta2_dot": "energy"}},
+     "determines one velocity, one of theta1_dot, theta2_dot"),
     ({"duration": -1.0}, "duration = -1.0 must be positive"),
     ({"method": "rk5"}, "no method is called 'rk5'"),
     ({"method": "DOP853"}, "no method is called 'DOP853'"),
