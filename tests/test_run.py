@@ -101,8 +101,11 @@ def test_scenes_with_other_files_are_accepted(tmp_path: Path) -> None:
     for path in paths:
         path.write_text(SCENE + BESIDE)
     arguments = Namespace(scenes=[*map(str, paths)], output=tmp_path)
-    scenes = selected_scenes(arguments, (), lambda scene: file_names(scene).values())
-    tables = [name for one in scenes for name in file_names(one).values() if name.endswith("csv")]
+    names = {
+        one.name: [*file_names(one.name, 2).values()] for one in selected_scenes(arguments, ())
+    }
+    assert selected_scenes(arguments, (), lambda one: names[one.name])
+    tables = [name for files in names.values() for name in files if name.endswith("csv")]
     assert tables == ["a.csv", "a_2.csv", "a_3.csv", "a_3_2.csv", "ab.csv", "ab_2.csv"]
 
 

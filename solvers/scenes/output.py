@@ -9,21 +9,21 @@ from solvers.player.page import Page
 from solvers.scenes.geometry import tracks
 from solvers.scenes.plots import figure, full_note
 from solvers.scenes.run import SceneResult
-from solvers.scenes.scene import Scene
 from solvers.scenes.summary import table
 
 
-def file_names(scene: Scene) -> dict[str, str]:
-    """Names of the files of a scene and the scenes beside it, by their contents."""
+def file_names(scene: str, runs: int) -> dict[str, str]:
+    """Names of the files of a scene with a number of runs, by their contents."""
     endings = {"table": ".csv", "picture": ".png", "page": ".html"}
-    endings |= {f"table {n}": f"_{n}.csv" for n in range(2, len(scene.beside) + 2)}
-    return {contents: f"{scene.name}{ending}" for contents, ending in endings.items()}
+    endings |= {f"table {n}": f"_{n}.csv" for n in range(2, runs + 1)}
+    return {contents: f"{scene}{ending}" for contents, ending in endings.items()}
 
 
 def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]:
     """Write tables, a plot and a page of a scene and the scenes beside it; return their paths."""
     scene = results[0].scene
-    paths = {contents: folder / name for contents, name in file_names(scene).items()}
+    names = file_names(scene.name, len(results))
+    paths = {contents: folder / name for contents, name in names.items()}
     save(figure(results), paths["picture"])
     write_text(paths["table"], table(results[0]))
     for n, result in enumerate(results[1:], 2):

@@ -1,8 +1,13 @@
 """``holonomic run``."""
 
 from argparse import ArgumentParser, Namespace
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from solvers.app.commands import options
+
+if TYPE_CHECKING:
+    from solvers.scenes.scene import Scene
 
 SUMMARY = "run scenes with the smallest sufficient model"
 DEFAULT = ("report",)
@@ -24,12 +29,12 @@ def run(arguments: Namespace) -> int:
     """Run the scenes, write their files and print summaries."""
     from solvers.app.modules import specialiser
     from solvers.io.progress import Progress
-    from solvers.scenes.output import file_names, write_files
+    from solvers.scenes.output import write_files
     from solvers.scenes.run import run_scene
     from solvers.scenes.summary import figures, summary
 
     results = []
-    for scene in options.selected_scenes(arguments, DEFAULT, lambda one: file_names(one).values()):
+    for scene in options.selected_scenes(arguments, DEFAULT, _files):
         with Progress() as report:
             first, *beside = (run_scene(one, specialiser, report) for one in (scene, *scene.beside))
             report("plots")
@@ -43,3 +48,9 @@ def run(arguments: Namespace) -> int:
     if arguments.json:
         options.print_json(results if results[1:] else results[0])
     return 0
+
+
+def _files(scene: "Scene") -> Iterable[str]:
+    from solvers.scenes.output import file_names
+
+    return file_names(scene.name, 1 + len(scene.beside)).values()
