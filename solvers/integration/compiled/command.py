@@ -42,8 +42,8 @@ class Command:
             if not code:
                 return True
             message = " ".join(self._output.decode(errors="replace").split())
-            end = f"ended by {signal.Signals(-code).name}" if code < 0 else f"exit {code}"
-            raise CommandError(message or end)
+            end = f"signal {-code}, {signal.strsignal(-code)}" if code < 0 else f"exit {code}"
+            raise CommandError(message or f"it ended with {end}")
         return False
 
 
