@@ -14,11 +14,17 @@ from derive.codegen import operation as op
 from derive.codegen.lowering import Lowering
 from derive.codegen.node import Number
 from derive.codegen.operation import Operation, triangle_rows
+from derive.codegen.translation import UnsupportedFunctionError
+from derive.formulas.budget import LARGEST, RANGE
 
 #: Longest expression that is written in place instead of named.
 IN_PLACE = 48
 
 SUM, PRODUCT, ATOM = 1, 2, 3
+
+
+def _is_float(value: Number) -> bool:
+    return bool(-LARGEST < value < LARGEST and value == float(value))
 
 
 class Notation:
@@ -30,10 +36,10 @@ class Notation:
 
     def literal(self, value: Fraction) -> str:
         """A number, exact where the floating-point numbers are."""
-        numerator, denominator = float(value.numerator), float(value.denominator)
-        is_exact = (numerator, denominator) == (value.numerator, value.denominator)
+        if not -LARGEST < value < LARGEST:
+            raise UnsupportedFunctionError(f"no generated code for a number out of range: {RANGE}")
         # a quotient of exact numbers is rounded once, in any type
-        if value == float(value) or not is_exact:
+        if _is_float(value) or not all(map(_is_float, (value.numerator, value.denominator))):
             return self.decimal(value)
         return f"({self.decimal(value.numerator)}/{self.decimal(value.denominator)})"
 

@@ -26,6 +26,9 @@ from derive.codegen.node import (
 
 Pair = tuple[Node, Node]
 
+#: The sum of the multiples of angles that is expanded, such as 3 for sin(a + 2*b).
+MAX_MULTIPLE = 20
+
 
 def angles(nodes: Sequence[Node], coordinates: Collection[str]) -> frozenset[str]:
     """Those of `coordinates` on which `nodes` depend only by sines and cosines of their sums."""
@@ -75,7 +78,7 @@ def _other_leaves(node: Node, names: frozenset[str], visited: set[Node]) -> Iter
 
 
 def _multiples(node: Node, names: Collection[str]) -> dict[str, int] | None:
-    """The coefficients if `node` is the sine or cosine of an integer combination of `names`."""
+    """The coefficients if `node` is the sine or cosine of a small combination of `names`."""
     if not isinstance(node, Call) or node.function not in ("sin", "cos"):
         return None
     coefficient, rest = node.argument.scaled()
@@ -85,7 +88,7 @@ def _multiples(node: Node, names: Collection[str]) -> dict[str, int] | None:
         if not isinstance(term, Leaf) or term.name not in names or multiple.denominator != 1:
             return None
         multiples[term.name] = int(multiple)
-    return multiples
+    return multiples if sum(map(abs, multiples.values())) <= MAX_MULTIPLE else None
 
 
 class _Rewriting:

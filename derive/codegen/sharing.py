@@ -7,7 +7,7 @@ corrections keeps the work nearly linear in the number of pairs.
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import replace
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
@@ -76,22 +76,23 @@ def _common_operands(operations: dict[int, Operation]) -> set[tuple[bool, int]]:
 
 def _pairs(
     operation: Operation, common: Collection[tuple[bool, int]], changed: Collection[int]
-) -> Iterator[Pair]:
+) -> set[Pair]:
     """The pairs of common operands of a sum or product, of which at least one has `changed`."""
     match operation:
         case Product(operands):
-            coefficients: tuple[Fraction, ...] = (ONE,) * len(operands)
+            # of a power, two factors are sufficient
+            factors = [n for n, count in Counter(operands).items() for _ in range(min(count, 2))]
+            terms = [(n, ONE) for n in sorted(factors) if (False, n) in common]
         case Sum(operands, _, coefficients):
-            pass
+            pairs = sorted(zip(operands, coefficients, strict=True))
+            terms = [(n, c) for n, c in pairs if (True, n) in common]
         case _:
-            return
-    is_sum = isinstance(operation, Sum)
-    pairs = sorted(zip(operands, coefficients, strict=True))
-    terms = [(n, c, n in changed) for n, c in pairs if (is_sum, n) in common]
-    for k, (b, cb, b_changed) in enumerate(terms):
-        for a, ca, a_changed in terms[:k]:
-            if a_changed or b_changed:
-                yield is_sum, a, b, cb / ca if is_sum else ONE
+            return set()
+    return {
+        (isinstance(operation, Sum), a, b, cb / ca)
+        for k, (b, cb) in enumerate(terms)
+        for a, ca in (terms[:k] if b in changed else [t for t in terms[:k] if t[0] in changed])
+    }
 
 
 def _operation_of(pair: Pair, operations: dict[int, Operation]) -> Operation:

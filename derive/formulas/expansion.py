@@ -4,12 +4,16 @@ from math import prod
 
 import sympy as sp
 
+WAVES = (sp.sin, sp.cos)
 #: Terms of the largest expression that is expanded.
 LARGEST = 5000
 
 
 def is_expandable(expression: sp.Expr) -> bool:
-    """Whether the expanded expression has at most `LARGEST` terms, before terms are collected."""
+    """Whether the expanded expression has at most `LARGEST` terms, before terms are collected.
+
+    Products of sines and cosines count as sums of them.
+    """
     return _expanded_size(expression, {}) <= LARGEST
 
 
@@ -17,10 +21,14 @@ def _expanded_size(expression: sp.Expr, known: dict[sp.Expr, int]) -> int:
     """Number of terms of the expanded expression, up to a bound."""
     if expression not in known:
         sizes = [_expanded_size(part, known) for part in expression.args]
+        if isinstance(expression, WAVES):
+            sizes = [2]  # a product of n waves is a sum of 2^n waves, of a power n + 1
         if expression.is_Add:
             size = sum(sizes)
         elif expression.is_Mul:
             size = prod(sizes)
+        elif expression.is_Pow and isinstance(expression.base, WAVES) and expression.exp.is_Integer:
+            size = 1 + abs(int(expression.exp))
         elif expression.is_Pow and expression.exp.is_Integer:  # denominators are expanded, too
             size = min(sizes[0], LARGEST + 1) ** min(abs(int(expression.exp)), 100)
         else:

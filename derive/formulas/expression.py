@@ -16,6 +16,7 @@ from typing import Any, TypeAlias
 import sympy as sp
 
 from derive.formulas import functions
+from derive.formulas.budget import MAX_BITS, MAX_EXPONENT, Budget, BudgetError
 from derive.formulas.numeric import NoValueError
 from derive.formulas.sampling import check_value
 from solvers.io.suggestion import did_you_mean
@@ -37,25 +38,28 @@ WIDE = 0xFEE0
 #: Functions that have no value for some arguments.
 PARTIAL = (sp.tan, sp.log)
 
-#: Limits: characters of a formula, absolute value of an exponent, bits of a number.
-MAX_LENGTH, MAX_EXPONENT, MAX_BITS = 20_000, 100, 256
+#: Characters of the longest formula.
+MAX_LENGTH = 20_000
 
 
 class ExpressionError(ValueError):
     """Invalid formula; the message names the invalid part and the allowed syntax."""
 
 
-def parse(text: str, scope: Scope) -> Value:
+def parse(text: str, scope: Scope, budget: Budget | None = None) -> Value:
     """Parse the formula `text`; its names and functions are those of `scope`, its value is finite.
 
     Numbers are exact (``1/2`` is one half, ``9.81`` is 981/100), ``(a, b)`` is a
-    column and ``[[a, b], [c, d]]`` a matrix.
+    column and ``[[a, b], [c, d]]`` a matrix. `budget` is that of all formulas of a file.
     """
-    text = text.strip()
+    text, budget = text.strip(), budget or Budget()
     try:
-        value = _Evaluator(text, scope).value(syntax_tree(text))
+        value = _Evaluator(scope, budget).value(syntax_tree(text))
+        budget.spend(value)
     except ExpressionError:
         raise
+    except BudgetError as error:
+        raise ExpressionError(f"{text[:80]!r} is out of bounds: {error}") from None
     except RecursionError:
         raise ExpressionError("the formula is nested too deeply: name its parts") from None
     except NoValueError as error:
@@ -67,9 +71,9 @@ def parse(text: str, scope: Scope) -> Value:
     return value
 
 
-def number(text: str, scope: Scope) -> sp.Expr:
+def number(text: str, scope: Scope, budget: Budget | None = None) -> sp.Expr:
     """Parse a formula whose value is a number: neither a column nor a matrix."""
-    value = parse(text, scope)
+    value = parse(text, scope, budget)
     if isinstance(value, sp.MatrixBase):  # which is an expression, too, if it is immutable
         raise ExpressionError(f"{text.strip()[:50]!r} is a column or matrix, not a number")
     return value
@@ -122,15 +126,13 @@ def python_source(text: str) -> str:
 
 
 class _Evaluator:
-    def __init__(self, text: str, scope: Scope) -> None:
-        self._text, self._scope = text, scope
+    def __init__(self, scope: Scope, budget: Budget) -> None:
+        self._scope, self._budget = scope, budget
 
     def value(self, node: ast.expr) -> Any:
         value = self._value(node)
-        if isinstance(value, sp.Rational):
-            bits = max(value.p.bit_length(), value.q.bit_length())
-            if bits > MAX_BITS:
-                raise ExpressionError(f"a number has {bits} bits; at most {MAX_BITS} are allowed")
+        if isinstance(value, sp.Expr | sp.MatrixBase):
+            self._budget.check(value)
         return value
 
     def _value(self, node: ast.expr) -> Any:
@@ -142,13 +144,15 @@ class _Evaluator:
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return -self.value(operand)
             case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
-                return _power(self.value(base), self.value(exponent))
+                return self._power(self.value(base), self.value(exponent))
             case ast.BinOp(op=ast.Add() | ast.Sub()):
                 terms = [sign * self.value(term) for term, sign in summands(node)]
                 has_matrix = any(isinstance(term, sp.MatrixBase) for term in terms)
                 return reduce(operator.add, terms) if has_matrix else sp.Add(*terms)
             case ast.BinOp(left=left, op=ast.Mult(), right=right):
-                return self.value(left) * self.value(right)
+                a, b = self.value(left), self.value(right)
+                self._budget.check_product(a, b)
+                return a * b
             case ast.BinOp(left=left, op=ast.Div(), right=right):
                 return self.value(left) / _divisor(self.value(right))
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
@@ -177,10 +181,29 @@ class _Evaluator:
         for value in arguments:
             if function is FUNCTIONS.get(name) and isinstance(value, sp.MatrixBase):
                 raise ExpressionError(f"{name} of a column or matrix: it is a function of numbers")
+        for value in arguments:
+            if function is sp.exp:
+                self._budget.check_exponential(value)
+            if isinstance(value, sp.Expr):
+                self._budget.check_real(value)  # SymPy evaluates functions of them slowly
         result = function(*arguments)
         if isinstance(result, PARTIAL):
             check_value(result)
         return result
+
+    def _power(self, base: Value, exponent: Value) -> Value:
+        if not (isinstance(exponent, sp.Rational) and abs(exponent) <= MAX_EXPONENT):
+            limit = f"only numbers up to {MAX_EXPONENT} are allowed"
+            raise ExpressionError(f"exponent {str(exponent)[:50]}: {limit}")
+        if isinstance(base, sp.MatrixBase):
+            raise ExpressionError("powers of matrices are not supported: write out the product")
+        coefficient = base.as_coeff_Mul()[0]  # the power of a product is a product of powers
+        bits = max(coefficient.p.bit_length(), coefficient.q.bit_length())
+        if (bits - 1) * abs(exponent) > MAX_BITS:
+            raise ExpressionError(f"{coefficient}**{exponent} has more than {MAX_BITS} bits")
+        if not exponent.is_Integer:
+            self._budget.check_real(base)
+        return (_divisor(base) if exponent < 0 else base) ** exponent
 
     def _lookup(self, name: str, *, function: bool) -> Any:
         if name not in self._scope:
@@ -210,14 +233,3 @@ def _exact_number(digits: str) -> sp.Rational:
     if abs(number.adjusted()) > MAX_EXPONENT:
         raise ExpressionError(f"{digits[:50]!r} is out of range: 1e-100 to 1e100")
     return sp.Rational(*number.as_integer_ratio())
-
-
-def _power(base: Value, exponent: Value) -> Value:
-    if not (isinstance(exponent, sp.Rational) and abs(exponent) <= MAX_EXPONENT):
-        limit = f"only numbers up to {MAX_EXPONENT} are allowed"
-        raise ExpressionError(f"exponent {str(exponent)[:50]}: {limit}")
-    if isinstance(base, sp.MatrixBase):
-        raise ExpressionError("powers of matrices are not supported: write out the product")
-    if isinstance(base, sp.Rational) and base.p.bit_length() * abs(exponent) > MAX_BITS:
-        raise ExpressionError(f"{base}**{exponent} has more than {MAX_BITS} bits")
-    return (_divisor(base) if exponent < 0 else base) ** exponent

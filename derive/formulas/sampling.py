@@ -5,7 +5,7 @@ different symbols. Hence every two symbols have all four pairs of signs (D. J. K
 J. Spencer, Discrete Math. 6 (1973) 255).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cache
 from itertools import combinations
@@ -13,7 +13,7 @@ from random import Random
 
 import sympy as sp
 
-from derive.formulas.numeric import Evaluator
+from derive.formulas.numeric import Approximation, Evaluator, NoValueError
 
 #: The number of states at which formulas are compared.
 STATES = 12
@@ -30,10 +30,23 @@ def sample(symbols: Sequence[sp.Symbol], index: int) -> dict[sp.Symbol, sp.Expr]
 
 def check_value(expression: sp.Expr) -> None:
     """Raise `NoValueError` if `expression` has no value at one of the states."""
-    symbols = sorted(expression.free_symbols, key=lambda symbol: str(symbol.name))
     with suppress(NotImplementedError):
-        for index in range(STATES):
-            Evaluator(sample(symbols, index))(expression)
+        for _ in _values(expression):
+            pass
+
+
+def is_small(expression: sp.Expr) -> bool:
+    """Whether `expression` has a value at every state, and is zero as far as the digits show."""
+    try:
+        return all(value.is_zero for value in _values(expression))
+    except (NoValueError, NotImplementedError):
+        return False
+
+
+def _values(expression: sp.Expr) -> Iterator[Approximation]:
+    symbols = sorted(expression.free_symbols, key=lambda symbol: str(symbol.name))
+    for index in range(STATES):
+        yield Evaluator(sample(symbols, index))(expression)
 
 
 def _sign(symbol: sp.Symbol, k: int, index: int) -> int:

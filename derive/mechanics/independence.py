@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from derive.formulas.numeric import Evaluator, NoValueError
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -40,7 +41,15 @@ def _generic_values(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> lis
     for size in (sp.Rational(1, 8), sp.Integer(5), sp.Integer(1)):
         state = values | {q: values[q] * size for q in system.q}
         pairs = [(i, j) for i in range(n) for j in range(i, n)]
-        upper = {(i, j): mass_matrix[i, j].evalf(50, subs=state) for i, j in pairs}
+        evaluator = Evaluator(state)
+        upper = {(i, j): _value(evaluator, mass_matrix[i, j]) for i, j in pairs}
         if all(entry.is_real for entry in upper.values()):
             break
     return [[upper[min(i, j), max(i, j)] for j in range(n)] for i in range(n)]
+
+
+def _value(evaluator: Evaluator, expression: sp.Expr) -> sp.Expr:
+    try:
+        return evaluator(expression).rounded()
+    except NoValueError:
+        return sp.nan

@@ -5,6 +5,8 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from derive.formulas.sampling import is_small
+from derive.mechanics.reduction import reduced
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -52,7 +54,7 @@ class Energies:
         values = self.check_equilibrium(equilibrium)
         gradient = [self.potential.diff(q) for q in self.system.q]
         stiffness = Matrix([[force.diff(q) for q in self.system.q] for force in gradient])
-        matrices = self.mass_matrix.subs(values), stiffness.subs(values)
+        matrices = self.mass_matrix.xreplace(values), stiffness.xreplace(values)
         self._refuse({"have infinite terms": any(matrix.has(*INFINITE) for matrix in matrices)})
         return Linearisation(equilibrium, *matrices)
 
@@ -73,21 +75,23 @@ class Energies:
                 f"({', '.join(q.name for q in system.q)}), got {len(equilibrium)}"
             )
         values = dict(zip(system.q, equilibrium, strict=True))
-        still = dict.fromkeys(system.qdot, 0)
+        still = dict.fromkeys(system.qdot, sp.S.Zero)
         for i, q in enumerate(system.q):
             gradient = self.potential.diff(q) + self.drift[i].diff(TIME)
-            everywhere = system.applied[i].subs(still) - gradient
-            force = sp.simplify(everywhere.subs(values))
-            reason = f"the force along {q.name} is {force} there" if force != 0 else ""
+            everywhere = system.applied[i].xreplace(still) - gradient
+            force, reason = everywhere.xreplace(values), ""
             if force.has(*INFINITE):
                 reason = f"the force along {q.name} is not finite there"
             elif q.is_positive and values[q].is_nonpositive:
                 reason = f"{q.name} is positive"
-            elif force != 0 and not sp.simplify(everywhere).free_symbols & {*system.q}:
-                raise SystemDefinitionError(
-                    f"{system.name!r} has no equilibrium: the force along {q.name} is {force} "
-                    "for all coordinates"
-                )
+            elif not is_small(force):
+                force = sp.factor_terms(reduced(force))
+                reason = f"the force along {q.name} is {force} there"
+                if all(is_small(everywhere.diff(other)) for other in system.q):
+                    raise SystemDefinitionError(
+                        f"{system.name!r} has no equilibrium: the force along {q.name} is {force} "
+                        "for all coordinates"
+                    )
             if reason:
                 raise SystemDefinitionError(
                     f"{system.name!r} has no equilibrium at {q.name} = {values[q]}: {reason}; give "

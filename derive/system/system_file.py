@@ -1,6 +1,8 @@
 """A system as a TOML file: positions as text, read and never executed."""
 
+from collections import ChainMap
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from math import isfinite
 from os import PathLike
@@ -9,6 +11,7 @@ from typing import Any
 
 import sympy as sp
 
+from derive.formulas.budget import MAX_SECOND_IN_SYSTEM, Budget
 from derive.formulas.expression import FUNCTIONS, ExpressionError, number
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import Coordinate, Parameter, PointMass, RigidBody, SystemDefinitionError
@@ -23,7 +26,21 @@ KEYS = (
 )
 #: Units of parameters that are positive by default.
 POSITIVE_UNITS = ("kg", "m")
-Scope = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Formulas:
+    """The names that formulas of a file can contain, and the budget that all of them share."""
+
+    scope: Mapping[str, Any]
+    budget: Budget
+
+    def value(self, key: str, text: str) -> sp.Expr:
+        """The value of the formula at a key; an `InputError` names the key."""
+        try:
+            return number(text, self.scope, self.budget)
+        except ExpressionError as error:
+            raise InputError(f"{key}: {error}") from error
 
 
 def read_system(file: str | PathLike[str]) -> System:
@@ -47,67 +64,74 @@ def _system(stem: str, table: Table) -> System:
     rows = table.tables("coordinates", ("unit", "meaning", "positive"))
     coordinates = [_coordinate(key, name, row) for key, row in rows.items()]
     rows = table.tables("parameters", ("value", "unit", "meaning", "positive"))
-    parameters = [_parameter(key, name, row) for key, row in rows.items()]
+    budget = Budget(MAX_SECOND_IN_SYSTEM)
+    numbers = Formulas(FUNCTIONS, budget)
+    parameters = [_parameter(key, name, row, numbers) for key, row in rows.items()]
     q = [coordinate.symbol for coordinate in coordinates]
     symbols = [*q, *(p.symbol for p in parameters), TIME, *map(velocity, q)]
     scope = FUNCTIONS | {symbol.name: symbol for symbol in symbols}
-    scope |= _definitions(table, name, scope)
-    formula, each = partial(_formula, table, scope), partial(_by_coordinate, table, scope, q)
+    formulas = Formulas(scope, budget)
+    formulas = Formulas(scope | _definitions(table, name, formulas), budget)
+    formula, each = partial(_formula, table, formulas), partial(_by_coordinate, table, formulas, q)
     return System(
         name=name,
         title=table.text("title", name),
         coordinates=coordinates,
         parameters=parameters,
-        masses=list(_masses(table, scope)),
+        masses=list(_masses(table, formulas)),
         potential=formula("potential"),
-        gravity=_list(table, scope, "gravity") or None,
+        gravity=_list(table, formulas, "gravity") or None,
         dissipation=formula("dissipation") or sp.S.Zero,
         forces=each("forces") or (),
         equilibrium=each("equilibrium"),
-        reactions=_list(table, scope, "reactions"),
+        reactions=_list(table, formulas, "reactions"),
     )
 
 
-def _definitions(table: Table, system: str, scope: Scope) -> dict[str, Any]:
+def _definitions(table: Table, system: str, formulas: Formulas) -> dict[str, Any]:
     definitions: dict[str, Any] = {}
+    known = formulas.scope
     for key, text in table.entries("definitions").items():
         check_name(key, system)
-        if key in scope:
+        if key in known:
             raise InputError(f"definitions.{key}: the name is already used; choose another")
         try:
-            definitions[key] = _value(f"definitions.{key}", text, {**scope, **definitions})
+            own = replace(formulas, scope=ChainMap(definitions, dict(known)))
+            definitions[key] = own.value(f"definitions.{key}", text)
         except InputError as error:
             raise InputError(f"{error}; a definition may use those above it") from error
     return definitions
 
 
-def _formula(table: Table, scope: Scope, key: str) -> sp.Expr | None:
-    return _value(key, table.formula(key), scope) if key in table.values else None
+def _formula(table: Table, formulas: Formulas, key: str) -> sp.Expr | None:
+    return formulas.value(key, table.formula(key)) if key in table.values else None
 
 
-def _list(table: Table, scope: Scope, key: str) -> list[sp.Expr]:
-    return [_value(key, text, scope) for text in table.formulas(key)]
+def _list(table: Table, formulas: Formulas, key: str) -> list[sp.Expr]:
+    return [formulas.value(key, text) for text in table.formulas(key)]
 
 
 def _by_coordinate(
-    table: Table, scope: Scope, q: Sequence[sp.Symbol], key: str
+    table: Table, formulas: Formulas, q: Sequence[sp.Symbol], key: str
 ) -> list[sp.Expr] | None:
     """One formula for each coordinate, by default 0; None if there are none."""
     texts = table.entries(key)
     names = [symbol.name for symbol in q]
     for other in set(texts) - set(names):
         raise InputError(f"{key}.{other[:50]}: coordinates are {', '.join(names)}")
-    return [_value(key, texts.get(name, "0"), scope) for name in names] if texts else None
+    return [formulas.value(key, texts.get(name, "0")) for name in names] if texts else None
 
 
-def _masses(table: Table, scope: Scope) -> Iterator[PointMass]:
+def _masses(table: Table, formulas: Formulas) -> Iterator[PointMass]:
     for row in table.listed("masses", ("mass", "position", "inertia", "angle")):
         mass, *position = (
-            _value(row.name, text, scope)
+            formulas.value(row.name, text)
             for text in (row.formula("mass"), *row.formulas("position"))
         )
         if "inertia" in row.values or "angle" in row.values:
-            inertia, angle = (_value(row.name, row.formula(k), scope) for k in ("inertia", "angle"))
+            inertia, angle = (
+                formulas.value(row.name, row.formula(k)) for k in ("inertia", "angle")
+            )
             yield RigidBody(mass, tuple(position), inertia, angle)
         else:
             yield PointMass(mass, tuple(position))
@@ -118,10 +142,14 @@ def _coordinate(key: str, system: str, row: Table) -> Coordinate:
     return Coordinate(symbol, row.text("unit", "rad"), row.text("meaning", key))
 
 
-def _parameter(key: str, system: str, row: Table) -> Parameter:
+def _parameter(key: str, system: str, row: Table, numbers: Formulas) -> Parameter:
     unit = row.text("unit", "1")
     try:
-        value = float(_value(row.name, row.formula("value"), FUNCTIONS))
+        value = float(numbers.value(row.name, row.formula("value")))
+    except TypeError:  # which SymPy raises for complex numbers
+        raise InputError(
+            f"{row.name}: value = {row.formula('value')[:50]!r} is not a real number"
+        ) from None
     except InputError as error:
         raise InputError(f"{error}; value is a number, its unit is given by unit = …") from error
     is_positive = row.flag("positive", default=unit in POSITIVE_UNITS)
@@ -135,10 +163,3 @@ def _parameter(key: str, system: str, row: Table) -> Parameter:
 def _symbol(name: str, system: str, *, positive: bool) -> sp.Symbol:
     check_name(name, system)  # before SymPy or a compiler uses it
     return sp.Symbol(name, positive=True) if positive else sp.Symbol(name, real=True)
-
-
-def _value(name: str, text: str, scope: Scope) -> sp.Expr:
-    try:
-        return number(text, scope)
-    except ExpressionError as error:
-        raise InputError(f"{name}: {error}") from error
