@@ -95,7 +95,7 @@ def test_an_upward_import_is_detected(tmp_path: Path, monkeypatch: pytest.Monkey
 def test_derive_imports_only_standard_library_modules_of_solvers() -> None:
     code = (
         "import sys, solvers.io.suggestion, solvers.io.atomic_write, solvers.io.toml_input,"
-        "solvers.io.text_table;"
+        "solvers.io.text_table, solvers.io.terminal;"
         "print([m for m in ('sympy', 'numpy', 'scipy', 'matplotlib') if m in sys.modules])"
     )
     run = subprocess.run(
@@ -104,7 +104,8 @@ def test_derive_imports_only_standard_library_modules_of_solvers() -> None:
     assert run.stdout == "[]\n"
     for path in (ROOT / "derive").rglob("*.py"):
         taken = {n.split(".")[2] for n in imported(path.read_text()) if is_within(n, "solvers.io")}
-        assert taken <= {"suggestion", "atomic_write", "toml_input", "text_table", "lazy"}, path
+        texts = {"suggestion", "atomic_write", "toml_input", "text_table", "terminal", "lazy"}
+        assert taken <= texts, path
 
 
 def test_generated_modules_use_only_math_from_the_standard_library_at_run_time() -> None:

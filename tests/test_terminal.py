@@ -41,6 +41,15 @@ def test_a_pipe_that_nobody_reads_is_no_error(command: str) -> None:
     assert shell(f"holonomic {command} | true") == (0, "")
 
 
+@pytest.mark.parametrize("arguments", ["--help", "--check double_pendulum"])
+def test_the_module_derive_is_a_command_like_the_others(arguments: str) -> None:
+    command = f"{sys.executable} -m derive {arguments}"
+    assert shell(f"{command} | true") == (0, "")
+    code, message = shell(f"{command} > /dev/full")
+    assert code == 4
+    assert message.endswith("No space left on device: 'standard output'\n")
+
+
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("command", ["--help", "--version", "systems chain_2"])
 def test_output_that_cannot_be_written_is_reported(command: str, unbuffered: str) -> None:

@@ -15,6 +15,7 @@ from derive.mechanics.derivation import Derivation
 from derive.system.catalogue import UnknownSystemError, load
 from derive.system.parts import SystemDefinitionError
 from derive.system.shipped import names
+from solvers.io.terminal import standard_streams
 
 PACKAGE = '''"""Equations of motion as code, one module a system; see ``holonomic derive``."""
 
@@ -29,7 +30,14 @@ def main(argv: Sequence[str]) -> int:
     """Run ``python -m derive`` with command-line arguments."""
     parser = ArgumentParser("holonomic derive", formatter_class=RawDescriptionHelpFormatter)
     add_arguments(parser)
-    return run(parser.parse_args(argv))
+    try:
+        with standard_streams():
+            return run(parser.parse_args(argv))
+    except BrokenPipeError:  # the reader needs no more
+        return 0
+    except OSError as error:
+        print(f"holonomic derive: {error}", file=sys.stderr)
+        return 4
 
 
 def run(arguments: Namespace, others: Iterable[Tree] = ()) -> int:
