@@ -21,7 +21,7 @@ SQUARES: tuple[Square, ...] = (lambda a: 1 - 2 * sp.sin(a) ** 2, lambda a: 2 * s
 
 def reduced(expression: sp.Expr) -> sp.Expr:
     """The form of `expression` with the fewest operations."""
-    if not expression.has(sp.sin, sp.cos) or not is_expandable(expression):
+    if not expression.has(sp.sin, sp.cos) or not is_expandable(expression, waves=2):
         return expression
     waves = harmonics(expression)
     candidates = [waves, expression]

@@ -107,7 +107,11 @@ def _mending(
             checked += 1
         if checked == MAX_CHECKED:
             break
-    if searches and correct is not None and all(map(is_expandable, (value, correct))):
+    if (
+        searches
+        and correct is not None
+        and all(is_expandable(one, waves=2) for one in (value, correct))
+    ):
         yield from _all_terms(searches[0], text, names, model, correct)
 
 

@@ -35,7 +35,7 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
     is_linear = all(model.context.is_zero(c.diff(a)) for c in coefficients for a in system.qddot)
     if not model.motions.is_small(value):
         witness = model.motions.witness(value, sp.S.Zero)
-        if is_linear and is_expandable(value):
+        if is_linear and is_expandable(value, waves=2):
             return verdict(verdict="wrong", witness=witness)
         reason = "has too many terms to compare them" if is_linear else NOT_LINEAR
         return verdict(verdict="wrong", witness=witness, note=f"it {reason}")
