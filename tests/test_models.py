@@ -26,7 +26,7 @@ from solvers.scenes.models.extended_precision import by_series
 from solvers.scenes.models.full_equations import estimated_error
 from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
 from solvers.scenes.models.light_masses import PendulumAndLightMasses
-from solvers.scenes.models.method_choice import RECORD, MethodChoice, cheapest
+from solvers.scenes.models.method_choice import RECORD, MethodChoice, cheapest, usual_form
 from solvers.scenes.models.motion import Motion, OutsideDomainError
 from solvers.scenes.models.normal_modes import NormalModes
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
@@ -488,15 +488,19 @@ def test_a_motion_that_takes_too_long_is_refused_at_once() -> None:
         selected(Scene(sp, sp.DEFAULTS, (1.0, 1.0), 1e9, model="full"))
 
 
+@pytest.mark.parametrize(("error", "reason"), [
+    (np.linalg.LinAlgError("DLASCLS"), "its matrices are singular or not finite"),
+    (FloatingPointError("overflow"), "its numbers are not finite: overflow"),
+])  # fmt: skip
 def test_a_model_that_fails_numerically_is_declined_and_the_next_is_tried(
-    monkeypatch: pytest.MonkeyPatch,
+    error: Exception, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fails(_: Motion) -> NormalModes:
-        raise np.linalg.LinAlgError("DLASCLS parameter number 4 had an illegal value")
+        raise error
 
     monkeypatch.setattr(NormalModes, "of", fails)
     selection = selected(Scene(sp, sp.DEFAULTS, (1.0, 0.0), 0.1))
-    assert selection.declined["normal modes"] == "its matrices are singular or not finite"
+    assert selection.declined["normal modes"] == reason
     assert selection.model.name == "pendulum"
 
 
@@ -555,6 +559,16 @@ def test_the_cheapest_method_is_the_recorded_one() -> None:
     assert mode_spread(ep, stiff.params) == pytest.approx(319, rel=0.01)
     assert cheapest(ep, stiff.params, 1e-2).method.startswith(("gauss", "radau"))
     assert cheapest(ep, ep.DEFAULTS, 1e-2).method not in ("gauss3", "radau3")
+
+
+@pytest.mark.parametrize(("method", "form"), [
+    ("verner98", "rational"), ("taylor", "rational"), ("gauss2", "lagrangian"),
+    ("DOP853", "lagrangian"),
+])  # fmt: skip
+def test_methods_that_need_a_jacobian_and_those_of_scipy_have_lagrange_s_form(
+    method: str, form: str
+) -> None:
+    assert usual_form(dp, method) == form
 
 
 def test_an_orbit_is_periodic_apart_from_its_rotation() -> None:

@@ -386,6 +386,10 @@ def test_stability_regions_show_the_eigenvalues_at_the_longest_stable_step() -> 
         assert np.allclose(points(along), h * np.c_[eigenvalues.real, eigenvalues.imag])
         assert np.allclose(points(modes), h * np.c_[[0] * 6, [1, 2, 4, -1, -2, -4]])
         assert (panel.get_xlim(), panel.get_ylim()) == ((-7, 4), (-7, 7))
+        boundary = next(c for c in panel.collections if isinstance(c, ContourSet) and not c.filled)
+        vertices = np.concatenate([path.vertices for path in boundary.get_paths()])
+        function = steps[0 if panel is explicit else 2].function
+        assert np.abs(np.abs(function(vertices @ [1, 1j])) - 1).max() < 0.02
     lines = {"R": steps[0].function}
     for panel in (explicit, implicit, *boundaries(lines).axes):
         assert panel.get_aspect() == 1

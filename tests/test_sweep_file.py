@@ -49,6 +49,8 @@ from solvers.sweeps.reading import find
     (("count = 120", "count = 1000000000000"), "must be a whole number from 1 to 10000000"),
     (('kind = "final"', 'kind = "samples"\ncount = 1000000000'), "from 1 to 1000000"),
     (("[axes]", 'method = "rk44"\n[axes]'), "no method is called 'rk44'"),
+    (('kind = "final"\nof = ["theta1", "theta2"]', 'kind = "first"\nof = { theta3 = 1 }'),
+     "maps.end.of has no key 'theta3'"),
     (("[axes]", "random = { count = 5 }\n[axes]"), "axes.theta1 has no key 'count'"),
     (("[axes]", "[initial]\ntheta1 = 1\n[axes]"), "theta1 varies and has the value 1"),
     (("[axes]", "[parameters]\nl9 = 1\n[axes]"), "no key 'l9'; known are m1"),

@@ -117,6 +117,11 @@ def test_a_chunk_is_a_second_of_evaluations_whatever_share_is_integrated(
     assert worker.chunk_length(definition, evaluations) * seconds == pytest.approx(1, rel=0.001)
 
 
+def test_a_chunk_of_long_motions_is_one_motion() -> None:
+    definition = Sweep(sp, Grid({"theta": [0.1, 0.2]}), {"end": Final(("theta",))}, 1.0)
+    assert worker.chunk_length(definition, 1e12) == 1
+
+
 def test_axes_are_described_by_all_that_determines_them() -> None:
     assert Random({"theta1": (-1, 2)}, 10, seed=5).as_json == {
         "kind": "random",
