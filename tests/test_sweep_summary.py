@@ -1,5 +1,6 @@
 """A sweep reports the ranges of its maps, and by how much tighter tolerances change them."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -133,3 +134,12 @@ def test_axes_are_described_by_all_that_determines_them() -> None:
     (other,) = Grid({"theta1": [0.1, 0.3, 0.4]}).as_json["axes"]
     assert (axis["name"], axis["count"], axis["first"], axis["last"]) == ("theta1", 3, 0.1, 0.4)
     assert axis["sha256"] != other["sha256"]
+
+
+def test_the_order_of_fixed_values_does_not_matter() -> None:
+    axes, maps = Grid({"theta1": [0.1]}), {"end": Final(("theta1",))}
+    one, other = (
+        json.dumps(Sweep(dp, axes, maps, 1.0, values).as_json)
+        for values in ({"theta2": 0.2, "m1": 2.0}, {"m1": 2.0, "theta2": 0.2})
+    )
+    assert one == other
