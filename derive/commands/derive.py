@@ -3,7 +3,6 @@
 import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Iterable, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from shlex import quote
 
@@ -52,7 +51,7 @@ def run(arguments: Namespace, others: Iterable[Tree] = ()) -> int:
         raise
     except OSError as error:
         print(
-            f"holonomic derive: cannot write {error.filename}: {error.strerror}; "
+            f"holonomic derive: cannot write {error.filename or 'the messages'}: {error.strerror}; "
             "name a folder that can be written to with --output",
             file=sys.stderr,
         )
@@ -89,10 +88,8 @@ def planned(systems: list[str], output: Path | None) -> Tree:
 
 
 def _package_folder() -> Path:
-    spec = find_spec("generated")
-    if spec is None or not spec.submodule_search_locations:
-        return Path(__file__).parent.parent / "generated"
-    return Path(spec.submodule_search_locations[0])
+    # beside `derive`, whether or not it can be imported
+    return Path(__file__).parents[2] / "generated"
 
 
 def _check(tree: Tree, arguments: Namespace) -> int:

@@ -2,6 +2,7 @@
 
 import keyword
 import re
+import sys
 from collections import Counter
 from collections.abc import Iterable
 
@@ -39,6 +40,11 @@ MACROS = re.compile(
     r"|(HUGE_VAL|SNAN)\w*"
 )
 
+#: Modules that a generated module would hide: Python's, and those of this project.
+MODULES = {*sys.stdlib_module_names, "numpy", "scipy", "sympy", "matplotlib", "mpmath"} | {
+    *"derive generated holonomic solvers".split()
+}
+
 #: Words that a C header appends to the name of its system.
 HELPERS = ("real", "number", "splat", "block", "clear", "factorise", "solve", *FUNCTIONS)
 #: Macros that it appends to the same in capitals.
@@ -54,6 +60,15 @@ def check_name(name: str, system: str) -> None:
         raise SystemDefinitionError(
             f"{name[:50]!r} cannot be a name in system {system[:50]!r}: use a letter and up to 39 "
             "letters, digits or underscores, and no word reserved by Python, C or generated code"
+        )
+
+
+def check_module_name(name: str) -> None:
+    """Raise `SystemDefinitionError` if a generated module of this name would hide another one."""
+    if name in MODULES:
+        raise SystemDefinitionError(
+            f"{name!r} cannot be the name of a system: its module would hide the module {name!r} "
+            "of Python or of this project; choose another name"
         )
 
 

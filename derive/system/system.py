@@ -7,7 +7,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.system.checks import check
-from derive.system.naming import check_name, check_unique
+from derive.system.naming import check_module_name, check_name, check_unique
 from derive.system.parts import (
     Coordinate,
     Parameter,
@@ -187,6 +187,7 @@ class System:
         )
 
     def _check_names(self) -> None:
+        check_module_name(self.name)
         declared = [s.name for s in (*self.q, *self.params)]
         for name in [self.name, *declared]:
             check_name(name, self.name)

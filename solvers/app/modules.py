@@ -53,16 +53,30 @@ def load(name: str) -> GeneratedModule:
     >>> chain.COORDINATES
     ('theta1', 'theta2', 'theta3', 'theta4')
     """
-    import generated
-
-    if name in {module.name for module in iter_modules(generated.__path__)}:
-        return import_module(f"generated.{name}")
+    if module := _shipped(name):
+        return module
     from derive.system import catalogue
 
     try:
         return build(catalogue.load(name))
     except catalogue.UnknownSystemError as error:
         raise LookupError(str(error)) from error
+
+
+def _shipped(name: str) -> GeneratedModule | None:
+    """The module of this name in `generated`; None if it is not there."""
+    try:
+        package = import_module("generated")
+        if name in {module.name for module in iter_modules(package.__path__)}:
+            return import_module(f"generated.{name}")
+    except Exception as error:  # whatever a damaged file raises
+        if isinstance(error, ModuleNotFoundError) and error.name == "generated":
+            return None
+        raise OSError(
+            f"the package generated is damaged: {type(error).__name__}: {error}; mend it with: "
+            "holonomic derive"
+        ) from error
+    return None
 
 
 def build(system: "System") -> GeneratedModule:

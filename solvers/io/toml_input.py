@@ -1,8 +1,10 @@
 """TOML files, read strictly: a wrong entry is refused with its name, its value and the choices."""
 
+import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any, TypeVar
 
 from solvers.io.quantity import QuantityError, quantity
@@ -10,6 +12,11 @@ from solvers.io.suggestion import did_you_mean, shortened
 
 #: Bytes of the largest input file, and characters of the longest text.
 MAX_BYTES, MAX_TEXT = 500_000, 2000
+#: Dots of the longest key, whose reading time grows with the square of their number.
+MAX_DOTS = 100
+LONG_KEY = re.compile(
+    rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')\s*+\.\s*+){{{MAX_DOTS + 1}}}"""
+)
 #: How messages about TOML end for files of quantities.
 QUANTITY_HINT = "quote numbers with units, and use a point as decimal separator"
 
@@ -41,14 +48,25 @@ def path(kind: str, name: str, folder: Path) -> Path:
 
 def read_table(path: Path, hint: str) -> dict[str, Any]:
     """The table of a TOML file; `hint` ends the message about a file that is not TOML."""
-    if path.exists() and not path.is_file():
-        raise InputError(f"{path} is no file")
-    if path.stat().st_size > MAX_BYTES:
-        raise InputError(f"{path} has more than {MAX_BYTES} bytes")
+    content = _content(path)
     try:
-        return tomllib.loads(path.read_bytes().decode())
+        text = content.decode("utf-8-sig")  # without a byte-order mark, which editors may write
+        if LONG_KEY.search(text):
+            raise ValueError(f"a key has more than {MAX_DOTS} dots")
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # also a number of thousands of digits
         raise InputError(f"{path} is not valid TOML: {error}; {hint}") from error
+
+
+def _content(path: Path) -> bytes:
+    """The content of a regular file of up to `MAX_BYTES` bytes."""
+    if not S_ISREG(path.stat().st_mode):  # a pipe or device may never end
+        raise InputError(f"{path} is no file")
+    with open(path, "rb") as file:
+        content = file.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise InputError(f"{path} has more than {MAX_BYTES} bytes")
+    return content
 
 
 def read(path: Path, interpret: Callable[[Mapping[str, Any]], T]) -> T:
