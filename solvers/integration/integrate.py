@@ -8,6 +8,7 @@ from warnings import warn
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
 from solvers.integration import compiled_loop, python_loop, validation
@@ -104,6 +105,8 @@ def integrate(
         When errors grow to the size of the motion before its end.
     solvers.integration.energy_change.EnergyWarning
         When a motion that conserves its energy ends with another one.
+    solvers.equations.mass_matrix.MassMatrixWarning
+        When the mass matrix is nearly singular at the start, or where all coordinates are equal.
     UserWarning
         When no compiler could build the loop, and it runs in Python.
 
@@ -117,6 +120,7 @@ def integrate(
     """
     options = Options(method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated)
     problem = validation.problem(module, t_span, y0, params, options)
+    check_condition(module, problem.form.params, problem.start.tolist(), problem.span[0])
     problem, program = compiled_loop.select(problem, lanes=False)
     problem = replace(problem, max_steps=limit_steps(problem))
     outcome = Outcome.at_start(problem)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive
 from solvers.integration import validation
@@ -69,7 +70,7 @@ class Scene:
 
     Warns
     -----
-    solvers.scenes.checks.MassMatrixWarning
+    solvers.equations.mass_matrix.MassMatrixWarning
         When the mass matrix is nearly singular.
 
     Examples
@@ -117,6 +118,7 @@ class Scene:
             positive(name, getattr(self, name))
         checks.check_accuracy(self.accuracy)
         checks.check_masses(self.module, self.params, self.y0)
+        check_condition(self.module, self.params, self.y0)
         checks.check_method(self.module, self.method, self.form, self.step, self.duration)
         if self.model is not None:
             from solvers.scenes.models import catalogue

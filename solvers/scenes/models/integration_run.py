@@ -1,11 +1,13 @@
 """One integration of a motion: method, form, and tolerance, step size or digits."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from solvers.equations.mass_matrix import MassMatrixWarning
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
@@ -85,7 +87,8 @@ class IntegrationRun:
         """Times and states: at `t`, or at the end of every step."""
         motion, method = self.motion, self.method_choice.method
         arguments = motion.module, (0.0, motion.duration), motion.y0, motion.params
-        with ignore_predictability():
+        with ignore_predictability(), warnings.catch_warnings():
+            warnings.simplefilter("ignore", MassMatrixWarning)  # the scene gave it
             solution = integrate(*arguments, t_eval=t, **self.options)
         if solution.status is Status.STEP_LIMIT:
             raise TooLongError(

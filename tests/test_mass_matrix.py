@@ -1,0 +1,66 @@
+"""Nearly singular mass matrices are reported with their coordinate, singular ones are refused."""
+
+from math import cos, sin
+from typing import Any
+
+import pytest
+from handwritten import handwritten
+
+import generated.double_pendulum as dp
+from solvers.equations.mass_matrix import MassMatrixWarning, check_condition
+from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
+from solvers.integration.solution import Status
+
+#: Rods that are aligned, nearly so, and at right angles: the motion aligns them.
+STARTS = [(0.1, 0.1, 0.0, 0.0), (0.1, 0.2, 0.0, 0.0), (0.0, 1.57, 0.0, 0.0)]
+
+
+@pytest.mark.parametrize("start", STARTS)
+@pytest.mark.parametrize(("m1", "m2"), [(1e-13, 1.0), (1.0, 1e13), (2e-7, 1e6)])
+def test_a_nearly_singular_mass_matrix_is_reported_at_the_start(
+    start: tuple[float, ...], m1: float, m2: float
+) -> None:
+    message = r"mass matrix has condition [1-9]e\+1[34]: theta\d has hardly any inertia of its own"
+    with ignore_predictability(), pytest.warns(MassMatrixWarning, match=message) as given:
+        integrate(dp, (0, 1e-6), start, {"m1": m1, "m2": m2})
+    assert given[0].filename == __file__
+
+
+@pytest.mark.parametrize("start", STARTS)
+@pytest.mark.parametrize("masses", [{"m1": 1e-16}, {"m2": 1e17}, {"m1": 0.0}])
+def test_a_singular_mass_matrix_is_refused(
+    start: tuple[float, ...], masses: dict[str, float]
+) -> None:
+    with pytest.raises(ValueError, match=r"theta\d has hardly any inertia .*; leave that coord"):
+        integrate(dp, (0, 1), start, masses)
+
+
+@pytest.mark.parametrize("masses", [{"m1": 1e-11}, {"m2": 1e-16}, {"m2": 1e11}, {"l2": 1e-16}])
+def test_other_ratios_are_permitted_without_a_warning(masses: dict[str, float]) -> None:
+    with ignore_predictability():
+        assert integrate(dp, (0, 1e-9), STARTS[1], masses).status is Status.FINISHED
+
+
+def top(t: float, y: Any, params: Any) -> tuple[tuple[float, ...], ...]:
+    """The mass matrix of a symmetric top with the angles psi, theta and phi."""
+    (_, theta, *_), (A, C) = y, params
+    upright = C * cos(theta)
+    across = A * sin(theta) ** 2 + C * cos(theta) ** 2
+    return (across, 0.0, upright), (0.0, A, 0.0), (upright, 0.0, C)
+
+
+def test_a_state_that_is_singular_whatever_the_masses_counts_at_the_start_only() -> None:
+    module = handwritten(
+        "top",
+        ("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot"),
+        ("A", "C"),
+        COORDINATES=("psi", "theta", "phi"),
+        OPERATIONS={"rhs": (0, 0), "mass_matrix": (0, 0)},
+        rhs=lambda t, y, params: (*y[3:], 0.0, 0.0, 0.0),
+        mass_matrix=top,
+    )
+    tilted = (0.0, 0.5, 0.0, 1.0, 0.0, 1.0)  # the pole is where all three angles are 0
+    assert integrate(module, (0, 1), tilted, (1.0, 2.0)).status is Status.FINISHED
+    with pytest.raises(ValueError, match=r"(psi|phi) has hardly any inertia of its own"):
+        check_condition(module, (1.0, 2.0), (0.0,) * 6)
