@@ -16,6 +16,7 @@ from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Options
 from solvers.integration.solution import Interrupted
+from solvers.integration.step_stability import StepWarning, mark_unstable
 
 #: Most threads of one ensemble.
 MOST_WORKERS = 1024
@@ -81,6 +82,8 @@ def ensemble(
 
     Warns
     -----
+    solvers.integration.step_stability.StepWarning
+        When fixed steps are too long for some motions, whose status is then ``UNSTABLE``.
     UserWarning
         When the motions are integrated in Python, one after another; it states the reason.
 
@@ -121,6 +124,8 @@ def ensemble(
             run.run_one_by_one()
     except KeyboardInterrupt as interruption:
         raise Interrupted(result) from interruption
+    if unstable := mark_unstable(problem, states, constants, result):
+        warn(unstable, StepWarning, stacklevel=2)
     good = np.flatnonzero(result.success)
     own = constants[good] if len(constants) > 1 else constants
     ends = result.t[good], result.y.T[good]

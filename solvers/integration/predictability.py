@@ -10,12 +10,12 @@ from math import inf
 import numpy as np
 
 from solvers.equations.module import has_function
-from solvers.integration import compiled_loop, python_loop
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.compiled_loop import loop, obstacle
-from solvers.integration.problem import Options, Outcome, Problem
+from solvers.integration.problem import Options, Problem
+from solvers.integration.rerun import rerun
 from solvers.integration.solution import Array, Status
 from solvers.runge_kutta.catalogue import load
 
@@ -140,11 +140,7 @@ def _error_at(problem: Problem, t: float) -> float:
         finer = replace(run, h=run.h / PARTS)
     ends = []
     for one in (run, replace(finer, max_steps=PARTS * run.max_steps)):
-        outcome = Outcome.at_start(one)
-        if obstacle(one) or one.backend == "python":
-            python_loop.run(one, outcome)
-        else:
-            compiled_loop.run(one, outcome, loop(one))
+        outcome = rerun(one)
         if outcome.status is not Status.FINISHED:
             return 1.0
         ends.append(outcome.end[1][: len(problem.form.module.STATE)])

@@ -17,6 +17,7 @@ from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.problem import SHORTEST, Options, Problem
 from solvers.integration.solution import Status
+from solvers.integration.step_stability import diagnosis
 
 Numbers: TypeAlias = Sequence[float] | Mapping[str, float]
 #: The result of the C function for a span or state that is not finite.
@@ -26,8 +27,8 @@ NOT_NUMBERS = -1
 class NotFinishedError(ArithmeticError):
     """A motion did not reach its end: `status` is the reason, `t` and `y` time and state there."""
 
-    def __init__(self, status: Status, t: float, y: tuple[float, ...]) -> None:
-        super().__init__(f"{status.value} (t = {t}, y = {y})")
+    def __init__(self, status: Status, t: float, y: tuple[float, ...], detail: str = "") -> None:
+        super().__init__(f"{status.value} (t = {t}, y = {y}{detail and f'; {detail}'})")
         self.status, self.t, self.y = status, t, y
 
 
@@ -165,9 +166,22 @@ class Prepared:
         if status is Status.EVENT:  # the only events are limits of coordinates
             status = Status.OUTSIDE_DOMAIN
         if status is not Status.FINISHED:
-            assert status is not None
-            raise NotFinishedError(status, float(self._batch.motions["t"][0]), y)
+            raise self._failure(status, start, end, y)
         return y
+
+    def _failure(
+        self, status: Status | None, start: float, end: float, y: tuple[float, ...]
+    ) -> NotFinishedError:
+        assert status is not None
+        detail = diagnosis(self._problem_of(start, end)) if status is Status.NOT_FINITE else ""
+        if detail:
+            status = Status.UNSTABLE
+        return NotFinishedError(status, float(self._batch.motions["t"][0]), y, detail)
+
+    def _problem_of(self, start: float, end: float) -> Problem:
+        """The problem of the last motion."""
+        problem = self._problem.with_params(list(self._params))
+        return replace(problem, span=(start, end), start=np.array(self._start))
 
     def _set_params(self, params: Numbers) -> None:
         try:
@@ -198,12 +212,7 @@ class Prepared:
         t, end = (float(self._batch.motions[name][0]) for name in ("t", "t_end"))
         if t != end:
             return []
-        begin = self._span_start
-        problem = replace(
-            self._problem.with_params(list(self._params)),
-            span=(begin, end),
-            start=np.array(self._start),
-        )
+        problem = self._problem_of(self._span_start, end)
         return [str(warning) for warning in accuracy_warnings(problem, end, np.array(self._end))]
 
     @property
