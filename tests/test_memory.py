@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 import generated.double_pendulum as dp
+from solvers.equations.forms import Form
 from solvers.integration import memory
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.solution import Status
 
 START, STARTS = (0.1, 0.2, 0.0, 0.0), {"theta1": [0.1, 0.2, 0.3], "theta2": 0.1}
@@ -69,3 +71,23 @@ def test_many_times_and_occurrences_are_collected_at_once(monkeypatch: pytest.Mo
     )
     one = integrate(dp, (0, 9), {"theta1": 0.2, "theta2": 0.1}, {"m2": 2.0}, t_eval=times)
     assert motions.samples[:, 1] == pytest.approx(one.y, abs=1e-9)
+
+
+@pytest.mark.parametrize("span", [(0.0, 3.0), (3.0, 0.0)])
+@pytest.mark.parametrize("form", ["lagrangian", "hamiltonian", "rational"])
+def test_scipy_methods_compute_many_states_of_a_step_at_once(
+    form: str, span: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    options: dict[str, Any] = {"method": "DOP853", "form": form}
+    times, start = np.linspace(*span, 4_001), (0.5, 4.0, 0.0, 9.0)
+    with ignore_predictability():
+        few = integrate(dp, span, start, dp.DEFAULTS, t_eval=times[::100], **options)
+    calls, ordinary = [], Form.to_ordinary
+    monkeypatch.setattr(Form, "to_ordinary", lambda *given: calls.append(1) or ordinary(*given))
+    with ignore_predictability():
+        many = integrate(dp, span, start, dp.DEFAULTS, t_eval=times, **options)
+    assert len(calls) <= 3 * many.steps
+    assert np.array_equal(many.t, times)
+    assert many.y[:, ::100] == pytest.approx(few.y, rel=1e-11, abs=1e-11)
+    assert np.abs(np.diff(many.y[:2])).max() < 0.1  # no turn is lost
+    assert many.y[:, -1].tolist() == few.end[1].tolist()

@@ -87,15 +87,18 @@ class Form:
             z[i : i + 2] /= np.hypot(z[i], z[i + 1])
         return z
 
-    def to_ordinary(self, t: float, z: Array, before: Array, elapsed: float) -> Array:
-        """The ordinary state of `z` at time `t`.
+    def to_ordinary(
+        self, t: float | Array, z: Array, before: Array, elapsed: float | Array
+    ) -> Array:
+        """The ordinary state of `z` at time `t`, or states in columns at several times.
 
         Whole turns of angles known by sine and cosine are counted from the ordinary state
         `before`, `elapsed` seconds ago (negative backwards), with the mean of both velocities.
         """
         if self.name == "hamiltonian":
-            return np.array(self.module.lagrangian_state(t, z, self.params))
-        y = np.empty_like(before)
+            many = "lagrangian_state_many" if z.ndim > 1 else "lagrangian_state"
+            return np.array(function(self.module, many)(t, z, self.params))
+        y = np.empty((len(before), *z.shape[1:]))
         for k, i in self.shared_columns:
             y[k] = z[i]
         n = len(self.module.COORDINATES)

@@ -45,6 +45,10 @@ class Accepted:
         y = self.attempts.stepper.step(start.t, start.y, t - start.t, start.derivative)[0]
         return self.attempts.normalise(y)
 
+    def states(self, times: Array) -> Array:
+        """The states at several times, in columns."""
+        return np.stack([self.state(float(t)) for t in times], axis=1)
+
 
 @dataclass(frozen=True)
 class Rejected:
@@ -145,7 +149,7 @@ def _step(
     h = abs(t - start.t)
     trial = attempts.attempt(start, t, h, is_last=is_last)
     try:
-        return trial, isinstance(trial, Accepted) and recorder.advance(t, trial.state)
+        return trial, isinstance(trial, Accepted) and recorder.advance(t, trial.state, trial.states)
     except FAILURES as failure:
         return Rejected(h / 4, failure), False
 

@@ -1,7 +1,6 @@
 """Record the samples and events of the steps of an integration."""
 
 from collections.abc import Callable
-from itertools import takewhile
 
 import numpy as np
 from scipy.optimize import brentq
@@ -20,20 +19,27 @@ class Recorder:
         self.form, self.samples, self.events = problem.form, problem.samples, problem.all_events
         self.t, self.y = problem.span[0], problem.start
         self._outcome, self._sampled = outcome, 0
+        self._direction = float(np.sign(problem.span[1] - problem.span[0]))
+        self._ascending = None if self.samples is None else self._direction * self.samples
         if self.samples is None or (len(self.samples) and self.samples[0] == self.t):
-            self._sample(self.t, self.y)
-            self._sampled = 1
+            self._sample(np.array([self.t]), self.y[:, np.newaxis])
         self._values = [event(self.t, self.y.copy()) for event in self.events]
 
-    def _sample(self, t: float, y: Array) -> None:
-        self._outcome.t.append(np.array([t]))
-        self._outcome.y.append(y.copy()[np.newaxis])
+    def _sample(self, t: Array, y: Array) -> None:
+        self._outcome.t.append(t)
+        self._outcome.y.append(y.T.copy())
+        self._sampled += len(t)
 
-    def advance(self, end: float, state: Callable[[float], Array]) -> bool:
+    def advance(
+        self,
+        end: float,
+        state: Callable[[float], Array],
+        states: Callable[[Array], Array],
+    ) -> bool:
         """Record the step that ends at `end`; return whether an event ends the run.
 
-        `state` gives the state at a time within the step, in the form of the problem; where it
-        raises `ArithmeticError`, nothing is recorded.
+        `state` gives the state at a time within the step, in the form of the problem, `states`
+        those at several times in columns; where they raise `ArithmeticError`, nothing is recorded.
         """
         t = self.t
 
@@ -46,24 +52,25 @@ class Recorder:
         roots = self._roots(t, end, values, ordinary)
         stops = bool(roots) and _is_terminal(self.events[roots[-1][0]])
         until = roots[-1][1] if stops else end
-        times = [until] if self.samples is None else self._due(t, until)
-        samples = [(time, ordinary(time)) for time in times]
-        occurrences = [(k, root, ordinary(root)) for k, root in roots]
-        y = ordinary(until)
-        for sample in samples:
-            self._sample(*sample)
+        y, occurrences = ordinary(until), [(k, root, ordinary(root)) for k, root in roots]
+        times, sampled = self._due(until), y[:, np.newaxis]
+        if self.samples is not None and len(times):
+            sampled = self.form.to_ordinary(times, states(times), self.y, times - t)
+        if len(times):
+            self._sample(times, sampled)
         for k, root, y_event in occurrences:
             self._outcome.t_events[k].append(root)
             self._outcome.y_events[k].append(y_event)
-        self._values, self._sampled = values, self._sampled + len(times)
+        self._values = values
         self.t, self.y = self._outcome.end = until, y
         return stops
 
-    def _due(self, t: float, until: float) -> list[float]:
-        """The sample times up to `until` that are not yet recorded."""
-        assert self.samples is not None
-        waiting = self.samples[self._sampled :]
-        return [float(s) for s in takewhile(lambda s: abs(s - t) <= abs(until - t), waiting)]
+    def _due(self, until: float) -> Array:
+        """The times up to `until` to record that are not recorded yet."""
+        if self.samples is None or self._ascending is None:
+            return np.array([until])
+        due = int(np.searchsorted(self._ascending, self._direction * until, "right"))
+        return self.samples[self._sampled : due]
 
     def _roots(
         self, t: float, end: float, values: list[float], ordinary: Callable[[float], Array]

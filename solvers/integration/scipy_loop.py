@@ -32,7 +32,7 @@ def _run(problem: Problem, outcome: Outcome, recorder: Recorder) -> Status:
         if solver.status == "failed":
             return Status.STEP_TOO_SMALL
         outcome.steps += 1
-        if recorder.advance(solver.t, _state_within(problem, solver)):
+        if recorder.advance(solver.t, *_states_within(problem, solver)):
             return Status.EVENT
     return Status.FINISHED
 
@@ -55,14 +55,22 @@ def _solver(problem: Problem, outcome: Outcome, y0: Array) -> integrate.OdeSolve
     return getattr(integrate, method)(rhs, begin, z, end, **options)
 
 
-def _state_within(problem: Problem, solver: integrate.OdeSolver) -> Callable[[float], Array]:
+def _states_within(
+    problem: Problem, solver: integrate.OdeSolver
+) -> tuple[Callable[[float], Array], Callable[[Array], Array]]:
+    """The state at a time within the last step, and those at several times."""
     dense_output = cache(solver.dense_output)  # it may cost evaluations
 
     def state(time: float) -> Array:
         z = solver.y if time == solver.t else dense_output()(time)
         return problem.form.normalised(z)
 
-    return state
+    def states(times: Array) -> Array:
+        z = dense_output()(times)
+        z[:, times == solver.t] = solver.y[:, np.newaxis]
+        return problem.form.normalised(z)
+
+    return state, states
 
 
 def _finite(what: str, function: Rhs, t: float, z: Array, shape: tuple[int, ...]) -> Array:
