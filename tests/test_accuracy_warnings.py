@@ -61,7 +61,7 @@ def test_an_unstable_step_states_the_last_good_time_and_the_longest_step(
     assert broken.status is Status.UNSTABLE
     with np.errstate(all="ignore"):
         energies = dp.energy_many(0.0, broken.y, dp.DEFAULTS)
-    times = re.search(r"good up to t = (\S+); .* at most (\S+)\)", broken.message)
+    times = re.search(r"good up to t = (\S+); .* at most ([\d.]+)", broken.message)
     assert times
     good, longest = map(float, times.groups())
     assert longest == pytest.approx(largest, rel=0.5)
