@@ -9,6 +9,7 @@ from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.module import has_function
 from solvers.integration.energy_change import changed_energy, conserves_energy
 from solvers.integration.ensemble_solution import Ensemble
+from solvers.integration.predictability import PredictabilityWarning
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.rerun import rerun
 from solvers.integration.solution import Array, Status
@@ -25,7 +26,7 @@ EXAMINED = 1001
 ENDS = (Status.FINISHED, Status.EVENT, Status.STEP_LIMIT)
 
 
-class StepWarning(UserWarning):
+class StepWarning(PredictabilityWarning):
     """A fixed step size is too long for some motions of an ensemble."""
 
 
