@@ -1,9 +1,9 @@
 """The parts of a system: coordinates, parameters, point masses and rigid bodies."""
 
+import sys
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from math import isfinite
 from numbers import Real
 from typing import Any, Self
 
@@ -149,7 +149,8 @@ class Parameter:
         check_text(f"the unit of {self.symbol}", self.unit)
         check_text(f"the meaning of {self.symbol}", self.meaning)
         number, positive = self.default, self.symbol.is_positive
-        is_real = isinstance(number, Real) and not isinstance(number, bool) and isfinite(number)
+        is_real = isinstance(number, Real) and not isinstance(number, bool)
+        is_real = is_real and abs(number) <= sys.float_info.max  # which NaN is not
         if not is_real or (positive and number <= 0):
             raise SystemDefinitionError(
                 f"the default of {self.symbol} is {shortened(number)}: give a "
