@@ -39,7 +39,7 @@ def command(*arguments: str | Path) -> Ended:
     assert not ended.traceback, ended.traceback
     assert "Traceback" not in ended.err, ended.err
     assert ended.value in (0, 1, 2, 3, 4), ended
-    assert ended.value in (0, 1) or ended.err.strip(), "a failure without a message"
+    assert ended.value in (0, 1) or ended.err.strip() or ended.out.strip(), "no message"
     return ended
 
 
