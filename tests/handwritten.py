@@ -11,6 +11,7 @@ def handwritten(
     contract = {
         "__file__": None,
         "SYSTEM": name,
+        "DIGEST": "",
         "COORDINATES": (),
         "STATE": state,
         "FORMS": ("lagrangian",),

@@ -8,11 +8,14 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from runpy import run_path
+from types import ModuleType
 
 import pytest
 
 from derive.codegen.tree import Tree
 from derive.commands.derive import main, planned
+from solvers import integrate
 
 ROOT = Path(__file__).parent.parent
 
@@ -44,6 +47,28 @@ def test_the_bytes_do_not_depend_on_the_hash_seed(seed: str, tmp_path: Path) -> 
     assert derive("--output", str(tmp_path), hash_seed=seed).returncode == 0
     for path in tmp_path.iterdir():
         assert path.read_bytes() == (ROOT / "generated" / path.name).read_bytes()
+
+
+def test_a_header_and_a_module_of_different_versions_are_refused_and_mended(tmp_path: Path) -> None:
+    arguments = ["single_pendulum", "--output", str(tmp_path)]
+    path, header = tmp_path / "single_pendulum.py", tmp_path / "single_pendulum.h"
+
+    def final_state() -> list[float]:
+        module = ModuleType("single_pendulum")
+        vars(module).update(run_path(str(path)), __file__=str(path))
+        motion = integrate(module, (0, 1), (1, 0), module.DEFAULTS, backend="compiled")
+        return list(motion.y[:, -1])
+
+    assert main(arguments) == 0
+    text, end = header.read_text(), final_state()
+    # killed between the two renames: only one file is new
+    digest = run_path(str(path))["DIGEST"]
+    header.write_text(text.replace("l*", "2*l*").replace(digest, "0123456789abcdef"))
+    with pytest.raises(ValueError, match=r"single_pendulum\.h and .*\.py are of different version"):
+        final_state()
+    assert main(["--check", *arguments]) == 1
+    assert main(arguments) == 0
+    assert (header.read_text(), final_state()) == (text, end)
 
 
 def test_the_bytes_do_not_depend_on_what_was_derived_before() -> None:

@@ -10,6 +10,8 @@ from derive.codegen import backends
 from derive.codegen.assignments import Assignments, Notation, Statement
 from derive.codegen.functions import Contents, Function
 
+#: Place of the digest of all files of a system, by which files that belong together are known.
+DIGEST = "@digest@"
 #: Names that generated functions use themselves.
 RESERVED = ("t", "y", "state", "params", "result")
 

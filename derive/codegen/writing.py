@@ -1,14 +1,18 @@
 """The generated files of a system, one for each target language."""
 
 from collections.abc import Sequence
+from hashlib import sha256
 from os import PathLike
 from pathlib import Path
 
-from derive.codegen.backend import find_backends
+from derive.codegen.backend import DIGEST, find_backends
 from derive.codegen.functions import Contents, contents
 from derive.codegen.tree import Tree
 from derive.mechanics.derivation import Derivation
 from derive.system.system import System
+
+#: Digits of the digest of generated files.
+DIGITS = 16
 
 
 def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str, str]:
@@ -17,9 +21,11 @@ def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str
 
 
 def files(generated: Contents) -> dict[str, str]:
-    """The texts of the generated files by name, in every target language."""
+    """The texts of the generated files by name, in every target language, with their digest."""
     name = generated.system.name
-    return {f"{name}{backend.suffix}": backend.file(generated) for backend in find_backends()}
+    parts = {f"{name}{backend.suffix}": backend.file(generated) for backend in find_backends()}
+    digest = sha256("".join(parts.values()).encode()).hexdigest()[:DIGITS]
+    return {file: text.replace(DIGEST, digest) for file, text in parts.items()}
 
 
 def write(system: System, folder: str | PathLike[str]) -> Path:

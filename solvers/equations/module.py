@@ -31,6 +31,8 @@ class GeneratedModule(Protocol):
     @property
     def SYSTEM(self) -> str: ...
     @property
+    def DIGEST(self) -> str: ...  # of the files of the system, which its header states, too
+    @property
     def COORDINATES(self) -> tuple[str, ...]: ...
     @property
     def STATE(self) -> tuple[str, ...]: ...  # names of the components of (q, q̇)

@@ -5,7 +5,7 @@ from itertools import groupby
 from textwrap import indent, wrap
 
 from derive.codegen.assignments import Factorisation, Solution, Statement, Value
-from derive.codegen.backend import Backend
+from derive.codegen.backend import DIGEST, Backend
 from derive.codegen.functions import Contents, Function
 from derive.codegen.summary import broken_sum, summary, units
 
@@ -221,7 +221,8 @@ def _constants(contents: Contents) -> str:
         "OPERATIONS": _dict({f.name: repr(f.lowering.cost) for f in functions}),
         "UNITS": _dict({name: f'"{unit}"' for name, unit in units(system).items() if name in used}),
     }
-    return "\n".join([f'SYSTEM = "{system.name}"', *(f"{k} = {v}" for k, v in tables.items())])
+    texts = [f'SYSTEM = "{system.name}"', f'DIGEST = "{DIGEST}"']
+    return "\n".join([*texts, *(f"{k} = {v}" for k, v in tables.items())])
 
 
 def _literal(values: Iterable[object], depth: int = 0) -> str:

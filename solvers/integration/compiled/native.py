@@ -41,6 +41,11 @@ def equations(module: GeneratedModule, form: str) -> Equations:
     if path is None:
         raise ValueError(f"{name}.h is missing: write it with holonomic derive {name}")
     text = path.read_text(encoding="utf-8")
+    if module.DIGEST not in text:
+        raise ValueError(
+            f"{path} and {module.__file__} are of different versions: write both with holonomic "
+            f"derive {name}"
+        )
     rhs, jacobian = (f"{path.stem}_{named(stem, form)}" for stem in ("rhs", "jacobian"))
     layout = Form(module, form, (0.0,) * len(module.PARAMETERS))
     from_ordinary = [f"z[{i}] = y[{k}];" for k, i in layout.shared_columns]
