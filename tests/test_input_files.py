@@ -67,14 +67,20 @@ def test_a_missing_package_is_written_beside_its_generator(tmp_path: Path) -> No
     assert (tmp_path / "generated" / "single_pendulum.py").is_file()
 
 
+@pytest.mark.parametrize("command", ["run", "verify", "demo", "sweep", "chart"])
 def test_a_damaged_package_is_reported_with_the_command_that_mends_it(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
+    arguments = {"verify": [], "sweep": ["flips"], "demo": ["--output", str(tmp_path)]}
+
     def damaged(_: str) -> None:
         raise SyntaxError("'(' was never closed")
 
     monkeypatch.setattr("solvers.app.modules.import_module", damaged)
-    assert main(["run", "report"]) == 4
+    assert main([command, *arguments.get(command, ["report"])]) == 4
     message = capsys.readouterr().err
     assert "generated is damaged: SyntaxError: '(' was never closed" in message
     assert "mend it with: holonomic derive" in message

@@ -73,6 +73,15 @@ def check_text(name: str, text: str) -> None:
         )
 
 
+def _check_unit(name: str, unit: str) -> None:
+    check_text(name, unit)
+    if "," in unit:
+        raise SystemDefinitionError(
+            f"{name} is {unit[:50]!r}, with a comma, which separates columns of tables: write a "
+            "product as N m, a quotient as m/s^2"
+        )
+
+
 @dataclass(frozen=True)
 class Coordinate:
     """A generalized coordinate: its symbol, its unit and its meaning.
@@ -105,7 +114,7 @@ class Coordinate:
 
     def __post_init__(self) -> None:
         _check_symbol(self.symbol)
-        check_text(f"the unit of {self.symbol}", self.unit)
+        _check_unit(f"the unit of {self.symbol}", self.unit)
         check_text(f"the meaning of {self.symbol}", self.meaning)
 
 
@@ -146,7 +155,7 @@ class Parameter:
 
     def __post_init__(self) -> None:
         _check_symbol(self.symbol)
-        check_text(f"the unit of {self.symbol}", self.unit)
+        _check_unit(f"the unit of {self.symbol}", self.unit)
         check_text(f"the meaning of {self.symbol}", self.meaning)
         number, positive = self.default, self.symbol.is_positive
         is_real = isinstance(number, Real) and not isinstance(number, bool)

@@ -84,7 +84,7 @@ def _system(stem: str, table: Table) -> System:
         dissipation=formula("dissipation") or sp.S.Zero,
         forces=each("forces") or (),
         equilibrium=each("equilibrium"),
-        reactions=_list(table, formulas, "reactions"),
+        reactions=[*_lengths(table, formulas, "reactions")],
     )
 
 
@@ -109,6 +109,14 @@ def _formula(table: Table, formulas: Formulas, key: str) -> sp.Expr | None:
 
 def _list(table: Table, formulas: Formulas, key: str) -> list[sp.Expr]:
     return [formulas.value(key, text) for text in table.formulas(key)]
+
+
+def _lengths(table: Table, formulas: Formulas, key: str) -> Iterator[sp.Symbol]:
+    for text in table.formulas(key):
+        value = formulas.value(key, text)
+        if not isinstance(value, sp.Symbol):
+            raise InputError(f"{key}: {text[:50]!r} must be the name of a constant length")
+        yield value
 
 
 def _by_coordinate(

@@ -6,7 +6,6 @@ from datetime import date
 from importlib.metadata import version
 from pathlib import Path
 
-import generated.double_pendulum as double_pendulum
 from solvers.app.demo.equations import derivation, generation
 from solvers.app.demo.methods import cost, limits
 from solvers.app.demo.motions import flips, motion
@@ -33,7 +32,7 @@ def stages(folder: Path) -> dict[str, Callable[[], Stage]]:
     return {
         "derive": derivation,
         "verify": verification,
-        "generate": lambda: generation(double_pendulum),
+        "generate": lambda: generation(load("double_pendulum")),
         "integrate": lambda: motion(scene),
         "chart": lambda: cost(scene),
         "stability": lambda: limits(scene),

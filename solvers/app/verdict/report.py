@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-import generated.double_pendulum as double_pendulum
 from derive.verification.report.contexts import NUMBERS
 from derive.verification.report.judgement import verdicts
 from derive.verification.report.programs import PROSE, programs
 from derive.verification.report.programs import Scene as ReportScene
 from derive.verification.verdict import Verdict, table_row, table_width, verdict_rows, wrapped
+from solvers.app.modules import load
 from solvers.app.verdict.claims import claims, objectives, recommendations
 from solvers.app.verdict.evidence import Evidence
 from solvers.runge_kutta.order_conditions import order
@@ -43,7 +43,7 @@ def _scene(values: ReportScene) -> Scene:
     params = [*values.masses, *values.lengths, values.gravity]
     y0 = [*values.angles, *values.velocities]
     floats = tuple(map(float, params)), tuple(map(float, y0)), float(values.duration)
-    return Scene(double_pendulum, *floats)
+    return Scene(load("double_pendulum"), *floats)
 
 
 def tables(verdicts: Mapping[str, Any]) -> str:
