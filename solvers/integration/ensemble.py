@@ -17,6 +17,7 @@ from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Options
 from solvers.integration.solution import Interrupted
 from solvers.integration.step_stability import StepWarning, mark_unstable
+from solvers.io.arguments import check_type
 
 #: Most threads of one ensemble.
 MOST_WORKERS = 1024
@@ -98,6 +99,7 @@ def ensemble(
     >>> dp.energy_many(0.0, motions.y, dp.DEFAULTS).shape
     (20,)
     """
+    check_type("stop", stop, StopFlag | None, "a StopFlag")
     times = () if t_eval is None else t_eval
     options = Options(method, form, rtol, atol, h, times, events, max_steps, backend, compensated)
     problem = validation.problem_at_rest(module, t_span, options)

@@ -14,6 +14,7 @@ from solvers.integration.memory import check_times
 from solvers.integration.problem import Options, Problem, shortest_step
 from solvers.integration.solution import Array
 from solvers.integration.subnormal import warn_if_flushed
+from solvers.io.arguments import check_type
 from solvers.io.suggestion import counted, shortened
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.runge_kutta.tableau import Tableau
@@ -36,10 +37,9 @@ def problem(
     """The problem that `integrate` solves, from its arguments, all of which are checked."""
     check_module(module)
     warn_if_flushed()
-    for name in ("method", "form", "backend"):
-        value = getattr(options, name)
-        if not isinstance(value, str if name == "method" else str | None):
-            raise ValueError(f"{name} = {shortened(value)} must be a name, as a str")
+    check_type("method", options.method, str, "the name of a method")
+    check_type("form", options.form, str | None, "the name of a form")
+    check_type("backend", options.backend, str | None, "the name of a backend")
     if options.backend not in (None, "compiled", "python"):
         raise ValueError(f"backend {options.backend!r} must be 'compiled' or 'python'")
     check_flag("compensated", options.compensated)

@@ -22,8 +22,8 @@ def counted(number: int, noun: str) -> str:
 
 
 def shortened(value: object) -> str:
-    """A value as a message quotes it: its first fifty characters."""
+    """A value as a message quotes it: its first fifty characters, on one line."""
     try:
-        return repr(value)[:50]
+        return " ".join(map(str.strip, repr(value).splitlines()))[:50]
     except ValueError:  # Python writes no number of thousands of digits
         return "a number of thousands of digits"

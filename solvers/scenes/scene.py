@@ -9,6 +9,7 @@ from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive
 from solvers.integration import validation
+from solvers.io.arguments import check_texts, check_type
 from solvers.io.toml_input import whole
 from solvers.scenes import checks
 
@@ -105,6 +106,10 @@ class Scene:
 
     def __post_init__(self) -> None:
         validation.check_module(self.module)
+        for name in ("model", "method", "form", "code", "title", "name", "label", "note"):
+            check_type(name, getattr(self, name), str | None, "a text")
+        for name in ("outputs", "pictures"):
+            check_texts(name, getattr(self, name))
         state = self.module.STATE
         completed = {
             "params": tuple(validation.parameters(self.module, self.params).tolist()),
@@ -125,6 +130,7 @@ class Scene:
 
             checks.check_choice("model", self.model, tuple(catalogue.load()))
         checks.check_choice("code", self.code, ("general", "specialised"))
+        check_type("samples", self.samples, int, "a whole number")
         if self.samples:
             whole("samples", self.samples, 2, checks.MOST_SAMPLES)
         checks.check_outputs(self.outputs, state, (*state, ENERGY))

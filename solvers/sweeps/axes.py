@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.quantities import real_numbers
 from solvers.integration import validation
+from solvers.io.arguments import check_type
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -226,6 +227,7 @@ class Random(Axes):
 
 
 def _columns(values: Mapping[str, Any]) -> dict[str, Array]:
+    check_type("values", values, Mapping, "a mapping of names to numbers")
     if not values:
         raise ValueError("nothing varies: name at least one coordinate, velocity or parameter")
     columns = {name: np.atleast_1d(real_numbers(name, given)) for name, given in values.items()}

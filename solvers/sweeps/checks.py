@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import quantity
+from solvers.io.arguments import check_type
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Axes
 from solvers.sweeps.maps import Map
@@ -70,6 +71,8 @@ def check_maps(
     """Check the names of maps, and each map against the sweep."""
     if not maps:
         raise ValueError("no maps: give at least one")
+    for name, one in maps.items():
+        check_type(f"maps[{name!r}]", one, Map, "a map, such as Final(('theta1',))")
     counts = {one.sample_count for one in maps.values()} - {0}
     if len(counts) > 1:
         raise ValueError(f"maps have {sorted(counts)} samples: all must have the same number")

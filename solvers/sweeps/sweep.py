@@ -17,6 +17,7 @@ from solvers.equations.module_cache import cached_module
 from solvers.equations.quantities import positive
 from solvers.integration import validation
 from solvers.integration.problem import Options
+from solvers.io.arguments import check_type
 from solvers.runge_kutta.catalogue import load, names
 from solvers.sweeps import checks
 from solvers.sweeps.axes import Axes
@@ -81,6 +82,9 @@ class Sweep:
     def __post_init__(self) -> None:
         validation.check_module(self.module)
         positive("duration", self.duration)
+        check_type("axes", self.axes, Axes, "a Grid, Random or Table")
+        check_type("maps", self.maps, Mapping, "a mapping of names to maps")
+        check_type("values", self.values, Mapping, "a mapping of names to numbers")
         if not load(str(self.method)).b_hat:
             able = ", ".join(name for name in names() if load(name).b_hat)
             raise ValueError(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Self, TypeAlias
 from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event
+from solvers.io.arguments import check_texts
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.map_table import MapTable
@@ -154,6 +155,7 @@ class ComponentMap(Map):
         return self.of
 
     def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
+        check_texts("of", self.of)
         if not self.of:
             raise ValueError(f"`of` is empty; name some of {', '.join(module.STATE)}")
         super().check(module, axes, values)

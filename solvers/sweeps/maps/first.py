@@ -8,6 +8,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event
+from solvers.io.arguments import check_type
 from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.barrier import lower_position
 from solvers.sweeps.map_table import MapTable
@@ -57,6 +58,7 @@ class First(Map):
         return [Event(module, name, value) for name, values in self.of.items() for value in values]
 
     def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
+        check_type("of", self.of, Mapping, "a mapping of names to numbers")
         super().check(module, axes, values)
         if not any(self.of.values()):
             raise ValueError("`of` is empty; give values by component")
