@@ -2,17 +2,20 @@
 
 import ast
 import json
+import tomllib
 from collections.abc import Iterator
 from dataclasses import fields
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import pytest
+from damage import toml
 from mutation import Mutation
 
 from derive import Derivation, load, names
 from derive.system.catalogue import published
-from derive.verification.hand import judge
+from derive.verification.hand import EQUATIONS, HEADER, judge
 from derive.verification.model import Model
 from derive.verification.quantities import judge_formula
 from derive.verification.verdict import Verdict
@@ -47,8 +50,8 @@ def test_mutations_of_published_equations_are_wrong(name: str, tmp_path: Path) -
         sides = one.printed.split("=")
         for text in mutants(sides[0]):
             changed = "=".join([text, *sides[1:]])
-            path.write_text(_replaced(original, one.printed, changed))
-            (mutant,) = (other for other in judge(path).equations if other.id == one.id)
+            path.write_text(toml(_alone(original, one.printed, changed)))
+            (mutant,) = judge(path).equations
             verdicts.append(mutant.verdict)
     assert "unreadable" not in verdicts
     # the rest is correct: a constant in a Lagrangian, or the sign of a square
@@ -56,13 +59,20 @@ def test_mutations_of_published_equations_are_wrong(name: str, tmp_path: Path) -
     assert len(verdicts) > 3
 
 
-def _replaced(original: str, printed: str, changed: str) -> str:
-    """The text with one formula changed, whatever its line breaks."""
-    lines = original.replace("\\\n", "").split('"')
-    for k, part in enumerate(lines):
-        if " ".join(part.split()) == printed:
-            lines[k] = changed
-            return '"'.join(lines)
+def _alone(original: str, printed: str, changed: str) -> dict[str, Any]:
+    """The document with one of its equations only, which is changed."""
+    document = tomllib.loads(original)
+    alone = {key: document[key] for key in HEADER if key in document}
+    for key in EQUATIONS:
+        match document.get(key):
+            case str() as text if " ".join(text.split()) == printed:
+                return alone | {key: changed}
+            case list() as texts if printed in [" ".join(text.split()) for text in texts]:
+                return alone | {key: [changed]}
+            case dict() as table:
+                for name, text in table.items():
+                    if " ".join(text.split()) == printed:
+                        return alone | {key: {name: changed}}
     raise AssertionError(printed)
 
 

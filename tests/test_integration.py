@@ -111,7 +111,10 @@ def test_tolerances_bring_the_report_s_scene_to_its_known_end(
     method: str, form: str, backend: str
 ) -> None:
     errors = []
-    for rtol in (1e-6, 1e-9):
+    # many steps of a low order take seconds in Python
+    is_slow = backend == "python" and load(method).order < 5
+    tolerances = (1e-4, 1e-7) if is_slow else (1e-6, 1e-9)
+    for rtol in tolerances:
         solution = integrate(
             dp,
             (0, 5),
@@ -127,7 +130,7 @@ def test_tolerances_bring_the_report_s_scene_to_its_known_end(
         assert solution.status is Status.FINISHED
         assert solution.t[-1] == 5.0
         errors.append(np.abs(solution.y[:, -1] - END).max())
-    assert errors[1] < 100 * 1e-9 * 10
+    assert errors[1] < 1000 * tolerances[1]
     assert errors[1] < errors[0] / 50 or errors[1] < 1e-11
 
 
