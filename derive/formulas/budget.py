@@ -10,7 +10,7 @@ from sympy.core.basic import Basic
 from derive.formulas.numeric import Evaluator
 
 #: Largest absolute value of an exponent, also of a power of powers, and bits of a number.
-MAX_EXPONENT, MAX_BITS = 100, 256
+MAX_EXPONENT, MAX_BITS = 100, 400
 #: The largest number and the inverse of the smallest one, which generated code can contain.
 LARGEST = 1e300
 MAX_LOGARITHM = log(LARGEST)
