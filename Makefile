@@ -15,7 +15,7 @@ test: .venv/ready  ## set up and run the tests
 	$(BIN)/pytest --numprocesses auto --dist worksteal
 
 campaign: .venv/ready  ## run the tests over thousands of random cases
-	$(BIN)/pytest --numprocesses auto --dist worksteal -m campaign
+	$(BIN)/pytest --numprocesses auto --dist worksteal -o faulthandler_timeout=3600 -m campaign
 
 docs: .venv/docs  ## build the documentation site, into out/docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going --conf-dir notebooks/docs \
