@@ -148,3 +148,10 @@ def test_a_single_file_that_is_not_readable_prints_no_table(
     output, errors = capsys.readouterr()
     assert output == ""
     assert errors.startswith(f"holonomic verify: {files[3]} is not valid TOML")
+
+
+@pytest.mark.parametrize("line", ["euler_lagrange = []", "momenta = {}", "accelerations = {}"])
+def test_a_kind_of_equations_that_is_empty_is_refused(line: str, tmp_path: Path) -> None:
+    path = written(tmp_path, f'{PENDULUM}lagrangian = "m*l**2*theta_dot**2/2"\n{line}\n')
+    with pytest.raises(InputError, match=rf"page\.toml: {line.split()[0]} is empty: give at least"):
+        judge(path)

@@ -98,6 +98,8 @@ def _verdicts(table: Table, model: Model) -> list[Verdict]:
 def _formulas(table: Table, kind: str, model: Model) -> Iterator[tuple[str, str, str, str]]:
     """Label, text, kind and coordinate of each equation of a kind."""
     values = table.values[kind]
+    if kind in EQUATIONS and values in ([], {}):
+        raise InputError(f"{kind} is empty: give at least one equation, or omit it")
     if kind == "euler_lagrange":
         for number, text in enumerate(table.formulas(kind), 1):
             yield f"{kind} {number}", text, kind, ""
