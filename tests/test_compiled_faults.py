@@ -190,7 +190,7 @@ def test_a_motion_that_overflows_ends_with_a_status(backend: str, lanes: int, fo
     starts = np.zeros((4, lanes))
     starts[:, 0] = 1.0, 1.0, 1e200, -1e200
     options = {"form": form, "backend": backend}
-    with pytest.warns(StepWarning, match=f"1 of {lanes} motions are unstable, as number 0"):
+    with pytest.warns(StepWarning, match=f"1 of {lanes} motions are unstable; of motion 0, "):
         fixed = ensemble(dp, (0, 9), starts, dp.DEFAULTS, method="rk1", h=0.5, **options)
     assert fixed.status[0] is Status.UNSTABLE
     assert all(status is Status.FINISHED for status in fixed.status[1:])

@@ -16,7 +16,7 @@ from damage import contents, documents, texts, toml
 from forked import Ended, forked
 from fuzzing import SIZES, command, examine, in_folder
 from hypothesis import strategies as st
-from valid_files import ANGLES, HAND, PENDULUM, SCENE, STARTS, SWEEP, SYSTEM
+from valid_files import ANGLES, BEAD, HAND, PENDULUM, SCENE, STARTS, SWEEP
 
 import generated.double_pendulum as dp
 from solvers import integrate
@@ -62,7 +62,7 @@ def test_system_files(cases: int) -> None:
             assert np.isfinite(namespace["DEFAULTS"]).all()
 
     names = ("x", "x_dot", "m", "k", "c", "g", "t", "height", "value", "positive", "reactions")
-    examine(cases, documents(tomllib.loads(SYSTEM), names), in_folder(check))
+    examine(cases, documents(tomllib.loads(BEAD), names), in_folder(check))
 
 
 @SIZES
@@ -127,7 +127,7 @@ def test_damaged_folders_of_sweeps(cases: int, tmp_path: Path) -> None:
 
 @SIZES
 def test_damaged_generated_files(cases: int, tmp_path: Path) -> None:
-    (tmp_path / "mine.toml").write_text(SYSTEM, encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(BEAD, encoding="utf-8")
     assert command("derive", tmp_path / "mine.toml", "--output", tmp_path / "out").value == 0
     files = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
 

@@ -129,7 +129,7 @@ def test_without_xarray_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
         integrate(sp, (0, 1), {"theta": 1.0}, {}).to_xarray()
 
 
-@pytest.mark.parametrize(("backend", "duration"), [("compiled", 1e6), ("python", 20.0)])
+@pytest.mark.parametrize(("backend", "duration"), [("compiled", 1e6), ("python", 1e4)])
 def test_a_stop_flag_stops_its_own_ensembles_only(backend: str, duration: float) -> None:
     flag, start, results = StopFlag(), {"theta": np.linspace(0.1, 1, 20)}, {}
     options = {"backend": backend, "max_steps": 10**12, "workers": 1}

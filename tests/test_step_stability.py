@@ -74,7 +74,7 @@ def test_a_prepared_function_reports_it(method: str) -> None:
 def test_an_ensemble_reports_its_own_unstable_motions(backend: str) -> None:
     starts = np.transpose([(0.1, 0.1, 0, 0), REPORT, (0.2, 0.2, 0, 0), REPORT])
     options: dict[str, Any] = {"form": "rational", "backend": backend}
-    message = r"2 of 4 motions are unstable, as number 1: h = 0\.6 "
+    message = r"2 of 4 motions are unstable; of motion 1, h = 0\.6 "
     with pytest.warns(StepWarning, match=message) as given:
         motions = ensemble(dp, (0, 30), starts, {}, method="rk4", h=0.6, **options)
     good, _, sufficient = numbers(str(given[0].message))
@@ -92,7 +92,7 @@ def test_motions_with_own_parameters_and_without_a_constant_energy_are_reported(
 ) -> None:
     starts = {driven.COORDINATES[0]: [0.5, 0.6]}
     params = {**masses, "g": [9.81, 9.81e9]}
-    with pytest.warns(StepWarning, match="1 of 2 motions are unstable, as number 1: h = 0.05 mult"):
+    with pytest.warns(StepWarning, match="1 of 2 motions are unstable; of motion 1, h = 0.05 mult"):
         motions = ensemble(driven, (0, 9), starts, params, method="rk4", h=0.05)
     assert motions.status.tolist() == [Status.FINISHED, Status.UNSTABLE]
 

@@ -7,6 +7,7 @@ from time import perf_counter
 import numpy as np
 import pytest
 import sympy as sp
+from valid_files import BEAD
 
 from derive import Coordinate, Derivation, Parameter, PointMass, RigidBody, System, load
 from derive.commands.derive import main
@@ -19,29 +20,6 @@ from solvers.scenes.geometry import energy_errors
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
 
-BEAD = """
-title = "Bead on a parabola that is shaken"
-potential = "m*g*height"
-dissipation = "c*x_dot**2/2"
-
-[coordinates]
-x = { unit = "m", meaning = "horizontal place of the bead" }
-
-[parameters]
-m = { value = 1, unit = "kg" }
-k = { value = "1/2", unit = "1/m" }
-c = { value = 0.1, unit = "N s/m" }
-a = { value = 0.2, unit = "m", positive = false }
-Omega = { value = 3, unit = "rad/s" }
-g = { value = 9.81, unit = "m/s^2" }
-
-[definitions]
-height = "k*x**2 + a*cos(Omega*t)"
-
-[[masses]]
-mass = "m"
-position = ["x", "height"]
-"""
 PENDULUM = """
 [coordinates]
 theta = {}

@@ -37,7 +37,7 @@ def shell(command: str, **environment: str) -> tuple[int, str]:
 
 
 @pytest.mark.parametrize("command", ["--help", "--version", "run --help", "systems"])
-def test_a_pipe_that_nobody_reads_is_no_error(command: str) -> None:
+def test_an_unread_pipe_is_no_error(command: str) -> None:
     assert shell(f"holonomic {command} | true") == (0, "")
 
 
@@ -65,9 +65,7 @@ def test_output_that_cannot_be_written_is_reported(command: str, unbuffered: str
 @pytest.mark.parametrize(("command", "code"), [
     ("--version", 0), ("sistems", 2), ("systems chain", 2), ("run nothing", 2),
 ])  # fmt: skip
-def test_messages_that_nobody_reads_change_no_exit_code(
-    command: str, code: int, streams: str
-) -> None:
+def test_unread_messages_change_no_exit_code(command: str, code: int, streams: str) -> None:
     printed = shell(f"holonomic {command} {streams}")
     assert printed == (code, "" if code or "true" in streams else "holonomic 0.1.0\n")
 

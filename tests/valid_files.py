@@ -1,18 +1,24 @@
 """Valid files of every kind, and names that may stand in them."""
 
-SYSTEM = """
+BEAD = """
 title = "Bead on a parabola that is shaken"
 potential = "m*g*height"
 dissipation = "c*x_dot**2/2"
-forces = { x = "-m*cos(t)" }
-coordinates = { x = { unit = "m", meaning = "horizontal position" } }
+
+[coordinates]
+x = { unit = "m", meaning = "horizontal place of the bead" }
+
 [parameters]
 m = { value = 1, unit = "kg" }
 k = { value = "1/2", unit = "1/m" }
 c = { value = 0.1, unit = "N s/m" }
+a = { value = 0.2, unit = "m", positive = false }
+Omega = { value = 3, unit = "rad/s" }
 g = { value = 9.81, unit = "m/s^2" }
+
 [definitions]
-height = "k*x**2 + cos(t)"
+height = "k*x**2 + a*cos(Omega*t)"
+
 [[masses]]
 mass = "m"
 position = ["x", "height"]

@@ -90,13 +90,13 @@ def _system(stem: str, table: Table) -> System:
 
 def _definitions(table: Table, system: str, formulas: Formulas) -> dict[str, Any]:
     definitions: dict[str, Any] = {}
-    known = formulas.scope
+    known = {**formulas.scope}
+    own = replace(formulas, scope=ChainMap(definitions, known))  # which grows with the definitions
     for key, text in table.entries("definitions").items():
         check_name(key, system)
         if key in known:
             raise InputError(f"definitions.{key}: the name is already used; choose another")
         try:
-            own = replace(formulas, scope=ChainMap(definitions, dict(known)))
             definitions[key] = own.value(f"definitions.{key}", text)
         except InputError as error:
             raise InputError(f"{error}; a definition may use those above it") from error

@@ -36,7 +36,8 @@ def check_condition(
     if worst >= SINGULAR:
         raise ValueError(f"{text}; leave that coordinate out, or make masses more similar")
     if worst >= DOUBTFUL:
-        warnings.warn(f"{text}; that many digits are lost", MassMatrixWarning, stacklevel=3)
+        lost = f"about {np.log10(worst):.0f} digits are lost"
+        warnings.warn(f"{text}; {lost}", MassMatrixWarning, stacklevel=3)
 
 
 def _condition(

@@ -173,7 +173,7 @@ def mark_unstable(problem: Problem, states: Array, params: Array, result: Ensemb
     result.status[unstable] = Status.UNSTABLE
     first = int(np.argmax(unstable))
     detail = diagnosis(_motion(problem, states, params, first))
-    return f"{unstable.sum()} of {len(states)} motions are unstable, as number {first}: {detail}"
+    return f"{unstable.sum()} of {len(states)} motions are unstable; of motion {first}, {detail}"
 
 
 def diagnosis(problem: Problem) -> str:

@@ -1,4 +1,4 @@
-"""Standard streams of commands: closed, full, in any encoding, or a pipe that nobody reads."""
+"""Standard streams of commands: closed, full, in any encoding, or an unread pipe."""
 
 import os
 import sys

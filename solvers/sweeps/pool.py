@@ -121,9 +121,10 @@ class Pool:
     @contextmanager
     def _running(self) -> Iterator[Executor]:
         """The executor; `LostWorkersError` if it fails."""
-        own: AbstractContextManager[Executor] = ThreadPoolExecutor(self.size)
+        given, own = self.executor, ThreadPoolExecutor
+        context: AbstractContextManager[Executor] = nullcontext(given) if given else own(self.size)
         try:
-            with nullcontext(self.executor) if self.executor else own as executor:
+            with context as executor:
                 yield executor
         except (BrokenExecutor, CancelledError) as error:
             raise LostWorkersError(LOST) from error

@@ -13,7 +13,8 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, function
+from solvers.equations.equilibrium import equilibrium_state
+from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
@@ -142,7 +143,8 @@ def _small_motion(
 ) -> Growth:
     """Growth per step of the system itself, by `integrate`."""
     n = len(modes.frequencies)
-    rest = np.concatenate([function(module, "equilibrium")(params), np.zeros(n)])
+    rest = equilibrium_state(module, params)
+    assert rest is not None  # the modes are those of the equilibrium
     start = rest + AMPLITUDE * np.concatenate([modes.shapes[:, -1], np.zeros(n)])
     # rounding is relative to the coordinates of the equilibrium
     rounding = ROUNDINGS * modes.size(np.finfo(float).eps * rest)
