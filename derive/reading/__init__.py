@@ -1,0 +1,1 @@
+"""Formulas of documents and programs, as syntax trees; nothing that is read is executed."""

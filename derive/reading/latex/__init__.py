@@ -1,0 +1,1 @@
+"""The LaTeX of mechanics as syntax trees."""

@@ -1,0 +1,199 @@
+"""Syntax trees of formulas in LaTeX.
+
+A tree says what is written, not what it means: whether ``m(x + y)`` is a product or a function,
+and whether a prime is a derivative, depends on the document. Every node has its span: the first
+character and the one after the last, in the LaTeX of its display.
+"""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+Span: TypeAlias = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Number:
+    """Digits with an optional decimal point."""
+
+    digits: str
+    span: Span
+
+
+@dataclass(frozen=True)
+class Letter:
+    r"""A symbol with its index, dots and primes: ``\dot{\theta}_1``, ``\dot{\theta_1}``, ``x'``."""
+
+    name: str  # "theta" of \theta, "L" of \mathcal{L}, "xbar" of \bar{x}, "l" of l, "ell" of \ell
+    span: Span
+    index: str = ""  # "1", "kin" of T_{\text{kin}}, "theta_1" of p_{\theta_1}, "eff"
+    dots: int = 0
+    primes: int = 0
+    is_bold: bool = False  # also with an arrow: a column of numbers
+
+    @property
+    def identifier(self) -> str:
+        """The letter and its index without dots and primes, such as ``p_theta_1``."""
+        return f"{self.name}_{self.index}" if self.index else self.name
+
+
+@dataclass(frozen=True)
+class Sum:
+    """Terms with their signs, 1 and -1; a single term with -1 is a negative number."""
+
+    terms: tuple[tuple[int, "Node"], ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Product:
+    """Factors side by side or with a sign of multiplication, none of which is a product."""
+
+    factors: tuple["Node", ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Quotient:
+    """A fraction in any spelling."""
+
+    numerator: "Node"
+    denominator: "Node"
+    span: Span
+
+
+@dataclass(frozen=True)
+class Power:
+    r"""A base and its exponent; of ``\sin^2\theta`` the base is the sine."""
+
+    base: "Node"
+    exponent: "Node"
+    span: Span
+
+
+@dataclass(frozen=True)
+class Root:
+    """The root of a number: of degree 2 if no other is written."""
+
+    radicand: "Node"
+    degree: int
+    span: Span
+
+
+@dataclass(frozen=True)
+class Call:
+    """A known function, such as sin, and its argument."""
+
+    function: str  # sin, cos, tan, cot, sec, csc, asin, acos, atan, sinh, ..., exp, log, sign, det
+    argument: "Node"
+    span: Span
+
+
+@dataclass(frozen=True)
+class Application:
+    """A letter before round brackets: a function of arguments, or a product."""
+
+    head: Letter
+    arguments: tuple["Node", ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Derivative:
+    r"""A derivative written as a fraction: of ``\frac{\partial L}{\partial\dot q}`` by q̇."""
+
+    operand: "Node"
+    variables: tuple["Node", ...]  # one for each order
+    is_partial: bool
+    span: Span
+
+
+@dataclass(frozen=True)
+class Dotted:
+    r"""Dots over an expression that is no letter, such as ``\dot{\theta^2}``."""
+
+    operand: "Node"
+    dots: int
+    span: Span
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """Rows of entries; a column has rows of one entry."""
+
+    rows: tuple[tuple["Node", ...], ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Tuple:
+    """Several expressions in brackets, separated by commas, such as a position."""
+
+    items: tuple["Node", ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Transpose:
+    """A transposed matrix or column."""
+
+    operand: "Node"
+    span: Span
+
+
+@dataclass(frozen=True)
+class Norm:
+    """An expression between bars."""
+
+    operand: "Node"
+    span: Span
+
+
+@dataclass(frozen=True)
+class Summation:
+    r"""``\sum`` with its index and bounds, if they are written."""
+
+    body: "Node"
+    index: Letter | None
+    lower: "Node | None"
+    upper: "Node | None"
+    span: Span
+
+
+Node: TypeAlias = (
+    Number
+    | Letter
+    | Sum
+    | Product
+    | Quotient
+    | Power
+    | Root
+    | Call
+    | Application
+    | Derivative
+    | Dotted
+    | Matrix
+    | Tuple
+    | Transpose
+    | Norm
+    | Summation
+)
+
+
+@dataclass(frozen=True)
+class Statement:
+    """Sides with relations between them: ``=``, ``:=``, ``~`` for ≈, ``<``, ``<=``, ``>``, ``>=``.
+
+    A single expression has one side and no relation.
+    """
+
+    sides: tuple[Node, ...]
+    relations: tuple[str, ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Unreadable:
+    """A part of a display that cannot be read, and why."""
+
+    reason: str
+    span: Span
