@@ -5,7 +5,6 @@ from solvers.app.scenes import load_sweep as load_sweep
 from solvers.app.scenes import run_scene as run_scene
 from solvers.app.scenes import sweep as sweep
 from solvers.integration.ensemble import ensemble as ensemble
-from solvers.integration.ensemble_run import StopFlag as StopFlag
 from solvers.integration.ensemble_solution import Ensemble as Ensemble
 from solvers.integration.events import Event as Event
 from solvers.integration.events import Extremum as Extremum
@@ -14,6 +13,7 @@ from solvers.integration.ode_solver import ode_solver as ode_solver
 from solvers.integration.prepare import prepare as prepare
 from solvers.integration.solution import Solution as Solution
 from solvers.integration.solution import Status as Status
+from solvers.integration.stop_flag import StopFlag as StopFlag
 from solvers.io.figures import panels as panels
 from solvers.io.figures import save as save
 from solvers.scenes.run import SceneResult as SceneResult

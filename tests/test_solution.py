@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
+import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers import Event, StopFlag, ensemble, integrate
@@ -129,23 +130,60 @@ def test_without_xarray_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
         integrate(sp, (0, 1), {"theta": 1.0}, {}).to_xarray()
 
 
-@pytest.mark.parametrize(("backend", "duration"), [("compiled", 1e6), ("python", 1e4)])
-def test_a_stop_flag_stops_its_own_ensembles_only(backend: str, duration: float) -> None:
-    flag, start, results = StopFlag(), {"theta": np.linspace(0.1, 1, 20)}, {}
-    options = {"backend": backend, "max_steps": 10**12, "workers": 1}
+@pytest.mark.parametrize("backend", ["compiled", "python"])
+def test_a_stop_flag_stops_its_own_ensembles_only(backend: str) -> None:
+    flag, start, results = StopFlag(), {"theta": [0.1, 1.0]}, {}
+    options: dict[str, Any] = {"backend": backend, "max_steps": 10**12, "workers": 1}
+    options |= {"method": "rk4", "h": 0.05}
 
     def long() -> None:
-        results["long"] = ensemble(sp, (0, duration), start, {}, stop=flag, **options)
+        results["long"] = ensemble(sp, (0, 1e9), start, {}, stop=flag, **options)
 
     thread = threading.Thread(target=long)
     thread.start()
-    other = ensemble(sp, (0, 0.1), start, {}, stop=StopFlag(), **options)
+    other = ensemble(sp, (0, 0.05), {"theta": [0.5]}, {}, stop=StopFlag(), **options)
     flag.set()
     thread.join()
     assert set(other.status) == {Status.FINISHED}
     assert Status.INTERRUPTED in results["long"].status
     stopped = ensemble(sp, (0, 1), start, {}, stop=flag, **options)
     assert set(stopped.status) == {Status.INTERRUPTED}
+
+
+@pytest.mark.parametrize("method", ["verner853", "gauss2", "DOP853", "LSODA"])
+def test_a_stop_flag_ends_a_motion_in_python_with_its_last_step(method: str) -> None:
+    flag = StopFlag()
+
+    def later(t: float, y: Any) -> float:
+        if t > 1:
+            flag.set()
+        return 1.0
+
+    options = {"method": method, "events": later, "backend": "python", "max_steps": 10**12}
+    if method == "gauss2":
+        options["h"] = 0.01
+    motions = ensemble(sp, (0, 1e9), {"theta": [0.5, 1.0]}, {}, stop=flag, **options)
+    assert set(motions.status) == {Status.INTERRUPTED}
+    assert 1 < motions.t[0] < 3
+    good = integrate(sp, (0, motions.t[0]), {"theta": 0.5}, {}, rtol=1e-12, atol=1e-14).y[:, -1]
+    np.testing.assert_allclose(motions.y[:, 0], good, atol=1e-6)
+    assert np.isnan(motions.t[1])  # not started
+
+
+def test_nothing_is_computed_for_warnings_of_stopped_motions() -> None:
+    flag, starts = StopFlag(), []
+
+    def second_start(t: float, y: Any) -> float:
+        if t == 0:
+            starts.append(y)
+        if len(starts) == 2:
+            flag.set()
+        return 1.0
+
+    options = {"rtol": 1e-4, "events": second_start, "backend": "python", "stop": flag}
+    y0 = {"theta1": [2.0, 2.1], "theta2": 2.0}
+    motions = ensemble(dp, (0, 30), y0, dp.DEFAULTS, **options)  # not predictable to its end
+    assert list(motions.status) == [Status.FINISHED, Status.INTERRUPTED]
 
 
 def test_a_sweep_that_fails_stops_no_other_motions(

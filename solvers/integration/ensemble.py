@@ -11,12 +11,13 @@ from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
 from solvers.integration import compiled_loop, memory, validation
 from solvers.integration.accuracy_warnings import ensemble_warnings
-from solvers.integration.ensemble_run import EnsembleRun, StopFlag
+from solvers.integration.ensemble_run import EnsembleRun
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import Options
 from solvers.integration.solution import Interrupted
 from solvers.integration.step_stability import StepWarning, mark_unstable
+from solvers.integration.stop_flag import StopFlag
 from solvers.io.arguments import check_type
 
 #: Most threads of one ensemble.
@@ -65,7 +66,7 @@ def ensemble(
     workers : int, optional
         Number of threads; by default one for each processor.
     stop : StopFlag, optional
-        Its method ``set`` stops the motions from another thread.
+        Its method ``set`` stops the motions from another thread; there are no warnings then.
 
     Returns
     -------
@@ -126,6 +127,8 @@ def ensemble(
             run.run_one_by_one()
     except KeyboardInterrupt as interruption:
         raise Interrupted(result) from interruption
+    if run.stop.is_set:
+        return result
     if unstable := mark_unstable(problem, states, constants, result):
         warn(unstable, StepWarning, stacklevel=2)
     good = np.flatnonzero(result.success)

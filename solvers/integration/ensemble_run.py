@@ -14,36 +14,10 @@ from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Extremum
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array, Status
+from solvers.integration.stop_flag import StopFlag
 
 #: Rows whose states are computed at once.
 BLOCK = 100_000
-
-
-class StopFlag:
-    """Stops ensembles from another thread; once set, it stays set.
-
-    Examples
-    --------
-    >>> import generated.single_pendulum as sp
-    >>> from solvers import StopFlag, ensemble
-    >>> flag = StopFlag()
-    >>> flag.set()
-    >>> motions = ensemble(sp, (0, 5), {"theta": [0.5, 1.0]}, {}, stop=flag)
-    >>> [status.name for status in motions.status]
-    ['INTERRUPTED', 'INTERRUPTED']
-    """
-
-    def __init__(self) -> None:
-        self.array = np.zeros(1, np.int64)
-
-    def set(self) -> None:
-        """Stop the motions with the status ``INTERRUPTED``; in Python, after the current one."""
-        self.array[0] = 1
-
-    @property
-    def is_set(self) -> bool:
-        """Whether the motions are to stop."""
-        return bool(self.array[0])
 
 
 @dataclass(frozen=True)
@@ -116,7 +90,7 @@ class EnsembleRun:
                 problem = replace(self.problem.with_params(params), start=start)
                 outcome = Outcome.at_start(problem)
                 try:
-                    python_loop.run(problem, outcome)
+                    python_loop.run(problem, outcome, self.stop)
                 finally:
                     self._store(outcome, k)
         finally:

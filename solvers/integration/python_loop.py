@@ -9,6 +9,7 @@ from solvers.integration import scipy_loop
 from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
+from solvers.integration.stop_flag import StopFlag
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
 from solvers.runge_kutta.tableau import Tableau
@@ -92,10 +93,14 @@ class Attempts:
         return max(guess(rhs, start.t, start.y, start.derivative, duration), 2 * shortest)
 
 
-def run(problem: Problem, outcome: Outcome) -> None:
-    """Integrate `problem`, by SciPy if it has the method; `outcome` holds the results so far."""
+def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> None:
+    """Integrate `problem`, by SciPy if it has the method; `outcome` holds the results so far.
+
+    Once `stop` is set, the integration ends with the last step.
+    """
+    stop = stop or StopFlag()
     if not isinstance(problem.method, Tableau):
-        scipy_loop.run(problem, outcome)
+        scipy_loop.run(problem, outcome, stop)
         return
     stepper = Stepper(problem.method, problem.form.rhs, problem.form.jacobian)
     controller = None
@@ -103,12 +108,12 @@ def run(problem: Problem, outcome: Outcome) -> None:
         controller = Controller(problem.method.error_order, problem.rtol, problem.atol)
     attempts = Attempts(stepper, controller, problem.form.normalised)
     try:
-        outcome.end_with(_run(problem, outcome, attempts), problem)
+        outcome.end_with(_run(problem, outcome, attempts, stop), problem)
     finally:
         outcome.nfev, outcome.njev = stepper.nfev, stepper.njev
 
 
-def _run(problem: Problem, outcome: Outcome, attempts: Attempts) -> Status:
+def _run(problem: Problem, outcome: Outcome, attempts: Attempts, stop: StopFlag) -> Status:
     recorder, (begin, end) = Recorder(problem, outcome), problem.span
     if begin == end:
         return Status.FINISHED
@@ -120,6 +125,8 @@ def _run(problem: Problem, outcome: Outcome, attempts: Attempts) -> Status:
     shortest, failures = shortest_step(begin, end), 0
     h = problem.h or attempts.first_step_size(point, end, shortest)
     while point.t != end:
+        if stop.is_set:
+            return Status.INTERRUPTED
         if outcome.steps == problem.max_steps:
             return Status.STEP_LIMIT
         t = _step_end(problem, point.t, h, outcome.steps)

@@ -9,23 +9,26 @@ from scipy import integrate
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
+from solvers.integration.stop_flag import StopFlag
 from solvers.runge_kutta.stepper import NotFiniteError, Rhs, evaluated
 
 
-def run(problem: Problem, outcome: Outcome) -> None:
-    """Integrate `problem`; `outcome` holds the results so far at any time."""
+def run(problem: Problem, outcome: Outcome, stop: StopFlag) -> None:
+    """Integrate `problem` until `stop` is set; `outcome` holds the results so far at any time."""
     outcome.backend = "scipy"
     try:
-        outcome.end_with(_run(problem, outcome, Recorder(problem, outcome)), problem)
+        outcome.end_with(_run(problem, outcome, Recorder(problem, outcome), stop), problem)
     except NotFiniteError:
         outcome.status = Status.NOT_FINITE
 
 
-def _run(problem: Problem, outcome: Outcome, recorder: Recorder) -> Status:
+def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag) -> Status:
     if problem.span[0] == problem.span[1]:
         return Status.FINISHED
     solver = _solver(problem, outcome, recorder.y)
     while solver.status == "running":
+        if stop.is_set:
+            return Status.INTERRUPTED
         if outcome.steps == problem.max_steps:
             return Status.STEP_LIMIT
         solver.step()

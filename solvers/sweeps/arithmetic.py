@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.integration import compiled_loop, validation
-from solvers.integration.ensemble_run import StopFlag
 from solvers.integration.problem import Options
+from solvers.integration.stop_flag import StopFlag
 from solvers.sweeps.axes import Array
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import computed, mean_evaluations, run_chunk

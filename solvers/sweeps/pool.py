@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.integration import validation
-from solvers.integration.ensemble_run import StopFlag
+from solvers.integration.stop_flag import StopFlag
 from solvers.sweeps.arithmetic import first_motions, run_equal_chunk
 from solvers.sweeps.axes import Array
 from solvers.sweeps.sweep import Sweep

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.integration.ensemble import ensemble
-from solvers.integration.ensemble_run import StopFlag
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.predictability import ignore_predictability
 from solvers.integration.solution import Status
+from solvers.integration.stop_flag import StopFlag
 from solvers.sweeps.axes import Array
 from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.maps import Motions
