@@ -48,7 +48,7 @@ def path(kind: str, name: str, folder: Path) -> Path:
 
 def read_table(path: Path, hint: str) -> dict[str, Any]:
     """The table of a TOML file; `hint` ends the message about a file that is not TOML."""
-    content = _content(path)
+    content = read_bytes(path, MAX_BYTES)
     try:
         text = content.decode("utf-8-sig")  # without a byte-order mark, which editors may write
         if LONG_KEY.search(text):
@@ -58,14 +58,14 @@ def read_table(path: Path, hint: str) -> dict[str, Any]:
         raise InputError(f"{path} is not valid TOML: {error}; {hint}") from error
 
 
-def _content(path: Path) -> bytes:
-    """The content of a regular file of up to `MAX_BYTES` bytes."""
+def read_bytes(path: Path, most: int) -> bytes:
+    """The content of a regular file of up to `most` bytes."""
     if not S_ISREG(path.stat().st_mode):  # a pipe or device may never end
         raise InputError(f"{path} is no file")
     with open(path, "rb") as file:
-        content = file.read(MAX_BYTES + 1)
-    if len(content) > MAX_BYTES:
-        raise InputError(f"{path} has more than {MAX_BYTES} bytes")
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise InputError(f"{path} has more than {most} bytes")
     return content
 
 

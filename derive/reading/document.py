@@ -1,0 +1,106 @@
+"""Documents with formulas: displays, inline formulas, and the places where they stand."""
+
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, NamedTuple, TypeAlias
+
+Kind: TypeAlias = Literal["latex", "markdown", "restructuredtext", "html", "notebook"]
+
+
+class Place(NamedTuple):
+    """Line and column, both counted from 1; in a notebook they refer to a cell."""
+
+    line: int
+    column: int
+    cell: int = 0
+
+
+@dataclass(frozen=True)
+class Display:
+    r"""A formula between delimiters.
+
+    Attributes
+    ----------
+    number
+        Of displays, counted from 1; 0 for an inline formula.
+    line, column
+        Of the first character of `latex`, counted from 1; in a notebook, within the cell.
+    start
+        Of `latex` in the text of the document. Spaces replace characters that do not belong to the
+        LaTeX, so that position `i` in `latex` is position ``start + i`` in the text.
+    latex
+        The LaTeX between the delimiters; with the delimiters if they are an environment.
+    delimiter
+        The opening delimiter, such as ``$$``, ``\[``, ``align*``, ````` ```math `````.
+    cell
+        Number of the notebook's cell, counted from 1; 0 in other documents.
+    """
+
+    number: int
+    line: int
+    column: int
+    start: int
+    latex: str
+    delimiter: str
+    is_inline: bool = False
+    cell: int = 0
+
+
+@dataclass(frozen=True)
+class CodeCell:
+    """A program in a notebook, which starts at `start` in the text of the document."""
+
+    number: int
+    start: int
+    language: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Document:
+    r"""The formulas of a file, in order.
+
+    Attributes
+    ----------
+    file
+        Path of the file.
+    text
+        The text that positions refer to; of a notebook, the sources of its cells, one below the
+        other.
+    displays
+        Displays and inline formulas.
+    definitions
+        Definitions of macros in LaTeX, such as ``\newcommand{\q}{\theta_1}``.
+    notes
+        Remarks on parts that are not read.
+    cells
+        For each cell of a notebook, where it starts in `text`.
+    programs
+        The code cells of a notebook.
+    """
+
+    file: str
+    kind: Kind
+    text: str
+    displays: tuple[Display, ...]
+    definitions: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    cells: tuple[int, ...] = ()
+    programs: tuple[CodeCell, ...] = ()
+
+    @cached_property
+    def _lines(self) -> list[int]:
+        """The position at which each line starts."""
+        starts = [0]
+        while found := self.text.find("\n", starts[-1]) + 1:
+            starts.append(found)
+        return starts
+
+    def place(self, position: int) -> Place:
+        """The place of a position in the text."""
+        line = bisect_right(self._lines, position)
+        column = position - self._lines[line - 1] + 1
+        cell = bisect_right(self.cells, position)
+        before = bisect_right(self._lines, self.cells[cell - 1]) - 1 if cell else 0
+        return Place(line - before, column, cell)

@@ -1,0 +1,138 @@
+"""Documents of any kind as text with displays; nothing that they contain is executed."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import accumulate
+from pathlib import Path
+from types import ModuleType
+
+from derive.reading.document import CodeCell, Display, Document, Kind
+from derive.reading.formats import html, markdown, notebook, restructuredtext, tex
+from derive.reading.scanning import Excerpt
+from solvers.io.toml_input import InputError, read_bytes
+
+KINDS: dict[str, Kind] = {
+    ".tex": "latex",
+    ".md": "markdown",
+    ".markdown": "markdown",
+    ".txt": "markdown",
+    ".rst": "restructuredtext",
+    ".html": "html",
+    ".htm": "html",
+    ".ipynb": "notebook",
+}
+FORMATS: dict[Kind, ModuleType] = {
+    "latex": tex,
+    "markdown": markdown,
+    "restructuredtext": restructuredtext,
+    "html": html,
+    "notebook": markdown,
+}
+#: Bytes of the largest document and of the largest notebook, most of which are outputs.
+MAX_BYTES, MAX_NOTEBOOK_BYTES = 4_000_000, 20_000_000
+#: Displays and inline formulas of a document.
+MAX_FORMULAS = 20_000
+#: Displays without an end that are noted.
+MAX_NOTES = 20
+
+
+def read_document(path: str | os.PathLike[str]) -> Document:
+    """Read the formulas of a document, whose kind is that of its file's suffix.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, its kind is unknown, it is too large, or it is no text.
+    """
+    file = Path(path)
+    kind = KINDS.get(file.suffix.lower())
+    if kind is None:
+        raise InputError(f"{file} is no document: its name must end in {', '.join(KINDS)}")
+    most = MAX_NOTEBOOK_BYTES if kind == "notebook" else MAX_BYTES
+    try:
+        text = _text(file, read_bytes(file, most))
+    except OSError as error:
+        raise InputError(f"{file}: {error.strerror or error}") from error
+    return _notebook(file, text) if kind == "notebook" else _document(file, kind, text)
+
+
+def _text(file: Path, content: bytes) -> str:
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")  # older documents; the formulas are in ASCII
+    if "\0" in text:
+        raise InputError(f"{file} is no text: it contains the character NUL")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _document(file: Path, kind: Kind, text: str) -> Document:
+    empty = Document(str(file), kind, text, ())
+    if kind == "latex":
+        return _scanned(empty, [(0, text)], tex.definitions(text), tex.notes(text))
+    return _scanned(empty, [(0, text)], tex.definitions(text, comment="(?!)"), ())
+
+
+def _notebook(file: Path, content: str) -> Document:
+    try:
+        cells = notebook.cells(content)
+    except ValueError as error:
+        raise InputError(f"{file}: {error}") from error
+    starts = tuple(accumulate((len(cell.text) + 1 for cell in cells), initial=0))[:-1]
+    placed = list(enumerate(zip(starts, cells, strict=True), 1))
+    empty = Document(
+        str(file),
+        "notebook",
+        "\n".join(cell.text for cell in cells),
+        (),
+        cells=starts,
+        programs=tuple(CodeCell(n, at, c.language, c.text) for n, (at, c) in placed if c.language),
+    )
+    parts = [(start, cell.text) for _, (start, cell) in placed if cell.is_markdown]
+    definitions = [one for _, part in parts for one in tex.definitions(part, comment="(?!)")]
+    return _scanned(empty, parts, tuple(definitions), ())
+
+
+def _scanned(
+    document: Document,
+    parts: Sequence[tuple[int, str]],
+    definitions: tuple[str, ...],
+    notes: tuple[str, ...],
+) -> Document:
+    """The document with the formulas of its parts, each of which starts at a position."""
+    form = FORMATS[document.kind]
+    displays: list[Display] = []
+    unclosed = []
+    number = 0
+    for offset, part in parts:
+        for found in form.excerpts(part):
+            if not isinstance(found, Excerpt):
+                place = document.place(offset + found.start)
+                unclosed.append(f"line {place.line}: {found.delimiter} is not closed")
+                continue
+            decoded = form.decoded(part, found)
+            latex = decoded.strip()
+            if not latex:
+                continue
+            start = offset + found.start + len(decoded) - len(decoded.lstrip())
+            number += not found.is_inline
+            displays.append(
+                Display(
+                    0 if found.is_inline else number,
+                    *document.place(start)[:2],
+                    start,
+                    latex,
+                    found.delimiter,
+                    found.is_inline,
+                    document.place(start).cell,
+                )
+            )
+            if len(displays) > MAX_FORMULAS:
+                raise InputError(f"{document.file} has more than {MAX_FORMULAS} formulas")
+    return replace(
+        document,
+        displays=tuple(displays),
+        definitions=definitions,
+        notes=(*notes, *unclosed[:MAX_NOTES]),
+    )

@@ -1,0 +1,117 @@
+r"""Markdown: ``$$``, ``\[``, fences, environments; in code there are no formulas."""
+
+import re
+from collections.abc import Iterator
+
+from derive.reading.formats import html, restructuredtext
+from derive.reading.formats.tex import environments
+from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unclosed, scanned
+
+#: The start of a line in a list or a quotation; an item of a list up to its text.
+MARGIN = r"^[ \t>]*+(?:(?:[-*+]|\d{1,9}[.)])[ \t]++)?"
+LIST_ITEM = re.compile(r"[ \t]*+(?:[-*+]|\d{1,9}[.)])[ \t]++(?=\S)")
+INDENTED = "    "
+QUOTED = re.compile(r"^[ \t]*+>[ \t>]*+", re.M)
+#: Backslashes that Markdown renderers remove, and the character that they leave.
+ESCAPES = re.compile(r"(?<!\\)\\([_*])|\\\\(\\\\)")
+DOUBLED = re.compile(r"\\(\\(?:\\\\)?[{}|,;:!%&_#$]?)")
+#: Brackets in a text may be escaped; a formula has a relation or a command.
+FORMULA = re.compile(r"=|\\[A-Za-z]")
+#: A tag on one line.
+TAG = r"</?[A-Za-z][^<>$\n]*+>"
+
+
+def _fence_end(opening: re.Match[str]) -> str:
+    mark = re.findall(r"`{3,}|~{3,}", opening.group())[0]
+    return rf"(?P<end>^[ \t>]*+{mark[0]}{{{len(mark)},}}[ \t]*+$)"
+
+
+def _code_end(opening: re.Match[str]) -> str:
+    return rf"{_fence_end(opening)}|(?P<stop>\Z)"
+
+
+def _span_end(opening: re.Match[str]) -> str:
+    return rf"(?P<end>(?<!`){opening.group()}(?!`))|(?P<stop>{BLANK_LINE})"
+
+
+TOKENS = (
+    Token(MARGIN + r"(?:`{3,}|~{3,})[ \t]*+(?:math|\{math\})[ \t]*+$", _fence_end, "```math"),
+    Token(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end),
+    Token("<!--", "(?P<end>-->)"),
+    Token(html.RAW, html.raw_end),
+    Token(TAG),
+    # inline formulas of GitHub and of Documenter.jl; code
+    Token(r"\$`", rf"(?P<end>`\$)|(?P<stop>{BLANK_LINE})", "$`", is_inline=True),
+    Token(r"(?<!`)``(?!`)(?=[^`\n]*\\[A-Za-z])", _span_end, "``", is_inline=True),
+    Token(r"(?<!`)`{1,3}(?!`)", _span_end),
+    # brackets whose backslash is escaped
+    Token(r"\\\\\[", r"\\{4}|(?P<end>\\\\\])|(?P<stop>\\\\\[)", r"\\["),
+    Token(r"\\\\\(", rf"\\{{4}}|(?P<end>\\\\\))|(?P<stop>\\\\\(|{BLANK_LINE})", r"\\(", True),
+    Token(r"\\[\\$`]"),
+    Token(r"\$\$", r"\\.|(?P<end>\$\$)", "$$"),
+    Token(r"\\\[", r"\\\\|(?P<end>\\\])|(?P<stop>\\\[)", r"\["),
+    Token(r"\\\(", rf"\\\\|(?P<end>\\\))|(?P<stop>\\\(|{BLANK_LINE})", r"\(", is_inline=True),
+    # a price ends with a space or before a digit, and so does no formula
+    Token(
+        r"\$(?=[^\s$])",
+        rf"\\.|(?P<end>(?<!\s)\$(?![\d$]))|(?P<stop>\$|{BLANK_LINE})",
+        "$",
+        is_inline=True,
+    ),
+    Token(r"\$(?=[ \t])", r"\\.|(?P<end>(?<=[ \t])\$(?!\d))|(?P<stop>\$|\n)", "$", is_inline=True),
+    *environments(r"\\\\"),
+)
+
+
+def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
+    """The formulas of a text."""
+    code = _indented_code(text)
+    indented = Token("^(?: {4}| {0,3}\t)", "(?P<end>$)", applies=lambda one: one.start() in code)
+    for found in scanned(text, (indented, *TOKENS)):
+        if (
+            isinstance(found, Unclosed)
+            or found.delimiter != r"\["
+            or FORMULA.search(text, found.start, found.end)
+        ):
+            yield found
+
+
+def _indented_code(text: str) -> frozenset[int]:
+    """Where lines of indented code start: after an empty line, and four columns into the text."""
+    starts, position, margin = [], 0, 0
+    is_code_allowed = True
+    for line in text.split("\n"):
+        spaced = line.expandtabs(4)
+        indentation = len(spaced) - len(spaced.lstrip())
+        if not line.strip():
+            is_code_allowed = True
+        elif item := LIST_ITEM.match(spaced):
+            if indentation < margin + 4 or not is_code_allowed:
+                margin, is_code_allowed = item.end(), False
+            else:
+                starts.append(position)
+        else:
+            if is_code_allowed and indentation < margin:
+                margin = 0
+            if is_code_allowed and indentation >= margin + 4:
+                starts.append(position)
+            else:
+                is_code_allowed = False
+        position += len(line) + 1
+    return frozenset(starts)
+
+
+def decoded(text: str, excerpt: Excerpt) -> str:
+    """The LaTeX after Markdown's own escapes; the length stays the same."""
+    latex = text[excerpt.start : excerpt.end]
+    if QUOTED.match(text, text.rfind("\n", 0, excerpt.start) + 1):
+        latex = QUOTED.sub(lambda margin: " " * len(margin[0]), latex)
+    if excerpt.delimiter == "```math":
+        return restructuredtext.options_removed(latex)
+    escapes = DOUBLED if excerpt.delimiter in (r"\\[", r"\\(") else ESCAPES
+    return html.characters(escapes.sub(_unescaped, latex))
+
+
+def _unescaped(escaped: re.Match[str]) -> str:
+    kept = next(filter(None, escaped.groups()))
+    return kept.rjust(len(escaped[0]))

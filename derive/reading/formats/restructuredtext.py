@@ -1,0 +1,46 @@
+"""reStructuredText: the directive ``math`` and the role ``math``."""
+
+import re
+from collections.abc import Iterator
+
+from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unclosed, scanned
+
+CODE = (
+    "code|code-block|sourcecode|literalinclude|parsed-literal|highlight|raw|ipython|doctest|"
+    "testcode|testsetup|testoutput|plot|jupyter-execute|csv-table|graphviz|tikz"
+)
+OPTION = re.compile(r"^[ \t]*+:[\w-]++:[^\n]*+$", re.M)
+
+
+def _block_end(opening: re.Match[str]) -> str:
+    """The first line with text that is indented no more than the opening."""
+    line = opening.group()
+    indentation = line[: len(line) - len(line.lstrip(" \t"))]
+    return rf"(?P<end>^(?!{indentation}[ \t]|[ \t]*+$)|\Z)"
+
+
+TOKENS = (
+    Token(r"^[ \t]*+\.\.[ \t]++math::", _block_end, ".. math::"),
+    Token(rf"^[ \t]*+\.\.[ \t]++(?:{CODE})::[^\n]*+\n", _block_end),
+    # a comment: no directive, target, footnote or substitution
+    Token(r"^[ \t]*+\.\.(?![^ \t\n])(?![ \t]++(?:[\w:-]+::|[\[_|]))[^\n]*+\n", _block_end),
+    # a paragraph that introduces a literal block
+    Token(r"^(?![ \t]*+\.\.)[^\n]*?::[ \t]*+\n(?=[ \t]*+\n)", _block_end),
+    Token(r":math:`", rf"(?P<end>`)|(?P<stop>{BLANK_LINE})", ":math:", is_inline=True),
+    Token(r"``", rf"(?P<end>``)|(?P<stop>{BLANK_LINE})"),
+)
+
+
+def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
+    """The formulas of a text."""
+    return scanned(text, TOKENS)
+
+
+def decoded(text: str, excerpt: Excerpt) -> str:
+    """The LaTeX without the options of a directive; the length stays the same."""
+    return options_removed(text[excerpt.start : excerpt.end])
+
+
+def options_removed(latex: str) -> str:
+    """Spaces in place of lines such as ``:label: energy``."""
+    return OPTION.sub(lambda option: " " * len(option[0]), latex)

@@ -1,0 +1,101 @@
+r"""LaTeX: displays, inline formulas, definitions of macros.
+
+Comments and verbatim text are skipped. ``\input`` and ``\include`` are not followed.
+"""
+
+import re
+from collections.abc import Iterator
+
+from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unclosed, environment, scanned
+
+#: Escaped characters, which are no delimiters; comments, up to the end of the line.
+ESCAPED, COMMENT = r"\\[\\$%]", r"%[^\n]*+"
+VERBATIM = r"\\begin[ \t]*+\{(?:(?:verbatim|Verbatim|lstlisting|minted|comment|filecontents)\*?)\}"
+DISPLAYS = (
+    r"\\begin[ \t]*+\{(?:(?:equation|align|gather|multline|eqnarray|flalign|x?alignat|dmath|"
+    r"IEEEeqnarray)\*?|displaymath|empheq)\}"
+)
+BRACES = "[^{}]*+"
+for _ in range(4):  # nested to this depth
+    BRACES = rf"(?:[^{{}}]|\{{{BRACES}\}})*+"
+MACRO = r"\\[A-Za-z@]++"
+DEFINITION = (
+    rf"(?:\\(?:(?:re|provide)?newcommand|DeclareRobustCommand|DeclareMathOperator)\*?\s*+"
+    rf"(?:\{{\s*+{MACRO}\s*+\}}|{MACRO})\s*+(?:\[\d\]\s*+)?(?:\[[^\]\n]*+\]\s*+)?"
+    rf"|\\def\s*+{MACRO}[#\d]*+)\{{{BRACES}\}}"
+)
+SHORTHAND = re.compile(rf"({MACRO})[ \t}}]*+\{{\s*+(\\(begin|end)\s*+\{{([a-z]+\*?)\}})\s*+\}}")
+BODY = re.compile(r"^[^%\n]*?\\begin\{document\}", re.M)
+BODY_END = re.compile(r"^[^%\n]*?\\end\{document\}", re.M)
+INCLUDED = re.compile(r"^[^%\n]*?(\\(?:input|include|subfile)\b[^%\n]{0,80})", re.M)
+
+
+def definitions(text: str, comment: str = COMMENT) -> tuple[str, ...]:
+    """The definitions of macros outside of comments."""
+    found = re.finditer(rf"(?s){ESCAPED}|{comment}|(?P<definition>{DEFINITION})", text)
+    return tuple(one["definition"] for one in found if one["definition"])
+
+
+def environments(passed: str) -> tuple[Token, ...]:
+    """Environments of formulas, at whose end `passed` is passed over."""
+
+    def closing(opening: re.Match[str]) -> str:
+        return rf"{passed}|(?P<end>\\end[ \t]*+\{{{re.escape(environment(opening))}\}})"
+
+    inline = r"\\begin[ \t]*+\{math\}"
+    return (
+        Token(DISPLAYS, closing, r"\begin", is_environment=True),
+        Token(inline, closing, r"\begin", is_inline=True, is_environment=True),
+    )
+
+
+def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
+    """The formulas of a text in LaTeX: between the document's begin and end if it has them."""
+    passed = rf"{ESCAPED}|{COMMENT}"
+    tokens = (
+        Token(ESCAPED),
+        Token(COMMENT),
+        Token(DEFINITION),
+        Token(r"\\(?:verb|lstinline)\*?([^\w\s*])[^\n]*?", _verb),
+        Token(VERBATIM, lambda one: rf"(?P<end>\\end\{{{re.escape(environment(one))}\}})"),
+        Token(r"\\iffalse\b", r"(?P<end>\\fi\b)"),
+        Token(r"\$\$", rf"{passed}|(?P<end>\$\$)", "$$"),
+        Token(r"\$", rf"{passed}|(?P<end>\$)|(?P<stop>{BLANK_LINE})", "$", is_inline=True),
+        Token(r"\\\[", rf"{passed}|(?P<end>\\\])|(?P<stop>\\\[)", r"\["),
+        Token(
+            r"\\\(", rf"{passed}|(?P<end>\\\))|(?P<stop>\\\(|{BLANK_LINE})", r"\(", is_inline=True
+        ),
+        *environments(passed),
+        *_shorthands(text, passed),
+    )
+    begin, end = BODY.search(text), BODY_END.search(text)
+    start = begin.end() if begin else 0
+    yield from scanned(text, tokens, start, end.start() if end else None)
+
+
+def notes(text: str) -> tuple[str, ...]:
+    """Files that the document includes, which are not read."""
+    found = [one[1].strip() for one in INCLUDED.finditer(text)]
+    more = f" and {len(found) - 5} more" if len(found) > 5 else ""
+    return (f"not followed: {', '.join(found[:5])}{more}",) if found else ()
+
+
+def _verb(opening: re.Match[str]) -> str:
+    return rf"(?P<end>{re.escape(opening.group()[-1])}|$)"
+
+
+def _shorthands(text: str, passed: str) -> Iterator[Token]:
+    r"""Delimiters such as ``\be`` and ``\ee`` that the document defines for environments."""
+    macros: dict[tuple[str, str], list[str]] = {}
+    for definition in definitions(text):
+        if found := SHORTHAND.search(definition):
+            macros.setdefault((found[3], found[4]), []).append(re.escape(found[1]))
+    for (word, name), opening in macros.items():
+        if word == "begin" and (end := macros.get(("end", name))):
+            closing = rf"{passed}|(?P<end>(?:{'|'.join(end)})(?![A-Za-z]))"
+            yield Token(rf"(?:{'|'.join(opening)})(?![A-Za-z])", closing, name)
+
+
+def decoded(text: str, excerpt: Excerpt) -> str:
+    """The LaTeX as it stands, with its comments."""
+    return text[excerpt.start : excerpt.end]
