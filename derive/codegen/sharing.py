@@ -7,15 +7,17 @@ corrections keeps the work nearly linear in the number of pairs.
 """
 
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
+from math import gcd
 
 from derive.codegen.operation import Operation, Product, Sum
 
-#: Whether it is in a sum, two operands, and in a sum the ratio of their coefficients.
-Pair = tuple[bool, int, int, Fraction]
+#: Whether it is in a sum, two operands, and the ratio of their coefficients: its numerator and
+#: denominator, since fractions are compared and hashed slowly.
+Pair = tuple[bool, int, int, int, int]
 ONE = Fraction(1)
 
 
@@ -26,36 +28,59 @@ def share_pairs(operations: dict[int, Operation]) -> None:
     for number, operation in operations.items():
         for pair in _pairs(operation, common, operation.operands):
             holders.setdefault(pair, set()).add(number)
-    queue = [(-len(numbers), pair) for pair, numbers in holders.items() if len(numbers) > 1]
-    heapify(queue)
-    known = {operation: number for number, operation in operations.items()}
-    while queue:
-        count, pair = heappop(queue)
-        if -count != len(holders[pair]):
-            if len(holders[pair]) > 1:
-                heappush(queue, (-len(holders[pair]), pair))
+    queue = _Queue(holders)
+    known = {operation: n for n, operation in operations.items() if len(operation.operands) == 2}
+    while queue.entries:
+        count, pair = queue.pop()
+        if count != len(holders[pair]):
+            queue.push(pair)
             continue
         shared = _operation_of(pair, operations)
         if shared not in known:
             known[shared] = len(operations)
             operations[len(operations)] = shared
         number = known[shared]
-        is_sum, a, b, _ = pair
+        is_sum, a, b, *_ = pair
         common.add((is_sum, number))
         for holder in sorted(holders[pair] - {number}):
             # pairs of other operands stay
             for old in _pairs(operations[holder], common, (a, b, number)):
                 holders[old].discard(holder)
-            known.pop(operations[holder], None)
+            if len(operations[holder].operands) == 2:
+                known.pop(operations[holder], None)
             operations[holder] = _without(operations[holder], pair, number)
-            known.setdefault(operations[holder], holder)
+            if len(operations[holder].operands) == 2:
+                known.setdefault(operations[holder], holder)
             for new in _pairs(operations[holder], common, (a, b, number)):
                 holders.setdefault(new, set()).add(holder)
-                if len(holders[new]) > 1:
-                    heappush(queue, (-len(holders[new]), new))
+                queue.push(new)
         holders[pair].add(number)
-        if len(holders[pair]) > 1:  # a product that contains the pair twice
-            heappush(queue, (-len(holders[pair]), pair))
+        queue.push(pair)  # a product may contain the pair twice
+
+
+class _Queue:
+    """Pairs with several holders, in order of their numbers of holders when they were added."""
+
+    def __init__(self, holders: Mapping[Pair, Collection[int]]) -> None:
+        self._holders = holders
+        self.entries = [
+            (-len(numbers), pair) for pair, numbers in holders.items() if len(numbers) > 1
+        ]
+        heapify(self.entries)
+        self._queued = set(self.entries)
+
+    def push(self, pair: Pair) -> None:
+        """Add a pair with its present number of holders."""
+        entry = -len(self._holders[pair]), pair
+        if len(self._holders[pair]) > 1 and entry not in self._queued:
+            self._queued.add(entry)
+            heappush(self.entries, entry)
+
+    def pop(self) -> tuple[int, Pair]:
+        """Remove the first pair, with the number of holders when it was added."""
+        entry = heappop(self.entries)
+        self._queued.remove(entry)
+        return -entry[0], entry[1]
 
 
 def _common_operands(operations: dict[int, Operation]) -> set[tuple[bool, int]]:
@@ -82,28 +107,36 @@ def _pairs(
         case Product(operands):
             # of a power, two factors are sufficient
             factors = [n for n, count in Counter(operands).items() for _ in range(min(count, 2))]
-            terms = [(n, ONE) for n in sorted(factors) if (False, n) in common]
+            terms = [(n, 1, 1) for n in sorted(factors) if (False, n) in common]
         case Sum(operands, _, coefficients):
             pairs = sorted(zip(operands, coefficients, strict=True))
-            terms = [(n, c) for n, c in pairs if (True, n) in common]
+            terms = [(n, *c.as_integer_ratio()) for n, c in pairs if (True, n) in common]
         case _:
             return set()
     return {
-        (isinstance(operation, Sum), a, b, cb / ca)
-        for k, (b, cb) in enumerate(terms)
-        for a, ca in (terms[:k] if b in changed else [t for t in terms[:k] if t[0] in changed])
+        (isinstance(operation, Sum), a, b, *_ratio(above * lower, below * upper))
+        for k, (b, above, below) in enumerate(terms)
+        for a, upper, lower in (
+            terms[:k] if b in changed else [t for t in terms[:k] if t[0] in changed]
+        )
     }
 
 
+def _ratio(numerator: int, denominator: int) -> tuple[int, int]:
+    """Numerator and denominator of a fraction in lowest terms."""
+    divisor = gcd(numerator, denominator) if denominator > 0 else -gcd(numerator, denominator)
+    return numerator // divisor, denominator // divisor
+
+
 def _operation_of(pair: Pair, operations: dict[int, Operation]) -> Operation:
-    in_sum, a, b, ratio = pair
+    in_sum, a, b, *ratio = pair
     constant = operations[a].constant and operations[b].constant
-    return Sum((a, b), constant, (ONE, ratio)) if in_sum else Product((a, b), constant)
+    return Sum((a, b), constant, (ONE, Fraction(*ratio))) if in_sum else Product((a, b), constant)
 
 
 def _without(operation: Operation, pair: Pair, number: int) -> Operation:
     """`operation` with the two operands of `pair` replaced by operation `number`."""
-    _, a, b, _ = pair
+    _, a, b, *_ = pair
     if not isinstance(operation, Sum):
         factors = [*operation.operands, number]
         factors.remove(a)
