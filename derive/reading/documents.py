@@ -9,7 +9,7 @@ from types import ModuleType
 
 from derive.reading.document import CodeCell, Display, Document, Kind
 from derive.reading.formats import html, markdown, notebook, restructuredtext, tex
-from derive.reading.scanning import Excerpt
+from derive.reading.scanning import Excerpt, Unclosed
 from solvers.io.toml_input import InputError, read_bytes
 
 KINDS: dict[str, Kind] = {
@@ -30,7 +30,7 @@ FORMATS: dict[Kind, ModuleType] = {
     "notebook": markdown,
 }
 #: Bytes of the largest document and of the largest notebook, most of which are outputs.
-MAX_BYTES, MAX_NOTEBOOK_BYTES = 4_000_000, 20_000_000
+MAX_BYTES, MAX_NOTEBOOK_BYTES = 2_000_000, 20_000_000
 #: Displays and inline formulas of a document.
 MAX_FORMULAS = 20_000
 #: Displays without an end that are noted.
@@ -103,36 +103,30 @@ def _scanned(
     """The document with the formulas of its parts, each of which starts at a position."""
     form = FORMATS[document.kind]
     displays: list[Display] = []
-    unclosed = []
-    number = 0
-    for offset, part in parts:
-        for found in form.excerpts(part):
-            if not isinstance(found, Excerpt):
-                place = document.place(offset + found.start)
-                unclosed.append(f"line {place.line}: {found.delimiter} is not closed")
-                continue
-            decoded = form.decoded(part, found)
-            latex = decoded.strip()
-            if not latex:
-                continue
-            start = offset + found.start + len(decoded) - len(decoded.lstrip())
-            number += not found.is_inline
-            displays.append(
-                Display(
-                    0 if found.is_inline else number,
-                    *document.place(start)[:2],
-                    start,
-                    latex,
-                    found.delimiter,
-                    found.is_inline,
-                    document.place(start).cell,
-                )
-            )
-            if len(displays) > MAX_FORMULAS:
-                raise InputError(f"{document.file} has more than {MAX_FORMULAS} formulas")
+    unclosed: list[str] = []
+    found = ((offset, part, one) for offset, part in parts for one in form.excerpts(part))
+    for count, (offset, part, one) in enumerate(found):
+        if count == MAX_FORMULAS:
+            raise InputError(f"{document.file} has more than {MAX_FORMULAS} formulas")
+        if isinstance(one, Unclosed):
+            place = document.place(offset + one.start)
+            unclosed.append(f"line {place.line}: {one.delimiter} is not closed")
+        elif latex := form.decoded(part, one).rstrip():
+            start = offset + one.start + len(latex) - len(latex.lstrip())
+            displays.append(_display(document, start, latex.lstrip(), one))
+    numbers = accumulate(int(not one.is_inline) for one in displays)
+    numbered = (
+        one if one.is_inline else replace(one, number=number)
+        for one, number in zip(displays, numbers, strict=True)
+    )
     return replace(
         document,
-        displays=tuple(displays),
+        displays=tuple(numbered),
         definitions=definitions,
         notes=(*notes, *unclosed[:MAX_NOTES]),
     )
+
+
+def _display(document: Document, start: int, latex: str, excerpt: Excerpt) -> Display:
+    line, column, cell = document.place(start)
+    return Display(0, line, column, start, latex, excerpt.delimiter, excerpt.is_inline, cell)

@@ -72,14 +72,15 @@ def scanned(
             continue
         marks = _expression(pattern).finditer(text, opening.end(), end)
         mark = next((one for one in marks if one.lastgroup), None)
-        if mark is None:
-            without_end.add(pattern)
-            if token.delimiter and not token.is_inline:
-                yield Unclosed(opening.start(), token.delimiter)
-        elif mark.lastgroup == "end":
+        if mark and mark.lastgroup == "end":
             start = max(mark.end(), start)
             if token.delimiter:
                 yield _excerpt(text, token, opening, mark)
+            continue
+        if not mark:
+            without_end.add(pattern)
+        if token.delimiter and not token.is_inline:
+            yield Unclosed(opening.start(), token.delimiter)
 
 
 def _excerpt(text: str, token: Token, opening: re.Match[str], mark: re.Match[str]) -> Excerpt:

@@ -2,6 +2,7 @@ r"""Markdown: ``$$``, ``\[``, fences, environments; in code there are no formula
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 from derive.reading.formats import html, restructuredtext
 from derive.reading.formats.tex import environments
@@ -12,11 +13,14 @@ MARGIN = r"^[ \t>]*+(?:(?:[-*+]|\d{1,9}[.)])[ \t]++)?"
 LIST_ITEM = re.compile(r"[ \t]*+(?:[-*+]|\d{1,9}[.)])[ \t]++(?=\S)")
 INDENTED = "    "
 QUOTED = re.compile(r"^[ \t]*+>[ \t>]*+", re.M)
-#: Backslashes that Markdown renderers remove, and the character that they leave.
-ESCAPES = re.compile(r"(?<!\\)\\([_*])|\\\\(\\\\)")
-DOUBLED = re.compile(r"\\(\\(?:\\\\)?[{}|,;:!%&_#$]?)")
+#: Backslashes that Markdown renderers remove, and the characters that they leave.
+SINGLE = r"(?<!\\)\\([_*])|\\\\(\\\\)"
+DOUBLED = re.compile(SINGLE + r"|\\(\\[{}|,;:!%&_#$])")
+ESCAPES = re.compile(SINGLE)
 #: Brackets in a text may be escaped; a formula has a relation or a command.
 FORMULA = re.compile(r"=|\\[A-Za-z]")
+#: Characters in which text beside a formula is looked for.
+NEAR = 100
 #: A tag on one line.
 TAG = r"</?[A-Za-z][^<>$\n]*+>"
 
@@ -68,12 +72,21 @@ def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
     code = _indented_code(text)
     indented = Token("^(?: {4}| {0,3}\t)", "(?P<end>$)", applies=lambda one: one.start() in code)
     for found in scanned(text, (indented, *TOKENS)):
-        if (
-            isinstance(found, Unclosed)
-            or found.delimiter != r"\["
-            or FORMULA.search(text, found.start, found.end)
-        ):
+        if isinstance(found, Unclosed):
             yield found
+        elif found.delimiter == "$$":
+            yield replace(found, is_inline=_is_in_sentence(text, found))
+        elif found.delimiter != r"\[" or FORMULA.search(text, found.start, found.end):
+            yield found
+
+
+def _is_in_sentence(text: str, excerpt: Excerpt) -> bool:
+    """Whether it is no equation, with text on its line: some renderers know no other delimiter."""
+    start, end = excerpt.start - 2, excerpt.end + 2
+    before = text[max(0, start - NEAR) : start].rpartition("\n")[2]
+    after = text[end : end + NEAR].partition("\n")[0]
+    has_text = any(map(str.isalnum, before + after))
+    return has_text and not set("=\n") & set(text[excerpt.start : excerpt.end])
 
 
 def _indented_code(text: str) -> frozenset[int]:
@@ -104,7 +117,7 @@ def _indented_code(text: str) -> frozenset[int]:
 def decoded(text: str, excerpt: Excerpt) -> str:
     """The LaTeX after Markdown's own escapes; the length stays the same."""
     latex = text[excerpt.start : excerpt.end]
-    if QUOTED.match(text, text.rfind("\n", 0, excerpt.start) + 1):
+    if "\n" in latex and QUOTED.match(text, text.rfind("\n", 0, excerpt.start) + 1):
         latex = QUOTED.sub(lambda margin: " " * len(margin[0]), latex)
     if excerpt.delimiter == "```math":
         return restructuredtext.options_removed(latex)

@@ -27,7 +27,7 @@ def cells(content: str) -> list[Cell]:
         language = _language(notebook)
         return [_cell(one, language) for one in notebook["cells"]]
     except (KeyError, TypeError, AttributeError, RecursionError, json.JSONDecodeError) as error:
-        raise ValueError(f"it is no Jupyter notebook of format 4 ({_cause(error)})") from error
+        raise ValueError("it is no Jupyter notebook of format 4") from error
 
 
 def _cell(cell: Any, language: str) -> Cell:
@@ -43,9 +43,5 @@ def _lines(text: str) -> str:
 
 def _language(notebook: Any) -> str:
     metadata = notebook.get("metadata", {})
-    information = metadata.get("language_info") or metadata.get("kernelspec") or {}
-    return str(information.get("name") or "python")
-
-
-def _cause(error: Exception) -> str:
-    return f"no {error}" if isinstance(error, KeyError) else str(error)[:80]
+    kernel, information = metadata.get("kernelspec", {}), metadata.get("language_info", {})
+    return str(kernel.get("language") or information.get("name") or "python").lower()

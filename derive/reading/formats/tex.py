@@ -56,7 +56,7 @@ def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
         Token(ESCAPED),
         Token(COMMENT),
         Token(DEFINITION),
-        Token(r"\\(?:verb|lstinline)\*?([^\w\s*])[^\n]*?", _verb),
+        Token(r"\\(?:verb|lstinline)\*?[^\w\s*]", _verb),
         Token(VERBATIM, lambda one: rf"(?P<end>\\end\{{{re.escape(environment(one))}\}})"),
         Token(r"\\iffalse\b", r"(?P<end>\\fi\b)"),
         Token(r"\$\$", rf"{passed}|(?P<end>\$\$)", "$$"),
