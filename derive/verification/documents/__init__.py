@@ -1,0 +1,1 @@
+"""Verdicts on the formulas of documents and programs."""
