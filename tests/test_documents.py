@@ -158,6 +158,22 @@ def test_displays_are_counted_and_inline_formulas_are_not(tmp_path: Path) -> Non
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("name", "display"),
+    [
+        ("a.tex", "$$ x = 1 $$"),
+        ("a.tex", r"\begin{align} x \end{align}"),
+        ("a.md", "```math\nx = 1\n```"),
+        ("a.html", '<script type="math/tex">x = 1</script'),
+    ],
+)
+def test_the_extent_of_a_display_includes_its_delimiters(
+    tmp_path: Path, name: str, display: str
+) -> None:
+    (one,) = read(tmp_path, name, f"so\n{display}\nis").displays
+    assert one.extent == (3, 3 + len(display))
+
+
 def test_positions_within_a_display_have_lines_and_columns(tmp_path: Path) -> None:
     document = read(tmp_path, "a.md", "a\r\n> $$\r\n> x &lt; y\\_1\r\n> z\r\n> $$\r\n")
     (display,) = document.displays

@@ -31,6 +31,8 @@ class Display:
         LaTeX, so that position `i` in `latex` is position ``start + i`` in the text.
     latex
         The LaTeX between the delimiters; with the delimiters if they are an environment.
+    extent
+        Start and end, with both delimiters, in the text of the document.
     delimiter
         The opening delimiter, such as ``$$``, ``\[``, ``align*``, ````` ```math `````.
     cell
@@ -42,6 +44,7 @@ class Display:
     column: int
     start: int
     latex: str
+    extent: tuple[int, int]
     delimiter: str
     is_inline: bool = False
     cell: int = 0

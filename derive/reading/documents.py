@@ -113,7 +113,7 @@ def _scanned(
             unclosed.append(f"line {place.line}: {one.delimiter} is not closed")
         elif latex := form.decoded(part, one).rstrip():
             start = offset + one.start + len(latex) - len(latex.lstrip())
-            displays.append(_display(document, start, latex.lstrip(), one))
+            displays.append(_display(document, start, latex.lstrip(), offset, one))
     numbers = accumulate(int(not one.is_inline) for one in displays)
     numbered = (
         one if one.is_inline else replace(one, number=number)
@@ -127,6 +127,16 @@ def _scanned(
     )
 
 
-def _display(document: Document, start: int, latex: str, excerpt: Excerpt) -> Display:
+def _display(document: Document, start: int, latex: str, offset: int, excerpt: Excerpt) -> Display:
     line, column, cell = document.place(start)
-    return Display(0, line, column, start, latex, excerpt.delimiter, excerpt.is_inline, cell)
+    return Display(
+        number=0,
+        line=line,
+        column=column,
+        start=start,
+        latex=latex,
+        extent=(offset + excerpt.extent[0], offset + excerpt.extent[1]),
+        delimiter=excerpt.delimiter,
+        is_inline=excerpt.is_inline,
+        cell=cell,
+    )

@@ -38,13 +38,13 @@ class Token:
 
 @dataclass(frozen=True)
 class Excerpt:
-    """The part of a text between two delimiters."""
+    """The part of a text between two delimiters; `extent` is the part with both of them."""
 
     start: int
     end: int
+    extent: tuple[int, int]
     delimiter: str
     is_inline: bool = False
-    opening: str = ""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def _excerpt(text: str, token: Token, opening: re.Match[str], mark: re.Match[str
     if token.inner:
         inner = _expression(token.inner).search(text, start, end)
         start, end = inner.span(1) if inner else (start, start)
-    return Excerpt(start, end, delimiter, token.is_inline, opening.group())
+    return Excerpt(start, end, (opening.start(), mark.end()), delimiter, token.is_inline)
 
 
 def environment(opening: re.Match[str]) -> str:
