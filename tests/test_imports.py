@@ -16,7 +16,7 @@ STANDARD = set(sys.stdlib_module_names)
 
 #: Packages that the modules of a package may import; solvers/app may import all of them.
 ALLOWED = {
-    "derive": {"derive", "sympy", "mpmath", "solvers.io"},  # mpmath is SymPy's arithmetic
+    "derive": {"derive", "sympy", "mpmath", "lark", "solvers.io"},  # mpmath is SymPy's arithmetic
     "generated": {"numpy"},
     "solvers": {"solvers", "numpy", "scipy", "matplotlib"},
 }

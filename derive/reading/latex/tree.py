@@ -181,9 +181,10 @@ Node: TypeAlias = (
 
 @dataclass(frozen=True)
 class Statement:
-    """Sides with relations between them: ``=``, ``:=``, ``~`` for ≈, ``<``, ``<=``, ``>``, ``>=``.
+    """Sides with relations between them.
 
-    A single expression has one side and no relation.
+    Relations are ``=``, ``:=``, ``~`` for ≈, ``<``, ``<=``, ``>``, ``>=``, ``!=``, ``->``, ``in``
+    and ``:``. A single expression has one side and no relation.
     """
 
     sides: tuple[Node, ...]

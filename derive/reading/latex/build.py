@@ -1,0 +1,232 @@
+"""Syntax trees from the rules of the grammar: one method a rule, with its children."""
+
+from dataclasses import dataclass, replace
+
+from derive.reading.latex.parts import Operator, Part, SumSign, Written, around, is_symbol, node
+from derive.reading.latex.products import applied, divided, fraction, product
+from derive.reading.latex.tokens import Unread
+from derive.reading.latex.tree import (
+    Application,
+    Call,
+    Dotted,
+    Letter,
+    Matrix,
+    Node,
+    Norm,
+    Number,
+    Power,
+    Root,
+    Span,
+    Sum,
+    Transpose,
+    Tuple,
+)
+
+
+class Build:
+    """The methods that the parser calls, in the order in which rules end."""
+
+    def expression(self, children: list[Part]) -> Part:
+        """Terms with signs."""
+        signs = [c for c in children if is_symbol(c, "SIGN")]
+        terms = [c for c in children if not is_symbol(c, "SIGN")]
+        if len(terms) == 1 and (not signs or signs[0].value == 1):
+            return terms[0]
+        leading = [1] if len(signs) < len(terms) else []
+        values = [*leading, *(sign.value for sign in signs)]
+        nodes = [node(term) for term in terms]
+        return Sum(tuple(zip(values, nodes, strict=True)), around(children))
+
+    def term(self, children: list[Part]) -> Part:
+        """Factors side by side, with signs of multiplication and slashes."""
+        if len(children) == 1:
+            return children[0]
+        return applied(divided(children))
+
+    def power(self, children: list[Part]) -> Node:
+        """A base with an exponent."""
+        base, _, exponent = children
+        return Power(node(base), node(exponent), around(children))
+
+    coefficient_power = accented_power = time_power = greek_power = power
+
+    def transposed(self, children: list[Part]) -> Node:
+        """A transposed matrix."""
+        return Transpose(node(children[0]), around(children))
+
+    def argument(self, children: list[Part]) -> Written:
+        """The content of the braces of an argument."""
+        return Written(node(children[1]), around(children), "argument")
+
+    def application(self, children: list[Part]) -> Node:
+        """A letter before brackets."""
+        head, _, items, _ = children
+        return Application(head.value, tuple(map(node, items)), around((head, children[-1])))
+
+    coefficient_application = accented_application = greek_application = application
+
+    def items(self, children: list[Part]) -> list[Part]:
+        """Expressions between commas."""
+        return [c for c in children if not is_symbol(c, "COMMA")]
+
+    def bracketed(self, children: list[Part]) -> Part:
+        """An expression in brackets, or several."""
+        first, items, last = children
+        span = around((first, last))
+        if len(items) > 1:
+            return Tuple(tuple(map(node, items)), span)
+        if isinstance(items[0], Operator | SumSign):
+            raise Unread("a derivative or a sum in brackets has no operand")
+        return Written(node(items[0]), span, "brackets")
+
+    def group(self, children: list[Part]) -> Part:
+        """An expression in braces."""
+        first, items, last = children
+        span = around((first, last))
+        if len(items) > 1:
+            return Tuple(tuple(map(node, items)), span)
+        if isinstance(items[0], Operator | SumSign):
+            return replace(items[0], span=span)
+        is_bracketed = isinstance(items[0], Written) and items[0].form == "brackets"
+        return Written(node(items[0]), span, "brackets" if is_bracketed else "braces")
+
+    def norm(self, children: list[Part]) -> Node:
+        """An expression between bars; of a matrix, its determinant."""
+        operand, span = node(children[1]), around((children[0], children[-1]))
+        return Call("det", operand, span) if isinstance(operand, Matrix) else Norm(operand, span)
+
+    def over(self, children: list[Part]) -> list[Part]:
+        r"""A fraction written with ``\over``."""
+        return [fraction(node(children[0]), node(children[2]), around(children))]
+
+    def fraction(self, children: list[Part]) -> Part:
+        """A quotient or a derivative."""
+        sign, numerator, denominator = children
+        span = around((sign, children[-1]))
+        return fraction(node(numerator), node(denominator), span)
+
+    def root(self, children: list[Part]) -> Node:
+        """A root."""
+        return Root(node(children[1]), children[0].value, around(children))
+
+    def dotted(self, children: list[Part]) -> Node:
+        """Dots over an expression."""
+        return Dotted(node(children[1]), children[0].value, around(children))
+
+    def matrix(self, children: list[Part]) -> Node:
+        """Rows between the start and the end of an environment."""
+        rows = tuple(c for c in children if isinstance(c, tuple))
+        if len({len(row) for row in rows}) > 1:
+            raise Unread("the rows of a matrix have different lengths")
+        span = around((children[0], children[-1]))
+        result = Matrix(rows, span)
+        return Call("det", result, span) if children[0].value == "vmatrix" else result
+
+    def row(self, children: list[Part]) -> tuple[Node, ...]:
+        """Entries of a matrix."""
+        return tuple(c for c in children if not is_symbol(c, "CELL"))
+
+    def cell(self, children: list[Part]) -> Node:
+        """An entry of a matrix."""
+        if not children:
+            raise Unread("an entry of a matrix is empty")
+        return node(children[0])
+
+    def sum(self, children: list[Part]) -> SumSign:
+        """The sign of a sum with its bounds."""
+        bounds = [c for c in children if isinstance(c, Bound)]
+        index = next((b.index for b in bounds if b.index), None)
+        lower = next((b.value for b in bounds if not b.is_upper), None)
+        upper = next((b.value for b in bounds if b.is_upper), None)
+        return SumSign(index, lower, upper, around(children))
+
+    def lower(self, children: list[Part]) -> "Bound":
+        """The index of a sum and its first value."""
+        index = node(children[2])
+        if not isinstance(index, Letter) or len(children) not in (4, 6):
+            raise Unread("the index of a sum is not a letter")
+        if len(children) == 6 and children[3].value != "=":
+            raise Unread("a sum over a condition")
+        value = node(children[4]) if len(children) == 6 else None
+        return Bound(value, around(children[1:]), index)
+
+    def upper(self, children: list[Part]) -> "Bound":
+        """The last value of the index of a sum."""
+        return Bound(node(children[1]), children[1].span, is_upper=True)
+
+    def call(self, children: list[Part]) -> Part:
+        """A function, its power and its argument."""
+        function, *powers, argument = children
+        span = around(children)
+        if isinstance(argument, Raised):
+            base = self.call([function, *powers, argument.argument])
+            return Power(node(base), node(argument.exponent), span)
+        is_bare = isinstance(argument, Written) and argument.form == "bare"
+        result: Node = Call(function.value, node(argument), span)
+        if powers:
+            result = Power(result, node(powers[0]), span)
+        return Written(result, span, "bare") if is_bare else result
+
+    def function_power(self, children: list[Part]) -> Written:
+        """The power of a function before its argument."""
+        _, exponent = children
+        if isinstance(exponent.node, Sum):
+            raise Unread("a negative power of a function before its argument")
+        return exponent
+
+    def function_argument(self, children: list[Part]) -> Part:
+        """The argument of a function."""
+        return children[0]
+
+    def raised_group(self, children: list[Part]) -> "Raised":
+        """A power behind braces, which is one of the function if the braces hold brackets."""
+        group, _, exponent = children
+        if not isinstance(group, Written) or group.form != "brackets":
+            raise Unread("an exponent of the function or of its argument")
+        return Raised(group, exponent, around(children))
+
+    def raised_accented(self, children: list[Part]) -> Written:
+        """A letter with dots, with its exponent."""
+        return Written(node(children[0]), children[0].span, "bare")
+
+    def bare(self, children: list[Part]) -> Written:
+        """An argument without brackets."""
+        factors: list[Node] = []
+        for child in children:
+            factors += child if isinstance(child, list) else [node(child)]
+        latin = [f for f in factors if not isinstance(f, Number) and not _is_pi(f)]
+        if len(latin) > 1 and not isinstance(children[-1], list):
+            raise Unread("where the argument of a function ends is ambiguous without brackets")
+        whole = product(factors)
+        return Written(whole, around(factors), "bare")
+
+    def scaled(self, children: list[Part]) -> Node:
+        """A number before a sign of multiplication, in an argument without brackets."""
+        return node(children[0])
+
+    def last(self, children: list[Part]) -> list[Node]:
+        """The end of an argument without brackets."""
+        return [node(child) for child in children]
+
+
+@dataclass(frozen=True)
+class Raised:
+    """The argument of a function whose value has the exponent behind it."""
+
+    argument: Part
+    exponent: Part
+    span: Span
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A bound of a sum."""
+
+    value: Node | None
+    span: Span
+    index: Letter | None = None
+    is_upper: bool = False
+
+
+def _is_pi(factor: Node) -> bool:
+    return isinstance(factor, Letter) and factor.identifier == "pi"

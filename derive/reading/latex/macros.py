@@ -1,0 +1,220 @@
+r"""Macros that a document defines, and their expansion.
+
+Read are ``\newcommand``, ``\renewcommand``, ``\providecommand``, ``\DeclareMathOperator`` and
+``\def`` with parameters one after the other.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from derive.reading.latex.tokens import Token, Unread, tokenize
+
+#: Tokens of a display after the expansion of macros.
+MAX_TOKENS = 60_000
+#: Macros within macros.
+MAX_DEPTH = 40
+
+COMMANDS = frozenset(
+    """newcommand renewcommand providecommand DeclareRobustCommand DeclareMathOperator def
+    gdef""".split()
+)
+START = re.compile(rf"\\(?:{'|'.join(sorted(COMMANDS))})(?![A-Za-z])")
+
+
+@dataclass(frozen=True)
+class Macro:
+    r"""A macro: the number of its arguments, the first one if it is optional, and its body."""
+
+    name: str
+    body: str
+    arguments: int = 0
+    default: str | None = None
+
+
+def macros_of(text: str) -> dict[str, Macro]:
+    """The macros that a document defines; a later definition replaces an earlier one."""
+    macros: dict[str, Macro] = {}
+    for match in START.finditer(text):
+        if not _is_comment(text, match.start()):
+            excerpt = text[match.start() : match.start() + 4000]
+            found = definition(excerpt, tokenize(excerpt), 0)
+            if found is not None:
+                macros[found[0].name] = found[0]
+    return macros
+
+
+def _is_comment(text: str, position: int) -> bool:
+    line = text[text.rfind("\n", 0, position) + 1 : position]
+    return re.search(r"(?<!\\)%", line) is not None
+
+
+def definition(latex: str, tokens: list[Token], start: int) -> tuple[Macro, int] | None:
+    """The macro that a command defines, and the token after it; None if it defines no macro."""
+    command = tokens[start].text
+    at = _skip(tokens, start + 1)
+    if at < len(tokens) and tokens[at].kind == "*":
+        at = _skip(tokens, at + 1)
+    if command in ("def", "gdef"):
+        return _plain_definition(latex, tokens, at)
+    name = _argument(tokens, at)
+    inner = [t for t in tokens[slice(*name[0])] if t.kind != "space"] if name else []
+    if name is None or len(inner) != 1 or inner[0].kind != "command":
+        return None
+    options: list[str] = []
+    at = _skip(tokens, name[1])
+    while at < len(tokens) and tokens[at].kind == "[" and len(options) < 2:
+        end = next((i for i in range(at, len(tokens)) if tokens[i].kind == "]"), None)
+        if end is None:
+            return None
+        options.append(_text(latex, tokens[at + 1 : end]))
+        at = _skip(tokens, end + 1)
+    body = _argument(tokens, at)
+    if body is None or (options and not re.fullmatch(r"\s*\d\s*", options[0])):
+        return None
+    text = _text(latex, tokens[slice(*body[0])])
+    if command == "DeclareMathOperator":
+        text = rf"\operatorname{{{text}}}"
+    count = int(options[0]) if options else 0
+    default = options[1] if len(options) > 1 else None
+    return Macro(inner[0].text, text, count, default), body[1]
+
+
+def _plain_definition(latex: str, tokens: list[Token], at: int) -> tuple[Macro, int] | None:
+    if at >= len(tokens) or tokens[at].kind != "command":
+        return None
+    name, at, count = tokens[at].text, at + 1, 0
+    while at + 1 < len(tokens) and tokens[at].kind == "#":
+        count, at = count + 1, at + 2
+    if at >= len(tokens) or tokens[at].kind != "{":
+        return None
+    body = _argument(tokens, at)
+    if body is None:
+        return None
+    return Macro(name, _text(latex, tokens[slice(*body[0])]), count), body[1]
+
+
+def _skip(tokens: list[Token], at: int) -> int:
+    while at < len(tokens) and tokens[at].kind == "space":
+        at += 1
+    return at
+
+
+def _argument(tokens: list[Token], at: int) -> tuple[tuple[int, int], int] | None:
+    """Tokens of the argument at a place, and the token after it; None if there is none."""
+    at = _skip(tokens, at)
+    if at >= len(tokens):
+        return None
+    if tokens[at].kind != "{":
+        return (at, at + 1), at + 1
+    depth = 0
+    for end in range(at, len(tokens)):
+        depth += {"{": 1, "}": -1}.get(tokens[end].kind, 0)
+        if depth == 0:
+            return (at + 1, end), end + 1
+    return None
+
+
+def _text(latex: str, tokens: list[Token]) -> str:
+    return latex[tokens[0].span[0] : tokens[-1].span[1]] if tokens else ""
+
+
+def expanded(latex: str, tokens: list[Token], macros: Mapping[str, Macro]) -> list[Token]:
+    """Tokens without macros and their definitions; an expansion has the span of its call.
+
+    Raises
+    ------
+    Unread
+        If a macro calls itself, has too few arguments, or becomes too long.
+    """
+    known = dict(macros)
+    result: list[Token] = []
+    waiting = [(token, 0) for token in reversed(tokens)]  # with the number of macros around it
+    at = 0
+    while waiting:
+        token, depth = waiting.pop()
+        if token.kind != "command":
+            result.append(token)
+        elif token.text in COMMANDS:
+            ahead = [t for t, _ in reversed(waiting[-2000:])]
+            found = definition(latex, [token, *ahead], 0)
+            if found is None or depth:
+                raise Unread(rf"\{token.text} defines no macro")
+            known[found[0].name] = found[0]
+            del waiting[len(waiting) - found[1] + 1 :]
+        elif token.text in known:
+            if depth >= MAX_DEPTH:
+                raise Unread(rf"the macro \{token.text} calls itself")
+            body = _call(known[token.text], token, waiting)
+            waiting += [(t, depth + 1) for t in reversed(body)]
+        else:
+            result.append(token)
+        at += 1
+        if at > MAX_TOKENS or len(waiting) > MAX_TOKENS:
+            raise Unread(f"more than {MAX_TOKENS} tokens")
+    return result
+
+
+def _call(macro: Macro, call: Token, waiting: list[tuple[Token, int]]) -> list[Token]:
+    """The body of a macro with its arguments, which are taken from the waiting tokens."""
+    arguments: list[list[Token]] = []
+    end = call.span[1]
+    if macro.default is not None:
+        option = _optional(waiting)
+        arguments.append(tokenize(macro.default) if option is None else option)
+    while len(arguments) < macro.arguments:
+        given = _taken(waiting)
+        if given is None:
+            raise Unread(rf"\{macro.name} needs {macro.arguments} arguments")
+        arguments.append(given[0])
+        end = max(end, given[1])
+    span = call.span[0], end
+    body = tokenize(macro.body)
+    result: list[Token] = []
+    at = 0
+    while at < len(body):
+        if body[at].kind == "#" and at + 1 < len(body) and body[at + 1].kind == "digit":
+            number = int(body[at + 1].text)
+            if not 1 <= number <= len(arguments):
+                raise Unread(rf"\{macro.name} has no argument #{number}")
+            result += [replace(token, span=span) for token in arguments[number - 1]]
+            at += 2
+        else:
+            result.append(replace(body[at], span=span))
+            at += 1
+        if len(result) > MAX_TOKENS:
+            raise Unread(f"more than {MAX_TOKENS} tokens")
+    return result
+
+
+def _taken(waiting: list[tuple[Token, int]]) -> tuple[list[Token], int] | None:
+    """The next argument, which is removed, and where it ends in the display."""
+    while waiting and waiting[-1][0].kind == "space":
+        waiting.pop()
+    if not waiting:
+        return None
+    first = waiting.pop()[0]
+    if first.kind != "{":
+        return [first], first.span[1]
+    taken: list[Token] = []
+    depth = 1
+    while waiting:
+        token = waiting.pop()[0]
+        depth += {"{": 1, "}": -1}.get(token.kind, 0)
+        if depth == 0:
+            return taken, token.span[1]
+        taken.append(token)
+    return None
+
+
+def _optional(waiting: list[tuple[Token, int]]) -> list[Token] | None:
+    if not waiting or waiting[-1][0].kind != "[":
+        return None
+    waiting.pop()
+    taken: list[Token] = []
+    while waiting:
+        token = waiting.pop()[0]
+        if token.kind == "]":
+            return taken
+        taken.append(token)
+    return None
