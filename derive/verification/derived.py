@@ -28,8 +28,9 @@ def _rate(
     return sp.Add(value.diff(TIME), *(value.diff(symbol) * rate for symbol, rate in rates))
 
 
-#: Functions of coordinates, velocities, accelerations and momenta. The last three quantities have
-#: a formula for each coordinate, or name of one: a mirrored angle has the opposite momentum.
+#: Functions of coordinates, velocities, accelerations and momenta. Momenta, accelerations and rates
+#: have a formula for each coordinate, or name of one: a mirrored angle has the opposite momentum.
+#: The last is any other quantity that a name stands for.
 QUANTITIES: dict[str, Callable[[Model, str], sp.Expr]] = {
     "kinetic_energy": lambda model, _: model.derivation.kinetic_energy,
     "potential_energy": lambda model, _: model.derivation.potential_energy,
@@ -39,6 +40,7 @@ QUANTITIES: dict[str, Callable[[Model, str], sp.Expr]] = {
     "momenta": lambda model, name: model.context.scope[f"p_{name}"],
     "accelerations": _acceleration,
     "hamilton": _hamilton,
+    "value": lambda model, name: model.context.scope[name],
 }
 
 #: Quantities that are functions of momenta instead of velocities.

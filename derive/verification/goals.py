@@ -31,6 +31,7 @@ def goals(model: Model, kind: str, name: str, value: sp.Expr) -> Iterator[Goal]:
         yield Goal(sp.S.Zero, True, frozenset(system.p), is_equation=True)
         return
     foreign = frozenset((*system.qddot, *(system.qdot if kind in CANONICAL else system.p)))
+    foreign = frozenset() if kind == "value" else foreign
     derived = QUANTITIES[kind](model, name)
     yield Goal(derived, kind == "accelerations", foreign)
     if not is_expandable(value):

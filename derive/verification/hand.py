@@ -25,7 +25,7 @@ from solvers.io.toml_input import InputError
 BY_COORDINATE = ("momenta", "accelerations", "hamilton")
 #: Keys of a file that describe the equations, and keys of equations.
 HEADER = ("system", "source", "note", "equal", "names")
-EQUATIONS = (*QUANTITIES, "euler_lagrange")
+EQUATIONS = (*(kind for kind in QUANTITIES if kind != "value"), "euler_lagrange")
 
 
 @dataclass(frozen=True)

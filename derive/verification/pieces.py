@@ -10,8 +10,15 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from derive.formulas.expression import Scope, is_sum, python_source, summands, syntax_tree
-from derive.verification.samples import Numbers, Samples, applied, power, quotient
+from derive.formulas.expression import (
+    Scope,
+    is_sum,
+    parse,
+    python_source,
+    summands,
+    syntax_tree,
+)
+from derive.verification.samples import FUNCTIONS, Numbers, Samples, applied, power, quotient
 
 OPERATIONS: dict[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add,
@@ -78,10 +85,12 @@ class Pieces:
                 return self._samples(self._scope[name])
             case ast.UnaryOp(operand=operand):
                 return [-x for x in self._value(operand)]
-            case ast.Call(func=ast.Name(id=name), args=[argument]):
+            case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
                 return applied(name, self._value(argument))
             case ast.BinOp(left=left, op=symbol, right=right):
                 return [*map(OPERATIONS[type(symbol)], self._value(left), self._value(right))]
+            case ast.Call():  # an operator such as a derivative
+                return self._samples(parse(self._text[slice(*self._span(node))], self._scope))
         raise NotImplementedError(ast.unparse(node))
 
     def _parts(self, whole: Piece) -> Iterator[Piece]:

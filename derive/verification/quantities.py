@@ -56,6 +56,7 @@ def _judge_quantity(model: Model, label: str, text: str, kind: str, name: str) -
     verdict = partial(Verdict, label, printed=text)
     context = model.motions if kind == "accelerations" else model.context
     foreign = {*system.qddot, *(system.qdot if kind in CANONICAL else system.p)}
+    foreign -= {*foreign} if kind == "value" else set()
     if invalid := sorted(symbol.name for symbol in value.free_symbols & foreign):
         raise ExpressionError(f"{', '.join(invalid)} cannot occur in a formula of this kind")
     derived = QUANTITIES[kind](model, name)

@@ -1,0 +1,107 @@
+"""Wrong terms of formulas as the document writes them, and the formulas with correct ones."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from derive.formulas.expression import is_sum, syntax_tree
+from derive.reading.latex.tree import Span
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.verdicts import SideVerdict
+from derive.verification.documents.writing import written
+from derive.verification.verdict import Correction
+
+
+@dataclass(frozen=True)
+class Corrected:
+    """LaTeX of the wrong terms and of the corrected formula, and the places of the terms."""
+
+    wrong_term: str = ""
+    correction: str = ""
+    spans: tuple[Span, ...] = ()
+
+
+def corrected(
+    formula: DocumentFormula, result: SideVerdict, letters: Mapping[str, str]
+) -> Corrected:
+    """The corrections of a verdict in LaTeX; empty if none are known."""
+    latex, tree = formula.occurrence.latex, formula.occurrence.tree
+    verdict = result.verdict
+    if not verdict.corrections or formula.index:
+        whole = written(verdict.correction, letters) if verdict.correction else ""
+        if whole and result.kind != "euler_lagrange" and "=" not in whole:
+            whole = f"{latex[slice(*formula.occurrence.sides[0].span)]} = {whole}"
+        return Corrected(correction=whole)
+    changes: list[tuple[Span, str]] = []
+    for one in verdict.corrections:
+        span = _place(formula, result, one)
+        if span is None:
+            return Corrected(correction=written(verdict.correction, letters))
+        new = written(one.correct, letters)
+        new = _in_brackets(one, new, latex[: span[0]], latex[span[1] :]) if one.wrong else new
+        changes.append((span, new))
+    changes.sort(reverse=True)
+    text, start = latex, tree.span[0]
+    for (a, b), new in changes:
+        text = _inserted(text[:a], text[a:b], new, text[b:])
+    end = tree.span[1] + len(text) - len(latex)
+    spans = tuple(span for span, _ in reversed(changes))
+    terms = [latex[slice(*span)] for span in spans if span[0] < span[1]]
+    return Corrected("; ".join(terms), text[start:end].strip(), spans)
+
+
+def _place(formula: DocumentFormula, result: SideVerdict, one: Correction) -> Span | None:
+    """The span of a wrong term in the LaTeX; empty where a term is missing."""
+    if not one.wrong:
+        side = result.parts[0][1]
+        whole = side.source(0, len(side.text))
+        return whole and (whole[1], whole[1])
+    tokens = re.findall(r"\w+|\*\*|\S", one.wrong)
+    pattern = r"\s*".join(map(re.escape, tokens))
+    for _, side in result.parts:
+        for match in re.finditer(pattern, side.text):
+            if _is_delimited(side.text, *match.span()) and (found := side.source(*match.span())):
+                return _with_sign(formula.occurrence.latex, found) if one.wrong[0] == "-" else found
+    return None
+
+
+def _is_delimited(text: str, start: int, end: int) -> bool:
+    before, after = text[:start].rstrip()[-1:], text[end:].lstrip()[:1]
+    return (before in "(+-=,*/" or text[start] == "-") and after in ")+-=,*/"
+
+
+def _with_sign(latex: str, span: Span) -> Span:
+    """The span with the minus sign before it."""
+    start = len(latex[: span[0]].rstrip())
+    if latex[start - 1 : start] == "-" and latex[span[0]] != "-":
+        return start - 1, span[1]
+    return span
+
+
+def _inserted(before: str, old: str, new: str, after: str) -> str:
+    """Put a term in place of another, and join its sign with the one before it."""
+    head = before.rstrip()
+    if not old:
+        sign = " - " if new.startswith("-") else " + "
+        return head + sign + new.lstrip("- ") + after
+    if new.startswith("-") and head[-1:] in ("+", "-"):
+        return f"{head[:-1]}{'-' if head[-1] == '+' else '+'} {new[1:].lstrip()}{after}"
+    if old.startswith("-") and not new.startswith("-") and head[-1:] not in ("", *"=&({[+-,"):
+        return f"{before}+ {new}{after}"
+    return before + new + after
+
+
+def _in_brackets(one: Correction, new: str, before: str, after: str) -> str:
+    """A sum in brackets where it replaces a factor."""
+    is_factor = before.rstrip()[-1:] not in ("", *"(+=&[{,") or after.lstrip()[:1] not in (
+        "", *")+-=&]},\\",
+    )  # fmt: skip
+    return rf"\left({new}\right)" if is_factor and is_sum(syntax_tree(one.correct)) else new
+
+
+def letters_of_document(pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
+    """Names with the LaTeX that stands for each most often first."""
+    found: dict[str, str] = {}
+    for name, latex in pairs:
+        found.setdefault(name, latex)
+    return found

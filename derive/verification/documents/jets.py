@@ -1,0 +1,172 @@
+"""Numbers with their first rates of change, and formulas evaluated with them.
+
+A jet holds the Taylor coefficients of a quantity in time, each an array over many states, so that
+the rate of any formula is known without differentiating it (A. Griewank, A. Walther, Evaluating
+Derivatives, chapter 13). Unknown coefficients, such as third derivatives, are NaN.
+"""
+
+import ast
+import operator
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.formulas.expression import syntax_tree
+
+#: Taylor coefficients: the value, the rate, and half the second derivative.
+ORDERS = 3
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+class UnknownNameError(LookupError):
+    """A name without a value, or a part of a formula that has none here."""
+
+
+@dataclass(frozen=True, eq=False)
+class Jet:
+    """A quantity at many states; `coefficients` has the shape (3, states)."""
+
+    coefficients: Array
+
+    #: NumPy leaves operations with arrays of jets to this class.
+    __array_ufunc__ = None
+
+    @classmethod
+    def of(cls, value: Array, rate: Array | float = 0.0, second: Array | float = 0.0) -> "Jet":
+        """A quantity from its value and its first two derivatives."""
+        half = np.asarray(second) / 2
+        return cls(np.array(np.broadcast_arrays(np.atleast_2d(value), rate, half), float))
+
+    @property
+    def value(self) -> Array:
+        """The values at all states."""
+        return self.coefficients[0]
+
+    @property
+    def rate(self) -> "Jet":
+        """The rate of change."""
+        c = self.coefficients
+        return Jet(np.array([c[1], 2 * c[2], np.full_like(c[0], np.nan)]))
+
+    def __add__(self, other: "Jet") -> "Jet":
+        return Jet(self.coefficients + other.coefficients)
+
+    def __sub__(self, other: "Jet") -> "Jet":
+        return Jet(self.coefficients - other.coefficients)
+
+    def __neg__(self) -> "Jet":
+        return Jet(-self.coefficients)
+
+    def __mul__(self, other: "Jet") -> "Jet":
+        a, b = self.coefficients, other.coefficients
+        return Jet(np.array([sum(a[j] * b[k - j] for j in range(k + 1)) for k in range(ORDERS)]))
+
+    def __truediv__(self, other: "Jet") -> "Jet":
+        quotients: list[Array] = []
+        a, b = self.coefficients, other.coefficients
+        for k in range(ORDERS):
+            rest = a[k] - sum(quotients[j] * b[k - j] for j in range(k))
+            quotients.append(rest / b[0])
+        return Jet(np.array(quotients))
+
+    def function(self, value: Callable[[Array], tuple[Array, Array, Array]]) -> "Jet":
+        """A function of the quantity, from its value and first two derivatives."""
+        f, first, second = value(self.value)
+        _, b, c = self.coefficients
+        return Jet(np.array([f, first * b, first * c + second * b**2 / 2]))
+
+    def power(self, exponent: float) -> "Jet":
+        """The quantity to a constant power."""
+        return self.function(lambda x: _power(x, exponent))
+
+
+def _power(x: Array, n: float) -> tuple[Array, Array, Array]:
+    first = n * x ** (n - 1) if n else 0 * x
+    second = n * (n - 1) * x ** (n - 2) if n * (n - 1) else 0 * x
+    return x**n, first, second
+
+
+FUNCTIONS: dict[str, Callable[[Array], tuple[Array, Array, Array]]] = {
+    "sin": lambda x: (np.sin(x), np.cos(x), -np.sin(x)),
+    "cos": lambda x: (np.cos(x), -np.sin(x), -np.cos(x)),
+    "tan": lambda x: (np.tan(x), np.cos(x) ** -2.0, 2 * np.tan(x) * np.cos(x) ** -2.0),
+    "exp": lambda x: (np.exp(x),) * 3,
+    "log": lambda x: (np.log(x), 1 / x, -1 / x**2),
+    "sqrt": lambda x: _power(x, 0.5),
+    "Abs": lambda x: (np.abs(x), np.sign(x), 0 * x),
+    "norm": lambda x: (np.abs(x), np.sign(x), 0 * x),
+}
+
+OPERATIONS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+}
+
+#: Jets, and matrices of them as arrays of objects.
+Value: TypeAlias = Any
+
+
+@cache
+def _tree(text: str) -> ast.expr:
+    return syntax_tree(text)
+
+
+def evaluated(text: str, values: Mapping[str, Value]) -> Value:
+    """The value of a formula; `UnknownNameError` if it has none."""
+    with np.errstate(all="ignore"):
+        try:
+            return _value(_tree(text), values)
+        except (ValueError, TypeError, AttributeError) as error:  # shapes of matrices, or text
+            raise UnknownNameError(str(error)) from error
+
+
+def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
+    match node:
+        case ast.Constant(value=int() | float() as number):
+            return Jet.of(np.array([float(number)]))
+        case ast.Name(id=name):
+            if name not in values:
+                raise UnknownNameError(name)
+            return values[name]
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return -_value(operand, values)
+        case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
+            return _raised(_value(base, values), _value(exponent, values))
+        case ast.BinOp(left=left, op=ast.Mult(), right=right):
+            a, b = _value(left, values), _value(right, values)
+            if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
+                return a @ b
+            return b * a if isinstance(b, np.ndarray) else a * b
+        case ast.BinOp(left=left, op=ast.Div(), right=right):
+            return _value(left, values) / _value(right, values)
+        case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+            return OPERATIONS[type(op)](_value(left, values), _value(right, values))
+        case ast.Call(func=ast.Name(id="ddt"), args=[argument]):
+            return _value(argument, values).rate
+        case ast.Call(func=ast.Name(id="transpose"), args=[argument]):
+            return _value(argument, values).T
+        case ast.Call(func=ast.Name(id="square"), args=[argument]):
+            column = _value(argument, values)
+            return (column.T @ column)[0, 0]
+        case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
+            return _value(argument, values).function(FUNCTIONS[name])
+        case ast.List(elts=rows):
+            lists = [row.elts for row in rows if isinstance(row, ast.List)]
+            matrix = np.empty((len(lists), len(lists[0])), dtype=object)
+            for i, row in enumerate(lists):
+                for j, entry in enumerate(row):
+                    matrix[i, j] = _value(entry, values)
+            return matrix
+    raise UnknownNameError(ast.unparse(node)[:80])
+
+
+def _raised(base: Jet, exponent: Jet) -> Jet:
+    value = exponent.value
+    if np.any(value != value.flat[0]) or np.any(exponent.coefficients[1:]):
+        raise UnknownNameError("an exponent that is not constant")
+    return base.power(float(value.flat[0]))

@@ -1,0 +1,147 @@
+"""Verdicts on all formulas of a document, from its displays alone."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from derive.reading.document import Display, Document
+from derive.reading.latex.reader import formulas, macros_of
+from derive.reading.latex.tree import Letter, Statement, Unreadable
+from derive.verification.documents.candidates import Candidate, candidates
+from derive.verification.documents.corrections import corrected
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.letters import Letters, letters_of
+from derive.verification.documents.matching import Match, best_match
+from derive.verification.documents.meaning import meaning
+from derive.verification.documents.positions import stated_candidates, stated_systems
+from derive.verification.documents.resolution import resolved
+from derive.verification.documents.scope import DocumentScope
+from derive.verification.documents.statements import (
+    DocumentFormula,
+    Occurrence,
+    Translated,
+    translated,
+)
+from derive.verification.documents.templates import templates
+from derive.verification.documents.translation import Translator, nodes
+from derive.verification.documents.verdicts import Judge, SideVerdict
+
+#: The least part of the comparisons that must hold, for a system to be that of a document.
+LEAST = 0.3
+#: Verdicts from the gravest: that of a formula with an index is the gravest of its instances.
+GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
+
+
+@dataclass(frozen=True)
+class Interpretation:
+    """What a document is about: its letters and the system that suits them best."""
+
+    letters: Letters
+    match: Match | None
+
+
+def judge_document(document: Document) -> JudgedDocument:
+    """Judge every formula of a document."""
+    occurrences, judged = _read(document)
+    statements = translated(occurrences)
+    judged += [_plain(document, place, "context", note) for place, note in statements.failures]
+    found = interpretation(statements)
+    if found.match is None:
+        note = "no system was found for which its formulas hold"
+        places = dict.fromkeys(formula.occurrence for formula in statements.formulas)
+        judged += [_plain(document, place, "context", note) for place in places]
+        return _document(document, "", judged)
+    candidate = found.match.candidate
+    meanings = resolved(candidate, found.letters, statements.formulas, statements.derivatives)
+    scope = DocumentScope(
+        meaning(candidate), found.letters, statements.formulas, statements.derivatives, meanings
+    )
+    judge, written = Judge(scope), _written(occurrences)
+    results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
+    for formula in statements.formulas:
+        result = judge.verdict(formula)
+        before = results.get(formula.occurrence)
+        if before is None or _is_graver(result, before[1]):
+            results[formula.occurrence] = formula, result
+    judged += [_judged(document, formula, result, written) for formula, result in results.values()]
+    return _document(document, candidate.system.title, judged)
+
+
+def interpretation(statements: Translated) -> Interpretation:
+    """Find the meaning of letters for which most formulas hold."""
+    letters = letters_of(statements.formulas, statements.derivatives)
+    best: Match | None = None
+    for tried in _candidates(letters, statements):
+        match = best_match(tried, letters, statements.formulas, statements.derivatives)
+        if match and match.holding and (best is None or match.holding > best.holding):
+            best = match
+    is_convincing = best is not None and best.holding >= LEAST * best.compared
+    return Interpretation(letters, best if is_convincing else None)
+
+
+def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[Candidate]]:
+    """Candidates of one system after another: of those that the document states first."""
+    for system in stated_systems(letters, statements.formulas):
+        yield [*stated_candidates(system, letters)]
+    for count in range(len(letters.coordinates), 0, -1):
+        for system in templates(count):
+            yield [*candidates(system, letters)]
+
+
+def _read(document: Document) -> tuple[list[Occurrence], list[JudgedFormula]]:
+    """All statements of a document, and those that cannot be read."""
+    macros = macros_of("\n".join(document.definitions))
+    occurrences, unreadable = [], []
+    for display in document.displays:
+        for one in formulas(display.latex, macros):
+            place = _occurrence(document, display, one)
+            if isinstance(one, Unreadable):
+                if not display.is_inline:
+                    unreadable.append(_plain(document, place, "unreadable", one.reason))
+            elif one.relations or not display.is_inline:
+                occurrences.append(place)
+    return occurrences, unreadable
+
+
+def _occurrence(document: Document, display: Display, tree: Statement | Unreadable) -> Occurrence:
+    line, column, cell = document.place(display.start + tree.span[0])
+    return Occurrence(display.number, line, column, cell, display.start, display.latex, tree)
+
+
+def _plain(document: Document, place: Occurrence, verdict: str, note: str) -> JudgedFormula:
+    span = place.span
+    return JudgedFormula(
+        place.line, place.column, place.display, place.source, verdict,  # type: ignore[arg-type]
+        note=note, span=span, cell=place.cell,
+    )  # fmt: skip
+
+
+def _judged(
+    document: Document, formula: DocumentFormula, result: SideVerdict, written: dict[str, str]
+) -> JudgedFormula:
+    place, verdict = formula.occurrence, result.verdict
+    correction = corrected(formula, result, written)
+    return JudgedFormula(
+        place.line, place.column, place.display, place.source, verdict.verdict,
+        correction.wrong_term, correction.correction, verdict.witness, verdict.note,
+        place.span, place.cell,
+    )  # fmt: skip
+
+
+def _is_graver(one: SideVerdict, other: SideVerdict) -> bool:
+    order = [GRAVEST.index(result.verdict.verdict) for result in (one, other)]
+    return order[0] < order[1]
+
+
+def _written(occurrences: Sequence[Occurrence]) -> dict[str, str]:
+    """The letters' names, and the LaTeX that stands for each where it is first used."""
+    translator, found = Translator(), dict[str, str]()
+    for occurrence in occurrences:
+        for node in nodes(occurrence.sides):
+            if isinstance(node, Letter):
+                found.setdefault(translator.name(node), occurrence.latex[slice(*node.span)])
+    return found
+
+
+def _document(document: Document, system: str, judged: list[JudgedFormula]) -> JudgedDocument:
+    ordered = tuple(sorted(judged, key=lambda one: one.span))
+    return JudgedDocument(document.file, document.kind, system, ordered, document.notes)

@@ -1,0 +1,192 @@
+"""The letters of a document: which of them move, and what the others are by their names.
+
+Names of letters only order the possibilities, except for energies and momenta, which are named
+alike everywhere.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from derive.verification.documents.jets import FUNCTIONS
+from derive.verification.documents.rates import order, stem
+from derive.verification.documents.statements import DocumentFormula
+
+#: Names of energies and of the Lagrangian, without their index.
+QUANTITIES: dict[str, str] = {
+    "L": "lagrangian",
+    **dict.fromkeys(("T", "K", "KE", "EK", "Ek"), "kinetic_energy"),
+    **dict.fromkeys(("V", "U", "PE", "EP", "Ep"), "potential_energy"),
+    "H": "hamiltonian",
+    "E": "energy",
+}
+#: Indices that make an energy of E.
+ENERGIES = {
+    **dict.fromkeys(("k", "kin", "K", "c"), "kinetic_energy"),
+    **dict.fromkeys(("p", "pot", "P"), "potential_energy"),
+    **dict.fromkeys(("tot", "total", "t", "mech"), "energy"),
+}
+#: Kinds of partial energies by the first letter of their index, such as that of E_k1.
+KINDS_OF_ENERGIES = {"k": "kinetic_energy", "p": "potential_energy"}
+#: Most letters that can be a coordinate of one kind.
+MAX_COORDINATES = 6
+#: Indices that change nothing.
+TOTAL = ("", "tot", "total")
+
+#: Kinds of parameters by the first letters of their names, the usual ones first.
+KINDS: dict[str, tuple[str, ...]] = {
+    "mass": ("m", "M", "mu", "mass"),
+    "length": ("l", "L", "ell", "r", "R", "a", "b", "d", "h", "s", "rho", "length", "A"),
+    "gravity": ("g",),
+    "stiffness": ("k", "K", "kappa", "c"),
+    "inertia": ("I", "J", "Theta"),
+    "frequency": ("omega", "Omega", "w", "nu"),
+    "damping": ("b", "c", "d", "gamma", "beta", "mu", "nu", "delta", "B", "eta"),
+    "force": ("F", "u", "f", "tau", "Q"),
+}
+
+OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
+OPERATORS |= {"asin", "acos", "atan", "sinh", "cosh", "tanh", "sign"}
+GENERIC = re.compile(r"\w+_[ij]\Z")
+
+
+#: Names of angles and of other coordinates by their first letters.
+ANGLES = ("theta", "phi", "varphi", "alpha", "beta", "psi", "vartheta", "gamma", "q")
+
+
+@dataclass(frozen=True)
+class Letters:
+    """The names of a document without dots."""
+
+    coordinates: tuple[str, ...]  # the likeliest first
+    momenta: Mapping[str, str]  # and their coordinates
+    quantities: Mapping[str, str]  # and their kinds
+    parameters: tuple[str, ...]  # all others that no formula defines
+
+    def orders(self, are_angles: Sequence[bool]) -> Iterator[tuple[str, ...]]:
+        """Yield coordinates for those of a system, of which some are angles.
+
+        Greek letters are angles and others are not, unless there are too few of these.
+        """
+        angles = [q for q in self.coordinates if q.partition("_")[0] in ANGLES]
+        lengths = [q for q in self.coordinates if q not in angles or q.partition("_")[0] == "q"]
+        pools = {
+            True: angles if len(angles) >= are_angles.count(True) else self.coordinates,
+            False: lengths if len(lengths) >= are_angles.count(False) else self.coordinates,
+        }
+        pools = {is_angle: pool[:MAX_COORDINATES] for is_angle, pool in pools.items()}
+        for choice in product(*(pools[is_angle] for is_angle in are_angles)):
+            if len(set(choice)) == len(choice):
+                yield choice
+
+    def of_kind(self, kind: str) -> list[str]:
+        """Parameters that can be of a kind, the usual ones first."""
+        usual = KINDS[kind]
+        named = [p for p in self.parameters if p.partition("_")[0].rstrip("0123456789") in usual]
+        return sorted(
+            named, key=lambda p: (usual.index(p.partition("_")[0].rstrip("0123456789")), p)
+        )
+
+
+def letters_of(
+    formulas: Sequence[DocumentFormula], derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
+) -> Letters:
+    """The letters of all formulas, and of names such as ``dL_dtheta``."""
+    words: Counter[str] = Counter()
+    for formula in formulas:
+        for name in formula.words:
+            if name not in OPERATORS:
+                operand, variables = derivatives.get(name, (name, ()))
+                words.update((operand, *variables))
+    stems = list(dict.fromkeys(map(stem, words)))
+    orders = {one: max(order(name) for name in words if stem(name) == one) for one in stems}
+    combined = _combinations(formulas)
+    operands = {operand for operand, _ in derivatives.values()}
+    subjects = {formula.subject for formula in formulas}
+    quantities = {
+        one: kind
+        for one in stems
+        if (kind := combined.get(one) or _quantity(one))
+        and (one in subjects or one in operands or one in combined)
+    }
+    defined = _defined(formulas, orders)
+    moving = [
+        one
+        for one in stems
+        if orders[one]
+        and one not in {*quantities, *defined, "t"}
+        and not GENERIC.match(one)
+        and not one.endswith("_column")
+    ]
+    momenta = {}
+    for one in stems:
+        if one not in quantities and (coordinate := _coordinate(one, moving)) is not None:
+            momenta[one] = coordinate
+    coordinates = [one for one in moving if one not in momenta]
+    coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
+    # a document can define r by other coordinates, and go on with r alone
+    coordinates += [one for one in stems if orders[one] == 2 and one in defined]
+    known = {*quantities, *defined, *moving, *momenta, "t", *subjects}
+    parameters = [one for one in stems if one not in known and not GENERIC.match(one)]
+    return Letters(tuple(coordinates), momenta, quantities, tuple(parameters))
+
+
+def _quantity(name: str) -> str | None:
+    letter, _, index = name.partition("_")
+    if letter == "E" and index in ENERGIES:
+        return ENERGIES[index]
+    return QUANTITIES.get(letter) if index in TOTAL else None
+
+
+def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
+    """Energies by statements such as L = K - P and H = T + U."""
+    found: dict[str, str] = {}
+    pattern = re.compile(r"(\w+) ([+-]) (\w+)\Z")
+    for formula in formulas:
+        kind = _quantity(formula.subject)
+        for side in formula.sides[1:]:
+            match = pattern.match(side.text)
+            signs = {"lagrangian": "-", "energy": "+", "hamiltonian": "+"}
+            if match and signs.get(kind or "") == match[2]:
+                found |= {match[1]: "kinetic_energy", match[3]: "potential_energy"}
+    return found
+
+
+def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
+    """Names that a formula in others defines, but for solutions such as theta = a*cos(omega*t)."""
+    defined = set()
+    for formula in formulas:
+        name = formula.subject
+        others = {stem(word) for side in formula.sides[1:] for word in _words(side.text)}
+        moves = any(orders.get(one) for one in others)
+        is_solution = orders.get(name) and not moves
+        if formula.sides[-1].text.replace(".", "").isdigit():  # a value, such as m = l = 1
+            continue
+        if name and not order(name) and name not in others and not is_solution:
+            defined.add(name)
+        # theta_dot = omega defines omega
+        last = formula.sides[-1].text
+        is_name = last.isidentifier() and not order(last) and len(formula.sides) == 2
+        if name and order(name) and is_name and orders.get(last, 0) < 2:
+            defined.add(last)
+    return defined
+
+
+def _words(text: str) -> list[str]:
+    return re.findall(r"[A-Za-z_]\w*", text)
+
+
+def _coordinate(name: str, moving: Sequence[str]) -> str | None:
+    """The coordinate of a momentum, such as p_theta_1, p_1 or p."""
+    letter, _, index = name.partition("_")
+    if letter not in ("p", "P", "Pi"):
+        return None
+    others = [one for one in moving if one.partition("_")[0] not in ("p", "P", "Pi")]
+    if index in others:
+        return index
+    if not index and len(others) == 1:
+        return others[0]
+    numbered = [one for one in others if index and one.endswith(index)]
+    return numbered[0] if numbered else None

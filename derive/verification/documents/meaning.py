@@ -1,0 +1,95 @@
+"""The system of a document in the document's own letters."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.system.naming import check_name
+from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
+from derive.system.symbols import velocity
+from derive.system.system import System
+from derive.verification.documents.candidates import Candidate
+
+#: Endings of parameters that a document does not name, and of letters that are no valid names.
+UNNAMED, INVALID = "_unnamed", "_letter"
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """A system, and the symbols of the document's letters."""
+
+    system: System
+    symbols: Mapping[str, sp.Symbol]
+
+
+def meaning(candidate: Candidate) -> Meaning:
+    """The system of a candidate with the document's coordinates and parameters."""
+    template = candidate.system
+    symbols: dict[str, sp.Symbol] = {}
+    for name in candidate.coordinates:
+        symbols[name] = sp.Symbol(valid_name(name), real=True)
+    units: dict[str, str] = {}
+    values: dict[sp.Symbol, sp.Expr] = {}
+    for parameter in template.parameters:
+        own = parameter.symbol
+        letter = candidate.parameters.get(own.name)
+        name = valid_name(letter) if letter else own.name + UNNAMED
+        values[own] = sp.Symbol(name, **own._assumptions_orig)
+        units[name] = parameter.unit
+        if letter:
+            symbols[letter] = values[own]
+    q = [symbols[name] for name in candidate.coordinates]
+    qdot = [velocity(symbol) for symbol in q]
+    for i, (symbol, rate) in enumerate(zip(template.q, template.qdot, strict=True)):
+        offset, signs = candidate.offsets[i], candidate.signs[i]
+        shift = symbols[offset] if isinstance(offset, str) else offset * sp.pi / 2
+        values[symbol] = sp.Add(*(s * one for s, one in zip(signs, q, strict=True)), shift)
+        values[rate] = sp.Add(*(s * one for s, one in zip(signs, qdot, strict=True)))
+    forces = _forces(template, candidate, values)
+    for name, i in (*candidate.forces, *candidate.friction):
+        symbols[name] = sp.Symbol(valid_name(name), real=True)
+        units.setdefault(symbols[name].name, "N")
+        forces[i] += symbols[name] * (1 if (name, i) in candidate.forces else -qdot[i])
+    parameters = {s.name: s for s in symbols.values() if s not in q}
+    parameters |= {values[p].name: values[p] for p in template.params}
+    kinds = {one.symbol.name: one.unit for one in template.coordinates}
+    coordinates = [
+        Coordinate(symbol, _unit(candidate, i, kinds), "a coordinate of the document")
+        for i, symbol in enumerate(q)
+    ]
+    system = System(
+        name=template.name,
+        title=template.title,
+        coordinates=coordinates,
+        parameters=[Parameter(s, units[s.name], 1.0, "a parameter") for s in parameters.values()],
+        masses=[mass.mapped(lambda e: e.xreplace(values)) for mass in template.masses],
+        potential=template.potential_energy.xreplace(values),
+        gravity=(sp.S.Zero,) * template.dimension,  # included in the potential
+        forces=forces,
+    )
+    return Meaning(system, symbols)
+
+
+def _forces(
+    template: System, candidate: Candidate, values: Mapping[sp.Symbol, sp.Expr]
+) -> list[sp.Expr]:
+    """Generalized forces on the document's coordinates: Aᵀ Q with q = A q' + c."""
+    applied = [force.xreplace(dict(values)) for force in template.applied]
+    n = len(applied)
+    return [sp.Add(*(candidate.signs[j][i] * applied[j] for j in range(n))) for i in range(n)]
+
+
+def _unit(candidate: Candidate, index: int, kinds: Mapping[str, str]) -> str:
+    names = [*kinds]
+    row = next(k for k, signs in enumerate(candidate.signs) if signs[index])
+    return kinds[names[row]]
+
+
+def valid_name(name: str) -> str:
+    """The name of a letter in a system: itself, unless it is reserved."""
+    try:
+        check_name(name, "")
+    except SystemDefinitionError:
+        return name + INVALID
+    return name

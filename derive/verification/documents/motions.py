@@ -1,0 +1,154 @@
+"""The motion of a system in numbers, for many meanings of a document's letters at once.
+
+Arrays have the shape (candidates, states), or (candidates, states, coordinates) in the document's
+coordinates q' of q = A q' + c: M' = Aᵀ M A and f' = Aᵀ f.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cache, cached_property
+
+import numpy as np
+import sympy as sp
+
+from derive.mechanics.derivation import Derivation
+from derive.system.system import System
+from derive.verification.documents.candidates import Candidate
+from derive.verification.documents.jets import Array, Jet, Value, evaluated
+from derive.verification.documents.letters import Letters
+
+#: Number of states.
+STATES = 3
+
+
+@cache
+def _derivation(system: System) -> Derivation:
+    return Derivation(system)
+
+
+class Motions:
+    """Motions of candidates of one system at random states of the document's coordinates."""
+
+    def __init__(self, tried: Sequence[Candidate], letters: Letters) -> None:
+        self._system, self._tried = tried[0].system, tried
+        self._derivation = _derivation(self._system)
+        self.shape = (len(tried), STATES)
+        random = np.random.default_rng(0)
+        names = sorted({*letters.coordinates} | {q for one in tried for q in one.coordinates})
+        #: Places and speeds of the document's coordinates, and values of its parameters.
+        self.places = {q: random.uniform(0.3, 1.3, STATES) for q in names}
+        self.speeds = {q: random.uniform(-1, 1, STATES) for q in names}
+        self.parameters = {p: float(random.uniform(0.5, 1.5)) for p in letters.parameters}
+        own = {p.name: float(random.uniform(0.5, 1.5)) for p in self._system.params}
+        self._signs = np.array([one.signs for one in tried], float)
+        self._names = self._system_names(own)
+
+    @property
+    def time(self) -> Jet:
+        """Time at all states."""
+        jet: Jet = self._names["t"]
+        return jet
+
+    @cached_property
+    def accelerations(self) -> Mapping[str, Array]:
+        """The accelerations of each coordinate of the document; NaN where it is none."""
+        d, n = self._derivation, len(self._system.q)
+        M = np.array([[self._numbers(d.mass_matrix[i, j]) for j in range(n)] for i in range(n)])
+        f = np.array([self._numbers(entry) for entry in d.forcing])
+        M = np.einsum("bji,jlbk,blm->bkim", self._signs, M, self._signs)
+        f = np.einsum("bji,jbk->bki", self._signs, f)
+        f += np.stack([self._loads(one) for one in self._tried])
+        with np.errstate(all="ignore"):
+            try:
+                solution = np.linalg.solve(M, f[..., None])[..., 0]
+            except np.linalg.LinAlgError:
+                solution = np.full_like(f, np.nan)
+        return self._by_coordinate(solution)
+
+    @cached_property
+    def energies(self) -> Mapping[str, Array]:
+        """Kinetic and potential energy, Lagrangian and energy."""
+        d = self._derivation
+        T, V, E = map(self._numbers, (d.kinetic_energy, d.potential_energy, d.energy))
+        return {
+            "kinetic_energy": T,
+            "potential_energy": V,
+            "lagrangian": T - V,
+            "energy": E,
+            "hamiltonian": E,
+        }
+
+    @cached_property
+    def positions(self) -> Sequence[Array]:
+        """The components of the positions of all masses."""
+        return [self._numbers(r) for mass in self._system.masses for r in mass.position]
+
+    def momentum(self, coordinate: str) -> Jet:
+        """∂L/∂q̇ and its rate ∂L/∂q + Q."""
+        rate = self.gradient("lagrangian", coordinate, 0) + self._forces[coordinate]
+        return Jet.of(self.gradient("lagrangian", coordinate, 1), rate, np.nan)
+
+    def gradient(self, kind: str, coordinate: str, order: int) -> Array:
+        """The derivative of an energy by a coordinate (order 0) or its velocity (1)."""
+        return self._gradients[kind][order][coordinate]
+
+    @cached_property
+    def _gradients(self) -> Mapping[str, Sequence[Mapping[str, Array]]]:
+        d = self._derivation
+        values = {
+            "kinetic_energy": d.kinetic_energy,
+            "potential_energy": d.potential_energy,
+            "lagrangian": d.lagrangian,
+        }
+        return {
+            kind: [self._gradient(value, by) for by in (self._system.q, self._system.qdot)]
+            for kind, value in values.items()
+        }
+
+    def _gradient(self, value: sp.Expr, symbols: Sequence[sp.Symbol]) -> Mapping[str, Array]:
+        own = np.array([self._numbers(value.diff(symbol)) for symbol in symbols])
+        return self._by_coordinate(np.einsum("bji,jbk->bki", self._signs, own))
+
+    @cached_property
+    def _forces(self) -> Mapping[str, Array]:
+        """Forces of the document on its coordinates."""
+        return self._by_coordinate(np.stack([self._loads(one) for one in self._tried]))
+
+    def _loads(self, candidate: Candidate) -> Array:
+        loads = np.zeros((STATES, len(candidate.coordinates)))
+        for name, i in candidate.forces:
+            loads[:, i] += self.parameters[name]
+        for name, i in candidate.friction:
+            loads[:, i] -= self.parameters[name] * self.speeds[candidate.coordinates[i]]
+        return loads
+
+    def _by_coordinate(self, table: Array) -> Mapping[str, Array]:
+        result = {q: np.full(self.shape, np.nan) for q in self.places}
+        for b, one in enumerate(self._tried):
+            for i, q in enumerate(one.coordinates):
+                result[q][b] = table[b, :, i]
+        return result
+
+    def _numbers(self, expression: sp.Expr) -> Array:
+        value = evaluated(sp.sstr(expression), self._names).value
+        return np.asarray(np.broadcast_to(value, self.shape))
+
+    def _system_names(self, own: Mapping[str, float]) -> dict[str, Value]:
+        """Coordinates, velocities and parameters of the system."""
+        place, speed = (
+            np.array([[table[q] for q in one.coordinates] for one in self._tried])
+            for table in (self.places, self.speeds)
+        )
+        offsets = [[one.offset(i, self.parameters) for i in range(len(one.offsets))]
+                   for one in self._tried]  # fmt: skip
+        q = np.einsum("bij,bjk->bik", self._signs, place) + np.array(offsets)[:, :, None]
+        qdot = np.einsum("bij,bjk->bik", self._signs, speed)
+        time = np.broadcast_to(np.linspace(0.4, 0.9, STATES), self.shape)
+        names: dict[str, Value] = {"t": Jet.of(time, 1.0)}
+        for i, (symbol, rate) in enumerate(zip(self._system.q, self._system.qdot, strict=True)):
+            names[symbol.name], names[rate.name] = Jet.of(q[:, i]), Jet.of(qdot[:, i])
+        for p in own:
+            column = [
+                [self.parameters.get(one.parameters.get(p, ""), own[p])] for one in self._tried
+            ]
+            names[p] = Jet.of(np.broadcast_to(np.array(column), self.shape))
+        return names

@@ -1,0 +1,91 @@
+"""Energies of single bodies or forces, such as T_1 and V_spring, which have a sum."""
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import sympy as sp
+
+from derive.formulas.expression import ExpressionError
+from derive.verification.documents.letters import KINDS_OF_ENERGIES, QUANTITIES, TOTAL
+from derive.verification.documents.scope import DocumentScope
+
+#: Energies whose parts are considered.
+SUMMED = ("kinetic_energy", "potential_energy")
+
+
+class PartialEnergies:
+    """The values that definitions of partial energies must have for their sum to be correct."""
+
+    def __init__(self, scope: DocumentScope) -> None:
+        self._scope, self._model = scope, scope.model
+
+    def required(self, name: str) -> sp.Expr | None:
+        """The value that a name must have, if it is the one wrong part of a sum; else None."""
+        return self._required.get(name)
+
+    @cached_property
+    def _required(self) -> Mapping[str, sp.Expr]:
+        found: dict[str, sp.Expr] = {}
+        totals = {
+            "kinetic_energy": self._scope.derivation.kinetic_energy,
+            "potential_energy": self._scope.derivation.potential_energy,
+        }
+        for kind, names in self._groups().items():
+            values = {name: self._scope.names[name] for name in names}
+            if self._is_constant(sp.Add(*values.values()) - totals[kind]):
+                continue
+            wrong = [name for name, value in values.items() if not self._is_part(kind, value)]
+            if len(wrong) == 1:
+                others = sp.Add(*(value for name, value in values.items() if name != wrong[0]))
+                found[wrong[0]] = totals[kind] - others
+        return found
+
+    def _groups(self) -> Mapping[str, list[str]]:
+        """The names of partial energies that the document defines, one for each body or force."""
+        groups: dict[str, list[str]] = {}
+        for name in self._scope.defining:
+            letter, _, index = name.partition("_")
+            kind = QUANTITIES.get(letter)
+            if letter == "E":
+                kind = KINDS_OF_ENERGIES.get(index[:1])
+            is_number = isinstance(self._scope.names[name], sp.Expr)
+            if kind in SUMMED and index not in TOTAL and is_number:
+                groups.setdefault(kind, []).append(name)
+        masses = len(self._scope.derivation.system.masses)
+        return {
+            kind: names
+            for kind, names in groups.items()
+            if len(names) > 1 and (len(names) == masses or kind == "potential_energy")
+        }
+
+    def _is_part(self, kind: str, value: sp.Expr) -> bool:
+        return any(self._is_constant(value - part) for part in self._parts[kind])
+
+    @cached_property
+    def _parts(self) -> Mapping[str, list[sp.Expr]]:
+        """Energies of the masses, and the rest."""
+        d = self._scope.derivation
+        kinetic = [
+            sp.Add(*(inertia * self._speed_squared(r) / 2 for inertia, r in mass.motions))
+            for mass in d.system.masses
+        ]
+        terms = [*sp.Add.make_args(sp.expand(d.potential_energy))]
+        return {"kinetic_energy": kinetic, "potential_energy": [*terms, d.potential_energy]}
+
+    def _speed_squared(self, position: tuple[sp.Expr, ...]) -> sp.Expr:
+        system = self._scope.derivation.system
+        rates = [
+            sp.Add(*(r.diff(q) * v for q, v in zip(system.q, system.qdot, strict=True)))
+            for r in position
+        ]
+        return sp.Add(*(rate**2 for rate in rates))
+
+    def _is_constant(self, difference: sp.Expr) -> bool:
+        """Whether a difference does not depend on the state."""
+        system = self._scope.derivation.system
+        try:
+            return all(
+                self._model.context.is_zero(difference.diff(s)) for s in (*system.q, *system.qdot)
+            )
+        except (ExpressionError, NotImplementedError):
+            return False

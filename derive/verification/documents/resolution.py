@@ -1,0 +1,94 @@
+"""Letters without a definition: what they must be for the formulas that contain them to hold."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+
+from derive.verification.documents.candidates import Candidate
+from derive.verification.documents.jets import UnknownNameError, evaluated
+from derive.verification.documents.letters import OPERATORS, Letters
+from derive.verification.documents.matching import Numbers
+from derive.verification.documents.rates import RATES
+from derive.verification.documents.statements import DocumentFormula
+
+#: Unknown letters of a formula that are sought at once, and comparisons that must hold.
+MAX_UNKNOWN, SUPPORT = 2, 2
+
+
+def resolved(
+    candidate: Candidate,
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
+) -> dict[str, str]:
+    """Formulas in known letters for letters without a meaning.
+
+    A meaning is accepted if at least two comparisons hold with it, so that a mistake in a single
+    letter is not taken for another letter.
+    """
+    numbers = Numbers([candidate], letters, derivatives)
+    meanings: dict[str, str] = {}
+    used = {
+        *candidate.parameters.values(),
+        *(name for name, _ in (*candidate.forces, *candidate.friction)),
+    }
+    for name in letters.parameters:
+        if name not in used:  # a random number until now
+            numbers.values.pop(name, None)
+    numbers.define(formulas)
+    while True:
+        unknown = {f: u for f in formulas if 0 < len(u := _unknown(f, numbers)) <= MAX_UNKNOWN}
+        found = next((m for u in dict.fromkeys(unknown.values())
+                      if (m := _meaning(u, [f for f in unknown if set(unknown[f]) <= set(u)],
+                                        candidate, numbers))), None)  # fmt: skip
+        if not found:
+            return meanings
+        for name, text in found.items():
+            meanings[name] = text
+            numbers.set_rates(name, evaluated(text, numbers.values))
+        numbers.define(formulas)
+
+
+def _unknown(formula: DocumentFormula, numbers: Numbers) -> tuple[str, ...]:
+    return tuple(
+        name
+        for name in formula.words
+        if name not in numbers.values and name not in OPERATORS and name != formula.subject
+    )
+
+
+def _meaning(
+    names: tuple[str, ...],
+    formulas: Sequence[DocumentFormula],
+    candidate: Candidate,
+    numbers: Numbers,
+) -> dict[str, str] | None:
+    pool = [*_pool(candidate)]
+    for texts in product(pool, repeat=len(names)):
+        try:
+            jets = {
+                name: evaluated(text, numbers.values)
+                for name, text in zip(names, texts, strict=True)
+            }
+        except UnknownNameError:
+            continue
+        numbers.values.update(jets)
+        votes = [bool(vote.all()) for one in formulas for vote in numbers.comparisons(one)]
+        for name in names:
+            del numbers.values[name]
+        if len(votes) >= SUPPORT and all(votes):
+            return dict(zip(names, texts, strict=True))
+    return None
+
+
+def _pool(candidate: Candidate) -> Iterator[str]:
+    """Quantities that a letter can stand for."""
+    for signs, offset in zip(candidate.signs, candidate.offsets, strict=True):
+        terms = [q for q, sign in zip(candidate.coordinates, signs, strict=True) if sign]
+        if isinstance(offset, str):
+            yield " + ".join([offset, *terms])
+        elif len(terms) > 1:
+            yield " + ".join(terms)
+    for ending in RATES[:3]:
+        for q in candidate.coordinates:
+            yield q + ending
+    yield from dict.fromkeys(candidate.parameters.values())

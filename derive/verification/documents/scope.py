@@ -1,0 +1,208 @@
+"""The names of a document as values of its system: letters, energies, definitions, derivatives."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import sympy as sp
+
+from derive.formulas.expression import ExpressionError, Value, parse
+from derive.mechanics.derivation import Derivation
+from derive.system.symbols import TIME, acceleration, velocity
+from derive.verification.documents.letters import Letters
+from derive.verification.documents.meaning import Meaning
+from derive.verification.documents.rates import RATES
+from derive.verification.documents.statements import DocumentFormula, definitions
+from derive.verification.model import Model, depends_on, own_names, time_derivative
+
+#: Abbreviations of sines and cosines, such as s_1, c_12 and s_1_plus_2.
+ABBREVIATION = re.compile(r"([sc])_(\d(?:_plus_\d|\d)*)\Z")
+#: Generalized forces, such as Q_theta.
+FORCE = re.compile(r"[QF]_(\w+)\Z")
+#: Rounds in which definitions are sought: a name can be defined after its use.
+ROUNDS = 4
+
+
+class DocumentScope:
+    """The model of a document, and which formulas define its names."""
+
+    def __init__(
+        self,
+        meaning: Meaning,
+        letters: Letters,
+        formulas: Sequence[DocumentFormula],
+        derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
+        meanings: Mapping[str, str],
+    ) -> None:
+        self.derivation = Derivation(meaning.system)
+        self.letters, self.derivatives = letters, derivatives
+        self._system = meaning.system
+        #: Names with their values.
+        self.names: dict[str, Any] = dict(_functions(self._system, self.derivation))
+        self._add_letters(meaning)
+        self._add_energies()
+        self._add_derivatives()
+        self._add_usual_names()
+        for name, text in meanings.items():
+            self._add(name, self.value(text))
+        #: Formulas that define a name, with the text that does.
+        self.defining: dict[str, tuple[DocumentFormula, str]] = {}
+        for _ in range(ROUNDS):
+            known = len(self.names)
+            for formula in formulas:
+                self._define(formula)
+            self._add_derivatives()
+            if len(self.names) == known:
+                break
+        #: Parameters with the numbers that the document sets them to.
+        self.special_values = self._special_values(formulas)
+        self.model = Model(self.derivation, self.names)
+
+    @property
+    def all_names(self) -> dict[str, Any]:
+        """All names that formulas can use."""
+        return {**own_names(self._system), **self.names}
+
+    def value(self, text: str) -> Value:
+        """The value of a formula; an `ExpressionError` if it has none."""
+        return parse(text, self.all_names)
+
+    def _special_values(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, sp.Expr]:
+        """Parameters in statements such as m = l = 1."""
+        found: dict[sp.Symbol, sp.Expr] = {}
+        for formula in formulas:
+            last = formula.sides[-1].text
+            names = [self.names.get(side.text) for side in formula.sides[:-1]]
+            if last.isdigit() and all(name in self._system.params for name in names):
+                found |= dict.fromkeys(names, sp.Integer(last))
+        return found
+
+    def _add_letters(self, meaning: Meaning) -> None:
+        system = self._system
+        for name, symbol in meaning.symbols.items():
+            self.names[name] = symbol
+            if symbol in system.q:
+                self.names[f"{name}_dot"] = velocity(symbol)
+                self.names[f"{name}_ddot"] = acceleration(symbol)
+        for name, coordinate in self.letters.momenta.items():
+            if coordinate in meaning.symbols and meaning.symbols[coordinate] in system.q:
+                index = system.q.index(meaning.symbols[coordinate])
+                self.names[name] = system.p[index]
+                rate = time_derivative(system, self.derivation.momenta[index])
+                self.names[f"{name}_dot"] = rate
+
+    def _add_usual_names(self) -> None:
+        """Names that documents use without a definition: sines such as s_12, and forces."""
+        system = self._system
+        letters = [name for name in self.letters.parameters if name not in self.names]
+        for name in letters:
+            if match := ABBREVIATION.match(name):
+                numbers = [int(n) for n in re.findall(r"\d", match[2])]
+                if all(0 < n <= len(system.q) for n in numbers):
+                    angle = sp.Add(*(system.q[n - 1] for n in numbers))
+                    self.names[name] = {"s": sp.sin, "c": sp.cos}[match[1]](angle)
+            elif match := FORCE.match(name):
+                coordinate = self.names.get(match[1])
+                if coordinate in system.q:
+                    self.names[name] = system.applied[system.q.index(coordinate)]
+
+    def _add_energies(self) -> None:
+        d = self.derivation
+        values = {
+            "lagrangian": d.lagrangian,
+            "kinetic_energy": d.kinetic_energy,
+            "potential_energy": d.potential_energy,
+            "hamiltonian": d.energy,
+            "energy": d.energy,
+        }
+        for name, kind in self.letters.quantities.items():
+            self.names[name] = values[kind]
+
+    def _add_derivatives(self) -> None:
+        for name, (operand, variables) in self.derivatives.items():
+            if name not in self.names:
+                value = self._derivative(operand, variables)
+                if value is not None:
+                    self.names[name] = value
+
+    def _derivative(self, operand: str, variables: Sequence[str]) -> Value | None:
+        scope = self.all_names
+        if operand not in scope or any(one not in scope for one in variables):
+            return None
+        value = scope[operand]
+        kind = self.letters.quantities.get(operand)
+        for one in variables:
+            variable = scope[one]
+            if isinstance(variable, sp.MatrixBase) and isinstance(value, sp.Expr):
+                if not all(entry.is_Symbol for entry in variable):
+                    return None
+                value = sp.ImmutableDenseMatrix([value.diff(entry) for entry in variable])
+            elif kind in ("hamiltonian", "energy") and variable in self._system.p:
+                value = self._system.qdot[self._system.p.index(variable)]
+            elif kind == "hamiltonian" and variable in self._system.q:
+                value = -self.derivation.lagrangian.diff(variable)
+            elif isinstance(variable, sp.Symbol):
+                value = value.diff(variable)
+            else:
+                return None
+        return value
+
+    def _define(self, formula: DocumentFormula) -> None:
+        for name, text in definitions(formula):
+            if name in self.all_names or not name.isidentifier() or name == "t":
+                continue
+            try:
+                value = self.value(text)
+            except ExpressionError:
+                continue
+            self.defining[name] = formula, text
+            self._add(name, value)
+
+    def _add(self, name: str, value: Value) -> None:
+        """Add a name and its rates."""
+        self.names[name] = value
+        for ending in RATES[1:3]:
+            rate = _rate(self._system, value)
+            if rate is None:
+                break
+            value = rate
+            self.names.setdefault(name + ending, value)
+
+
+def _rate(system: Any, value: Value) -> Value | None:
+    """The time derivative; None if it depends on accelerations or momenta."""
+    if depends_on(value, (*system.qddot, *system.p)):
+        return None
+    if isinstance(value, sp.MatrixBase):
+        return value.applyfunc(lambda entry: time_derivative(system, entry))
+    return time_derivative(system, value)
+
+
+def _functions(system: Any, derivation: Derivation) -> Iterator[tuple[str, Any]]:
+    """Operators of formulas."""
+    momenta = dict(zip(system.p, derivation.momenta, strict=True))
+
+    def ddt(value: Value) -> Value:
+        value = value.xreplace(momenta)
+        if depends_on(value, system.qddot):
+            raise ValueError("a third derivative")
+        rate = _rate(system, value)
+        assert rate is not None
+        return rate
+
+    def norm(value: Value) -> Value:
+        if isinstance(value, sp.MatrixBase):
+            return sp.sqrt(sp.Add(*(entry**2 for entry in value)))
+        return sp.Abs(value)
+
+    yield "ddt", ddt
+    yield "diff", lambda value, symbol: value.diff(symbol)
+    yield "inverse", lambda matrix: matrix.inv()
+    yield "transpose", lambda matrix: matrix.T
+    yield "square", lambda column: (column.T * column)[0, 0]
+    yield "norm", norm
+    yield "det", lambda matrix: matrix.det()
+    yield "asin", sp.asin
+    yield "acos", sp.acos
+    yield "atan", sp.atan
+    yield "t", TIME

@@ -1,0 +1,184 @@
+"""The statements of a document: formulas with their place, translated."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from derive.reading.latex.tree import (
+    Application,
+    Letter,
+    Matrix,
+    Node,
+    Product,
+    Span,
+    Statement,
+    Tuple,
+    Unreadable,
+)
+from derive.verification.documents.translation import (
+    Notation,
+    Text,
+    Translator,
+    UntranslatableError,
+    has_index,
+    indexed,
+    letters,
+    nodes,
+)
+
+WORD = re.compile(r"[A-Za-z_]\w*")
+#: Words for quantities that do not change.
+CONSTANT = ("const", "constant", "konst")
+#: Letters that stand for numbers as an index.
+INDICES = ("i", "j")
+
+
+@dataclass(frozen=True)
+class Occurrence:
+    """A statement as read, and its display: 0 in a line of text."""
+
+    display: int
+    line: int
+    column: int
+    cell: int  # of a notebook
+    start: int  # of the display's LaTeX in the text of the file
+    latex: str  # of the display
+    tree: Statement | Unreadable
+
+    @property
+    def source(self) -> str:
+        """The LaTeX of the statement."""
+        return self.latex[slice(*self.tree.span)].strip()
+
+    @property
+    def sides(self) -> tuple[Node, ...]:
+        """The sides of the statement; none if it is unreadable."""
+        return self.tree.sides if isinstance(self.tree, Statement) else ()
+
+    @property
+    def relations(self) -> tuple[str, ...]:
+        """The relations between the sides."""
+        return self.tree.relations if isinstance(self.tree, Statement) else ()
+
+    @property
+    def span(self) -> Span:
+        """Its place in the text of the file."""
+        start, end = self.tree.span
+        return self.start + start, self.start + end
+
+
+@dataclass(frozen=True)
+class DocumentFormula:
+    """A statement with its sides in our syntax; `index` is the number that an index stands for."""
+
+    occurrence: Occurrence
+    sides: tuple[Text, ...]
+    relations: tuple[str, ...]
+    index: int = 0
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """All names in the formula, also of functions, in the order of their first use."""
+        found = (word for side in self.sides for word in WORD.findall(side.text))
+        return tuple(dict.fromkeys(found))
+
+    @property
+    def text(self) -> str:
+        """The formula in our syntax."""
+        pieces = [self.sides[0].text]
+        for relation, side in zip(self.relations, self.sides[1:], strict=True):
+            pieces += [relation, side.text]
+        return " ".join(pieces)
+
+    @property
+    def subject(self) -> str:
+        """The name on the left of an equation, or "" if there is a formula."""
+        first = self.sides[0].text
+        is_equation = self.relations[:1] in (("=",), (":=",))
+        return first if is_equation and first.isidentifier() else ""
+
+
+@dataclass(frozen=True)
+class Translated:
+    """All statements of a document, those without a translation, and the derivatives in them."""
+
+    formulas: tuple[DocumentFormula, ...]
+    failures: tuple[tuple[Occurrence, str], ...]
+    derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
+
+
+def translated(occurrences: Sequence[Occurrence]) -> Translated:
+    """Translate the statements of a document."""
+    translator = Translator(notation(occurrences))
+    formulas, failures = list[DocumentFormula](), list[tuple[Occurrence, str]]()
+    for occurrence in occurrences:
+        try:
+            formulas += _formulas(occurrence, translator)
+        except (UntranslatableError, RecursionError) as error:
+            failures.append((occurrence, str(error)))
+    return Translated(tuple(formulas), tuple(failures), translator.derivatives)
+
+
+def _formulas(occurrence: Occurrence, translator: Translator) -> Iterator[DocumentFormula]:
+    sides, relations = occurrence.sides, occurrence.relations
+    index = next((one for one in INDICES if has_index(sides, one)), "")
+    numbers = range(1, translator.notation.count + 1) if index else (0,)
+    for number in numbers:
+        written = [indexed(side, index, number) if index else side for side in sides]
+        texts = [translator.text(side) for side in written]
+        if len(texts) > 2 and texts[-1].text in CONSTANT:
+            texts = texts[:-1]
+        yield DocumentFormula(occurrence, tuple(texts), relations[: len(texts) - 1], number)
+
+
+def notation(occurrences: Iterable[Occurrence]) -> Notation:
+    """What letters are, from all statements."""
+    trees = [side for occurrence in occurrences for side in occurrence.sides]
+    plain = Translator()
+    everything = [letter for tree in trees for letter in letters(tree)]
+    dotted = {letter.name for letter in everything if letter.dots}
+    primed = any(letter.primes for letter in everything)
+    indices = [int(one.index) for one in everything if one.index.isdecimal() and one.name in dotted]
+    functions = {
+        plain.name(node.head)
+        for tree in trees
+        for node in nodes(tree)
+        if isinstance(node, Application) and _are_arguments(node.arguments, dotted)
+    }
+    matrices: set[str] = set()
+    for _ in range(3):
+        for occurrence in occurrences:
+            first, *others = occurrence.sides
+            if isinstance(first, Letter) and any(_is_matrix(side, matrices) for side in others):
+                matrices.add(plain.name(first))
+    count = max(indices, default=1)
+    return Notation(frozenset(functions), frozenset(matrices), min(count, 9), primed and not dotted)
+
+
+def _are_arguments(arguments: Sequence[Node], moving: set[str]) -> bool:
+    """Whether brackets hold arguments of a function: letters that move, or time."""
+    return all(isinstance(one, Letter) for one in arguments) and any(
+        one.name in moving or one.identifier == "t" for one in arguments if isinstance(one, Letter)
+    )
+
+
+def _is_matrix(node: Node, matrices: set[str]) -> bool:
+    match node:
+        case Matrix() | Tuple():
+            return True
+        case Letter():
+            return Translator().name(node) in matrices
+        case Product(factors=factors):
+            columns = [_is_matrix(one, matrices) for one in factors]
+            return sum(columns) == 1
+    return False
+
+
+def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
+    """Names that a formula can define, and their formulas."""
+    if formula.subject:
+        yield from ((formula.subject, side.text) for side in formula.sides[1:])
+    last = formula.sides[-1].text
+    if formula.relations == ("=",) and last.isidentifier():
+        yield last, formula.sides[0].text

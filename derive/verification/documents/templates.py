@@ -1,0 +1,143 @@
+"""Systems that documents treat, beside those that ship: what a document's letters can mean."""
+
+from collections.abc import Iterator
+from functools import cache
+
+import sympy as sp
+from sympy import cos, sin, symbols
+
+from derive.system.catalogue import load
+from derive.system.parts import Coordinate, Parameter, PointMass, RigidBody
+from derive.system.system import System
+
+#: Systems that ship and are tried, the commonest first.
+SHIPPED = (
+    "double_pendulum single_pendulum cart_1 elastic_pendulum spherical_pendulum chain_3 cart_2 "
+    "double_bar_pendulum swinging_atwood rotating_hoop driven_pendulum coupled_pendulums "
+    "henon_heiles foucault_pendulum"
+).split()
+
+
+def templates(count: int) -> Iterator[System]:
+    """Yield the systems with so many coordinates."""
+    for system in _all():
+        if len(system.coordinates) == count:
+            yield system
+
+
+@cache
+def _all() -> tuple[System, ...]:
+    return (*map(load, SHIPPED), *_others())
+
+
+def _coordinates(*pairs: tuple[sp.Symbol, str]) -> list[Coordinate]:
+    return [Coordinate(symbol, unit, "a coordinate") for symbol, unit in pairs]
+
+
+def _parameters(**units: str) -> list[Parameter]:
+    """Parameters by their names; a number behind the unit tells whether they can be negative."""
+    return [
+        Parameter(
+            sp.Symbol(name, real=True, **({} if name == "g" else {"positive": True})), unit, 1.0, ""
+        )
+        for name, unit in units.items()
+    ]
+
+
+def _others() -> Iterator[System]:
+    x, theta, theta1, theta2, x1, x2 = symbols("x theta theta1 theta2 x1 x2", real=True)
+    m, l, k, M, r, G, I, l1 = symbols("m l k M r G I l1", positive=True)
+    m1, m2, r1, r2, I1, I2 = symbols("m1 m2 r1 r2 I1 I2", positive=True)
+    yield System(
+        "oscillator",
+        "Mass on a spring",
+        _coordinates((x, "m")),
+        _parameters(m="kg", k="N/m"),
+        [PointMass(m, (x, 0))],
+        potential=k * x**2 / 2,
+    )
+    yield System(
+        "central_force",
+        "Mass in the field of another that is fixed",
+        _coordinates((r, "m"), (theta, "rad")),
+        _parameters(m="kg", M="kg", G="m^3/(kg s^2)"),
+        [PointMass(m, (r * cos(theta), r * sin(theta)))],
+        potential=-G * M * m / r,
+    )
+    yield System(
+        "field_of_a_centre",
+        "Mass in an attracting field with the constant k",
+        _coordinates((r, "m"), (theta, "rad")),
+        _parameters(m="kg", k="J m"),
+        [PointMass(m, (r * cos(theta), r * sin(theta)))],
+        potential=-k / r,
+    )
+    yield System(
+        "physical_pendulum",
+        "Rigid body on a hinge",
+        _coordinates((theta, "rad")),
+        _parameters(m="kg", l="m", I="kg m^2", g="m/s^2"),
+        [RigidBody(m, (l * sin(theta), -l * cos(theta)), I - m * l**2, theta)],
+    )
+    yield System(
+        "cart_and_bar",
+        "Cart with a hinged rigid body",
+        _coordinates((x, "m"), (theta, "rad")),
+        _parameters(M="kg", m="kg", l="m", I="kg m^2", g="m/s^2"),
+        [PointMass(M, (x, 0)), RigidBody(m, (x + l * sin(theta), -l * cos(theta)), I, theta)],
+    )
+    yield System(
+        "two_links", "Two hinged links with moments of inertia about their centres of mass",
+        _coordinates((theta1, "rad"), (theta2, "rad")),
+        _parameters(m1="kg", m2="kg", l1="m", r1="m", r2="m", I1="kg m^2", I2="kg m^2", g="m/s^2"),
+        [RigidBody(m1, (r1 * sin(theta1), -r1 * cos(theta1)), I1, theta1),
+         RigidBody(m2, (l1 * sin(theta1) + r2 * sin(theta2),
+                        -l1 * cos(theta1) - r2 * cos(theta2)), I2, theta2)],
+    )  # fmt: skip
+    yield System(
+        "two_links_about_joints", "Two hinged links with moments of inertia about their joints",
+        _coordinates((theta1, "rad"), (theta2, "rad")),
+        _parameters(m1="kg", m2="kg", l1="m", r1="m", r2="m", I1="kg m^2", I2="kg m^2", g="m/s^2"),
+        [RigidBody(m1, (r1 * sin(theta1), -r1 * cos(theta1)), I1 - m1 * r1**2, theta1),
+         RigidBody(m2, (l1 * sin(theta1) + r2 * sin(theta2),
+                        -l1 * cos(theta1) - r2 * cos(theta2)), I2 - m2 * r2**2, theta2)],
+    )  # fmt: skip
+    yield System(
+        "two_oscillators",
+        "Two masses between springs",
+        _coordinates((x1, "m"), (x2, "m")),
+        _parameters(m1="kg", m2="kg", k1="N/m", k2="N/m", k3="N/m"),
+        [PointMass(m1, (x1, 0)), PointMass(m2, (x2, 0))],
+        potential=sum(
+            sp.Symbol(name, positive=True) * length**2 / 2
+            for name, length in (("k1", x1), ("k2", x2 - x1), ("k3", x2))
+        ),
+    )
+    yield System(
+        "bead_on_parabola",
+        "Bead on a parabola",
+        _coordinates((x, "m")),
+        _parameters(m="kg", k="1/m", g="m/s^2"),
+        [PointMass(m, (x, k * x**2))],
+    )
+    yield System(
+        "projectile",
+        "Mass in uniform gravity",
+        _coordinates((x1, "m"), (x2, "m")),
+        _parameters(m="kg", g="m/s^2"),
+        [PointMass(m, (x1, x2))],
+    )
+    yield System(
+        "cone",
+        "Mass on a cone",
+        _coordinates((r, "m"), (theta, "rad")),
+        _parameters(m="kg", k="1", g="m/s^2"),
+        [PointMass(m, (r * cos(theta), r * sin(theta), k * r))],
+    )
+    yield System(
+        "atwood",
+        "Two masses on a thread over a pulley",
+        _coordinates((x, "m")),
+        _parameters(m1="kg", m2="kg", g="m/s^2"),
+        [PointMass(m1, (0, -x)), PointMass(m2, (0, x))],
+    )

@@ -1,0 +1,301 @@
+"""Syntax trees of LaTeX as formulas in the syntax of `derive.formulas.expression`.
+
+A `Text` remembers which LaTeX each of its parts comes from, so that the wrong term of a formula
+can be shown as the document writes it.
+"""
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, assert_never
+
+from derive.reading.latex.tree import (
+    Application,
+    Call,
+    Derivative,
+    Dotted,
+    Letter,
+    Matrix,
+    Node,
+    Norm,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Root,
+    Span,
+    Sum,
+    Summation,
+    Transpose,
+    Tuple,
+)
+from derive.verification.documents.rates import RATES, order, stem
+
+#: Binding strengths: a part that binds less than its place requires is put into brackets.
+SUM, PRODUCT, POWER, ATOM = range(4)
+
+#: Reciprocals of functions that formulas have.
+RECIPROCALS = {"sec": "cos", "csc": "sin"}
+
+#: Most terms of a sum that is written out.
+MAX_TERMS = 20
+
+
+class UntranslatableError(ValueError):
+    """A formula that has no translation; the message states why."""
+
+
+@dataclass(frozen=True)
+class Text:
+    """A formula in our syntax, and the spans of its parts: start and end here, and in LaTeX."""
+
+    text: str
+    binding: int = ATOM
+    parts: tuple[tuple[int, int, Span], ...] = ()
+
+    def shifted(self, offset: int) -> Iterator[tuple[int, int, Span]]:
+        """The parts, `offset` characters later."""
+        return ((start + offset, end + offset, span) for start, end, span in self.parts)
+
+    def source(self, start: int, end: int) -> Span | None:
+        """The LaTeX of the characters from `start` to `end`: of all parts within them."""
+        spans = [span for a, b, span in self.parts if start <= a and b <= end]
+        return (min(s for s, _ in spans), max(e for _, e in spans)) if spans else None
+
+
+@dataclass(frozen=True)
+class Notation:
+    """What the letters of a document are, as far as a translation depends on it."""
+
+    functions: frozenset[str] = frozenset()  # identifiers before brackets that hold arguments
+    matrices: frozenset[str] = frozenset()  # identifiers of matrices and columns
+    count: int = 1  # values of an index without bounds
+    primes_are_rates: bool = False
+
+
+@dataclass
+class Translator:
+    """Translations of trees; collects derivatives of letters, which become names."""
+
+    notation: Notation = Notation()
+    #: Names such as ``dL_dtheta_1_dot``, with the identifier of L and the texts of variables.
+    derivatives: dict[str, tuple[str, tuple[str, ...]]] = field(default_factory=dict)
+
+    def text(self, node: Node, least: int = SUM) -> Text:
+        """The translation of a tree, in brackets if it binds less than `least`."""
+        result = self._text(node)
+        if not any(span == node.span for *_, span in result.parts):
+            whole = (0, len(result.text), node.span)
+            result = replace(result, parts=(*result.parts, whole))
+        return result if result.binding >= least else _joined(ATOM, "(", result, ")")
+
+    def name(self, letter: Letter) -> str:
+        """The identifier of a letter with its dots."""
+        primes = letter.primes if self.notation.primes_are_rates else 0
+        name = identifier(letter) + "_prime" * (letter.primes - primes)
+        name = f"{name}_column" if letter.is_bold else name
+        return name + RATES[letter.dots + primes]
+
+    def _text(self, node: Node) -> Text:
+        match node:
+            case Number(digits=digits):
+                return Text(digits)
+            case Letter():
+                return Text(self.name(node))
+            case Sum(terms=terms):
+                return self._sum(terms)
+            case Product(factors=factors):
+                return self._product(factors)
+            case Quotient(numerator=above, denominator=below):
+                return _joined(PRODUCT, self.text(above, PRODUCT), "/", self.text(below, POWER))
+            case Power(base=base, exponent=exponent):
+                return self._power(base, exponent)
+            case Root(radicand=radicand, degree=2):
+                return _joined(ATOM, "sqrt(", self.text(radicand), ")")
+            case Root(radicand=radicand, degree=degree):
+                return _joined(POWER, self.text(radicand, ATOM), f"**(1/{degree})")
+            case Call(function=name, argument=argument):
+                return self._call(name, argument)
+            case Application():
+                return self._application(node)
+            case Derivative():
+                return self._derivative(node)
+            case Dotted(operand=operand, dots=dots):
+                return self._rate(self._text(operand), dots)
+            case Matrix(rows=rows):
+                return self._matrix(rows)
+            case Tuple(items=items):
+                return self._matrix([(item,) for item in items])
+            case Transpose(operand=operand):
+                return _joined(ATOM, "transpose(", self.text(operand), ")")
+            case Norm(operand=operand):
+                return _joined(ATOM, "norm(", self.text(operand), ")")
+            case Summation():
+                return self._summation(node)
+        assert_never(node)
+
+    def _sum(self, terms: Sequence[tuple[int, Node]]) -> Text:
+        pieces: list[Text | str] = []
+        for sign, term in terms:
+            between = "-" if sign < 0 else "+"
+            pieces.append(f" {between} " if pieces else between * (sign < 0))
+            pieces.append(self.text(term, PRODUCT))
+        return _joined(SUM, *pieces)
+
+    def _product(self, factors: Sequence[Node]) -> Text:
+        pieces: list[Text | str] = []
+        for factor in factors:
+            # a quotient behind a factor is one factor: a*(b/c) keeps its parts
+            text = self.text(factor, PRODUCT if not pieces else POWER)
+            pieces += ["*", text] if pieces else [text]
+        return _joined(PRODUCT, *pieces)
+
+    def _power(self, base: Node, exponent: Node) -> Text:
+        if isinstance(base, Application) and not self._is_function(base):
+            power = Power(base.arguments[0], exponent, (base.head.span[1], base.span[1]))
+            return self._product([base.head, power])
+        inverse = isinstance(exponent, Sum) and len(exponent.terms) == 1 and exponent.terms[0]
+        if inverse and inverse[0] < 0 and getattr(inverse[1], "digits", "") == "1":
+            is_matrix = isinstance(base, Matrix) or (
+                isinstance(base, Letter) and self.name(base) in self.notation.matrices
+            )
+            if is_matrix:
+                return _joined(ATOM, "inverse(", self.text(base), ")")
+        if isinstance(base, Letter) and self.name(base) in self.notation.matrices:
+            if getattr(exponent, "digits", "") != "2":
+                raise UntranslatableError("a power of a matrix")
+            return _joined(ATOM, "square(", self.text(base), ")")
+        return _joined(POWER, self.text(base, ATOM), "**", self.text(exponent, ATOM))
+
+    def _call(self, name: str, argument: Node) -> Text:
+        if name in RECIPROCALS:
+            return _joined(PRODUCT, f"1/{RECIPROCALS[name]}(", self.text(argument), ")")
+        if name == "cot":
+            inner = self.text(argument)
+            return _joined(PRODUCT, "cos(", inner, ")/sin(", inner, ")")
+        return _joined(ATOM, f"{name}(", self.text(argument), ")")
+
+    def _application(self, node: Application) -> Text:
+        if self._is_function(node):
+            return Text(self.name(node.head))
+        return self._product([node.head, *node.arguments])
+
+    def _is_function(self, node: Application) -> bool:
+        return len(node.arguments) > 1 or self.name(node.head) in self.notation.functions
+
+    def _derivative(self, node: Derivative) -> Text:
+        times = [one for one in node.variables if isinstance(one, Letter) and one.name == "t"]
+        if len(times) == len(node.variables) and not (
+            node.is_partial and isinstance(node.operand, Letter) and not node.operand.dots
+        ):
+            return self._rate(self._text(node.operand), len(times))
+        variables = tuple(self._text(one).text for one in node.variables)
+        operand = self._text(node.operand)
+        if isinstance(node.operand, Letter | Application) and operand.text.isidentifier():
+            name = "d".join(["", operand.text]) + "".join(f"_d{one}" for one in variables)
+            self.derivatives[name] = operand.text, variables
+            return Text(name)
+        for variable in variables:
+            operand = _joined(ATOM, "diff(", operand, f", {variable})")
+        return operand
+
+    def _rate(self, operand: Text, times: int) -> Text:
+        name = operand.text
+        is_letter = name.isidentifier() and name not in self.derivatives and name != "t"
+        if is_letter and order(name) + times < len(RATES):
+            return Text(stem(name) + RATES[order(name) + times])
+        for _ in range(times):
+            operand = _joined(ATOM, "ddt(", operand, ")")
+        return operand
+
+    def _matrix(self, rows: Sequence[Sequence[Node]]) -> Text:
+        pieces: list[Text | str] = ["["]
+        for i, row in enumerate(rows):
+            pieces.append(", [" if i else "[")
+            for j, entry in enumerate(row):
+                pieces += [", " * bool(j), self.text(entry)]
+            pieces.append("]")
+        return _joined(ATOM, *pieces, "]")
+
+    def _summation(self, node: Summation) -> Text:
+        first, last = _whole(node.lower, 1), _whole(node.upper, self.notation.count)
+        if node.index is None or not 0 <= last - first < MAX_TERMS:
+            raise UntranslatableError("a sum without an index, or of too many terms")
+        terms = [(1, indexed(node.body, node.index.name, k)) for k in range(first, last + 1)]
+        return self._sum(terms)
+
+
+def identifier(letter: Letter) -> str:
+    """The name of a letter, of word characters alone: ``s_1_plus_2`` of s with the index 1 + 2."""
+    name = letter.identifier.replace("+", "_plus_").replace("-", "_minus_")
+    name = re.sub(r"\W", "_", name)
+    return name if name[:1].isalpha() else f"letter_{name}"
+
+
+def entries(node: Node) -> list[Node] | None:
+    """The entries of a column or matrix that is written out; None for other formulas."""
+    match node:
+        case Matrix(rows=rows):
+            return [entry for row in rows for entry in row]
+        case Tuple(items=items):
+            return [*items]
+    return None
+
+
+def indexed(node: Node, index: str, value: int) -> Node:
+    """The tree with a number in place of a letter that is an index."""
+
+    def changed(part: Any) -> Any:
+        if isinstance(part, Letter):
+            words = part.index.split("_") if part.index else []
+            return replace(part, index="_".join(str(value) if w == index else w for w in words))
+        if isinstance(part, tuple):
+            return tuple(map(changed, part))
+        if isinstance(part, Node):
+            names = [name for name in part.__dataclass_fields__ if name != "span"]
+            return replace(part, **{name: changed(getattr(part, name)) for name in names})
+        return part
+
+    result: Node = changed(node)
+    return result
+
+
+def nodes(node: object) -> Iterator[Node]:
+    """A tree and all trees within it."""
+    if isinstance(node, Node):
+        yield node
+        for name in node.__dataclass_fields__:
+            yield from nodes(getattr(node, name))
+    elif isinstance(node, tuple):
+        for one in node:
+            yield from nodes(one)
+
+
+def letters(node: Node) -> Iterator[Letter]:
+    """All letters of a tree."""
+    return (one for one in nodes(node) if isinstance(one, Letter))
+
+
+def has_index(nodes: Collection[Node], index: str) -> bool:
+    """Whether a letter has a letter as its index."""
+    return any(index in one.index.split("_") for node in nodes for one in letters(node))
+
+
+def _joined(binding: int, *pieces: Text | str) -> Text:
+    text, parts = "", list[tuple[int, int, Span]]()
+    for piece in pieces:
+        if isinstance(piece, Text):
+            parts += piece.shifted(len(text))
+            text += piece.text
+        else:
+            text += piece
+    return Text(text, binding, tuple(parts))
+
+
+def _whole(node: Node | None, default: int) -> int:
+    match node:
+        case Number(digits=digits) if digits.isdigit():
+            return int(digits)
+        case None | Letter():
+            return default
+    raise UntranslatableError("a sum with bounds that are not whole numbers")

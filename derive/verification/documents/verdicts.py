@@ -1,0 +1,181 @@
+"""Verdicts on the formulas of a document whose letters are known."""
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.formulas.expression import ExpressionError, Value
+from derive.verification.documents.linear import Linear
+from derive.verification.documents.partial_energies import PartialEnergies
+from derive.verification.documents.rates import order, stem
+from derive.verification.documents.scope import DocumentScope
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.translation import Text
+from derive.verification.engine import joined
+from derive.verification.model import Model, depends_on
+from derive.verification.quantities import judge_formula
+from derive.verification.verdict import Verdict
+
+#: Verdicts on formulas that are correct.
+CORRECT = ("verified", "equivalent", "definition")
+
+
+@dataclass(frozen=True)
+class SideVerdict:
+    """The verdict on a side of a formula, with the place of each of its characters."""
+
+    verdict: Verdict
+    parts: tuple[tuple[int, Text], ...]  # the sides within the judged text, and where they start
+    kind: str
+
+
+class Judge:
+    """Verdicts on formulas in the scope of a document."""
+
+    def __init__(self, scope: DocumentScope) -> None:
+        self._scope, self._model = scope, scope.model
+        self._linear = Linear(scope.derivation)
+        self._energies = PartialEnergies(scope)
+
+    def verdict(self, formula: DocumentFormula) -> SideVerdict:
+        """The verdict on a formula: that on its first side that is not correct."""
+        if not formula.relations:
+            return _plain("context", formula, "it is no statement")
+        if unknown := self._unknown(formula):
+            return _plain("context", formula, f"no meaning was found for {', '.join(unknown)}")
+        if any(one not in ("=", ":=", "~") for one in formula.relations):
+            return _plain("context", formula, "it is no equation")
+        if self._is_special(formula):
+            return _plain("context", formula, "it states a value")
+        results = [self._side(formula, k) for k in range(1, len(formula.sides))]
+        for result in results:
+            if result.verdict.verdict not in CORRECT:
+                return result
+        notes = dict.fromkeys(one.verdict.note for one in results)
+        best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
+        return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
+
+    def _is_special(self, formula: DocumentFormula) -> bool:
+        """Whether a formula states the value of a coordinate, of its rate or of a parameter."""
+        names, last = self._scope.all_names, formula.sides[-1].text
+        try:
+            value = self._scope.value(last)
+        except ExpressionError:
+            return False
+        others = [side.text for side in formula.sides[:-1]]
+        return (
+            isinstance(value, sp.Expr)
+            and value.is_number
+            and all(one in names and isinstance(names[one], sp.Symbol) for one in others)
+        )
+
+    def _unknown(self, formula: DocumentFormula) -> list[str]:
+        return sorted(name for name in formula.words if name not in self._scope.all_names)
+
+    def _side(self, formula: DocumentFormula, k: int) -> SideVerdict:
+        first, side = formula.sides[0], formula.sides[k]
+        defined = self._scope.defining.get(formula.subject)
+        if defined and defined[0] is formula and defined[1] == side.text:
+            required = self._energies.required(formula.subject)
+            if required is not None:
+                return self._value(side, formula.subject, required)
+            return _plain("definition", formula, "")
+        last = self._scope.defining.get(side.text)
+        if last and last[0] is formula:
+            return _plain("definition", formula, "")
+        try:
+            values = [self._scope.value(one.text) for one in (first, side)]
+            return self._compared(formula, first, side, *values)
+        except (ExpressionError, NotImplementedError) as error:
+            return _plain("context", formula, f"not judged: {error}")
+
+    def _compared(
+        self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
+    ) -> SideVerdict:
+        if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
+            return self._matrices(formula, left, right)
+        note = self._holds(left - right)
+        if note is not None:
+            return _plain("verified", formula, note)
+        small = "it holds for small motions about the origin"
+        if "~" in formula.relations:
+            is_small = self._linear.holds(left - right, self._model)
+            note = small if is_small else "it is an approximation"
+            return _plain("verified" if is_small else "context", formula, note)
+        result = self._role(formula, first, side, left, right)
+        if result.verdict.verdict in CORRECT:
+            return result
+        if self._linear.holds(left - right, self._model):
+            return _plain("verified", formula, small)
+        if side.text.startswith("sqrt(") and self._holds(left**2 - right**2) is not None:
+            return _plain("verified", formula, "it holds for one sign of the root")
+        values = self._scope.special_values
+        if values and self._holds((left - right).xreplace(values)) is not None:
+            text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
+            return _plain("equivalent", formula, f"it holds for {text}")
+        return result
+
+    def _matrices(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
+        shapes = [getattr(one, "shape", None) for one in (left, right)]
+        if shapes[0] != shapes[1]:
+            return _plain("context", formula, "it compares quantities of different shapes")
+        for a, b in zip(left, right, strict=True):
+            note = self._holds(a - b)
+            if note is None and not self._linear.holds(a - b, self._model):
+                return _plain("wrong", formula, "", self._model.context.witness(b, a))
+        return _plain("verified", formula, "")
+
+    def _holds(self, difference: sp.Expr) -> str | None:
+        """A note if a difference is zero at all states or along motions, otherwise None."""
+        for context in (self._model.context, self._model.motions):
+            note = context.agreement(difference)
+            if note is not None:
+                return note
+        return None
+
+    def _role(
+        self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
+    ) -> SideVerdict:
+        system, subject = self._scope.derivation.system, first.text
+        letters = self._scope.letters
+        kind, name = "", ""
+        if subject in letters.quantities:
+            kind = letters.quantities[subject]
+        elif subject in letters.momenta:
+            kind, name = "momenta", letters.momenta[subject]
+        elif (
+            subject.isidentifier() and order(subject) == 2 and stem(subject) in letters.coordinates
+        ):
+            kind, name = "accelerations", stem(subject)
+        if kind == "accelerations" and depends_on(right, system.qddot):
+            kind = ""
+        if kind in ("hamiltonian", "energy"):
+            kind = "hamiltonian" if depends_on(right, system.p) else "energy"
+        if kind == "accelerations":
+            small = self._linear.acceleration(self._scope.all_names[subject], right)
+            if small is not None:
+                return self._value(side, "linearised", small)
+        if kind:
+            with suppress(ExpressionError):
+                verdict = judge_formula(self._model, "", side.text, kind, name)
+                if verdict.verdict != "unreadable":
+                    return SideVerdict(verdict, ((0, side),), kind)
+        if depends_on((left - right).xreplace(self._model.momenta), system.qddot):
+            text = f"{first.text} = {side.text}"
+            verdict = judge_formula(self._model, "", text, "euler_lagrange")
+            return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
+        return self._value(side, subject, left)
+
+    def _value(self, side: Text, name: str, value: sp.Expr) -> SideVerdict:
+        """The verdict on a side that must have a value, to which a name is given."""
+        name = name if name.isidentifier() else "left_side"
+        model = Model(self._scope.derivation, {**self._scope.names, name: value})
+        return SideVerdict(
+            judge_formula(model, "", side.text, "value", name), ((0, side),), "value"
+        )
+
+
+def _plain(verdict: str, formula: DocumentFormula, note: str, witness: str = "") -> SideVerdict:
+    one = Verdict("", verdict, formula.text, note=note, witness=witness)  # type: ignore[arg-type]
+    return SideVerdict(one, (), "")
