@@ -16,8 +16,8 @@ STANDARD = set(sys.stdlib_module_names)
 
 #: Packages that the modules of a package may import; solvers/app may import all of them.
 ALLOWED = {
-    # mpmath is SymPy's arithmetic; NumPy tries thousands of meanings of a document's letters at once
-    "derive": {"derive", "sympy", "mpmath", "numpy", "lark", "solvers.io"},
+    # mpmath is the arithmetic of SymPy
+    "derive": {"derive", "sympy", "mpmath", "numpy", "lark", "tree_sitter", "solvers.io"},
     "generated": {"numpy"},
     "solvers": {"solvers", "numpy", "scipy", "matplotlib"},
 }

@@ -1,0 +1,1 @@
+"""Programs that simulate a motion: their equations, and their method of integration."""

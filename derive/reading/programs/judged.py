@@ -1,0 +1,168 @@
+"""The equations and findings of all regions of a program, each of them once."""
+
+from dataclasses import replace
+
+from derive.reading.programs.arrays import entries
+from derive.reading.programs.context import Context, statements, static_path
+from derive.reading.programs.degrees import angles, named_in_degrees, number, starts_in_degrees
+from derive.reading.programs.equations import Equations
+from derive.reading.programs.following import Step
+from derive.reading.programs.libraries import integrated, library_findings
+from derive.reading.programs.methods import (
+    euler_findings,
+    runge_kutta_findings,
+    written_methods,
+)
+from derive.reading.programs.naming import Names
+from derive.reading.programs.program import Constant, Finding, Function, Program, Unread
+from derive.reading.programs.rates import Rates, rates
+from derive.reading.programs.regions import Region
+from derive.reading.programs.trees import Assignment, Statement, Tree
+from derive.reading.programs.updates import Updates, without_time
+from derive.reading.programs.writing import UnwrittenError, Writer
+
+
+class Findings:
+    """Collects what regions compute."""
+
+    def __init__(self, context: Context, body: tuple[Statement, ...]) -> None:
+        self._context = context
+        self._functions: list[Function] = []
+        self._findings: list[Finding] = []
+        self._unread: list[Unread] = []
+        #: Functions that are passed to integrators, and initial states.
+        self._integrated: dict[str, Tree] = {}
+        self._angles: dict[str, dict[int, str]] = {}
+        self._starts = [
+            (static_path(one.target), one.value)
+            for one in statements(body, inner=True)
+            if isinstance(one, Assignment) and not one.operator
+        ]
+
+    def add(self, region: Region) -> None:
+        """Add the equations and the method of a region."""
+        follower = region.follower
+        self._unread += [Unread(line, why, region.name) for line, why in follower.faults]
+        self._findings += library_findings(iter(follower.calls), region.name)
+        for path, state in integrated(iter(follower.calls)):
+            if entries(state) is not None:
+                self._integrated.setdefault(path.rpartition(".")[2], state)
+        found = rates(region.definition, region.follower)
+        if found and found.is_step:
+            lines = found.lines
+            follower.steps += [Step(lines[q], q, value) for q, value in found.values.items()]
+            follower.variables |= found.values
+        elif found:
+            self._add_rates(region, found)
+        self._add_updates(region)
+
+    def _add_rates(self, region: Region, found: Rates) -> None:
+        names = Names(region.follower.steps)
+        equations = Equations(region.name, names)
+        velocities = found.velocities
+        for q, v in velocities.items():
+            names.define(v, f"{names(q)}_dot")
+        for q, value in found.values.items():
+            if q in velocities:
+                v = velocities[q]
+                equations.acceleration(found.lines[v], q, v, found.values[v])
+            elif q not in velocities.values():
+                equations.rate(found.lines[q], q, value)
+        self._end(region, equations, names, [*found.values.values()])
+        angular = angles([*found.values.values()])
+        self._angles[region.definition.name] = {
+            i: q for i, q in enumerate(found.values) if q in angular
+        }
+
+    def _add_updates(self, region: Region) -> None:
+        updates = Updates(region.follower)
+        written = written_methods(updates, region.follower.returned)
+        self._findings += runge_kutta_findings(written, region.name)
+        changed = {name for one in written for name in one.variables}
+        pairs = tuple(one for one in updates.pairs if one.coordinate.variable not in changed)
+        if not pairs:
+            return
+        names = Names(region.follower.steps)
+        equations = Equations(region.name, names)
+        for pair in pairs:
+            q = pair.coordinate.variable
+            names.define(q, names(without_time(q)))
+            names.define(pair.velocity.variable, f"{names(q)}_dot")
+        used, values = {}, []
+        for pair in pairs:
+            q, v = pair.coordinate.variable, pair.velocity
+            value, used[q] = updates.acceleration(pair)
+            values.append(value)
+            equations.acceleration(value.line, q, v.variable, value)
+        self._end(region, equations, names, values)
+        self._findings += euler_findings(pairs, used, region.name, self._context.constants)
+        angular = angles(values)
+        for pair in pairs:
+            q = pair.coordinate.variable
+            if q in angular:
+                for path, start in self._starts:
+                    if path == q:
+                        self._findings += starts_in_degrees(
+                            q, start, self._context.constants, region.name
+                        )
+
+    def _end(self, region: Region, equations: Equations, names: Names, values: list[Tree]) -> None:
+        equations.end()
+        for value in values:
+            self._findings += named_in_degrees(value, region.name)
+        self._unread += equations.unread
+        found = tuple(equations.equations)
+        if found:
+            self._functions.append(Function(region.name, region.line, found, names.read))
+
+    def program(self, file: str, language: str) -> Program:
+        """The program, with each equation in the function where it stands."""
+        for name, state in self._integrated.items():
+            items = entries(state) or ()
+            for index, q in self._angles.get(name, {}).items():
+                if index < len(items):
+                    self._findings += starts_in_degrees(
+                        q, items[index], self._context.constants, name
+                    )
+        functions = self._own_equations()
+        read = {equation.line for one in functions for equation in one.equations}
+        unread = {(one.line, one.reason): one for one in self._unread if one.line not in read}
+        findings = {(one.line, one.kind, one.text): one for one in self._findings}
+        constants = [
+            Constant(name, text, value.line)
+            for name, value in self._context.constants.items()
+            if number(value) is not None and (text := _written(value))
+        ]
+        return Program(
+            file,
+            language,
+            functions,
+            tuple(constants),
+            tuple(sorted(findings.values(), key=lambda one: one.line)),
+            tuple(sorted(unread.values(), key=lambda one: one.line)),
+        )
+
+    def _own_equations(self) -> tuple[Function, ...]:
+        """The functions without equations that they take from functions that they call."""
+        best: dict[tuple[int, str], Function] = {}
+        for function in self._functions:
+            for equation in function.equations:
+                key = (equation.line, equation.text)
+                known = best.get(key)
+                if known is None or known.line < function.line <= equation.line:
+                    best[key] = function
+        found = []
+        for function in self._functions:
+            own = tuple(e for e in function.equations if best[e.line, e.text] is function)
+            if own:
+                found.append(replace(function, equations=own))
+        return tuple(found)
+
+
+def _written(value: Tree) -> str:
+    writer = Writer(lambda path: path)
+    try:
+        writer.write(value)
+    except UnwrittenError:
+        return ""
+    return writer.text

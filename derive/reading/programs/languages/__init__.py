@@ -1,0 +1,1 @@
+"""The languages of programs, one file each."""

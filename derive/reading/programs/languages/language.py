@@ -1,0 +1,56 @@
+"""A language: which nodes of its syntax trees have which role."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from derive.reading.programs.program import ProgramError
+
+if TYPE_CHECKING:
+    from tree_sitter import Parser
+
+
+@dataclass(frozen=True)
+class Language:
+    """The roles of nodes, and the few rules in which a language differs from the others.
+
+    A role is a method of `derive.reading.programs.translation.Translator`.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    module: str  # of the grammar
+    roles: Mapping[str, str]  # role of each type of node
+    grammar: str = "language"  # the function of the module
+    first_index: int = 0
+    #: Whether the upper bound of a range is not an index.
+    is_half_open: bool = True
+    #: Whether * of matrices is their product.
+    has_matrix_products: bool = False
+    #: Whether y(1) can be an entry of an array.
+    has_round_indices: bool = False
+    #: Whether a variable that a function assigns without declaration belongs to the function.
+    assigns_locals: bool = True
+    #: Whether the value of a function is its last expression.
+    returns_last: bool = False
+    is_case_sensitive: bool = True
+    #: The text as the grammar reads it, with the same lines.
+    prepared: Callable[[str], str] = field(default=lambda text: text)
+
+    def parser(self) -> "Parser":
+        """The parser of the language; `ProgramError` if it is not installed."""
+        return _parser(self.module, self.grammar)
+
+
+@cache
+def _parser(module: str, grammar: str) -> "Parser":
+    try:
+        import tree_sitter
+
+        language = getattr(import_module(module), grammar)()
+    except ImportError as error:
+        message = "programs are read with tree-sitter: pip install 'holonomic[documents]'"
+        raise ProgramError(f"{message} ({error})") from error
+    return tree_sitter.Parser(tree_sitter.Language(language))

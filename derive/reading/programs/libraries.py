@@ -1,0 +1,69 @@
+"""Integrators of libraries that a program calls."""
+
+from collections.abc import Iterator
+
+from derive.reading.programs.mathematics import split
+from derive.reading.programs.program import Finding
+from derive.reading.programs.trees import Call, Member, Name, Number, Text, Tree
+
+#: Functions that integrate, and the library and the method by default.
+INTEGRATORS = {
+    "odeint": ("an integrator", "LSODA in SciPy"),
+    "solve_ivp": ("SciPy", "RK45"),
+    "ode45": ("MATLAB", "an embedded pair of order 5"),
+    "ode23": ("MATLAB", "an embedded pair of order 3"),
+    "ode113": ("MATLAB", "a multistep method"),
+    "ode15s": ("MATLAB", "an implicit multistep method"),
+    "ode23s": ("MATLAB", "an implicit method"),
+    "ode23t": ("MATLAB", "the trapezoidal rule"),
+    "ode78": ("MATLAB", "an embedded pair of order 8"),
+    "ode89": ("MATLAB", "an embedded pair of order 9"),
+    "lsode": ("Octave", "LSODE"),
+    "ODEProblem": ("DifferentialEquations.jl", "the method of solve"),
+    "SecondOrderODEProblem": ("DifferentialEquations.jl", "the method of solve"),
+    "integrate_const": ("Boost", "the stepper of the call"),
+    "integrate_adaptive": ("Boost", "the stepper of the call"),
+    "diffeqsolve": ("diffrax", "the solver of the call"),
+    "complex_ode": ("SciPy", "the integrator of the call"),
+}
+
+
+def library_findings(calls: Iterator[Call], function: str) -> Iterator[Finding]:
+    """The integrators among calls."""
+    for call in calls:
+        name = split(_path(call.function))[1]
+        if name in INTEGRATORS:
+            library, method = INTEGRATORS[name]
+            chosen = dict(call.keywords).get("method")
+            if isinstance(chosen, Text | Name):
+                method = chosen.value if isinstance(chosen, Text) else chosen.path
+            text = f"{name} of {library} integrates: {method}"
+            if library == "an integrator":
+                text = f"{name} integrates: {method}"
+            yield Finding(call.line, "library", function, text)
+
+
+def integrated(calls: Iterator[Call]) -> Iterator[tuple[str, Tree]]:
+    """Functions that are passed to an integrator, and the initial state."""
+    for call in calls:
+        name = split(_path(call.function))[1]
+        if name in INTEGRATORS and call.arguments:
+            names = [one.path for one in call.arguments if isinstance(one, Name)]
+            states = call.arguments[1:]
+            for path in names[:1]:
+                for state in states:
+                    yield path, state
+
+
+def _path(tree: Tree) -> str:
+    match tree:
+        case Name(path=path):
+            return path
+        case Member(base=base, name=name):
+            return f"{_path(base)}.{name}"
+    return ""
+
+
+def literal(tree: Tree) -> float | None:
+    """The value of a number as written."""
+    return float(tree.digits) if isinstance(tree, Number) else None

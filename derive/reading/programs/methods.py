@@ -1,0 +1,122 @@
+"""The method by which coordinates are changed step by step, and its faults."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from derive.reading.programs.program import Finding
+from derive.reading.programs.runge_kutta import Method, method
+from derive.reading.programs.sums import inner, total
+from derive.reading.programs.trees import Array, Name, Number, Tree
+from derive.reading.programs.updates import Pair, Update, Updates
+
+#: Functions that a browser or a drawing library calls once a picture.
+DRAWING = {"draw", "animate", "animation", "render", "redraw", "tick", "frame", "drawframe"}
+
+
+@dataclass(frozen=True)
+class Written:
+    """A method that is written out, and the variables that it changes."""
+
+    line: int
+    method: Method
+    variables: tuple[str, ...]
+
+
+def written_methods(updates: Updates, returned: Tree | None) -> list[Written]:
+    """The Runge-Kutta methods by which variables, or a value that is returned, are changed."""
+    found: list[Written] = []
+    changes = [
+        (name, one.line, total(one.line, one.increment)) for name, one in updates.updates.items()
+    ]
+    value = None if returned is None else inner(returned)
+    entries = value.items if isinstance(value, Array) else () if value is None else (value,)
+    changes += [("", entry.line, entry) for entry in entries]
+    for name, line, increment in changes:
+        if (one := method(increment)) is not None:
+            same = next((other for other in found if other.method == one), None)
+            if same is not None:
+                found.remove(same)
+            known = same or Written(line, one, ())
+            found.append(Written(known.line, one, (*known.variables, name)))
+    return found
+
+
+def runge_kutta_findings(written: Sequence[Written], function: str) -> Iterator[Finding]:
+    """Remarks on the methods that are written out."""
+    for found in written:
+        one, possible = found.method, min(found.method.stages, 4)
+        text = f"a Runge-Kutta method of {one.stages} stages and order {one.order} is written out"
+        is_fault = one.order < possible
+        if is_fault:
+            weights = ", ".join(f"{x:.4g}" for x in one.b)
+            nodes = ", ".join(f"{sum(row):.4g}" for row in one.A)
+            text += f": weights {weights}, stages at {nodes} of the step"
+            text += f"; order {possible} is possible"
+        yield Finding(found.line, "runge_kutta", function, text, is_fault)
+
+
+def euler_findings(
+    pairs: tuple[Pair, ...],
+    used: Mapping[str, frozenset[str]],
+    function: str,
+    constants: Mapping[str, Tree],
+) -> Iterator[Finding]:
+    """Remarks on coordinates and velocities that are changed by their rates.
+
+    `used` has the variables after their update that the acceleration of each coordinate uses.
+    """
+    coordinates = {pair.coordinate.variable for pair in pairs}
+    velocities = {pair.velocity.variable for pair in pairs}
+    for pair in pairs:
+        q, v = pair.coordinate, pair.velocity
+        new = used.get(q.variable, frozenset())
+        moved = new & coordinates
+        if pair.has_other_terms:
+            continue
+        if pair.uses_new_velocity:
+            text = f"semi-implicit Euler: {v.variable} first (line {v.line}), then {q.variable}"
+            yield Finding(q.line, "semi_implicit_euler", function, text)
+        elif q.variable in moved:
+            text = f"semi-implicit Euler: {q.variable} first, then {v.variable} (line {v.line})"
+            yield Finding(q.line, "semi_implicit_euler", function, text)
+        else:
+            text = (
+                f"explicit Euler: {q.variable} grows by the old value of {v.variable}, "
+                "so that the energy grows"
+            )
+            yield Finding(q.line, "explicit_euler", function, text, True)
+        partly = (new & velocities) | (moved if moved != coordinates else frozenset())
+        if partly:
+            text = (
+                f"the acceleration for {v.variable} uses values after the step: "
+                f"{', '.join(sorted(partly))}"
+            )
+            yield Finding(v.line, "mixed_update", function, text, True)
+    yield from _steps(pairs, function, constants)
+    for pair in pairs:
+        yield from _damping(pair.velocity, function)
+
+
+def _steps(
+    pairs: tuple[Pair, ...], function: str, constants: Mapping[str, Tree]
+) -> Iterator[Finding]:
+    for pair in pairs:
+        line, step = pair.coordinate.line, pair.step
+        value = constants.get(step.path, step) if isinstance(step, Name) else step
+        if step is None:
+            text = "no step size: each call advances the motion by one unit of time"
+        elif isinstance(value, Number) and float(value.digits) >= 1:
+            text = f"the step size is {value.digits}"
+        elif function.rpartition(".")[2].lower() in DRAWING:
+            text = "one step a picture: the step size is that of the pictures"
+        else:
+            continue
+        is_fault = step is None or isinstance(value, Number)
+        yield Finding(line, "frame_step", function, text, is_fault)
+        return
+
+
+def _damping(velocity: Update, function: str) -> Iterator[Finding]:
+    if velocity.damping is not None:
+        text = f"{velocity.variable} is multiplied by a factor each step: damping"
+        yield Finding(velocity.damping_line or velocity.line, "damping", function, text, True)

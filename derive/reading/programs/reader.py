@@ -1,0 +1,80 @@
+"""Read a program: its equations, and its method of integration."""
+
+from pathlib import Path
+
+from derive.reading.programs.context import Context
+from derive.reading.programs.judged import Findings
+from derive.reading.programs.languages import javascript, python
+from derive.reading.programs.languages.language import Language
+from derive.reading.programs.program import Program, ProgramError
+from derive.reading.programs.regions import prepare, regions
+from derive.reading.programs.statements import Translator
+from solvers.io.suggestion import did_you_mean
+
+LANGUAGES: tuple[Language, ...] = (
+    python.language,
+    javascript.language,
+    javascript.typescript,
+)
+#: Characters of the longest program.
+MAX_LENGTH = 200_000
+
+
+def read_program(source: Path | str, language: str | None = None) -> Program:
+    """Read a program from a file, or from its text if the language is given.
+
+    Nothing of the program is executed. `source` is a path, or with `language`, such as
+    ``"Python"``, the text of a program.
+
+    Raises
+    ------
+    ProgramError
+        If the language is unknown, if the text is binary or too long, or if tree-sitter is not
+        installed.
+    OSError
+        If the file cannot be read.
+    """
+    if language is None or isinstance(source, Path):
+        path = Path(source)
+        if path.stat().st_size > 4 * MAX_LENGTH:
+            raise ProgramError(f"{path}: a program has at most {MAX_LENGTH} characters")
+        text, file = path.read_bytes().decode("utf-8", "replace"), str(path)
+        chosen = by_name(language) if language else by_suffix(path)
+    else:
+        text, file, chosen = source, "", by_name(language)
+    if len(text) > MAX_LENGTH:
+        raise ProgramError(f"a program of {len(text)} characters; at most {MAX_LENGTH} allowed")
+    if "\0" in text:
+        raise ProgramError("the program is no text: it contains null characters")
+    return _read(file, text, chosen)
+
+
+def by_suffix(path: Path) -> Language:
+    """The language of a file by its suffix."""
+    for one in LANGUAGES:
+        if path.suffix in one.suffixes:
+            return one
+    known = " ".join(suffix for one in LANGUAGES for suffix in one.suffixes)
+    raise ProgramError(f"{path.name}: unknown suffix {path.suffix!r}; known are: {known}")
+
+
+def by_name(name: str) -> Language:
+    """The language of a name, in capital letters or small ones."""
+    for one in LANGUAGES:
+        if one.name.lower() == name.lower() or f".{name.lower()}" in one.suffixes:
+            return one
+    names = [one.name for one in LANGUAGES]
+    raise ProgramError(
+        f"unknown language {name[:50]!r}{did_you_mean(name, names)}; known are: {', '.join(names)}"
+    )
+
+
+def _read(file: str, text: str, language: Language) -> Program:
+    tree = language.parser().parse(language.prepared(text).encode())
+    body = Translator(language).statements([tree.root_node])
+    context = Context(language)
+    prepare(context, body)
+    findings = Findings(context, body)
+    for region in regions(context, body):
+        findings.add(region)
+    return findings.program(file, language.name)

@@ -1,0 +1,148 @@
+"""The functions of a program, the loops in them, and the statements outside all functions."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from derive.reading.programs.context import Context, assigned, statements, static_path, targets
+from derive.reading.programs.degrees import number
+from derive.reading.programs.following import Follower, root
+from derive.reading.programs.trees import (
+    Array,
+    Assignment,
+    Call,
+    Definition,
+    Evaluation,
+    Loop,
+    Member,
+    Name,
+    Statement,
+    Tree,
+)
+
+
+@dataclass(frozen=True)
+class Region:
+    """Statements that are followed from the first to the last."""
+
+    name: str
+    line: int
+    definition: Definition  # of a loop, its body as a function without parameters
+    follower: Follower
+
+
+def prepare(context: Context, body: tuple[Statement, ...]) -> None:
+    """Collect the functions and constants of a program."""
+    everything = [*statements(body, inner=True)]
+    for one in everything:
+        if isinstance(one, Definition):
+            context.functions.setdefault(one.name, []).append(one)
+    values: dict[str, list[Tree]] = {}
+    counts: Counter[str] = Counter()
+    for scope in (body, *(one.body for one in everything if isinstance(one, Definition))):
+        fixed = _fixed(context, scope)
+        context.fixed[id(scope)] = {*fixed}
+        counts.update({*assigned(scope)})
+        for path, value in fixed.items():
+            values.setdefault(path, []).append(value)
+    for path, found in values.items():
+        if len(found) == counts[path] and len({number(value) for value in found}) == 1:
+            context.constants[path] = found[0]
+
+
+def _fixed(context: Context, body: tuple[Statement, ...]) -> dict[str, Tree]:
+    """The names that have one numeric value in a function, and the values."""
+    values: dict[str, list[Tree | None]] = {}
+    reader = Follower(context)
+    for one in statements(body, inner=False):
+        if isinstance(one, Assignment):
+            given = None if one.operator else reader.value(one.value)
+            single = [*targets(one.target)]
+            parts: Sequence[Tree | None] = [given]
+            if len(single) > 1:
+                known = isinstance(given, Array) and len(given.items) == len(single)
+                parts = given.items if known and isinstance(given, Array) else [None] * len(single)
+            for target, value in zip(single, parts, strict=True):
+                is_whole = isinstance(target, Name | Member)
+                values.setdefault(static_path(target), []).append(value if is_whole else None)
+    fixed = {}
+    for path, found in values.items():
+        numbers = {number(value) if value is not None else None for value in found}
+        if path and found[0] is not None and len(numbers) == 1 and None not in numbers:
+            fixed[path] = found[0]
+    return fixed
+
+
+def regions(context: Context, body: tuple[Statement, ...]) -> list[Region]:
+    """All regions, followed twice: then each knows the values that others assign once."""
+    found = [*_regions(context, body)]
+    once = _assigned_once(body)
+    for region in found:
+        own = {one.name for one in region.definition.parameters}
+        for path, value in region.follower.variables.items():
+            if path in once - own and number(value) is None and not _contains(value, path):
+                context.shared[path] = value
+    return [*_regions(context, body)]
+
+
+def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
+    """Names with one formula; numbers that they have at the beginning aside."""
+    counts: Counter[str] = Counter()
+    for one in statements(body, inner=True):
+        if isinstance(one, Assignment):
+            for target in targets(one.target):
+                is_number = isinstance(target, Name | Member) and number(one.value) is not None
+                counts[static_path(target)] += 2 if one.operator else not is_number
+        elif isinstance(one, Evaluation) and isinstance(one.value, Call):
+            # a function can change its arguments, and a method its object
+            counts.update(static_path(part) for part in one.value.parts)
+            if isinstance(one.value.function, Member):
+                counts[static_path(one.value.function.base)] += 2
+    return {path for path, count in counts.items() if count == 1}
+
+
+def _contains(tree: Tree, path: str) -> bool:
+    if isinstance(tree, Name):
+        return tree.path == path
+    return any(_contains(part, path) for part in tree.parts)
+
+
+def _regions(context: Context, body: tuple[Statement, ...]) -> Iterator[Region]:
+    yield from _followed(context, Definition(1, "", (), body), {}, body)
+    for one in statements(body, inner=True):
+        if isinstance(one, Definition):
+            yield from _followed(context, one, {}, one.body)
+
+
+def _followed(
+    context: Context,
+    definition: Definition,
+    variables: dict[str, Tree],
+    scope: tuple[Statement, ...],
+) -> Iterator[Region]:
+    follower = Follower(context, definition.owner)
+    follower.parameters = {one.name for one in definition.parameters}
+    follower.fixed = context.fixed.get(id(scope), set())
+    follower.variables = variables
+    follower.run(definition.body)
+    name = definition.name
+    if definition.owner and name:
+        name = f"{definition.owner}.{name}"
+    yield Region(name, definition.line, definition, follower)
+    for loop, before in follower.loops:
+        yield from _followed(context, _as_function(loop, definition), _kept(loop, before), scope)
+
+
+def _as_function(loop: Loop, outer: Definition) -> Definition:
+    return Definition(loop.line, outer.name, outer.parameters, loop.body, outer.owner)
+
+
+def _kept(loop: Loop, before: dict[str, Tree]) -> dict[str, Tree]:
+    """The values before a loop of the variables that it does not change."""
+    changed = {root(path) for path in assigned(loop.body)} | {loop.variable}
+    whole = {*assigned(loop.body)}
+    return {
+        path: value
+        for path, value in before.items()
+        if path not in whole and (root(path) not in changed or "." in path)
+    }

@@ -1,0 +1,236 @@
+"""From the syntax tree of a grammar to statements."""
+
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from derive.reading.programs.expressions import ExpressionTranslator, line, shown, text
+from derive.reading.programs.trees import (
+    Array,
+    Assignment,
+    Branch,
+    Call,
+    Definition,
+    Evaluation,
+    Fault,
+    Item,
+    Lambda,
+    Loop,
+    Member,
+    Name,
+    Number,
+    Parameter,
+    Record,
+    Return,
+    Statement,
+    Tree,
+)
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+#: Levels of blocks in blocks.
+MAX_BLOCKS = 60
+#: Roles of nodes that are no statements of a body.
+HEADERS = ("header", "parameters", "results", "skip", "otherwise")
+
+
+class Translator(ExpressionTranslator):
+    """Translates statements, and functions without a name."""
+
+    _blocks = 0
+    _owner = ""
+
+    def statements(self, nodes: Sequence["Node"]) -> tuple[Statement, ...]:
+        """The statements at nodes, with those of blocks among them in one row."""
+        return tuple(one for node in nodes for one in self._statement(node))
+
+    def _statement(self, node: "Node") -> Iterator[Statement]:
+        role = self.role(node)
+        if role == "skip":
+            return
+        method: Callable[[Node], Iterator[Statement]] | None
+        method = getattr(self, f"_{role}_statements", None)
+        if self._blocks > MAX_BLOCKS:
+            yield Fault(line(node), "the blocks are nested too deeply")
+        elif node.has_error and (method is None or role in ("assign", "update", "return", "")):
+            yield Fault(line(node), f"{shown(node)!r} is not understood")
+        elif method is None:
+            yield Evaluation(line(node), self.tree(node))
+        else:
+            self._blocks += 1
+            yield from method(node)
+            self._blocks -= 1
+
+    def _block_statements(self, node: "Node") -> Iterator[Statement]:
+        yield from self.statements(self.children(node))
+
+    def _declaration_statements(self, node: "Node") -> Iterator[Statement]:
+        for one in self.statements([n for n in self.children(node) if self._is_assigned(n)]):
+            if isinstance(one, Assignment):
+                one = Assignment(one.line, one.target, one.operator, one.value, True)
+            yield one
+
+    def _is_assigned(self, node: "Node") -> bool:
+        return self.role(node) == "assign" and len(self.children(node)) > 1
+
+    def _class_statements(self, node: "Node") -> Iterator[Statement]:
+        name = node.child_by_field_name("name")
+        outer, self._owner = self._owner, self.word(name) if name else "?"
+        body = node.child_by_field_name("body")
+        if body:
+            yield from self._statement(body)
+        self._owner = outer
+
+    def _field_statements(self, node: "Node") -> Iterator[Statement]:
+        children = [one for one in self.children(node) if self.role(one) != "skip"]
+        if len(children) > 1:
+            target = Member(line(node), Name(line(node), "this"), self.word(children[0]))
+            yield from self._assigned(line(node), target, "", self.tree(children[-1]))
+
+    def _assign_statements(self, node: "Node") -> Iterator[Statement]:
+        children = [one for one in self.children(node) if self.role(one) != "skip"]
+        left, right = children[0], children[-1]
+        if left == right:
+            return
+        signs = [text(one) for one in node.children if one not in (left, right)]
+        operator = next((one[:-1].lstrip(".") for one in signs if one.endswith("=")), "")
+        if self.role(right) == "assign":  # a = b = 1
+            yield from self._statement(right)
+            right = next(one for one in self.children(right) if self.role(one) != "skip")
+        yield from self._assigned(line(node), self.tree(left), operator, self.tree(right))
+
+    def _assigned(
+        self, number: int, target: Tree, operator: str, value: Tree
+    ) -> Iterator[Statement]:
+        match target, value:
+            case Name(path=name) | Member(name=name), Lambda(function=one):
+                yield Definition(one.line, name, one.parameters, one.body, self._owner)
+            case Call(function=Name(path=name), arguments=given), _ if self._is_function(value):
+                parameters = tuple(Parameter(p.path) for p in given if isinstance(p, Name))
+                yield Definition(number, name, parameters, (Return(number, value),))
+            case Call(line=at, function=base, arguments=indices), _:
+                yield Assignment(number, Item(at, base, indices), operator, value)
+            case _, Record(fields=fields):
+                yield from self._members(number, target, fields)
+            case Record(fields=fields), _:
+                for name, to in fields:
+                    yield Assignment(number, to, "", Member(number, value, name), True)
+            case _:
+                yield Assignment(number, target, operator, value)
+
+    def _is_function(self, value: Tree) -> bool:
+        """Whether ``f(x) = value`` defines a function, not an entry of an array."""
+        return not self.language.has_round_indices
+
+    def _members(
+        self, number: int, target: Tree, fields: tuple[tuple[str, Tree], ...]
+    ) -> Iterator[Statement]:
+        for name, value in fields:
+            yield from self._assigned(number, Member(number, target, name), "", value)
+
+    def _update_statements(self, node: "Node") -> Iterator[Statement]:
+        operator = "+" if "++" in text(node) else "-"
+        target = self.tree(self.children(node)[0])
+        yield Assignment(line(node), target, operator, Number(line(node), "1"))
+
+    def _return_statements(self, node: "Node") -> Iterator[Statement]:
+        values = [self.tree(one) for one in self.children(node)]
+        value = Array(line(node), tuple(values)) if len(values) > 1 else None
+        yield Return(line(node), values[0] if len(values) == 1 else value)
+
+    def _branch_statements(self, node: "Node") -> Iterator[Statement]:
+        _condition, *rest = self.children(node)
+        body = self.statements([one for one in rest if self.role(one) != "otherwise"])
+        others = [one for one in rest if self.role(one) == "otherwise"]
+        yield Branch(line(node), body, self._otherwise(others))
+
+    def _otherwise(self, nodes: list["Node"]) -> tuple[Statement, ...]:
+        if not nodes:
+            return ()
+        first, *rest = nodes
+        children = self.children(first)
+        if first.type.startswith(("elif", "elseif")):
+            body = self.statements(children[1:])
+            return (Branch(line(first), body, self._otherwise(rest)),)
+        return self.statements(children)
+
+    def _choice_statements(self, node: "Node") -> Iterator[Statement]:
+        yield Fault(line(node), "a choice between cases is not followed")
+
+    def _loop_statements(self, node: "Node") -> Iterator[Statement]:
+        body = node.child_by_field_name("body")
+        blocks = [one for one in self.children(node) if self.role(one) == "block"]
+        nodes = [body] if body else blocks or self._body(node)
+        header = next((one for one in self.children(node) if one not in nodes), None)
+        name = self._first(header, "name") if header else None
+        variable = "" if "while" in node.type or name is None else self.word(name)
+        yield Loop(line(node), variable, self.statements(nodes))
+
+    def _body(self, node: "Node") -> list["Node"]:
+        fields = [node.child_by_field_name(name) for name in ("condition", "name")]
+        return [n for n in self.children(node) if self.role(n) not in HEADERS and n not in fields]
+
+    def _function_statements(self, node: "Node") -> Iterator[Statement]:
+        parameters = self._first(node, "parameters")
+        header = next((one for one in self.children(node) if self.role(one) == "header"), node)
+        named = header.child_by_field_name("name") or self._first(header, "name")
+        yield self._definition(node, self.word(named) if named else "", parameters)
+
+    def _lambda_tree(self, node: "Node") -> Tree:
+        parameters = node.child_by_field_name("parameter") or self._first(node, "parameters")
+        return Lambda(line(node), self._definition(node, "", parameters))
+
+    def _definition(self, node: "Node", name: str, given: "Node | None") -> Definition:
+        body = node.child_by_field_name("body")
+        blocks = [one for one in self.children(node) if self.role(one) == "block"]
+        nodes = [body] if body else blocks or self._body(node)
+        if name == "" and len(nodes) > 1:
+            nodes = nodes[-1:]  # the parameter of a short function stands before its body
+        statements = self.statements(nodes)
+        if self.language.returns_last or self.role(nodes[0] if nodes else node) != "block":
+            statements = _with_return(statements)
+        found = self._first(node, "results")
+        results = tuple(self.word(one) for one in self._names(found)) if found else ()
+        parameters = tuple(self._parameters(given)) if given else ()
+        return Definition(line(node), name, parameters, statements, self._owner, results)
+
+    def _parameters(self, node: "Node") -> Iterator[Parameter]:
+        if self.role(node) == "name":
+            yield Parameter(self.word(node))
+            return
+        for child in self.children(node):
+            name = child if self.role(child) == "name" else self._first(child, "name")
+            default = child.child_by_field_name("value") or child.child_by_field_name("right")
+            if name:
+                yield Parameter(self.word(name), self.tree(default) if default else None)
+
+    def _names(self, node: "Node") -> Iterator["Node"]:
+        for child in self.children(node):
+            if self.role(child) == "name":
+                yield child
+            else:
+                yield from self._names(child)
+
+    def _first(self, node: "Node", role: str) -> "Node | None":
+        """The first node of a role within a node, the nearest levels first."""
+        nodes = deque(self.children(node))
+        for _ in range(200):
+            if not nodes:
+                break
+            one = nodes.popleft()
+            if self.role(one) == role:
+                return one
+            if self.role(one) not in ("skip", "block"):
+                nodes.extend(self.children(one))
+        return None
+
+
+def _with_return(statements: tuple[Statement, ...]) -> tuple[Statement, ...]:
+    """The statements of a function whose value is its last expression."""
+    match statements:
+        case (*rest, Evaluation(line=number, value=value)):
+            return (*rest, Return(number, value))
+        case (*rest, Branch(line=number, body=body, otherwise=otherwise)):
+            return (*rest, Branch(number, _with_return(body), _with_return(otherwise)))
+    return statements

@@ -1,0 +1,295 @@
+"""Expressions and statements of programs, whatever their language."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+#: Numbers, names and operations of the largest expression, written out, and its levels.
+MAX_SIZE, MAX_DEPTH = 5_000, 120
+
+
+@dataclass(frozen=True)
+class Node:
+    """An expression; equal ones can stand on different lines."""
+
+    line: int = field(compare=False)
+
+    def __post_init__(self) -> None:
+        # nodes and levels of the expression, written out
+        size = depth = 1
+        for part in self.parts:
+            size += part.size
+            depth = max(depth, part.depth + 1)
+        object.__setattr__(self, "size", size)
+        object.__setattr__(self, "depth", depth)
+
+    size: int = field(init=False, repr=False, compare=False)
+    depth: int = field(init=False, repr=False, compare=False)
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:
+        """The expressions that it consists of."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Number(Node):
+    """A number in decimal digits."""
+
+    digits: str
+
+
+@dataclass(frozen=True)
+class Text(Node):
+    """A quoted text."""
+
+    value: str
+
+
+@dataclass(frozen=True)
+class Name(Node):
+    """A variable, or an entry or member of one, such as ``y[0]`` or ``self.theta``."""
+
+    path: str
+
+
+@dataclass(frozen=True)
+class Member(Node):
+    """A member of an object."""
+
+    base: Tree
+    name: str
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+        return (self.base,)
+
+
+@dataclass(frozen=True)
+class Item(Node):
+    """Entries of an array."""
+
+    base: Tree
+    indices: tuple[Tree, ...]
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+        return (self.base, *self.indices)
+
+
+@dataclass(frozen=True)
+class Slice(Node):
+    """A range of indices as an index; a bound that is not written is None."""
+
+    lower: Tree | None
+    upper: Tree | None
+
+
+@dataclass(frozen=True)
+class Operation(Node):
+    """A sum, difference, product, quotient, power (``+ - * / **``), matrix product or solution.
+
+    The matrix product is ``@`` and the solution of a linear system is ``solve``; one operand is
+    negated with ``-``. Of ``transpose``, the operand is a matrix.
+    """
+
+    operator: str
+    operands: tuple[Tree, ...]
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+        return self.operands
+
+
+@dataclass(frozen=True)
+class Call(Node):
+    """A function and its arguments."""
+
+    function: Tree
+    arguments: tuple[Tree, ...]
+    keywords: tuple[tuple[str, Tree], ...] = ()
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+        return (self.function, *self.arguments, *(value for _, value in self.keywords))
+
+
+@dataclass(frozen=True)
+class Result(Node):
+    """The value of a call, or of an entry of it, that has been followed."""
+
+    call: Tree
+    value: Tree
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+        return (self.value,)
+
+
+@dataclass(frozen=True)
+class Array(Node):
+    """Several values in order: an array, a tuple, or a row of a matrix."""
+
+    items: tuple[Tree, ...]
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+        return self.items
+
+
+@dataclass(frozen=True)
+class Record(Node):
+    """Values with names: a dictionary or an object."""
+
+    fields: tuple[tuple[str, Tree], ...]
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+        return tuple(value for _, value in self.fields)
+
+
+@dataclass(frozen=True)
+class Choice(Node):
+    """A value that a conditional statement may change."""
+
+    before: Tree
+    after: Tree
+
+    @property
+    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+        return (self.before, self.after)
+
+
+@dataclass(frozen=True)
+class Lambda(Node):
+    """A function without a name."""
+
+    function: Definition = field(compare=False)
+
+
+@dataclass(frozen=True)
+class Opaque(Node):
+    """A value that cannot be followed, and why."""
+
+    reason: str
+
+
+Tree: TypeAlias = (
+    Number
+    | Text
+    | Name
+    | Member
+    | Item
+    | Slice
+    | Operation
+    | Call
+    | Result
+    | Array
+    | Record
+    | Choice
+    | Lambda
+    | Opaque
+)
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A value for a target; with an operator, such as ``+``, the target is changed by it."""
+
+    line: int
+    target: Tree
+    operator: str
+    value: Tree
+    is_declaration: bool = False
+
+
+@dataclass(frozen=True)
+class Return:
+    """The end of a function, and its value if it has one."""
+
+    line: int
+    value: Tree | None
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """An expression of which the value is dropped, such as a call."""
+
+    line: int
+    value: Tree
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A conditional statement."""
+
+    line: int
+    body: tuple[Statement, ...]
+    otherwise: tuple[Statement, ...]
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A loop; `variable` is empty if it does not count."""
+
+    line: int
+    variable: str
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a function."""
+
+    name: str
+    default: Tree | None = None
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A function; `owner` is its class, `results` are the variables that it returns by name."""
+
+    line: int
+    name: str
+    parameters: tuple[Parameter, ...]
+    body: tuple[Statement, ...]
+    owner: str = ""
+    results: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A statement that is not written in the language."""
+
+    line: int
+    reason: str
+
+
+Statement: TypeAlias = Assignment | Return | Evaluation | Branch | Loop | Definition | Fault
+
+
+def replaced(tree: Tree, parts: tuple[Tree, ...]) -> Tree:
+    """The same kind of expression with other parts."""
+    match tree:
+        case Operation():
+            return Operation(tree.line, tree.operator, parts)
+        case Array():
+            return Array(tree.line, parts)
+        case Result():
+            return Result(tree.line, tree.call, parts[0])
+        case Choice():
+            return Choice(tree.line, *parts)
+        case Item():
+            return Item(tree.line, parts[0], parts[1:])
+        case Member():
+            return Member(tree.line, parts[0], tree.name)
+        case Record():
+            names = (name for name, _ in tree.fields)
+            return Record(tree.line, tuple(zip(names, parts, strict=True)))
+        case Call():
+            count = 1 + len(tree.arguments)
+            names = (name for name, _ in tree.keywords)
+            keywords = tuple(zip(names, parts[count:], strict=True))
+            return Call(tree.line, parts[0], parts[1:count], keywords)
+    return tree

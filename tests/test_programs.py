@@ -1,0 +1,247 @@
+"""Equations and methods of programs follow from their text, in every language."""
+
+import random
+import re
+import sys
+from collections.abc import Mapping
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+import pytest
+import strange_programs as programs
+import sympy as sp
+
+from derive import Derivation, load
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.reading.programs.program import Finding, Program, ProgramError
+from derive.reading.programs.reader import read_program
+
+
+@cache
+def derivation(system: str) -> Derivation:
+    return Derivation(load(system))
+
+
+def values(system: str, rng: random.Random) -> dict[str, sp.Expr]:
+    """Numbers for all names of a system: a state, its accelerations, and parameters."""
+    derived = derivation(system)
+    own = derived.system
+    symbols = [*own.q, *own.qdot, *(one.symbol for one in own.parameters)]
+    state = {symbol: sp.Rational(rng.randint(20, 199), 100) for symbol in symbols}
+    found = {symbol.name: value for symbol, value in state.items()}
+    for q, acceleration in zip(own.q, derived.accelerations, strict=True):
+        found[f"{q.name}_ddot"] = acceleration.subs(state).evalf(30)
+    return found
+
+
+def residuals(program: Program, system: str, names: Mapping[str, str]) -> list[float]:
+    """Left minus right side of each equation; `names` has the formulas of its names."""
+    own = values(system, random.Random(20))
+    scope = FUNCTIONS | {name: sp.sympify(value) for name, value in own.items()}
+    for name, formula in names.items():
+        sign = "-" if formula.startswith("-") else ""
+        for order in ("", "_dot", "_ddot"):
+            if not order or f"{formula.removeprefix('-')}{order}" in own:
+                scope[name + order] = parse(f"{sign}{formula.removeprefix('-')}{order}", scope)
+    found = []
+    for equation in program.equations:
+        left, right = equation.text.split(" = ")
+        found.append(float(abs((parse(left, scope) - parse(right, scope)).evalf(20))))
+    return found
+
+
+def kinds(program: Program, *, faults: bool = True) -> set[str]:
+    return {one.kind for one in program.findings if one.is_fault or not faults}
+
+
+def finding(program: Program, kind: str) -> Finding:
+    return next(one for one in program.findings if one.kind == kind)
+
+
+def line_of(text: str, part: str) -> int:
+    return text[: text.index(part)].count("\n") + 1
+
+
+ANGLES = {"theta1": "theta1", "theta2": "theta2"}
+CASES = {
+    "array of rates": (
+        "Python",
+        programs.ARRAY_OF_RATES,
+        "double_pendulum",
+        {"state_0": "theta1", "state_2": "theta2", "M1": "m1", "M2": "m2", "L1": "l1", "L2": "l2"}
+        | {"G": "g"},
+        2,
+    ),
+    "linear system": ("Python", programs.LINEAR_SYSTEM, "double_pendulum", ANGLES, 2),
+    "sketch": (
+        "JavaScript",
+        programs.SKETCH,
+        "double_pendulum",
+        {"p1": "theta1", "p2": "theta2"},
+        2,
+    ),
+    "browser": (
+        "JavaScript",
+        programs.BROWSER,
+        "double_pendulum",
+        {"a": "theta1", "b": "theta2"},
+        2,
+    ),
+    "typed": (
+        "TypeScript",
+        programs.TYPED,
+        "single_pendulum",
+        {"gravity": "g", "length": "l"},
+        1,
+    ),
+    "history": ("Python", programs.HISTORY, "single_pendulum", {"L": "l"}, 1),
+    "cart": ("Python", programs.CART, "cart_1", {"M": "m0", "m": "m1", "l": "l1"}, 2),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_equations_agree_with_the_derived_ones(name: str) -> None:
+    language, text, system, names, count = CASES[name]
+    if system == "cart_1":
+        names = names | {"theta": "theta1"}
+    program = read_program(text, language)
+    assert program.language == language
+    assert not program.unread
+    found = residuals(program, system, names)
+    assert len(found) == count
+    assert max(found) < 1e-12
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_changed_sign_changes_an_equation(name: str) -> None:
+    language, text, system, names, _ = CASES[name]
+    if system == "cart_1":
+        names = names | {"theta": "theta1"}
+    wrong = re.sub(r"\b((?:Math\.|np\.|math\.)?)sin\(", r"2*\1sin(", text, count=1)
+    assert wrong != text
+    assert max(residuals(read_program(wrong, language), system, names)) > 1e-3
+
+
+def test_momenta_give_rates() -> None:
+    program = read_program(programs.CANONICAL, "Python")
+    assert [one.text for one in program.equations] == [
+        "theta_dot = p/(m*l**2)",
+        "p_dot = -m*g*l*sin(theta)",
+    ]
+    assert {one.kind for one in program.equations} == {"rate"}
+
+
+def test_names_lines_and_constants_are_those_of_the_program() -> None:
+    text = programs.SKETCH
+    program = read_program(text, "JavaScript")
+    (function,) = program.functions
+    assert function.name == "draw"
+    first, second = function.equations
+    assert (first.coordinate, first.velocity, first.kind) == ("p1", "v1", "acceleration")
+    assert first.line == line_of(text, "let acc1")
+    assert second.line == line_of(text, "let acc2")
+    assert function.names["v1"] == "p1_dot"
+    given = {one.name: one.value for one in program.constants}
+    assert given == {"l1": "150", "l2": "120", "m1": "20", "m2": "10", "g": "1"}
+
+
+def test_parts_of_equations_have_their_lines() -> None:
+    program = read_program(programs.SKETCH, "JavaScript")
+    first = program.equations[0]
+    lines = {first.text[one.start : one.end]: one.line for one in first.origins}
+    assert lines["-g*(2*m1 + m2)*sin(p1)"] == line_of(programs.SKETCH, "let part1")
+    assert lines["2*m1 + m2 - m2*cos(2*(p1 - p2))"] == line_of(programs.SKETCH, "let below")
+
+
+def test_methods_and_their_faults_are_reported() -> None:
+    sketch = read_program(programs.SKETCH, "JavaScript")
+    assert kinds(sketch) == {"frame_step", "damping"}
+    assert finding(sketch, "semi_implicit_euler").line == line_of(programs.SKETCH, "p1 += v1")
+    assert finding(sketch, "damping").line == line_of(programs.SKETCH, "v2 *= 0.999")
+    browser = read_program(programs.BROWSER, "JavaScript")
+    assert kinds(browser) == {"explicit_euler", "degrees"}
+    assert finding(browser, "degrees").line == line_of(programs.BROWSER, "this.a = 45")
+    assert kinds(read_program(programs.CART, "Python")) == {"explicit_euler"}
+    for text, language in ((programs.HISTORY, "Python"), (programs.TYPED, "TypeScript")):
+        assert kinds(read_program(text, language), faults=False) == {"semi_implicit_euler"}
+    library = finding(read_program(programs.ARRAY_OF_RATES, "Python"), "library")
+    assert "DOP853" in library.text
+
+
+def test_coefficients_of_runge_kutta_methods_are_checked() -> None:
+    right = finding(read_program(programs.LINEAR_SYSTEM, "Python"), "runge_kutta")
+    assert "4 stages and order 4" in right.text
+    assert not right.is_fault
+    for old, new in (("h / 6", "h / 5"), ("2 * k3", "k3"), ("h / 2 * k2", "h * k2")):
+        text = programs.LINEAR_SYSTEM.replace(old, new)
+        wrong = finding(read_program(text, "Python"), "runge_kutta")
+        assert wrong.is_fault, new
+        assert "order 4 is possible" in wrong.text
+
+
+HOSTILE = {
+    "open brackets": "x = " + "(" * 100_000,
+    "nested brackets": "x = " + "(" * 99_000 + "1" + ")" * 99_000,
+    "nested lists": "x = " + "[" * 99_000 + "]" * 99_000,
+    "long sum": "x = " + "+".join(["y"] * 45_000),
+    "long power": "x = " + "**".join(["y"] * 45_000),
+    "one long line": "x = y*sin(z); " * 13_000,
+    "doubled": "x = y\n" + "x = x*x + x\n" * 400,
+    "calls": "\n".join(
+        f"def f{i}(x):\n    return f{i + 1}(x) + f{i + 1}(x + 1) + f{i + 1}(x - 1)"
+        for i in range(500)
+    ),
+    "recursion": "def f(x):\n    return f(x + 1)*f(x - 1)\n" * 3 + "y = f(2)",
+    "members": "x = y" + ".z" * 50_000,
+    "indices": "x = y" + "[0]" * 50_000,
+    "blocks": "\n".join(" " * i + "if x:" for i in range(500)) + "\n" + " " * 500 + "x = 1",
+    "huge number": "x = 9" + "9" * 100_000 + "**9**9**9",
+    "huge exponent": "x = 1e999999999; y[10**9] = 2; y[99999999999] = 1; z = 9**9**9",
+    "binary": "".join(map(chr, range(1, 256))) * 300,
+}
+
+
+@pytest.mark.timeout(60)  # they take less than two seconds each
+@pytest.mark.parametrize("language", ["Python", "JavaScript"])
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_programs_are_read_or_refused(name: str, language: str) -> None:
+    with suppress(ProgramError):
+        assert not read_program(HOSTILE[name], language).equations
+
+
+def test_nothing_is_executed(tmp_path: Path) -> None:
+    mark = tmp_path / "mark"
+    text = f"open({str(mark)!r}, 'w')\ndef f(t, y):\n    return [y[1], exec('raise SystemExit')]\n"
+    program = read_program(text, "Python")
+    assert not mark.exists()
+    assert [one.reason for one in program.unread] == ["the function exec is not followed"]
+
+
+def test_files_are_refused_with_the_way_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "program.py"
+    path.write_bytes(b"x = 1\0")
+    with pytest.raises(ProgramError, match="null characters"):
+        read_program(path)
+    path.write_text("x" * 10_000_000)
+    with pytest.raises(ProgramError, match="at most 200000 characters"):
+        read_program(path)
+    with pytest.raises(ProgramError, match=r"unknown suffix '.txt'; known are: .py"):
+        read_program(_text(tmp_path))
+    with pytest.raises(ProgramError, match="did you mean 'Python'"):
+        read_program("x = 1", "pyton")
+    monkeypatch.setitem(sys.modules, "tree_sitter_python", None)
+    path.write_text("x = 1")
+    from derive.reading.programs.languages.language import _parser
+
+    _parser.cache_clear()
+    with pytest.raises(ProgramError, match=r"pip install 'holonomic\[documents\]'"):
+        read_program(path)
+
+
+def _text(folder: Path) -> Path:
+    path = folder / "notes.txt"
+    path.write_text("x = 1")
+    return path
