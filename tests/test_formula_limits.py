@@ -52,8 +52,9 @@ def chain(rule: str, length: int = 40) -> str:
     ("((x + 1)**100)**100", "exponent 10000: at most 100"),
     ("((x + k)**2 + k)**60", "exponent 120: at most 100"),
     ("(10**70*x)**50", r"10\*.* has more than 400 bits|\*\*50 has more than 400 bits"),
-    (nested(60), "more than 30 levels: simplify the formula, or the definitions"),
-    (nested(190), "more than 30 levels|nested too deeply"),
+    (nested(13), "more than 12 functions and roots are within each other: simplify the formula"),
+    (nested(13, "sqrt", "1 + x"), "more than 12 functions and roots|denominator is at most 100"),
+    (nested(190), "more than 12 functions and roots|nested too deeply"),
     (nested(60, "sqrt"), "exponent 1/128: its denominator is at most 100"),
     ("1/(k + " * 25 + "x" + ")" * 25, "more than 30 levels"),
     ("*".join(f"(x + {n}*k)" for n in range(1, 60)), "second derivatives have more than"),
@@ -143,9 +144,31 @@ def test_numbers_beyond_those_of_a_type_are_refused_in_python(
 
 
 def test_equal_definitions_are_no_second_way_around_the_limit() -> None:
-    inner = number(nested(20), SCOPE)
-    with pytest.raises(ExpressionError, match="more than 30 levels"):
-        number(nested(20, inner="y"), SCOPE | {"y": inner})
+    inner = number(nested(10), SCOPE)
+    with pytest.raises(ExpressionError, match="more than 12 functions and roots"):
+        number(nested(10, inner="y"), SCOPE | {"y": inner})
+
+
+@pytest.mark.parametrize(
+    "rule", ["sin({}*x)", "(x + {}*k)", "sqrt(x**2 + {})", "sin(x + sin({}*x))"]
+)
+def test_products_of_many_formulas_are_refused_in_systems(
+    rule: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "mine.toml"
+    product = "*".join(rule.format(n) for n in range(1, 14))
+    path.write_text(SYSTEM.format(head="", definitions="", height=product))
+    assert main(["derive", str(path), "--output", str(tmp_path)]) == 2
+    assert "a product has more than 12 factors that are formulas" in capsys.readouterr().err
+
+
+def test_equations_that_are_too_long_to_read_are_not_computed(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    height = "sin(" * 8 + "k*x" + " + k*x)" * 8
+    for text, is_short in ((height, False), ("k*x**2", True)):
+        path.write_text(SYSTEM.format(head="", definitions="", height=text))
+        assert main(["derive", str(path), "--output", str(tmp_path)]) == 0
+        assert ("Equations of motion:" in (tmp_path / "mine.py").read_text()) is is_short
 
 
 @pytest.mark.parametrize("digits", ["1.2345678901234567e-100", "9.999999999999999e100"])

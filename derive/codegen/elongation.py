@@ -27,7 +27,10 @@ def elongation(total: sp.Add) -> Elongation | None:
             if root.is_Pow and root.exp == sp.S.Half and root.base.is_Add:
                 scale = term / root
                 length = (term - total) / scale
-                if length.is_nonnegative:
+                # SymPy takes long to find the sign of a sum of roots with a minus
+                parts = [part / scale for part in sp.Add.make_args(term - total)]
+                has_minus = any(part.as_coeff_Mul()[0] < 0 for part in parts)
+                if (length.is_number or not has_minus) and length.is_nonnegative:
                     return _shortest(scale, length, root.base)
     return None
 

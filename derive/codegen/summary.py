@@ -11,8 +11,9 @@ from derive.system.system import System
 #: Unit of the momentum conjugate to a coordinate of this unit.
 MOMENTUM_UNIT = {"rad": "J s", "m": "kg m/s"}
 
-#: Equations of systems with more coordinates are too long to read.
-READABLE = 4
+#: Equations of systems with more coordinates, or of Lagrangians with more operations, are too long
+#: to read.
+READABLE, READABLE_OPERATIONS = 4, 150
 
 STATES: dict[Form, str] = {
     "lagrangian": "State y = (q, qdot)",
@@ -51,7 +52,8 @@ def summary(contents: Contents) -> str:
         for p in system.parameters
     ]
     sections["Masses and their positions"] = [mass.words for mass in system.masses]
-    if len(system.q) <= READABLE:
+    is_short = len(system.q) <= READABLE
+    if is_short and derivation.lagrangian.count_ops() <= READABLE_OPERATIONS:
         sections["Lagrangian"] = [f"L = {_text(derivation.lagrangian)}"]
         residuals = map(_text, derivation.euler_lagrange)
         sections["Equations of motion"] = [f"{residual} = 0" for residual in residuals]

@@ -17,11 +17,14 @@ MAX_LOGARITHM = log(LARGEST)
 RANGE = f"numbers are from {1 / LARGEST:g} to {LARGEST:g}; choose other units"
 #: Operands of a formula with all names written out, and of all formulas of a file.
 MAX_SIZE, MAX_FILE = 5_000, 100_000
-#: Levels of a formula.
-MAX_DEPTH = 30
+#: Levels of a formula, and of functions and roots within each other, whose derivatives are products
+#: of those of all levels.
+MAX_DEPTH, MAX_NESTING = 30, 12
 #: Operands of the second derivatives of a formula that is judged, and of one in a system, whose
 #: equations of motion contain them.
 MAX_SECOND, MAX_SECOND_IN_SYSTEM = 60_000, 12_000
+#: Factors of a product in a system, besides powers of names: its derivatives contain those of all.
+MAX_FACTORS_IN_SYSTEM = 12
 
 REMEDY = "simplify the formula, or the definitions that it uses"
 
@@ -37,15 +40,17 @@ class Extent:
     size: int  # numbers, names and operations
     depth: int
     exponent: int  # of powers of powers, multiplied
+    nesting: int  # functions and roots within each other
     first: int  # operands in a first derivative, at most
     second: int  # and in a second one
+    factors: int  # of a product, besides powers of names
 
 
 class Budget:
     """The extents of formulas; equal parts are measured once."""
 
-    def __init__(self, max_second: int = MAX_SECOND) -> None:
-        self._max_second = max_second
+    def __init__(self, max_second: int = MAX_SECOND, max_factors: int = MAX_SIZE) -> None:
+        self._max_second, self._max_factors = max_second, max_factors
         self._known: dict[Basic, Extent] = {}
         self._value = Evaluator({})
         self._spent = 0
@@ -59,9 +64,17 @@ class Budget:
             )
         if extent.depth > MAX_DEPTH:
             raise BudgetError(f"written out, it has more than {MAX_DEPTH} levels: {REMEDY}")
+        if extent.nesting > MAX_NESTING:
+            raise BudgetError(
+                f"more than {MAX_NESTING} functions and roots are within each other: {REMEDY}"
+            )
         if extent.second > self._max_second:
             raise BudgetError(
                 f"its second derivatives have more than {self._max_second} operands: {REMEDY}"
+            )
+        if extent.factors > self._max_factors:
+            raise BudgetError(
+                f"a product has more than {self._max_factors} factors that are formulas: {REMEDY}"
             )
         if extent.exponent > MAX_EXPONENT:
             raise BudgetError(f"exponent {extent.exponent}: at most {MAX_EXPONENT} is allowed")
@@ -125,7 +138,7 @@ def _extent(value: Basic, parts: Sequence[Extent]) -> Extent:
     """The extent of a formula with these parts."""
     if not parts:
         varies = int(value.is_Symbol)
-        return Extent(1, 1, 1, varies, varies)
+        return Extent(1, 1, 1, 0, varies, varies, 0)
     exponent = max(part.exponent for part in parts)
     if value.is_Pow and value.exp.is_Rational:
         exponent *= max(1, abs(int(value.exp)))
@@ -138,5 +151,9 @@ def _extent(value: Basic, parts: Sequence[Extent]) -> Extent:
     elif not value.is_Add:  # f(u)' = f'(u) u', f(u)'' = f''(u) u'² + f'(u) u''
         second += 2 * first + 2
         first += 1
-    size = 1 + sum(part.size for part in parts)
-    return Extent(size, 1 + max(part.depth for part in parts), exponent, first, second)
+    size, depth = 1 + sum(part.size for part in parts), 1 + max(part.depth for part in parts)
+    is_root = value.is_Pow and not value.exp.is_Integer
+    nesting = max(part.nesting for part in parts) + (value.is_Function or is_root)
+    own = sum(not factor.as_base_exp()[0].is_Atom for factor in value.args) if value.is_Mul else 0
+    factors = max(own, *(part.factors for part in parts))
+    return Extent(size, depth, exponent, nesting, first, second, factors)

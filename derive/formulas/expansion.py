@@ -9,12 +9,12 @@ WAVES = (sp.sin, sp.cos)
 LARGEST = 5000
 
 
-def is_expandable(expression: sp.Expr, *, waves: int = 1) -> bool:
-    """Whether the expanded expression has at most `LARGEST` terms, before terms are collected.
+def is_expandable(expression: sp.Expr, *, waves: int = 1, largest: int = LARGEST) -> bool:
+    """Whether the expanded expression has at most `largest` terms, before terms are collected.
 
     With `waves` = 2, products of sines and cosines are expanded, too, into sums of them.
     """
-    return _expanded_size(expression, waves, {}) <= LARGEST
+    return _expanded_size(expression, waves, {}) <= largest
 
 
 def _expanded_size(expression: sp.Expr, waves: int, known: dict[sp.Expr, int]) -> int:

@@ -133,13 +133,14 @@ class Derivation:
     @cached_property
     def kinetic_energy(self) -> sp.Expr:
         """T = ½ q̇ᵀ M q̇; with moving pivots also terms that are linear in q̇ or independent of it."""
-        return self._quadratic(len(self.variables))
+        return self._quadratic(range(len(self.variables)))
 
-    def _quadratic(self, n: int) -> sp.Expr:
-        """½ vᵀ M̄ v of the first n variables."""
+    def _quadratic(self, variables: range) -> sp.Expr:
+        """½ vᵀ M̄ v of some of the variables."""
         v, M = self.rates, self.inertia
-        squares = [M[i, i] * v[i] ** 2 / 2 for i in range(n)]
-        return sp.Add(*squares, *(M[i, j] * v[i] * v[j] for j in range(n) for i in range(j)))
+        squares = [M[i, i] * v[i] ** 2 / 2 for i in variables]
+        pairs = ((i, j) for j in variables for i in variables if i < j)
+        return sp.Add(*squares, *(M[i, j] * v[i] * v[j] for i, j in pairs))
 
     @cached_property
     def potential_energy(self) -> sp.Expr:
@@ -154,13 +155,13 @@ class Derivation:
     @cached_property
     def effective_potential(self) -> sp.Expr:
         """U(q, t) = V - T₀, with T₀ the kinetic energy at q̇ = 0."""
-        at_rest = dict.fromkeys(self.system.qdot, 0)
-        return self.potential_energy - self.kinetic_energy.subs(at_rest)
+        others = range(len(self.system.q), len(self.variables))
+        return self.potential_energy - self._quadratic(others)
 
     @cached_property
     def energy(self) -> sp.Expr:
         """Jacobi's integral q̇·∂L/∂q̇ - L: T + V where no position depends on time."""
-        return self._quadratic(len(self.system.q)) + self.effective_potential
+        return self._quadratic(range(len(self.system.q))) + self.effective_potential
 
     @cached_property
     def power(self) -> sp.Expr:
@@ -171,13 +172,13 @@ class Derivation:
     @cached_property
     def momenta(self) -> Matrix:
         """Momenta p = ∂L/∂q̇ = M q̇ + b, a column."""
-        return self.mass_matrix * Matrix(self.system.qdot) + self.drift
+        return _product(self.mass_matrix, self.system.qdot) + self.drift
 
     @cached_property
     def drift(self) -> Matrix:
         """Momenta b at q̇ = 0, a column: Σ m Jᵀ ∂r/∂t, 0 if positions do not depend on time."""
-        n, others = len(self.system.q), len(self.variables) - len(self.system.q)
-        return self.inertia[:n, n:] * Matrix(others, 1, self.rates[n:])
+        n = len(self.system.q)
+        return _product(self.inertia[:n, n:], self.rates[n:])
 
     @cached_property
     def forcing(self) -> Matrix:
@@ -209,7 +210,7 @@ class Derivation:
     @cached_property
     def euler_lagrange(self) -> Matrix:
         """Residuals d/dt ∂L/∂q̇ - ∂L/∂q - Q, a column, which are zero along a motion."""
-        return self.mass_matrix * Matrix(self.system.qddot) - self.forcing
+        return _product(self.mass_matrix, self.system.qddot) - self.forcing
 
     @cached_property
     def reactions(self) -> Matrix:
@@ -301,6 +302,12 @@ class Derivation:
     def _default_equilibrium(self) -> tuple[sp.Expr, ...]:
         given = self.system.equilibrium
         return (sp.S.Zero,) * len(self.system.q) if given is None else tuple(given)
+
+
+def _product(matrix: Matrix, column: Sequence[sp.Expr]) -> Matrix:
+    """The product of both; SymPy's own examines at length whether all entries are finite."""
+    rows = (zip(matrix.row(i), column, strict=True) for i in range(matrix.rows))
+    return Matrix([sp.Add(*(a * x for a, x in row)) for row in rows])
 
 
 def _derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:

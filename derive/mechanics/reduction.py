@@ -15,6 +15,8 @@ from derive.formulas.expansion import is_expandable
 Square = Callable[[sp.Expr], sp.Expr]
 Wave = tuple[bool, sp.Expr]  # (is a sine, argument)
 HALF = sp.Rational(1, 2)
+#: Terms of the largest expression that is expanded to collect them.
+MOST_TERMS = 1000
 #: Forms of cos 2a.
 SQUARES: tuple[Square, ...] = (lambda a: 1 - 2 * sp.sin(a) ** 2, lambda a: 2 * sp.cos(a) ** 2 - 1)
 
@@ -32,7 +34,7 @@ def reduced(expression: sp.Expr) -> sp.Expr:
 
 def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
     """`expression` expanded, one term for each function of `variables`; unchanged if too long."""
-    if not is_expandable(expression):
+    if not is_expandable(expression, largest=MOST_TERMS):
         return expression
     return gathered(sp.expand(expression), *variables)
 

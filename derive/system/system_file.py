@@ -11,7 +11,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.budget import MAX_SECOND_IN_SYSTEM, Budget
+from derive.formulas.budget import MAX_FACTORS_IN_SYSTEM, MAX_SECOND_IN_SYSTEM, Budget
 from derive.formulas.expression import FUNCTIONS, ExpressionError, number
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import Coordinate, Parameter, PointMass, RigidBody, SystemDefinitionError
@@ -64,7 +64,7 @@ def _system(stem: str, table: Table) -> System:
     rows = table.tables("coordinates", ("unit", "meaning", "positive"))
     coordinates = [_coordinate(key, name, row) for key, row in rows.items()]
     rows = table.tables("parameters", ("value", "unit", "meaning", "positive"))
-    budget = Budget(MAX_SECOND_IN_SYSTEM)
+    budget = Budget(MAX_SECOND_IN_SYSTEM, MAX_FACTORS_IN_SYSTEM)
     numbers = Formulas(FUNCTIONS, budget)
     parameters = [_parameter(key, name, row, numbers) for key, row in rows.items()]
     q = [coordinate.symbol for coordinate in coordinates]
