@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from derive.reading.document import Display, Document
 from derive.reading.latex.reader import formulas, macros_of
-from derive.reading.latex.tree import Letter, Statement, Unreadable
+from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
 from derive.verification.documents.candidates import Candidate, candidates
 from derive.verification.documents.corrections import corrected
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
@@ -137,8 +137,8 @@ def _written(occurrences: Sequence[Occurrence]) -> dict[str, str]:
     translator, found = Translator(), dict[str, str]()
     for occurrence in occurrences:
         for node in nodes(occurrence.sides):
-            if isinstance(node, Letter):
-                found.setdefault(translator.name(node), occurrence.latex[slice(*node.span)])
+            if isinstance(node, Letter | Derivative):
+                found.setdefault(translator.text(node).text, occurrence.latex[slice(*node.span)])
     return found
 
 

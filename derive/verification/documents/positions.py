@@ -32,18 +32,20 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
     gravity = next((symbols[name] for name in letters.of_kind("gravity")), None)
     if not masses:
         return
-    used = sp.Tuple(*(r for mass in masses for r in mass.position)).free_symbols
-    q = [symbols[name] for name in letters.coordinates if symbols[name] in used]
+    positions = sp.Tuple(*(r for mass in masses for r in mass.position)).free_symbols
+    q = [symbols[name] for name in letters.coordinates if symbols[name] in positions]
     if not q or TIME in q:
         return
-    parameters = [
-        Parameter(symbols[name], _unit(name, letters), 1.0, "a parameter")
-        for name in letters.parameters
-    ]
     coordinates = [Coordinate(one, "m", "a coordinate") for one in q]
     for sign in (1, -1) if gravity is not None else (0,):
         weight = sp.Add(*(sign * (gravity or 0) * m.mass * m.position[-1] for m in masses))
         for potential in _potentials(weight, gravity, letters, formulas, symbols):
+            used = sp.Tuple(potential, *(m.mass for m in masses)).free_symbols | positions
+            parameters = [
+                Parameter(symbols[name], _unit(name, letters), 1.0, "a parameter")
+                for name in letters.parameters
+                if symbols[name] in used
+            ]
             try:
                 yield System(
                     "stated", "The system that the document states", coordinates, parameters,

@@ -42,10 +42,20 @@ def resolved(
                                         candidate, numbers))), None)  # fmt: skip
         if not found:
             return meanings
-        for name, text in found.items():
+        for name, text in [*found.items(), *_rates(found, letters)]:
             meanings[name] = text
             numbers.set_rates(name, evaluated(text, numbers.values))
         numbers.define(formulas)
+
+
+def _rates(found: Mapping[str, str], letters: Letters) -> Iterator[tuple[str, str]]:
+    """Names such as td_1 and tdd_1, if t_1 is a coordinate."""
+    for name, text in found.items():
+        letter, _, index = name.partition("_")
+        for mark, ending in (("d", "_dot"), ("dd", "_ddot")):
+            rate = f"{letter}{mark}_{index}"
+            if rate in letters.parameters and text in letters.coordinates:
+                yield rate, text + ending
 
 
 def _unknown(formula: DocumentFormula, numbers: Numbers) -> tuple[str, ...]:

@@ -110,11 +110,19 @@ class Judge:
             return _plain("verified", formula, small)
         if side.text.startswith("sqrt(") and self._holds(left**2 - right**2) is not None:
             return _plain("verified", formula, "it holds for one sign of the root")
-        values = self._scope.special_values
-        if values and self._holds((left - right).xreplace(values)) is not None:
+        values = self._special_values(left, right)
+        difference = (left - right).xreplace(self._model.momenta).xreplace(values)
+        if values and self._holds(difference) is not None:
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return _plain("equivalent", formula, f"it holds for {text}")
         return result
+
+    def _special_values(self, left: Value, right: Value) -> dict[sp.Symbol, sp.Expr]:
+        """Values of parameters that the document states; units, if one side has no parameters."""
+        parameters = {*self._scope.derivation.system.params}
+        if not right.free_symbols & parameters:
+            return dict.fromkeys(sorted(left.free_symbols & parameters, key=str), sp.S.One)
+        return self._scope.special_values
 
     def _matrices(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
         shapes = [getattr(one, "shape", None) for one in (left, right)]
