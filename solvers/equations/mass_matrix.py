@@ -1,7 +1,9 @@
 """The condition of the mass matrix: where it is large, accelerations lose their digits."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 import numpy as np
 
@@ -15,29 +17,72 @@ class MassMatrixWarning(UserWarning):
     """The mass matrix is nearly singular: digits are lost."""
 
 
+#: Motions of many whose mass matrices are examined.
+EXAMINED = 4
+#: A motion in a report, its parameters, and its initial state; None examines no initial state.
+Motion = tuple[str, Sequence[float], Sequence[float] | None]
+
+_IS_CHECKED = ContextVar("mass matrices are checked", default=False)
+
+
+@contextmanager
+def checked_before() -> Iterator[None]:
+    """Examine no mass matrix in a ``with`` block, in this thread: the caller has done so.
+
+    Yields
+    ------
+    None
+    """
+    token = _IS_CHECKED.set(True)
+    try:
+        yield
+    finally:
+        _IS_CHECKED.reset(token)
+
+
+def examined(motions: int) -> list[int]:
+    """The motions to examine of so many: evenly distributed, with the first and the last."""
+    return np.unique(np.linspace(0, motions - 1, EXAMINED).astype(int)).tolist()
+
+
 def check_condition(
-    module: GeneratedModule, params: Sequence[float], y0: Sequence[float], t: float = 0.0
+    module: GeneratedModule, motions: Iterable[Motion], t: float = 0.0, stacklevel: int = 3
 ) -> None:
     """Refuse a nearly singular mass matrix, or warn; coordinates without inertia are permitted.
 
     Besides the initial state, all coordinates are equal, as in aligned rods, unless the matrix is
-    singular there whatever the masses, as at the pole of a sphere.
+    singular there whatever the masses, as at the pole of a sphere. The warning is given at a
+    `stacklevel`, as by `warnings.warn`.
     """
-    if not has_function(module, "mass_matrix"):
+    if _IS_CHECKED.get() or not has_function(module, "mass_matrix"):
         return
-    n = len(module.COORDINATES)
-    aligned = [y0[0]] * n + [0.0] * n
-    worst, weakest = _condition(module, t, y0, params)
-    condition, coordinate = _condition(module, t, aligned, params)
-    is_worse = condition > max(worst, DOUBTFUL)
-    if is_worse and _condition(module, t, aligned, module.DEFAULTS)[0] < DOUBTFUL:
-        worst, weakest = condition, coordinate
-    text = f"the mass matrix has condition {worst:.0e}: {weakest} has hardly any inertia of its own"
+    motion, worst, weakest = max(
+        ((name, *_worst(module, t, y0, params)) for name, params, y0 in motions),
+        key=lambda row: row[1],
+    )
+    text = (
+        f"{motion}the mass matrix has condition {worst:.0e}: {weakest} has hardly any inertia of "
+        "its own"
+    )
     if worst >= SINGULAR:
         raise ValueError(f"{text}; leave that coordinate out, or make masses more similar")
     if worst >= DOUBTFUL:
         lost = f"about {np.log10(worst):.0f} digits are lost"
-        warnings.warn(f"{text}; {lost}", MassMatrixWarning, stacklevel=3)
+        warnings.warn(f"{text}; {lost}", MassMatrixWarning, stacklevel=stacklevel)
+
+
+def _worst(
+    module: GeneratedModule, t: float, y0: Sequence[float] | None, params: Sequence[float]
+) -> tuple[float, str]:
+    """The largest condition of a motion, and the coordinate of least inertia there."""
+    n = len(module.COORDINATES)
+    aligned = [0.0 if y0 is None else y0[0]] * n + [0.0] * n
+    worst, weakest = (0.0, "") if y0 is None else _condition(module, t, y0, params)
+    condition, coordinate = _condition(module, t, aligned, params)
+    is_worse = condition > max(worst, DOUBTFUL)
+    if is_worse and _condition(module, t, aligned, module.DEFAULTS)[0] < DOUBTFUL:
+        return condition, coordinate
+    return worst, weakest
 
 
 def _condition(

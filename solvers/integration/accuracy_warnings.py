@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from solvers.equations.mass_matrix import examined
 from solvers.integration.energy_change import EnergyWarning, changed_energy, conserves_energy
 from solvers.integration.predictability import (
     PredictabilityWarning,
@@ -13,9 +14,6 @@ from solvers.integration.predictability import (
 )
 from solvers.integration.problem import Problem
 from solvers.integration.solution import Array
-
-#: Motions of an ensemble whose predictability is examined.
-EXAMINED = 4
 
 
 def accuracy_warnings(problem: Problem, t: float, y: Array) -> Iterator[PredictabilityWarning]:
@@ -57,8 +55,8 @@ def ensemble_warnings(
                 f"ends are meaningless; {_remedy(problem)}"
             )
             return
-    limits, examined = [], np.unique(np.linspace(0, n - 1, EXAMINED).astype(int))
-    for k in examined:
+    limits, some = [], examined(n)
+    for k in some:
         own = problem.with_params(params[k % len(params)].tolist())
         motion = replace(own, start=starts[k])
         until = predictable_until(motion, float(t[k]))
@@ -67,7 +65,7 @@ def ensemble_warnings(
     if limits:
         until = min(limits, key=lambda limit: abs(limit - problem.span[0]))
         yield PredictabilityWarning(
-            f"{len(limits)} of {len(examined)} examined motions are not predictable to their ends, "
+            f"{len(limits)} of {len(some)} examined motions are not predictable to their ends, "
             f"and one not beyond t = {until:.4g}: {_remedy(problem)}, or use statistics of the "
             "motions only"
         )

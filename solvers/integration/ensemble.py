@@ -7,6 +7,7 @@ from warnings import warn
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.mass_matrix import check_condition, examined
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
 from solvers.integration import compiled_loop, memory, validation
@@ -78,7 +79,7 @@ def ensemble(
     ------
     ValueError
         When an argument is invalid; other errors, and the warnings, are those of `integrate`, of
-        which predictability is examined for four motions, evenly distributed.
+        which predictability and mass matrices are examined for four motions, evenly distributed.
     solvers.integration.solution.Interrupted
         When the user interrupts; it holds the `Ensemble` up to then.
 
@@ -112,6 +113,11 @@ def ensemble(
     threads = validation.count(
         "workers", processors if workers is None else workers, 1, MOST_WORKERS
     )
+    some = [
+        (f"motion {k}: ", constants[k % len(constants)].tolist(), states[k].tolist())
+        for k in examined(len(states))
+    ]
+    check_condition(module, some, problem.span[0])
     problem, program = compiled_loop.select(problem, lanes=True)
     components = len(problem.start)
     rows = len(states) * (1 + np.size(times) + len(problem.events) * occurrences)

@@ -120,7 +120,7 @@ def integrate(
     """
     options = Options(method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated)
     problem = validation.problem(module, t_span, y0, params, options)
-    check_condition(module, problem.form.params, problem.start.tolist(), problem.span[0])
+    check_condition(module, [("", problem.form.params, problem.start.tolist())], problem.span[0])
     problem, program = compiled_loop.select(problem, lanes=False)
     problem = replace(problem, max_steps=limit_steps(problem))
     outcome = Outcome.at_start(problem)

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import REAL, Values
 from solvers.integration import compiled_loop, validation
@@ -51,7 +52,8 @@ def prepare(
     module : module
         A generated module.
     params : array_like of shape (parameters,), or mapping of str to float
-        As in `integrate`; ``run((t0, t1), y0, params)`` takes others.
+        As in `integrate`; ``run((t0, t1), y0, params)`` takes others, whose mass matrices are not
+        examined.
     method, form, rtol, atol, h, max_steps, compensated : optional
         As in `integrate`; `method` is none of SciPy's.
 
@@ -79,6 +81,7 @@ def prepare(
         method, form, rtol, atol, h, (), (), max_steps, backend="compiled", compensated=compensated
     )
     problem = validation.problem_at_rest(module, (0.0, 1.0), options, params)
+    check_condition(module, [("", problem.form.params, None)])
     problem, program = compiled_loop.select(problem, lanes=False)
     assert program
     return Prepared(program.single, Batch(program, problem), problem)

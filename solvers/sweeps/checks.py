@@ -1,7 +1,12 @@
 """Consistency of the parts of a sweep."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from math import prod
 
+import numpy as np
+
+from solvers.equations.mass_matrix import Motion, examined
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import quantity
 from solvers.io.arguments import check_type
@@ -90,3 +95,19 @@ def check_maps(
             one.check(module, axes, values)
         except ValueError as error:
             raise ValueError(f"map {name}: {error}") from error
+
+
+def examined_motions(module: GeneratedModule, axes: Axes, values: Values) -> Iterator[Motion]:
+    """Names, parameters and initial states of a few motions, with the corners of a grid."""
+    ends = product(*((0, n - 1) for n in axes.shape))
+    corners = (int(np.ravel_multi_index(end, axes.shape)) for end in ends)
+    defaults = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
+    at_rest = dict.fromkeys(module.STATE, 0.0)
+    for k in sorted({*corners, *examined(prod(axes.shape))}):
+        varied = {name: float(column[0]) for name, column in axes.columns(k, k + 1).items()}
+        given = {**at_rest, **defaults, **values, **varied}
+        where = ", ".join(f"{name} = {value:g}" for name, value in varied.items())
+        # velocities do not matter, and one may follow from the energy
+        state = [float(given[name]) for name in module.COORDINATES]
+        state += [0.0] * len(module.COORDINATES)
+        yield f"motion {k} ({where}): ", [float(given[p]) for p in module.PARAMETERS], state

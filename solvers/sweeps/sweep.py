@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from solvers.equations.forms import fastest_form
+from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
 from solvers.equations.quantities import positive
@@ -94,6 +95,8 @@ class Sweep:
         checks.check_energy(self.module, (*self.axes.smallest, *self.values), self.values)
         checks.check_maps(self.module, self.axes, self.maps, self.values)
         validation.problem_at_rest(self.module, (0.0, self.duration), Options(**self.options))
+        some = checks.examined_motions(self.module, self.axes, self.values)
+        check_condition(self.module, some, stacklevel=4)
 
     def __getstate__(self) -> dict[str, Any]:
         """A module cannot be pickled: its source takes its place."""

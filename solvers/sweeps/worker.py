@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.mass_matrix import checked_before
 from solvers.integration.ensemble import ensemble
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.predictability import ignore_predictability
@@ -72,7 +73,7 @@ def integrated(
         "t_eval": np.linspace(0, sweep.duration, sweep.samples) if sweep.samples else None,
     }
     span, constants = (0.0, sweep.duration), np.stack(params) if params else ()
-    with ignore_predictability():
+    with ignore_predictability(), checked_before():
         motions = ensemble(sweep.module, span, starts.T, constants, workers=1, stop=stop, **options)
     if (motions.status == Status.INTERRUPTED).any():
         raise InterruptedError("the sweep was stopped")

@@ -1,13 +1,12 @@
 """One integration of a motion: method, form, and tolerance, step size or digits."""
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from solvers.equations.mass_matrix import MassMatrixWarning
+from solvers.equations.mass_matrix import checked_before
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
@@ -87,8 +86,7 @@ class IntegrationRun:
         """Times and states: at `t`, or at the end of every step."""
         motion, method = self.motion, self.method_choice.method
         arguments = motion.module, (0.0, motion.duration), motion.y0, motion.params
-        with ignore_predictability(), warnings.catch_warnings():
-            warnings.simplefilter("ignore", MassMatrixWarning)  # the scene gave it
+        with ignore_predictability(), checked_before():
             solution = integrate(*arguments, t_eval=t, **self.options)
         if solution.status is Status.STEP_LIMIT:
             raise TooLongError(
@@ -111,7 +109,8 @@ class IntegrationRun:
         """Seconds of an integration to the end, without preparations that are done once."""
         motion, end = self.motion, self.motion.duration
         try:
-            run = prepare(motion.module, motion.params, **self.options)
+            with checked_before():
+                run = prepare(motion.module, motion.params, **self.options)
         except (ValueError, NoCompilerError):  # SciPy's methods, or no compiler
             return median_seconds(lambda: self.states(np.array([end])))
         return median_seconds(lambda: run((0.0, end), motion.y0))
