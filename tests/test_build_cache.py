@@ -312,6 +312,14 @@ def test_bytecode_beside_a_cached_module_is_not_loaded() -> None:
     assert plain().VALUE == 1
 
 
+def test_a_folder_where_a_file_belongs_is_named(tmp_path: Path) -> None:
+    (path := tmp_path / "table.csv").mkdir()
+    with pytest.raises(IsADirectoryError) as caught:
+        write_text(path, "text")
+    assert str(caught.value) == f"[Errno 21] Is a directory: '{path}'"
+    assert [*tmp_path.iterdir()] == [path]
+
+
 def test_threads_that_write_one_file_all_succeed(tmp_path: Path) -> None:
     path, texts = tmp_path / "file.png", [str(k) * 100_000 for k in range(8)]
     with ThreadPoolExecutor(8) as threads:

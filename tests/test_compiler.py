@@ -1,6 +1,7 @@
 """Compiled code: right, cached, and never loaded before it is known to work."""
 
 import ctypes
+import os
 import shutil
 import signal
 import subprocess
@@ -20,6 +21,7 @@ from solvers.integration.compiled.compilation import LIBRARY
 from solvers.integration.compiled.compiler import NoCompilerError, build
 from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.native import native_rhs
+from solvers.io import build_cache
 from solvers.io.build_cache import DIGESTS, _seal
 from solvers.studies.benchmarks.double_pendulum import _peak_library
 
@@ -230,6 +232,37 @@ def test_a_broken_compiler_is_tried_once_in_a_process_its_threads_and_forks(
     with ProcessPoolExecutor(2, get_context("fork")) as processes:
         assert all(processes.map(fails, range(8, 12)))
     assert calls(tmp_path) == 2  # the program and a small one
+
+
+def test_a_hanging_compiler_is_known_to_other_processes_for_some_time(
+    tmp_path: Path, own_cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hanging = counting(tmp_path, "sleep 60")
+    monkeypatch.setattr(compiler, "compilers", lambda: iter([hanging]))
+    monkeypatch.setattr(compilation, "PATIENCE", 0.3)
+    monkeypatch.setattr(compilation, "TRIAL_LIMIT", 0.3)
+
+    def in_another_process() -> int:
+        """The calls of the compiler so far."""
+        monkeypatch.setattr(compiler, "_attempts", compilation.Attempts())
+        fails(1)
+        return calls(tmp_path)
+
+    assert in_another_process() == 2  # the program and a small one
+    assert in_another_process() == 2
+    with pytest.raises(NoCompilerError, match=r"did not end .* in another process \(remove .*/han"):
+        build(SOURCE)
+    (mark,) = own_cache.glob("hanging-*")
+    old = time.time() - 2 * build_cache.VALID
+    os.utime(mark, (old, old))
+    assert in_another_process() == 4
+    mark.unlink()
+    os.mkfifo(mark)
+    assert in_another_process() == 6
+    Path(hanging[0]).write_text(f"#!/bin/sh\nexec {shutil.which('cc')} $@\n")
+    monkeypatch.setattr(compilation, "PATIENCE", 20.0)
+    monkeypatch.setattr(compiler, "_attempts", compilation.Attempts())
+    assert answer(build(SOURCE).path) == 42  # the mark is that of another file
 
 
 def fails(k: int) -> bool:

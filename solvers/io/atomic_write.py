@@ -40,7 +40,9 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
             _flush(file)
         os.replace(temporary, path)
     except OSError as error:
-        error.filename = error.filename or str(path)  # a full disk does not name the file
+        # a full disk names no file, and a folder in its place the temporary one
+        if error.errno and str(error.filename or temporary) == str(temporary):
+            raise OSError(error.errno, error.strerror, str(path)) from error
         raise
     finally:
         temporary.unlink(missing_ok=True)

@@ -2,7 +2,8 @@
 
 A folder is built in a private place, sealed with its name and the digests of its files, and then
 renamed into place. Concurrent processes share one result, and damaged, incomplete or foreign
-folders are never used. There are no locks.
+folders are never used. There are no locks. Notes inform other processes for some minutes that a
+build is in vain.
 """
 
 import atexit
@@ -19,12 +20,16 @@ from functools import cache, partial
 from pathlib import Path
 from warnings import warn
 
+from solvers.io.atomic_write import write_text
+
 #: The seal of a complete folder, and the beginning of the names of folders being built.
 DIGESTS, BUILD_PREFIX = "digests.sha256", "build-"
 #: Bytes of the longest seal and of the largest file.
 MAX_SEAL, MAX_BYTES = 10_000, 1 << 28
 #: Seconds after which the remains of a killed process are removed.
 ABANDONED = 600.0
+#: Seconds for which a note is valid, and bytes of the longest.
+VALID, MAX_NOTE = 300.0, 1000
 #: Where folders are built if neither the cache nor the usual folder of temporary files can be used.
 TEMPORARY_FOLDERS = ("/var/tmp", "/dev/shm")
 #: The way out for messages.
@@ -156,6 +161,24 @@ def _content(path: Path, size: int) -> bytes:
         if not stat.S_ISREG(status.st_mode) or status.st_size > size:
             raise OSError(EACCES, "not a regular file of the expected size", str(path))
         return file.read(size)
+
+
+def leave_note(place: Path, name: str, text: str) -> None:
+    """Leave a note for other processes, if the folder can be written to."""
+    with suppress(OSError):
+        write_text(place / name, text[:MAX_NOTE].encode("ascii", "replace"))
+
+
+def note(place: Path, name: str) -> str | None:
+    """The note of this name, if there is one that is valid."""
+    path = place / name
+    try:
+        if abs(time.time() - path.lstat().st_mtime) < VALID:
+            return _content(path, MAX_NOTE).decode("ascii")
+        path.unlink()
+    except (OSError, ValueError):
+        pass
+    return None
 
 
 def _seal(name: str, files: Mapping[str, bytes]) -> str:

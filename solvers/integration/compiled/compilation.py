@@ -1,14 +1,16 @@
 """The compilation of a library by one compiler, which is trusted only once the library works."""
 
+import hashlib
 import os
 import sys
 import threading
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from solvers.integration.compiled.command import CommandError, running
-from solvers.io.build_cache import BUILD_PREFIX
+from solvers.io.build_cache import BUILD_PREFIX, leave_note, note
 
 #: The file that a compiler writes, and its longest time in s.
 LIBRARY, TIME_LIMIT = "library.so", 120.0
@@ -38,6 +40,15 @@ getattr(library, "probe", int)()
 
 class TimeLimitError(CommandError):
     """A compiler did not end in time."""
+
+
+def identity(command: Sequence[str]) -> tuple[str, ...]:
+    """A command with time and size of its file: those of another compiler are others."""
+    try:
+        status = Path(command[0]).stat()
+    except OSError as error:
+        raise CommandError(f"cannot be run: {error.strerror}") from error
+    return *command, str(status.st_mtime_ns), str(status.st_size)
 
 
 @dataclass(frozen=True)
@@ -95,7 +106,10 @@ class Compilation:
 
 
 class Attempts:
-    """The failed compilations of this process and its forks, none of which is repeated."""
+    """The failed compilations of this process and its forks, none of which is repeated.
+
+    A compiler that hangs is noted for other processes.
+    """
 
     def __init__(self) -> None:
         self._errors: dict[tuple[str, ...] | str, str] = {}
@@ -108,14 +122,20 @@ class Attempts:
 
     def run(self, compilation: Compilation, ready: Path) -> None:
         """Run one compilation at a time, unless it has failed before, or its compiler."""
-        key, command = compilation.key, compilation.command
+        key, command, place = compilation.key, compilation.command, ready.parent.parent
+        digest = hashlib.sha256("\0".join(identity(command)).encode()).hexdigest()[:32]
+        name = f"hanging-{digest}"
         with self._lock:
             if error := self._errors.get(command) or self._errors.get(key):
                 raise CommandError(error)
+            if error := note(place, name):
+                raise CommandError(f"{error} in another process (remove {place / name} to retry)")
             try:
                 compilation.run(ready)
             except CommandError as error:
                 is_slow = isinstance(error, TimeLimitError)
+                if is_slow:
+                    leave_note(place, name, str(error))
                 works = not is_slow and compilation.compiler_works(ready)
                 self._errors[key if works else command] = str(error)
                 raise

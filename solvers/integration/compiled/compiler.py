@@ -13,7 +13,7 @@ from pathlib import Path
 from warnings import warn
 
 from solvers.integration.compiled.command import CommandError
-from solvers.integration.compiled.compilation import LIBRARY, Attempts, Compilation
+from solvers.integration.compiled.compilation import LIBRARY, Attempts, Compilation, identity
 from solvers.io.build_cache import NoPlaceError, built_folder
 
 #: ``-ffast-math`` would switch the whole process to flushing small numbers to zero.
@@ -98,11 +98,7 @@ def compilers() -> Iterator[tuple[str, ...]]:
 
 def _key(source: str, compiler: Sequence[str], flags: Sequence[str]) -> str:
     """A digest of the source, the compiler, the flags and the processor."""
-    try:
-        status = Path(compiler[0]).stat()
-    except OSError as error:
-        raise CommandError(f"cannot be run: {error.strerror}") from error
-    parts = (source, *compiler, str(status.st_mtime_ns), str(status.st_size), *flags, _processor())
+    parts = (source, *identity(compiler), *flags, _processor())
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
 
 
