@@ -22,7 +22,7 @@ MACRO = r"\\[A-Za-z@]++"
 DEFINITION = (
     rf"(?:\\(?:(?:re|provide)?newcommand|DeclareRobustCommand|DeclareMathOperator)\*?\s*+"
     rf"(?:\{{\s*+{MACRO}\s*+\}}|{MACRO})\s*+(?:\[\d\]\s*+)?(?:\[[^\]\n]*+\]\s*+)?"
-    rf"|\\def\s*+{MACRO}[#\d]*+)\{{{BRACES}\}}"
+    rf"|\\g?def\s*+{MACRO}[#\d]*+)(?:\{{{BRACES}\}}|{MACRO})"
 )
 SHORTHAND = re.compile(rf"({MACRO})[ \t}}]*+\{{\s*+(\\(begin|end)\s*+\{{([a-z]+\*?)\}})\s*+\}}")
 BODY = re.compile(r"^[^%\n]*?\\begin\{document\}", re.M)

@@ -1,0 +1,153 @@
+"""Text and formulas of any origin as LaTeX that compiles."""
+
+import re
+from collections.abc import Collection, Sequence
+from string import ascii_letters
+from unicodedata import normalize
+
+from derive.formulas.lettering import GREEK
+
+SPECIAL = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    '"': "''",
+    "−": r"\ensuremath{-}",
+    "·": r"\ensuremath{\cdot}",
+    "≈": r"\ensuremath{\approx}",
+    "≠": r"\ensuremath{\neq}",
+    "≤": r"\ensuremath{\leq}",
+    "≥": r"\ensuremath{\geq}",
+    "∂": r"\ensuremath{\partial}",
+    "…": r"\ldots{}",
+    "–": "--",
+    "“": "``",
+    "”": "''",
+    "’": "'",
+}
+GREEK_NAMES = {letter: name for name, letter in GREEK.items()}
+GREEK_LETTER = re.compile(r"\\ensuremath\{(\\[A-Za-z]+)\}")
+#: Accents that follow their letter in Unicode, in text and in formulas.
+ACCENTS = {
+    "\u0300": (r"\`", r"\grave"),
+    "\u0301": (r"\'", r"\acute"),
+    "\u0302": (r"\^", r"\hat"),
+    "\u0303": (r"\~", r"\tilde"),
+    "\u0304": (r"\=", r"\bar"),
+    "\u0307": (r"\.", r"\dot"),
+    "\u0308": (r"\"", r"\ddot"),
+    "\u030c": (r"\v", r"\check"),
+    "\u0327": (r"\c", r""),
+}
+COMMANDS = frozenset(
+    """alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi
+    pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda
+    Xi Pi Sigma Upsilon Phi Psi Omega ell hbar imath jmath infty partial nabla star circ dagger
+    prime top bot forall in
+    sin cos tan cot sec csc sinh cosh tanh coth arcsin arccos arctan exp log ln det lim min max
+    frac dfrac tfrac cfrac binom sqrt sum prod int iint oint cdot times ast pm mp div
+    dot ddot dddot ddddot bar hat tilde vec check breve mathring overline underline widehat
+    widetilde overrightarrow overbrace underbrace
+    left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr langle rangle
+    lvert rvert lVert rVert vert Vert lbrace rbrace lbrack rbrack lfloor rfloor
+    leq geq le ge neq ne equiv approx sim simeq cong propto ll gg to rightarrow Rightarrow implies
+    iff Leftrightarrow longrightarrow mapsto quad qquad dots ldots cdots vdots ddots colon
+    mathrm mathbf mathit mathsf mathtt mathcal mathnormal boldsymbol operatorname text textrm
+    textit textbf mbox displaystyle textstyle limits nolimits boxed phantom hphantom vphantom
+    begin end""".split()
+)
+ENVIRONMENTS = frozenset(
+    "matrix pmatrix bmatrix Bmatrix vmatrix Vmatrix smallmatrix array cases aligned split gathered "
+    "alignedat".split()
+)
+#: What is numbered or commented in the document is not in a note.
+DROPPED = re.compile(r"\\(?:label|tag)\*?\s*\{[^{}]*\}|\\(?:nonumber|notag)\b|(?<!\\)%[^\n]*")
+TOKEN = re.compile(r"\\(begin|end)\s*\{([^{}]*)\}|\\([A-Za-z]+)|\\(.)|([{}])|([^\\{}])", re.S)
+SYMBOLS = frozenset(" ,;:!{}|\\")
+#: Characters of a formula on its own.
+PLAIN = frozenset(ascii_letters + "0123456789+-*/=<>()[]|.,;:!'^_& ?")
+
+
+def escaped(text: str) -> str:
+    """Text in which no character has a meaning of its own in LaTeX."""
+    pieces: list[str] = []
+    for one in normalize("NFD", text):
+        if one in ACCENTS and pieces:
+            in_text, in_formula = ACCENTS[one]
+            letter = GREEK_LETTER.fullmatch(pieces[-1])
+            pieces[-1] = (
+                rf"\ensuremath{{{in_formula}{{{letter[1]}}}}}"
+                if letter
+                else f"{in_text}{{{pieces[-1]}}}"
+            )
+        else:
+            pieces.append(SPECIAL.get(one) or _character(one))
+    return "".join(pieces)
+
+
+def _character(one: str) -> str:
+    if one.isascii():
+        return one if one.isprintable() else " "
+    if one in GREEK_NAMES:
+        return rf"\ensuremath{{\{GREEK_NAMES[one]}}}"
+    plain = "".join(c for c in normalize("NFKD", one) if c.isascii() and c.isprintable())
+    return "".join(SPECIAL.get(c, c) for c in plain) or "?"
+
+
+def formula(latex: str, macros: Collection[str] = ()) -> str:
+    """A formula in a line of text, or its source where LaTeX may not know all of its commands.
+
+    Parameters
+    ----------
+    latex
+        The formula, of any origin.
+    macros
+        Names of commands that the document defines.
+    """
+    kept = " ".join(DROPPED.sub(" ", latex).split())
+    if not kept:
+        return ""
+    if not _is_known(kept, macros):
+        return rf"\texttt{{{escaped(kept)}}}"
+    if re.search(r"&|\\\\", kept):
+        return rf"$\displaystyle\begin{{aligned}}{kept}\end{{aligned}}$"
+    return rf"$\displaystyle {kept}$"
+
+
+def _is_known(latex: str, macros: Collection[str]) -> bool:
+    """Whether all commands and characters of a formula are known, and its brackets are closed."""
+    tokens = [found.groups() for found in TOKEN.finditer(latex)]
+    return (
+        all(one in COMMANDS or one in macros for _, _, one, *_ in tokens if one)
+        and all(one in SYMBOLS for *_, one, _, _ in tokens if one)
+        and all(one in PLAIN for *_, one in tokens if one)
+        and _is_closed(tokens)
+        and not latex.endswith("\\")
+    )
+
+
+def _is_closed(tokens: Sequence[tuple[str | None, ...]]) -> bool:
+    """Whether braces, environments and brackets that grow are closed in the right order."""
+    expected: list[str] = []
+    for environment, which, command, _, brace, _ in tokens:
+        if environment == "begin" and which in ENVIRONMENTS:
+            expected.append(f"end {which}")
+        elif command == "left":
+            expected.append("right")
+        elif brace == "{":
+            expected.append("}")
+        elif environment or command == "right" or brace:
+            closed = f"end {which}" if environment else command or brace
+            if not expected or expected.pop() != closed:
+                return False
+    return not expected

@@ -1,0 +1,254 @@
+"""Verdicts on documents as a page and as LaTeX, from verdicts made by hand."""
+
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from derive.reading.document import Document
+from derive.reading.documents import read_document
+from derive.verification.documents.annotation import annotate, check_annotation
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.latex_notes import latex_notes
+from derive.verification.documents.latex_text import escaped, formula
+from derive.verification.documents.page import page
+from solvers.io.toml_input import InputError
+
+HOSTILE = r"\input{x} & 100% of {it_is} <script>alert(1)</script> # ~ ^ θ̇ ẋ é \end{document} 中"
+ENERGY = r"T = \half m l^2\dot\q^2 + m l \dot x\dot\q\sin\q"
+BODY = r"""
+\newcommand{\q}{\theta} \newcommand{\half}{\tfrac{1}{2}}
+\begin{document}
+\section{With $V = -mgl\cos\q$}
+The energy is
+\begin{equation} \label{a}
+  T = \half m l^2\dot\q^2 + m l \dot x\dot\q\sin\q
+\end{equation}
+\begin{table}\begin{tabular}{lp{3cm}}$V = 1$ & $V = 2$\end{tabular}\caption{A caption.}\end{table}
+A note\footnote{It has $V = 3$ and \[ V = 4 \]} and \parbox{4cm}{a box: $V = 5$}.
+\begin{itemize} \item $$ V = 6 $$ \end{itemize}
+\begin{align*} V &= 7 \\ V &= 8 \end{align*}
+
+\[ V = 9 \]
+\end{document}
+"""
+
+
+def document(folder: Path, text: str, name: str = "a.tex") -> Document:
+    (folder / name).write_text(text, encoding="utf-8")
+    return read_document(folder / name)
+
+
+def judged(read: Document, *formulas: tuple[str, dict[str, Any]]) -> JudgedDocument:
+    rows = []
+    for latex, fields in formulas:
+        start = read.text.index(latex)
+        line, column, cell = read.place(start)
+        extents = {one.number: one.extent for one in read.displays}
+        display = next((n for n, (a, b) in extents.items() if a <= start < b), 0)
+        span = (start, start + len(latex))
+        fields = {"verdict": "verified", **fields}
+        rows.append(JudgedFormula(line, column, display, latex, span=span, cell=cell, **fields))
+    return JudgedDocument(read.file, read.kind, "pendulum & cart", tuple(rows), ("line 1: <b>",))
+
+
+WRONG = (
+    ENERGY,
+    {
+        "verdict": "wrong",
+        "wrong_term": r"m l \dot x\dot\q\sin\q",
+        "correction": ENERGY.replace("sin", "cos"),
+        "witness": "1.5 instead of 2",
+        "note": HOSTILE,
+    },
+)
+
+
+def formulas_of_body() -> list[tuple[str, dict[str, Any]]]:
+    others = [r"V = -mgl\cos\q", *(f"V = {k}" for k in (1, 2, 3, 4, 5, 6, 9)), "V &= 7", "V &= 8"]
+    return [WRONG, *((latex, {}) for latex in others)]
+
+
+class Elements(HTMLParser):
+    """The elements of a page, all of which must be closed in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.starts: list[tuple[str, dict[str, str | None]]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.starts.append((tag, dict(attrs)))
+        if tag not in ("meta", "link", "input", "wbr"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.starts.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+def test_the_page_is_one_closed_file_without_scripts(tmp_path: Path) -> None:
+    read = document(tmp_path, r"\documentclass{article}" + BODY)
+    text = page([(judged(read, *formulas_of_body()), read)])
+    elements = Elements(text)
+    assert not elements.open
+    assert "script" not in {tag for tag, _ in elements.starts}
+    addresses = [a[key] for _, a in elements.starts for key in ("href", "src") if key in a]
+    assert addresses == ["data:,"]
+    assert "url(" not in text
+    assert "&lt;script&gt;alert(1)" in text
+    assert "default-src 'none'" in text
+
+
+def test_the_page_marks_the_wrong_term_and_the_correct_one(tmp_path: Path) -> None:
+    read = document(tmp_path, r"\documentclass{article}" + BODY)
+    text = page([(judged(read, WRONG), read)])
+    (wrong,) = re.findall(r'<math[^>]*><mrow class="wrong-term">(.*?)</mrow></math>', text)
+    assert "<mi>sin</mi>" in wrong
+    assert "<mi>θ</mi>" in wrong  # the document's own macro
+    (right,) = re.findall(r'<mrow class="right-term">(.*?)</mrow>', text)
+    assert "<mi>cos</mi>" in right
+    assert "<mi>m</mi>" not in right
+    assert "1.5 instead of 2" in text
+
+
+@pytest.mark.parametrize(
+    ("latex", "wrong", "marked"),
+    [
+        (r"x = a - b + c", "- b", "−</mo><mi>b</mi>"),
+        (r"x = a - b + c", "b", "−</mo><mi>b</mi>"),
+        (r"x = a (b + c)^2", "2", "<mn>2</mn>"),
+        (r"x = a\left(b + c\right)", r"b + c", "<mi>b</mi>"),
+        (r"x = l_1 \dot\theta_2", r"\dot\theta_2", "<mn>2</mn>"),
+        (r"x = l_1 \dot\theta_2", r"_2", "<mi>θ</mi>"),  # the smallest part with a meaning
+        (r"x = \frac{a}{b + c}", r"b+c", "<mi>c</mi>"),
+        (r"x = a", "b", ""),  # not in the formula
+    ],
+)
+def test_wrong_terms_are_marked(tmp_path: Path, latex: str, wrong: str, marked: str) -> None:
+    read = document(tmp_path, f"$${latex}$$", "a.md")
+    fields = {"verdict": "wrong", "wrong_term": wrong}
+    text = page([(judged(read, (latex, fields)), read)])
+    found = text.partition('<mrow class="wrong-term">')[2].partition("</math>")[0]
+    assert bool(marked) == bool(found)
+    assert marked in found
+
+
+def test_the_source_of_an_unreadable_formula_is_shown(tmp_path: Path) -> None:
+    read = document(tmp_path, r"$$\foo < 1$$", "a.md")
+    text = page([(judged(read, (r"\foo < 1", {"verdict": "unreadable"})), read)])
+    assert r"<code>\foo &lt; 1</code>" in text
+
+
+def test_several_documents_stand_on_one_page(tmp_path: Path) -> None:
+    names = ("a.md", "b.md")
+    reads = [document(tmp_path, "$$x = 1$$", name) for name in names]
+    text = page([(judged(read, ("x = 1", {})), read) for read in reads])
+    assert re.findall("<h2>(.*?)</h2>", text) == ["a.md", "b.md"]
+    assert "<b>2</b> verified" in text
+
+
+def test_the_copy_of_a_document_has_notes_at_its_formulas(tmp_path: Path) -> None:
+    read = document(tmp_path, r"\documentclass{article}" + BODY)
+    notes = latex_notes(judged(read, *formulas_of_body()), read)
+    assert r"\formulaverdict{\textbf{7: wrong}}\begin{equation}" in notes
+    assert r"$V = 5$\formulaverdict{10: verified}" in notes
+    assert r"\formulaverdict{12: verified}\begin{align*}" in notes
+    body, end = notes.split(r"\clearpage")
+    assert re.sub(r"\\formulaverdict\{[^{}]*(\{[^{}]*\})?\}", "", body).endswith(
+        read.text.partition(r"\begin{document}")[2].partition(r"\end{document}")[0] + "\n"
+    )
+    assert end.count(r"\end{document}") == 1
+    assert r"\label" not in end
+
+
+def test_formulas_of_other_documents_are_listed(tmp_path: Path) -> None:
+    text = f"$$\\newcommand{{\\q}}{{\\theta}}\\newcommand{{\\half}}{{\\frac12}}\n{ENERGY}$$"
+    read = document(tmp_path, text, "a.md")
+    listed = latex_notes(judged(read, WRONG), read)
+    assert listed.startswith(r"\documentclass")
+    assert r"\providecommand{\q}{\theta}" in listed
+    assert rf"correct formula: $\displaystyle {ENERGY.replace('sin', 'cos')}$" in listed
+
+
+CLASSES = [r"\documentclass{article}", r"\documentclass[twocolumn]{article}",
+           r"\documentclass[twoside]{book}", r"\documentclass{article}\usepackage{amsmath}",
+           r"\documentclass{report}\usepackage{multicol}\usepackage{hyperref}"]  # fmt: skip
+
+
+@pytest.mark.parametrize("head", [*CLASSES, "list"])
+def test_notes_compile(tmp_path: Path, head: str) -> None:
+    program = shutil.which("pdflatex")
+    if program is None:
+        pytest.skip("needs LaTeX: apt-get install texlive-latex-base")
+    packages = re.findall(r"usepackage\{(\w+)\}", head)
+    if any(subprocess.run(["kpsewhich", f"{p}.sty"], capture_output=True).returncode
+           for p in packages):  # fmt: skip
+        pytest.skip(f"needs the packages {packages}")
+    read = document(tmp_path, (CLASSES[0] if head == "list" else head) + BODY)
+    verdicts = judged(read, *formulas_of_body())
+    if head == "list":
+        read = replace(read, kind="markdown")
+    (tmp_path / "notes.tex").write_text(latex_notes(verdicts, read), encoding="utf-8")
+    command = [program, "-interaction=nonstopmode", "-halt-on-error", "notes.tex"]
+    run = subprocess.run(command, capture_output=True, cwd=tmp_path, check=False)
+    assert run.returncode == 0, run.stdout.decode("latin-1")[-2000:]
+
+
+def test_text_is_escaped() -> None:
+    assert escaped(r"\input{a_b}") == r"\textbackslash{}input\{a\_b\}"
+    assert escaped("θ̇ ẋ é 5%") == r"\ensuremath{\dot{\theta}} \.{x} \'{e} 5\%"
+    assert escaped(HOSTILE).isascii()
+
+
+@pytest.mark.parametrize(
+    ("latex", "typeset"),
+    [
+        (r"x^2 \label{a} % c", r"$\displaystyle x^2$"),
+        (r"x &= 1 \\ &= 2", r"$\displaystyle\begin{aligned}x &= 1 \\ &= 2\end{aligned}$"),
+        (r"\input{x}", r"\texttt{\textbackslash{}input\{x\}}"),
+        (r"\frac{a}{b", r"\texttt{\textbackslash{}frac\{a\}\{b}"),
+        (r"\left( a } \right)", r"\texttt{\textbackslash{}left( a \} \textbackslash{}right)}"),
+        (r"x $ y", r"\texttt{x \$ y}"),
+        (r"\begin{verbatim}x", r"\texttt{\textbackslash{}begin\{verbatim\}x}"),
+        ("θ", r"\texttt{\ensuremath{\theta}}"),
+        (r"\q + \r", r"\texttt{\textbackslash{}q + \textbackslash{}r}"),
+        (r"\q + x", r"$\displaystyle \q + x$"),
+        ("", ""),
+    ],
+)
+def test_only_known_formulas_are_typeset(latex: str, typeset: str) -> None:
+    assert formula(latex, {"q"}) == typeset
+
+
+def test_the_file_is_chosen_by_its_suffix(tmp_path: Path) -> None:
+    read = document(tmp_path, "$$x = 1$$", "a.md")
+    verdicts = judged(read, ("x = 1", {}))
+    for name, start in (("a.html", "<!DOCTYPE html>"), ("a.tex", r"\documentclass")):
+        check_annotation(tmp_path / name, [read.file])
+        annotate(tmp_path / name, [(verdicts, read)])
+        assert (tmp_path / name).read_text().startswith(start)
+
+
+@pytest.mark.parametrize(
+    ("name", "files", "message"),
+    [
+        ("a.pdf", ["a.md"], "must end in .html or .tex"),
+        ("a.tex", ["a.md", "b.md"], "LaTeX shows one document"),
+        ("a.tex", ["a.tex"], "is the document itself"),
+        ("a.html", [], "give a document"),
+    ],
+)
+def test_files_that_cannot_show_the_documents_are_refused(
+    name: str, files: list[str], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        check_annotation(Path(name), files)
