@@ -13,6 +13,8 @@ from snippets import assert_is_printed, run_snippet
 
 import generated.double_pendulum as dp
 from derive.codegen.tree import Tree
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.table import document_record
 from derive.verification.hand import EQUATIONS, HEADER
 from derive.verification.verdict import Verdict, VerdictName
 from solvers.app.cli import main
@@ -165,14 +167,28 @@ def test_the_hand_derivation_of_the_readme_has_the_verdicts_shown(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
     assert main(["verify", "page.toml"]) == 1
-    assert blocks(VERIFICATION, "text") == [
-        f"$ holonomic verify page.toml\n{capsys.readouterr().out}"
-    ]
+    expected = f"$ holonomic verify page.toml\n{capsys.readouterr().out}"
+    assert blocks(VERIFICATION, "text")[0] == expected
+
+
+def test_the_document_of_the_readme_has_the_verdicts_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (file,) = blocks(VERIFICATION, "markdown")
+    (tmp_path / "pendulum.md").write_text(file)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    assert main(["verify", "pendulum.md"]) == 1
+    expected = f"$ holonomic verify pendulum.md\n{capsys.readouterr().out}"
+    assert blocks(VERIFICATION, "text")[1:] == [expected]
 
 
 def test_the_keys_fields_and_verdicts_of_the_readme_are_those_of_the_code() -> None:
     assert sorted(first_column(VERIFICATION, "key")) == sorted((*HEADER, *EQUATIONS))
     assert first_column(VERIFICATION, "field") == [field.name for field in fields(Verdict)]
+    document = JudgedDocument("", "latex", "", (JudgedFormula(1, 1, 1, "", "wrong"),))
+    (formula,) = document_record(document)["formulas"]
+    assert first_column(VERIFICATION, "of a formula") == list(formula)
     assert first_column(VERIFICATION, "verdict") == [*get_args(VerdictName)]
 
 

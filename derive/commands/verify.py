@@ -1,11 +1,19 @@
-"""``holonomic verify EQUATIONS``: verdicts on the equations of files and systems."""
+"""``holonomic verify FILE``: verdicts on the equations of documents, files and systems."""
 
 import json
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
+from typing import Any, TypeAlias
 
+from derive.reading.document import Document
+from derive.reading.documents import KINDS, read_document
+from derive.verification.documents.annotation import annotate, check_annotation
+from derive.verification.documents.judged import JudgedDocument
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.table import document_lines, document_record
 from derive.verification.hand import HandDerivation, judge
 from derive.verification.verdict import VerdictName, table_width, verdict_rows, wrapped
 from solvers.io.text_table import text_table
@@ -14,48 +22,77 @@ from solvers.io.text_table import text_table
 COUNTED: tuple[VerdictName, ...] = ("verified", "equivalent", "misprint", "wrong", "unreadable")
 FILE_WIDTH = 26
 
+Judged: TypeAlias = HandDerivation | JudgedDocument
 
-def verify(names: Sequence[str], *, as_json: bool) -> int:
+
+def verify(names: Sequence[str], *, as_json: bool, annotation: Path | None = None) -> int:
     """Print the verdicts, for several files also their numbers.
 
     Return 0, 1 if an equation is wrong, or 2 if an equation or a file is unreadable.
     """
-    derivations: dict[str, HandDerivation | None] = {}
+    files = [name for name in names if Path(name).suffix.lower() in KINDS]
+    if annotation:
+        check_annotation(annotation, files)
+    results: dict[str, Judged | None] = {}
+    documents: list[tuple[JudgedDocument, Document]] = []
     for name in names:
         try:
-            derivations[name] = judge(name)
+            if name in files:
+                document = read_document(name)
+                results[name] = judged = judge_document(document)
+                documents.append((judged, document))
+            else:
+                results[name] = judge(name)
         except ValueError as error:  # the other files are still judged
-            derivations[name] = None
+            results[name] = None
             print(f"holonomic verify: {error}", file=sys.stderr)
-    judged = [one for one in derivations.values() if one]
+    if annotation and documents:
+        annotate(annotation, documents)
     if as_json:
-        print(json.dumps(list(map(asdict, judged)), indent=2))  # in ASCII: valid in every encoding
+        print(json.dumps(_records(results), indent=2))  # in ASCII: valid in every encoding
     else:
-        texts = ["\n".join(_lines(one, table_width())) for one in judged]
-        if len(derivations) > 1:
-            texts.append("\n".join(_marks(derivations)))
+        texts = ["\n".join(_lines(one, table_width())) for one in results.values() if one]
+        if len(results) > 1:
+            texts.append("\n".join(_marks(results)))
         if texts:
             print(*texts, sep="\n\n")
-    verdicts = {equation.verdict for one in judged for equation in one.equations}
-    if "unreadable" in verdicts or None in derivations.values():
+    verdicts = {verdict for one in results.values() if one for verdict in _verdicts(one)}
+    if "unreadable" in verdicts or None in results.values():
         return 2
     return int("wrong" in verdicts)
 
 
-def _lines(derivation: HandDerivation, width: int) -> Iterator[str]:
-    head = dict.fromkeys((derivation.file, derivation.system, derivation.source))
+def _records(results: Mapping[str, Judged | None]) -> Any:
+    """The verdicts for JSON: of derivations a list, with documents a table of both."""
+    derivations = [asdict(one) for one in results.values() if isinstance(one, HandDerivation)]
+    documents = [document_record(d) for d in results.values() if isinstance(d, JudgedDocument)]
+    if not documents:
+        return derivations
+    return {"documents": documents} | ({"derivations": derivations} if derivations else {})
+
+
+def _verdicts(one: Judged) -> list[VerdictName]:
+    formulas = one.equations if isinstance(one, HandDerivation) else one.formulas
+    return [formula.verdict for formula in formulas]
+
+
+def _lines(one: Judged, width: int) -> Iterator[str]:
+    if isinstance(one, JudgedDocument):
+        yield from document_lines(one, width)
+        return
+    head = dict.fromkeys((one.file, one.system, one.source))
     yield wrapped(": ".join(filter(None, head)), width, 0)
-    if derivation.note:
-        yield wrapped(derivation.note, width, 0)
-    yield from verdict_rows(derivation.equations, width)
+    if one.note:
+        yield wrapped(one.note, width, 0)
+    yield from verdict_rows(one.equations, width)
 
 
-def _marks(derivations: Mapping[str, HandDerivation | None]) -> Iterator[str]:
+def _marks(results: Mapping[str, Judged | None]) -> Iterator[str]:
     """Numbers of verdicts for each file, dashes for an unreadable one, and the totals."""
     total: Counter[VerdictName] = Counter()
     rows: list[list[object]] = []
-    for name, derivation in derivations.items():
-        marks = Counter(one.verdict for one in derivation.equations) if derivation else None
+    for name, judged in results.items():
+        marks = Counter(_verdicts(judged)) if judged else None
         file = name if len(name) <= FILE_WIDTH else f"...{name[3 - FILE_WIDTH :]}"
         rows.append([file, *(marks and marks[verdict] for verdict in COUNTED)])
         total.update(marks or {})

@@ -1,36 +1,43 @@
 """``holonomic verify``."""
 
 from argparse import ArgumentParser, Namespace
+from pathlib import Path
 
 from solvers.app.commands.options import add_examples, add_json, print_json
 
-SUMMARY = "verify the report, or other hand derivations"
+SUMMARY = "verify the report, documents, or other hand derivations"
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Describe the command and its arguments."""
     parser.description = (
-        "Verify hand derivations: the double-pendulum report with its programs and claims, or "
-        "equations of your own. The exit code is 1 if an equation is wrong; in the report, if it "
-        "has no proved correction."
+        "Verify hand derivations: the double-pendulum report with its programs and claims, the "
+        "formulas of a document, or equations of your own. The exit code is 1 if an equation is "
+        "wrong (in the report, if it has no proved correction), and 2 if one is unreadable."
     )
-    meaning = "TOML files, or systems with published equations (default: the report)"
+    meaning = (
+        "documents (.tex, .md, .txt, .rst, .html, .ipynb), TOML files, or systems with published "
+        "equations (default: the report)"
+    )
     parser.add_argument("equations", nargs="*", metavar="EQUATIONS", help=meaning)
     add_json(parser)
+    meaning = "write the formulas of documents with their verdicts: a page (.html), or LaTeX (.tex)"
+    parser.add_argument("--annotate", type=Path, metavar="OUT", help=meaning)
     add_examples(
         parser,
         "holonomic verify --json > verdicts.json",
         "holonomic verify my_equations.toml",
+        "holonomic verify my_paper.tex --annotate verdicts.html",
         "holonomic verify swinging_atwood",
     )
 
 
 def run(arguments: Namespace) -> int:
     """Print the verdicts; return 1 if an equation is wrong, 2 if one cannot be read."""
-    if arguments.equations:
+    if arguments.equations or arguments.annotate:
         from derive.commands.verify import verify
 
-        return verify(arguments.equations, as_json=arguments.json)
+        return verify(arguments.equations, as_json=arguments.json, annotation=arguments.annotate)
     from solvers.app.verdict.report import report_verdicts, tables
     from solvers.io.progress import Progress
 

@@ -1,0 +1,114 @@
+"""``holonomic verify`` of documents: table, JSON, annotation and exit code."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.table import document_lines, document_record
+from solvers.app.cli import main
+
+PENDULUM = r"""
+The energies are $T = \frac{1}{2} m l^2\dot\theta^2$ and
+
+$$ V = -m g l\cos\theta , $$
+
+so that
+
+$$
+\ddot\theta + \frac{g}{l}\cos\theta = 0
+$$
+"""
+
+
+@pytest.fixture
+def pendulum(tmp_path: Path) -> str:
+    path = tmp_path / "pendulum.md"
+    path.write_text(PENDULUM)
+    return str(path)
+
+
+def test_the_table_abbreviates_only_correct_formulas() -> None:
+    long = " + ".join(["a"] * 40)
+    formulas = (
+        JudgedFormula(3, 1, 1, f"x &= {long}", "verified"),
+        JudgedFormula(12, 1, 0, f"y = {long}", "wrong", "a", "y = b", "1 instead of 2", "so"),
+    )
+    judged = JudgedDocument("a.md", "markdown", "a system", formulas, ("a note",))
+    lines = list(document_lines(judged, 60))
+    assert lines[:2] == ["a.md: a system", "a note"]
+    assert lines[2].startswith("line 3   verified     x = a + a")
+    assert lines[2].endswith(" ...")
+    assert lines[3].startswith("line 12  wrong        y = a + a")
+    assert " ".join(" ".join(lines[3:]).split()).count("a +") == 39
+    assert [line.strip() for line in lines[-4:]] == [
+        "wrong term: a", "correct formula: y = b", "value: 1 instead of 2", "note: so",
+    ]  # fmt: skip
+
+
+def test_formulas_of_notebooks_have_cells() -> None:
+    formulas = (JudgedFormula(3, 1, 1, "x = 1", "verified", cell=2),)
+    judged = JudgedDocument("a.ipynb", "notebook", "", formulas)
+    assert list(document_lines(judged, 60))[1].startswith("cell 2, line 3  verified")
+    assert document_record(judged)["formulas"][0]["cell"] == 2
+
+
+def test_json_has_the_formulas_of_each_document(
+    pendulum: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["verify", pendulum, "--json"]) == 1
+    (document,) = json.loads(capsys.readouterr().out)["documents"]
+    assert document["file"] == pendulum
+    assert document["system"].startswith("Single pendulum")
+    first, second, third = document["formulas"]
+    assert (first["line"], first["display"], first["verdict"]) == (2, 0, "verified")
+    assert (second["line"], second["display"], second["verdict"]) == (4, 1, "verified")
+    assert (third["line"], third["display"], third["verdict"]) == (9, 2, "wrong")
+    assert third["latex"] == r"\ddot\theta + \frac{g}{l}\cos\theta = 0"
+    assert "cos" in third["wrong_term"]
+    assert "sin" in third["correction"]
+    assert set(third) == {
+        "line", "display", "latex", "verdict", "wrong_term", "correction", "witness", "note",
+    }  # fmt: skip
+
+
+def test_documents_stand_beside_derivations(
+    pendulum: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "out" / "page.html"
+    assert main(["verify", "single_pendulum", pendulum, "--annotate", str(page)]) == 1
+    output = capsys.readouterr().out
+    assert "energy            verified" in output
+    assert "line 9  wrong" in output
+    *_, document, total = output.splitlines()
+    assert document.split()[1:] == ["2", "0", "0", "1", "0"]
+    assert total.split()[1:] == ["5", "0", "0", "1", "0"]
+    assert "<b>1</b> wrong" in page.read_text()
+    assert main(["verify", "single_pendulum", pendulum, "--json"]) == 1
+    result = json.loads(capsys.readouterr().out)
+    assert [one["file"] for one in result["derivations"]] == ["single_pendulum"]
+    assert [one["file"] for one in result["documents"]] == [pendulum]
+
+
+def test_a_missing_document_is_refused_and_the_others_are_judged(
+    pendulum: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["verify", str(tmp_path / "absent.tex"), pendulum]) == 2
+    output, errors = capsys.readouterr()
+    assert "absent.tex: No such file" in errors
+    assert "line 9  wrong" in output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--annotate", "a.html"], "give a document"),
+        (["a.md", "--annotate", "a.pdf"], "must end in .html or .tex"),
+    ],
+)
+def test_annotations_are_refused_first(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["verify", *arguments]) == 2
+    assert message in capsys.readouterr().err
