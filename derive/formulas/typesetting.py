@@ -6,14 +6,14 @@ separate element, so that a narrow screen can break the line between them.
 """
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from html import escape
 
 import sympy as sp
 
-from derive.formulas.expression import RELATION, ExpressionError, syntax_tree
+from derive.formulas.expression import RELATION, ExpressionError, is_sum, syntax_tree
 from derive.formulas.lettering import letter_and_index, name_markup
 
 RELATIONS = {"=": "=", "<": "&lt;", ">": "&gt;", "<=": "≤", ">=": "≥"}
@@ -57,20 +57,27 @@ class Formula:
         return self.html
 
 
-def _elements(text: str) -> Iterator[str]:
-    pieces = RELATION.split(text)
-    for relation, side in zip(["", *pieces[1::2]], pieces[::2], strict=True):
-        head, *tail = _terms(syntax_tree(side))
+def elements(sides: Iterable[ast.expr], relations: Iterable[str]) -> Iterator[str]:
+    """Yield the MathML elements of a statement: the terms of its sides, with their signs."""
+    for relation, side in zip(["", *relations], sides, strict=True):
+        head, *tail = _terms(side)
         for term in (_infix(RELATIONS[relation]) + head if relation else head, *tail):
             yield f'<math displaystyle="true">{term}</math>'
 
 
+def _elements(text: str) -> Iterator[str]:
+    pieces = RELATION.split(text)
+    return elements(map(syntax_tree, pieces[::2]), pieces[1::2])
+
+
 def _terms(node: ast.expr) -> list[str]:
     """Return the terms of a sum with their signs."""
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+    rest: list[str] = []
+    while isinstance(node, ast.BinOp) and is_sum(node):
         sign = "+" if isinstance(node.op, ast.Add) else "−"
-        return [*_terms(node.left), _infix(sign) + _operand(node.right, PRODUCT)]
-    return [_markup(node)]
+        rest.append(_infix(sign) + _operand(node.right, PRODUCT))
+        node = node.left
+    return [_markup(node), *rest[::-1]]
 
 
 def _markup(node: ast.expr) -> str:
@@ -89,7 +96,7 @@ def _markup_and_binding(node: ast.expr) -> tuple[str, int]:
             return "".join(_terms(node)), SUM
         case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
             return _power(base, exponent), POWER
-        case ast.BinOp(op=ast.Mult() | ast.Div()) if positive := _negated(node):
+        case ast.BinOp(op=ast.Mult() | ast.Div()) if positive := negated(node):
             return MINUS + _operand(positive, PRODUCT), SUM
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
             first = right.left if isinstance(right, ast.BinOp) else right
@@ -110,13 +117,13 @@ def _markup_and_binding(node: ast.expr) -> tuple[str, int]:
     raise ExpressionError(f"{ast.unparse(node)[:80]!r} cannot be typeset")
 
 
-def _negated(node: ast.expr) -> ast.expr | None:
+def negated(node: ast.expr) -> ast.expr | None:
     """Return a product without its leading minus sign; None if it has none."""
     match node:
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return operand
         case ast.BinOp(left=left, op=(ast.Mult() | ast.Div()) as op, right=right):
-            positive = _negated(left)
+            positive = negated(left)
             return positive and ast.BinOp(positive, op, right)
     return None
 

@@ -1,0 +1,122 @@
+"""Formulas as LaTeX: in textbook order, in plain commands, and broken where they are long."""
+
+import pytest
+import sympy as sp
+
+from derive.formulas.expression import syntax_tree
+from derive.formulas.latex import latex
+from derive.formulas.lettering import name_latex
+from derive.formulas.line_breaks import latex_rows, width_of
+from derive.formulas.textbook_order import TextbookOrder
+
+m, g, length, x, y, v, a = sp.symbols("m g l x y v a", positive=True)
+ORDER = TextbookOrder(
+    {
+        m: "mass",
+        g: "gravity",
+        length: "parameter",
+        x: "coordinate",
+        y: "coordinate",
+        v: "rate",
+        a: "acceleration",
+    }
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("theta1_dot", r"\dot{\theta}_1"),
+        ("x_ddot", r"\ddot{x}"),
+        ("p_theta1", r"p_{\theta_1}"),
+        ("pdot_theta1", r"\dot{p}_{\theta_1}"),
+        ("r2_vector_dot", r"\dot{\vec{r}}_2"),
+        ("latitude", r"\mathrm{latitude}"),
+        ("k_spring", r"k_{\mathrm{spring}}"),
+        ("l12", "l_{12}"),
+        ("M_1_12", "M_{1,12}"),
+    ],
+)
+def test_names_are_letters_with_dots_and_indices(name: str, text: str) -> None:
+    assert name_latex(name) == text
+
+
+@pytest.mark.parametrize(
+    ("formula", "text"),
+    [
+        ("m1*l1**2*theta1_dot**2", r"m_1 l_1^2 \dot{\theta}_1^2"),
+        ("a - (b + c)*d", r"a - \left(b + c\right) d"),
+        ("a - (b - c)", r"a - \left(b - c\right)"),
+        ("-a*b + c", "-a b + c"),
+        ("(a + b)**2", r"\left(a + b\right)^2"),
+        ("sin(theta)**2*cos(a - b)", r"\sin^2\left(\theta\right) \cos\left(a - b\right)"),
+        ("2*3*a", r"2 \cdot 3 a"),
+        ("sqrt(a)/b**10", r"\frac{\sqrt{a}}{b^{10}}"),
+        ("ddt(d(L, x_dot))", r"\frac{d}{d t}\left(\frac{\partial L}{\partial \dot{x}}\right)"),
+        ("ddt(E)", r"\frac{d E}{d t}"),
+        ("log(x)", r"\ln\left(x\right)"),
+        ("(a, b)", r"\begin{pmatrix} a \\ b \end{pmatrix}"),
+        ("[[a, b], [c, d]]", r"\begin{pmatrix} a & b \\ c & d \end{pmatrix}"),
+    ],
+)
+def test_formulas_are_plain_latex(formula: str, text: str) -> None:
+    assert latex(syntax_tree(formula)) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (sp.sin(x) * length * g * m, r"m g l \sin\left(x\right)"),
+        (v**2 * m / 2, r"\frac{1}{2} m v^2"),
+        (v * sp.cos(x) + a * length - x, r"l a + v \cos\left(x\right) - x"),
+        (1 - sp.cos(x), r"1 - \cos\left(x\right)"),
+        (-x + y, "y - x"),
+        (-x - y, "-x - y"),
+        (sp.cos(x) * length + y, r"y + l \cos\left(x\right)"),
+        (-g * sp.sin(x) / (2 * length), r"-\frac{g \sin\left(x\right)}{2 l}"),
+        (sp.Rational(-3, 4) * x, r"-\frac{3}{4} x"),
+        (1 / sp.sqrt(x), r"\frac{1}{\sqrt{x}}"),
+        (x ** sp.Rational(3, 2), r"x^{\frac{3}{2}}"),
+        (sp.exp(-x / length), r"\exp\left(-\frac{x}{l}\right)"),
+        (sp.pi * sp.tan(x), r"\pi \tan\left(x\right)"),
+        (sp.S.Zero, "0"),
+        (sp.Integer(-2), "-2"),
+    ],
+)
+def test_factors_and_terms_are_in_the_order_of_textbooks(value: sp.Expr, text: str) -> None:
+    assert latex(ORDER.tree(value)) == text
+
+
+LONG = " + ".join(f"a{k}*cos(b{k})" for k in range(30))
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        LONG,
+        f"-({LONG})",
+        f"m*({LONG})",
+        f"({LONG})*m",
+        f"({LONG})/m",
+        f"x - ({LONG})/(a + b)",
+        f"({LONG})/({LONG})",
+        f"sqrt({LONG})",
+        f"({LONG})**2",
+        f"sin({LONG})",
+        f"m*(a - 2*({LONG}))",
+    ],
+)
+def test_long_formulas_are_broken_before_signs(formula: str) -> None:
+    width = 60
+    rows = latex_rows([syntax_tree("L"), syntax_tree(formula)], width)
+    assert rows[0].startswith("L & = ")
+    assert len(rows) > 3
+    for row in rows[1:]:
+        assert row.startswith((r"& \quad +", r"& \quad -"))
+    for row in rows:
+        assert row.count(r"\left") == row.count(r"\right")
+        assert row.count("{") == row.count("}")
+        assert row.count(r"\cos") <= 60 / width_of(syntax_tree("a1*cos(b1)"))
+    whole = " ".join(rows)
+    assert whole.count("igl(") == whole.count("igr)")
+    assert whole.count(r"\cos") == formula.count("cos")
