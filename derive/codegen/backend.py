@@ -31,6 +31,10 @@ class Backend(Notation, ABC):
         """The text of the generated file of a system."""
 
     @abstractmethod
+    def function(self, function: Function) -> str:
+        """The text of a function for one state."""
+
+    @abstractmethod
     def comment(self, text: str) -> str:
         """A comment on a line of its own, in the body of a function."""
 

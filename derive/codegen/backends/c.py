@@ -235,7 +235,7 @@ class CBackend(Backend):
         system, guard = contents.system, contents.system.name.upper()
         lengths = {f"{form}_state": len(state) for form, state in contents.states.items()}
         lengths["parameters"] = len(system.params)
-        functions = "\n".join(map(self._function, contents.functions)).rstrip("\n")
+        functions = "\n".join(map(self._guarded, contents.functions)).rstrip("\n")
         has_loops = f"{system.name}_factorise(" in functions
         if has_loops:
             loops = LOOPS.format(system=system.name, guard=guard, block=BLOCK)
@@ -259,7 +259,7 @@ class CBackend(Backend):
             functions=functions,
         )
 
-    def _function(self, function: Function) -> str:
+    def function(self, function: Function) -> str:
         assigned, real = self.assignments(function), f"{function.system.name}_real"
         state = [f"{real} t", f"const {real} *state"] if function.state else []
         outputs = range(len(assigned.outputs))
@@ -269,7 +269,11 @@ class CBackend(Backend):
             *_unused(function),
         ]
         arguments = _separated([*state, f"const {real} *params", f"{real} *result"])
-        text = FUNCTION.format(f=function, arguments=arguments, body="\n".join(lines))
+        return FUNCTION.format(f=function, arguments=arguments, body="\n".join(lines))
+
+    def _guarded(self, function: Function) -> str:
+        """The function, which a vector omits if it calls the mathematical library."""
+        text = self.function(function)
         return f"#ifndef HOLONOMIC_VECTOR\n{text}#endif\n" if function.lowering.functions else text
 
 

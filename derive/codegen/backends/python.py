@@ -163,10 +163,9 @@ class PythonBackend(Backend):
             functions=functions + (LOOPS if "_factorised(" in functions else ""),
         )
 
-    def _functions(self, function: Function) -> str:
-        """The function for one state, and that for arrays."""
-        assigned, called = self.assignments(function), function.lowering.functions
-        one = ONE.format(
+    def function(self, function: Function) -> str:
+        assigned = self.assignments(function)
+        return ONE.format(
             f=function,
             arguments=_arguments(function, "float", "Numbers"),
             type=TYPES[len(function.shape)],
@@ -174,6 +173,10 @@ class PythonBackend(Backend):
             body="\n".join(self.body(function, self._inputs(function, TO_FLOATS), assigned)),
             outputs=_shaped(assigned.outputs, function.shape),
         )
+
+    def _functions(self, function: Function) -> str:
+        """The function for one state, and that for arrays."""
+        assigned, called = self.assignments(function), function.lowering.functions
         many = MANY.format(
             f=function,
             arguments=_arguments(function, "ArrayLike", "Arrays"),
@@ -182,7 +185,7 @@ class PythonBackend(Backend):
             body="\n".join(self.body(function, self._inputs(function, "{0}"), assigned)),
             outputs=_stacked(function, assigned.outputs),
         )
-        return f"{one}\n\n{many}"
+        return f"{self.function(function)}\n\n{many}"
 
     def _inputs(self, function: Function, value: str) -> Iterable[str]:
         """Lines that unpack the arguments, each converted to a `value`."""
