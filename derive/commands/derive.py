@@ -9,6 +9,7 @@ from shlex import quote
 from derive.codegen.translation import UnsupportedFunctionError
 from derive.codegen.tree import Difference, Tree
 from derive.codegen.writing import texts
+from derive.commands import document
 from derive.commands.arguments import add_arguments
 from derive.mechanics.derivation import Derivation
 from derive.system.catalogue import UnknownSystemError, load
@@ -42,6 +43,8 @@ def main(argv: Sequence[str]) -> int:
 def run(arguments: Namespace, others: Iterable[Tree] = ()) -> int:
     """Run the command, also on `others`; return 0, 1 (differences), 2 (input) or 4 (files)."""
     try:
+        if document.is_requested(arguments):
+            return document.run(arguments)
         trees = [planned(arguments.systems, arguments.output), *others]
         return max([_check(tree, arguments) if arguments.check else _write(tree) for tree in trees])
     except (UnknownSystemError, SystemDefinitionError, UnsupportedFunctionError) as error:
@@ -52,7 +55,8 @@ def run(arguments: Namespace, others: Iterable[Tree] = ()) -> int:
     except OSError as error:
         print(
             f"holonomic derive: cannot write {error.filename or 'the messages'}: {error.strerror}; "
-            "name a folder that can be written to with --output",
+            f"name a {'file' if arguments.document else 'folder'} that can be written to with "
+            f"{'--document' if arguments.document else '--output'}",
             file=sys.stderr,
         )
         return 4

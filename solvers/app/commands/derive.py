@@ -18,7 +18,7 @@ def run(arguments: Namespace) -> int:
     """Write or check the files; with the whole package, also the tables of READMEs beside it."""
     from derive.commands.derive import run
 
-    if arguments.systems or arguments.output:
+    if arguments.systems or arguments.output or arguments.document:
         return run(arguments)
     from solvers.app.readme_tables import readmes
 

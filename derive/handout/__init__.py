@@ -1,0 +1,1 @@
+"""Documents of a whole derivation: pages, LaTeX and notebooks, also with exercises."""

@@ -1,0 +1,60 @@
+"""The section on Hamilton's equations."""
+
+from collections.abc import Iterator
+
+from derive.handout.document import Block, Paragraph
+from derive.handout.motion import has_inverse, legendre
+from derive.handout.notation import names_of
+from derive.handout.numbering import Numbering
+from derive.handout.tidy import tidied
+from derive.mechanics.derivation import Derivation
+
+
+def hamilton(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """The Hamiltonian and its derivatives, if they are readable, or else linear equations."""
+    if not has_inverse(d) or not formulas.are_readable([d.hamiltonian]):
+        yield Paragraph(
+            "The Hamiltonian contains the inverse of the mass matrix and is too long to read. At "
+            "each state, linear equations give the velocities as functions of the momenta."
+        )
+        yield from _linear_equations(d, formulas)
+        yield Paragraph("With these velocities, the rates of the momenta are as follows.")
+        yield from _rates_of_momenta(d, formulas)
+        return
+    H, (velocities, rates) = formulas.notation.letter("H"), d.hamilton_equations
+    rates = [tidied(rate, *d.system.q, *d.system.p) for rate in rates]
+    yield Paragraph("The Hamiltonian is the energy as a function of coordinates and momenta.")
+    yield formulas.equation(H, legendre(d, formulas), value=d.hamiltonian)
+    yield Paragraph("Its derivatives are the rates of coordinates and momenta.")
+    for qdot, p, value in zip(d.system.qdot, d.system.p, velocities, strict=True):
+        yield formulas.equation(qdot.name, f"d({H}, {p})", value=value)
+    if formulas.are_readable(rates):
+        for i, (q, value) in enumerate(zip(d.system.q, rates, strict=True)):
+            force = formulas.notation.force(i)
+            right = f"-d({H}, {q})" + (f" + {force}" if force else "")
+            yield formulas.equation(f"pdot_{q}", right, value=value)
+    else:
+        yield Paragraph("The rates of the momenta are shorter as functions of the velocities.")
+        yield from _rates_of_momenta(d, formulas)
+
+
+def _linear_equations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """M q̇ + b = p, whose solution is the velocities."""
+    M, b = map(formulas.notation.letter, "Mb")
+    velocities, momenta = names_of(d.system.qdot), names_of(d.system.p)
+    if d.drift.is_zero_matrix:
+        yield formulas.relation(f"{M}*{velocities}", momenta)
+    else:
+        vector = f"{b}_vector" if len(d.system.q) > 1 else b
+        yield formulas.relation(f"{M}*{velocities} + {vector}", momenta)
+        yield from formulas.column(b, d.drift)
+
+
+def _rates_of_momenta(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """ṗ = ∂L/∂q + Q as functions of coordinates and velocities."""
+    L, state = formulas.notation.letter("L"), (*d.system.q, *d.system.qdot)
+    for i, q in enumerate(d.system.q):
+        force = formulas.notation.force(i)
+        right = f"d({L}, {q})" + (f" + {force}" if force else "")
+        value = tidied(d.lagrangian.diff(q) + d.system.applied[i], *state)
+        yield formulas.equation(f"pdot_{q}", right, value=value)

@@ -1,0 +1,138 @@
+"""Sections on the equations of motion: Lagrangian, accelerations, energy."""
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from derive.handout.document import Block, Paragraph
+from derive.handout.notation import names_of
+from derive.handout.numbering import Numbering
+from derive.handout.tidy import tidied
+from derive.mechanics.derivation import Derivation
+from derive.mechanics.reduction import reduced
+from derive.system.symbols import TIME
+
+#: Coordinates of the largest systems whose mass matrix, any or a diagonal one, is inverted.
+LARGEST_INVERSE, LARGEST_DIAGONAL = 2, 7
+
+
+def lagrangian(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """The Lagrangian and the momenta."""
+    T, V, L = map(formulas.notation.letter, "TVL")
+    yield Paragraph("The Lagrangian is the kinetic minus the potential energy.")
+    yield formulas.equation(L, f"{T} - {V}", value=d.lagrangian)
+    yield Paragraph("Its derivatives with respect to the velocities are the momenta.")
+    for p, qdot, value in zip(d.system.p, d.system.qdot, d.momenta, strict=True):
+        yield formulas.equation(p.name, f"d({L}, {qdot})", value=value)
+
+
+def euler_lagrange(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """For each coordinate the rate of the momentum, the derivative of L, and the equation."""
+    L, state = formulas.notation.letter("L"), (*d.system.q, *d.system.qdot, *d.system.qddot)
+    residuals = _residuals(d)
+    for i, (q, qdot) in enumerate(zip(d.system.q, d.system.qdot, strict=True)):
+        rate, slope = f"ddt(d({L}, {qdot}))", f"d({L}, {q})"
+        change, derivative = _time_derivative(d, d.momenta[i]), d.lagrangian.diff(q)
+        force = formulas.notation.force(i)
+        yield Paragraph(
+            f"Coordinate `{q}`: the rate of the momentum, the derivative of the Lagrangian, and "
+            "the equation."
+        )
+        yield formulas.equation(rate, value=tidied(change, *state))
+        yield formulas.equation(slope, value=tidied(derivative, *state))
+        left = f"{rate} - {slope}" + (f" - {force}" if force else "")
+        yield formulas.equation(left, value=residuals[i], after=("0",))
+        if derivative == 0 and not force:
+            yield Paragraph(
+                f"The Lagrangian does not depend on `{q}`: the momentum `p_{q}` is constant."
+            )
+
+
+def accelerations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """The equations of motion as linear equations, and their solution if it is readable."""
+    M, f = map(formulas.notation.letter, "Mf")
+    still = dict.fromkeys(d.system.qddot, 0)
+    forcing = sp.Matrix([-residual.subs(still) for residual in _residuals(d)])
+    is_column = len(d.system.q) > 1
+    vector = f"{f}_vector" if is_column else f
+    matrix = "mass matrix" if is_column else "inertia"
+    yield Paragraph(
+        f"The equations of motion are linear in the accelerations, with the {matrix} `{M}` and the "
+        f"forcing `{vector}`."
+    )
+    yield formulas.relation(f"{M}*{names_of(d.system.qddot)}", vector)
+    yield from formulas.matrix(M, d.mass_matrix)
+    yield from formulas.column(f, forcing)
+    solution = _solution(d, forcing) if has_inverse(d) else []
+    if solution and formulas.are_readable(solution):
+        yield Paragraph("The solution:")
+        for symbol, value in zip(d.system.qddot, solution, strict=True):
+            yield formulas.equation(symbol.name, value=value)
+    else:
+        yield Paragraph(
+            "The solution is too long to read; at each state, the linear equations are solved in "
+            "numbers."
+        )
+
+
+def energy(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """The energy and its rate of change."""
+    T, V, E = map(formulas.notation.letter, "TVE")
+    if TIME in d.variables:
+        yield Paragraph(
+            "Since positions depend on time, Jacobi's integral takes the place of the sum of "
+            "kinetic and potential energy. It is the value of the Hamiltonian."
+        )
+        yield formulas.equation(E, legendre(d, formulas), value=d.energy)
+    else:
+        yield Paragraph("The energy is the sum of kinetic and potential energy.")
+        yield formulas.equation(E, f"{T} + {V}", value=d.energy)
+    power = tidied(d.power, *d.system.q, *d.system.qdot)
+    if power == 0:
+        yield Paragraph("The energy of a motion is constant, because no force changes it.")
+    else:
+        yield Paragraph(
+            "Forces without a potential, and terms that depend on time, change the energy of a "
+            "motion at this rate:"
+        )
+    yield formulas.equation(f"ddt({E})", value=power)
+
+
+def legendre(d: Derivation, formulas: Numbering) -> str:
+    """The sum of momenta times velocities, minus the Lagrangian."""
+    pairs = zip(d.system.p, d.system.qdot, strict=True)
+    products = " + ".join(f"{p}*{qdot}" for p, qdot in pairs)
+    return f"{products} - {formulas.notation.letter('L')}"
+
+
+def has_inverse(d: Derivation) -> bool:
+    """Whether the inverse of the mass matrix is derived as a formula."""
+    M = d.mass_matrix
+    return bool(M.rows <= (LARGEST_DIAGONAL if M.is_diagonal() else LARGEST_INVERSE))
+
+
+def _residuals(d: Derivation) -> list[sp.Expr]:
+    """The left sides d/dt ∂L/∂q̇ - ∂L/∂q - Q of the equations of motion."""
+    state = (*d.system.q, *d.system.qdot, *d.system.qddot)
+    triples = zip(d.momenta, d.system.q, d.system.applied, strict=True)
+    return [
+        tidied(_time_derivative(d, p) - d.lagrangian.diff(q) - force, *state)
+        for p, q, force in triples
+    ]
+
+
+def _solution(d: Derivation, forcing: sp.MatrixBase) -> list[sp.Expr]:
+    """The accelerations M⁻¹ f, by the adjugate of M."""
+    determinant = sp.factor_terms(reduced(d.mass_matrix.det()))
+    state = (*d.system.q, *d.system.qdot)
+    return [
+        sp.factor_terms(tidied(entry, *state)) / determinant
+        for entry in d.mass_matrix.adjugate() * forcing
+    ]
+
+
+def _time_derivative(d: Derivation, value: sp.Expr) -> sp.Expr:
+    """The time derivative of a function of coordinates, velocities and time."""
+    symbols = (*d.system.q, *d.system.qdot)
+    rates = zip(symbols, (*d.system.qdot, *d.system.qddot), strict=True)
+    return sp.Add(value.diff(TIME), *(value.diff(symbol) * rate for symbol, rate in rates))

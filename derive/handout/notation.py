@@ -1,0 +1,66 @@
+"""Letters of derived quantities, and the order of a system's symbols in formulas."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+
+from derive.formulas.textbook_order import Kind, TextbookOrder
+from derive.system.symbols import TIME
+from derive.system.system import System
+
+KIND_OF_UNIT: dict[str, Kind] = {"kg": "mass", "m/s^2": "gravity"}
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Notation:
+    """Names for the quantities of a derivation that no symbol of the system has."""
+
+    system: System
+
+    def letter(self, name: str) -> str:
+        """`name`, or with the index ``sys`` if a symbol of the system has this name."""
+        return f"{name}_sys" if name in {symbol.name for symbol in self._symbols} else name
+
+    def force(self, i: int) -> str:
+        """The generalized force without a potential of a coordinate: "" if there is none."""
+        system = self.system
+        return f"{self.letter('Q')}_{system.q[i].name}" if system.applied[i] != 0 else ""
+
+    @cached_property
+    def order(self) -> TextbookOrder:
+        """The order of factors and terms: masses, gravity, other parameters, coordinates."""
+        system = self.system
+        omega = sp.Symbol(self.letter("omega"), positive=True)  # of normal modes
+        kinds: dict[sp.Symbol, Kind] = {
+            **{p.symbol: KIND_OF_UNIT.get(p.unit, "parameter") for p in system.parameters},
+            **dict.fromkeys((*system.q, TIME), "coordinate"),
+            **dict.fromkeys((*system.qdot, *system.p, omega), "rate"),
+            **dict.fromkeys(system.qddot, "acceleration"),
+        }
+        return TextbookOrder(kinds)
+
+    @property
+    def _symbols(self) -> tuple[sp.Symbol, ...]:
+        system = self.system
+        return (*system.params, *system.q, *system.qdot, *system.qddot, *system.p)
+
+
+def names_of(symbols: Sequence[sp.Symbol]) -> str:
+    """A column of symbols, or a single one, as a formula."""
+    names = ", ".join(symbol.name for symbol in symbols)
+    return f"({names})" if len(symbols) > 1 else names
+
+
+def words(text: str) -> str:
+    """A text of the system, inside which nothing is a formula."""
+    return text.replace("`", "'")
+
+
+def unit_words(unit: str) -> str:
+    """A unit with raised exponents: m/s² of m/s^2; that of a plain number is empty."""
+    raised = re.sub(r"\^(-?\d+)", lambda power: power[1].translate(SUPERSCRIPTS), unit)
+    return "" if unit == "1" else words(raised)

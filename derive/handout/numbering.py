@@ -1,0 +1,91 @@
+"""The numbered formulas of a document."""
+
+import ast
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations_with_replacement, count
+
+import sympy as sp
+
+from derive.formulas.expression import is_sum, summands
+from derive.formulas.line_breaks import latex_rows, width_of
+from derive.handout.document import WIDTH, Block, Equation, Paragraph, in_text
+from derive.handout.notation import Notation
+
+#: Width of the left side of a column or matrix, and lines of the longest readable formula.
+NAME_WIDTH, READABLE = 8, 5
+
+
+@dataclass(frozen=True)
+class Numbering:
+    """Formulas in the notation of a system, numbered in the order in which they are requested."""
+
+    notation: Notation
+    numbers: Iterator[int] = field(default_factory=lambda: count(1))
+
+    def equation(
+        self,
+        *before: str,
+        value: sp.Expr | sp.MatrixBase,
+        after: tuple[str, ...] = (),
+        is_given: bool = False,
+    ) -> Equation:
+        """A formula with a derived side, after the sides `before` and before those `after`."""
+        order = self.notation.order
+        return Equation(next(self.numbers), before, value, after, order, is_given)
+
+    def relation(self, *sides: str) -> Equation:
+        """A formula between names."""
+        return Equation(next(self.numbers), sides, None, (), self.notation.order, is_given=True)
+
+    def vectors(
+        self, rate: str, values: Sequence[sp.MatrixBase], *, is_given: bool = False
+    ) -> Iterator[Block]:
+        """Positions or velocities of the masses; by components where a column is too wide."""
+        for k, value in enumerate(values, 1):
+            r = f"r{k}" if len(values) > 1 else "r"
+            if self.fits(value):
+                yield self.equation(f"{r}_vector{rate}", value=value, is_given=is_given)
+            else:
+                for axis, entry in zip("xyz", value, strict=False):
+                    yield self.equation(f"{r}_{axis}{rate}", value=entry, is_given=is_given)
+
+    def column(self, name: str, value: sp.MatrixBase) -> Iterator[Block]:
+        """A column; by entries where it is too wide, and a number where it has one entry."""
+        if len(value) == 1:
+            yield self.equation(name, value=value[0])
+        elif self.fits(value):
+            yield self.equation(f"{name}_vector", value=value)
+        else:
+            for i, entry in enumerate(value, 1):
+                yield self.equation(f"{name}_{i}", value=entry)
+
+    def matrix(self, name: str, value: sp.MatrixBase) -> Iterator[Block]:
+        """A symmetric matrix; by entries where it is too wide, a number where it has one entry."""
+        n = value.rows
+        if n == 1:
+            yield self.equation(name, value=value[0])
+        elif self.fits(value):
+            yield self.equation(name, value=value)
+        else:
+            yield Paragraph(f"`{name}` is symmetric. Entries that are not listed are zero.")
+            comma = "_" if n > 9 else ""
+            for i, j in combinations_with_replacement(range(n), 2):
+                if value[i, j] != 0:
+                    yield self.equation(f"{name}_{i + 1}{comma}{j + 1}", value=value[i, j])
+
+    def fits(self, value: sp.Expr | sp.MatrixBase) -> bool:
+        """Whether a value fits on a line, beside its name."""
+        return width_of(self.notation.order.tree(value)) < WIDTH - NAME_WIDTH
+
+    def are_readable(self, values: Iterable[sp.Expr]) -> bool:
+        """Whether no value is longer than `READABLE` lines, and no term of a sum than one line."""
+        trees = [*map(self.notation.order.tree, values)]
+        terms = (term for tree in trees if is_sum(tree) for term, _ in summands(tree))
+        name = ast.Name("H", ast.Load())
+        rows = (len(latex_rows([name, tree], WIDTH)) for tree in trees)
+        return max(rows) <= READABLE and all(width_of(term) < WIDTH for term in terms)
+
+    def text(self, *values: sp.Expr) -> str:
+        """Values in a sentence."""
+        return in_text(*map(self.notation.order.tree, values))

@@ -1,0 +1,87 @@
+"""The document of a derivation, from positions to code."""
+
+from collections.abc import Iterator
+from textwrap import fill
+
+from derive.codegen.backend import find_backends
+from derive.codegen.factorisation import LARGE
+from derive.codegen.functions import contents
+from derive.handout.document import WIDTH, Block, Code, Document, Paragraph, Section
+from derive.handout.hamilton import hamilton
+from derive.handout.motion import accelerations, energy, euler_lagrange, lagrangian
+from derive.handout.notation import Notation, words
+from derive.handout.numbering import Numbering
+from derive.handout.oscillations import oscillations
+from derive.handout.setup import energies, system, velocities
+from derive.mechanics.derivation import Derivation
+
+SECTIONS = {
+    "System": system,
+    "Velocities": velocities,
+    "Energies": energies,
+    "Lagrangian and momenta": lagrangian,
+    "Euler–Lagrange equations": euler_lagrange,
+    "Accelerations": accelerations,
+    "Hamilton's equations": hamilton,
+    "Energy balance": energy,
+    "Small oscillations": oscillations,
+}
+LANGUAGES = {".py": "Python", ".h": "C"}
+
+
+def document(derivation: Derivation) -> Document:
+    """The document of a derivation.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        The derivation of any system.
+
+    Returns
+    -------
+    Document
+        Sections with numbered formulas, from the positions to generated code.
+
+    Raises
+    ------
+    UnsupportedFunctionError
+        When an expression has no counterpart in generated code.
+
+    Examples
+    --------
+    >>> from derive import Derivation, load
+    >>> [section.title for section in document(Derivation(load("single_pendulum"))).sections][:3]
+    ['System', 'Velocities', 'Energies']
+    """
+    formulas = Numbering(Notation(derivation.system))
+    sections = [
+        Section(title, tuple(blocks(derivation, formulas))) for title, blocks in SECTIONS.items()
+    ]
+    sections.append(Section("Generated code", tuple(_code(derivation))))
+    return Document(words(derivation.system.title), tuple(sections))
+
+
+def _code(derivation: Derivation) -> Iterator[Block]:
+    """The right-hand side in every target language."""
+    (rhs,) = contents(derivation, ["rhs"]).functions
+    yield Paragraph(
+        "As generated code, the equations of motion give velocities and accelerations at a state."
+    )
+    for backend in reversed(find_backends()):
+        language = LANGUAGES.get(backend.suffix, backend.suffix.removeprefix("."))
+        text = backend.function(rhs).strip("\n")
+        is_executable = language == "Python" and len(derivation.system.q) < LARGE
+        if is_executable:
+            called = ", ".join(sorted(rhs.lowering.functions))
+            imports = f"from math import {called}\n\n\n" if called else "\n"
+            text = f"from __future__ import annotations\n\n{imports}{text}"
+        yield Code(language, text, is_executable)
+        if is_executable:
+            yield Code(language, _example(derivation), is_executable)
+
+
+def _example(derivation: Derivation) -> str:
+    """A call of the right-hand side at a state."""
+    defaults = [float(parameter.default) for parameter in derivation.system.parameters]
+    lines = [f"y = [0.1] * {2 * len(derivation.system.q)}", fill(f"params = {defaults}", WIDTH)]
+    return "\n".join([*lines, "rhs(0.0, y, params)"])

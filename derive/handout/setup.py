@@ -1,0 +1,81 @@
+"""The first sections of a document: the system, its velocities and its energies."""
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from derive.handout.document import Block, Paragraph, Table
+from derive.handout.notation import unit_words, words
+from derive.handout.numbering import Numbering
+from derive.mechanics.derivation import Derivation
+from derive.system.parts import Coordinate, Parameter, RigidBody
+
+
+def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """Coordinates, parameters, masses and positions."""
+    yield Paragraph("The coordinates of the system are as follows.")
+    coordinates = ((f"`{c.symbol}`", unit_words(c.unit), meaning(c)) for c in d.system.coordinates)
+    yield Table(("coordinate", "unit", "meaning"), tuple(coordinates))
+    if d.system.parameters:
+        yield Paragraph("The parameters are constant.")
+        parameters = (
+            (f"`{p.symbol}`", f"{p.default:g} {unit_words(p.unit)}".rstrip(), meaning(p))
+            for p in d.system.parameters
+        )
+        yield Table(("parameter", "default value", "meaning"), tuple(parameters))
+    masses = d.system.masses
+    noun = "positions of the masses" if len(masses) > 1 else "position of the mass"
+    names = formulas.text(*dict.fromkeys(mass.mass for mass in masses))
+    yield Paragraph(f"The {noun} {names} in Cartesian components, the last one upwards:")
+    positions = [sp.Matrix(mass.position) for mass in masses]
+    yield from formulas.vectors("", positions, is_given=True)
+    bodies = [mass for mass in masses if isinstance(mass, RigidBody)]
+    if bodies:
+        yield Paragraph("These are centres of mass of rigid bodies.")
+        values = ((body.mass, body.inertia, body.angle) for body in bodies)
+        rows = tuple(tuple(map(formulas.text, row)) for row in values)
+        yield Table(("mass", "moment of inertia", "orientation"), rows)
+
+
+def meaning(part: Coordinate | Parameter) -> str:
+    """The meaning of a symbol; none if it only repeats the name."""
+    return "" if part.meaning == part.symbol.name else words(part.meaning)
+
+
+def velocities(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """Time derivatives of the positions."""
+    yield Paragraph("The velocities follow by the chain rule.")
+    yield from formulas.vectors("_dot", d.velocities)
+
+
+def energies(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """Kinetic and potential energy, friction and applied forces."""
+    letter = formulas.notation.letter
+    turning = ""
+    if any(isinstance(mass, RigidBody) for mass in d.system.masses):
+        turning = " and half its moment of inertia times the square of its angular velocity"
+    yield Paragraph(
+        "The kinetic energy is the sum over all masses of half the mass times the square of its "
+        f"velocity{turning}."
+    )
+    yield formulas.equation(letter("T"), value=d.kinetic_energy)
+    has_weight = d.system.potential is None or d.system.gravity is not None
+    if d.system.potential is None:
+        yield Paragraph("The potential energy is that of the weight.")
+    elif has_weight:
+        yield Paragraph("The potential energy includes that of the weight.")
+    else:
+        yield Paragraph("The potential energy belongs to the definition of the system.")
+    yield formulas.equation(letter("V"), value=d.potential_energy, is_given=not has_weight)
+    if d.system.dissipation != 0:
+        yield Paragraph(
+            "Rayleigh's function describes friction: its negative derivatives with respect to the "
+            "velocities are forces."
+        )
+        yield formulas.equation(letter("R"), value=d.system.dissipation, is_given=True)
+    if any(d.system.applied):
+        yield Paragraph("The generalized forces without a potential:")
+        for i, force in enumerate(d.system.applied):
+            if name := formulas.notation.force(i):
+                is_given = d.system.dissipation == 0
+                yield formulas.equation(name, value=force, is_given=is_given)
