@@ -29,6 +29,24 @@ def test_formulas_are_read_as_they_are_printed(latex: str, tree: str) -> None:
     assert read(latex) == tree
 
 
+@pytest.mark.parametrize(
+    "latex",
+    [
+        r"a & = 2 \bigl( b \\ & \quad + c \bigr) \\ & \quad - d = 0",
+        r"a &= 2 \Bigl(b \notag \\ &\qquad + c\Bigr) \notag \\ &\qquad - d = 0 \tag{3}",
+        r"\begin{align} a =& 2 ( b \\ & + c ) \\ & - d = 0 \end{align}",
+    ],
+)
+def test_a_statement_may_be_broken_inside_brackets_and_before_any_sign(latex: str) -> None:
+    assert read(latex) == "a = (2 (b + c) - d) = 0"
+
+
+def test_rows_of_a_matrix_inside_brackets_remain() -> None:
+    latex = r"a = 2 \bigl( b \\ & + \begin{pmatrix} c \\ d \end{pmatrix} \bigr)"
+    assert read(latex) == read(latex.replace(r"b \\ &", "b"))
+    assert not any(isinstance(one, Unreadable) for one in formulas(latex))
+
+
 @pytest.mark.parametrize("folder", ["documents", "report"])
 def test_at_least_98_percent_of_the_displays_of_public_documents_are_read(folder: str) -> None:
     suffixes = (".md", ".rst", ".txt")

@@ -180,13 +180,14 @@ def parts(tokens: list[Token]) -> list[Part]:
         token, part = tokens[at], result[-1]
         end = partner.get(at, 0)
         if end > at:
-            part.tokens += tokens[at : end + 1]
+            part.tokens += _on_one_row(tokens[at : end + 1])
             at, row_is_empty = end, False
         elif token.kind in SEPARATORS and (token.kind != "." or _ends_sentence(tokens, at)):
             if any(t.kind != "space" for t in part.tokens):
                 result.append(Part())
             result[-1].boundaries.add(token.kind)
-            result[-1].starts_row = token.kind == "&" and row_is_empty
+            is_first = token.kind == "&" and row_is_empty
+            result[-1].starts_row = is_first or (token.kind == "gap" and result[-1].starts_row)
             row_is_empty = token.kind == "row" or (row_is_empty and token.kind in ("&", "gap"))
         else:
             part.tokens.append(token)
@@ -201,6 +202,20 @@ def parts(tokens: list[Token]) -> list[Part]:
         row_ends = "row" in part.boundaries
         if part.boundaries != {"&"}:
             row_has_relation = False
+    return result
+
+
+def _on_one_row(tokens: list[Token]) -> list[Token]:
+    r"""An expression in brackets without the ends of rows in it, those of a matrix aside.
+
+    Brackets of a fixed size may be on different rows, unlike ``\left`` and ``\right``.
+    """
+    result: list[Token] = []
+    depth = 0
+    for token in tokens:
+        depth += (token.kind == "begin") - (token.kind == "end")
+        if depth or token.kind not in ("row", "&"):
+            result.append(token)
     return result
 
 
