@@ -14,6 +14,7 @@ from py_compile import compile as write_bytecode
 import pytest
 
 import generated.single_pendulum as sp
+from solvers.app.cli import main
 from solvers.equations.module import header
 from solvers.equations.module_cache import cached_module
 from solvers.integration.compiled.compiler import build
@@ -22,6 +23,7 @@ from solvers.integration.integrate import integrate
 from solvers.io import build_cache
 from solvers.io.atomic_write import write_text
 from solvers.io.build_cache import ABANDONED, DIGESTS, NoPlaceError, built_folder, cache_folder
+from solvers.io.matplotlib_folder import VARIABLE, provide_matplotlib_folder
 
 TEXT = "some text\n"
 
@@ -275,6 +277,36 @@ def test_where_nothing_can_be_written_it_runs_in_python_with_one_notice(
         module = cached_module("single_pendulum", "key", lambda: texts)
     assert header(module) is None
     assert integrate(module, (0, 0.1), (1.0, 0.0), sp.DEFAULTS).backend == "python"
+
+
+def without_home(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", "/proc/no/home")
+    for name in ("XDG_CONFIG_HOME", "XDG_CACHE_HOME", VARIABLE):
+        monkeypatch.setenv(name, "")
+
+
+def test_matplotlib_gets_a_temporary_folder_where_there_is_no_home(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    without_home(monkeypatch)
+    provide_matplotlib_folder()
+    assert os.access(os.environ[VARIABLE], os.W_OK)
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    provide_matplotlib_folder()
+    assert os.environ[VARIABLE] == str(tmp_path)
+
+
+def test_a_command_with_plots_names_all_folders_where_nothing_can_be_written(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    without_home(monkeypatch)
+    build_cache._temporary_folder.cache_clear()
+    monkeypatch.setattr(build_cache.tempfile, "mkdtemp", read_only)
+    assert main(["run", "rest"]) == 4
+    message = capsys.readouterr().err
+    assert "/proc/no/home/.config/matplotlib: " in message
+    assert "/var/tmp: Read-only file system" in message
+    assert message.endswith("set MPLCONFIGDIR to a folder that can be written to\n")
 
 
 def test_finished_folders_in_a_read_only_cache_are_used(monkeypatch: pytest.MonkeyPatch) -> None:

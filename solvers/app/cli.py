@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, NoReturn
 
 from solvers.app.commands.options import Formatter, required_package
+from solvers.io.matplotlib_folder import provide_matplotlib_folder
 from solvers.io.suggestion import did_you_mean
 from solvers.io.terminal import standard_streams
 
@@ -56,6 +57,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             arguments = command_parser().parse_args(argv)
             name = f"holonomic {arguments.command or ''}".rstrip()
             with _warnings_as_lines(name):
+                if "draws" in arguments:
+                    provide_matplotlib_folder()
                 return int(arguments.run(arguments))
     except KeyboardInterrupt:
         return 130

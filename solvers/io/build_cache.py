@@ -86,6 +86,17 @@ def built_folder(
     raise NoPlaceError(f"nothing can be built ({'; '.join(reasons)}): {HINT}")
 
 
+def temporary_folder() -> Path:
+    """A folder until this process ends; `NoPlaceError` where there can be none."""
+    reasons = []
+    for root in (None, *TEMPORARY_FOLDERS):
+        try:
+            return _temporary_folder(root)
+        except OSError as error:
+            reasons.append(f"{error.filename or 'no folder of temporary files'}: {error.strerror}")
+    raise NoPlaceError("; ".join(reasons))
+
+
 def cache_folder() -> Path:
     """The user's cache, which may be read-only; `OSError` if others can write to it."""
     root = os.environ.get("XDG_CACHE_HOME", "")

@@ -72,12 +72,13 @@ def add_scenes(parser: ArgumentParser, default: Sequence[str]) -> None:
 
 
 def add_output(parser: ArgumentParser, contents: str, default: str = "out") -> None:
-    """Add the option ``--output`` for a folder."""
+    """Add the option ``--output`` for a folder of plots."""
     meaning = f"folder for {contents} (default: {default})"
     action = parser.add_argument(
         "--output", type=Path, metavar="DIR", default=default, help=meaning
     )
     setattr(action, "complete", FOLDER)  # noqa: B010  the attribute is shtab's
+    parser.set_defaults(draws=True)
 
 
 def add_json(parser: ArgumentParser) -> None:
