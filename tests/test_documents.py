@@ -232,6 +232,13 @@ def test_unread_parts_are_noted(tmp_path: Path) -> None:
     included, unclosed = document.notes
     assert included == r"not followed: \input{part}, \include{next}"
     assert unclosed == r"line 4: \[ is not closed"
+    unclosed = read(tmp_path, "a.md", r"\begin{align} x").notes[0]
+    assert unclosed == r"line 1: \begin{align} is not closed"
+    page = read(tmp_path, "a.html", "<math><mi>x</mi></math>\n" * 7)
+    assert page.notes == (
+        "line 1; line 2; line 3; line 4; line 5 and 2 more: <math> contains no LaTeX",
+    )
+    assert read(tmp_path, "a.md", "<math><mi>$x</mi></math>$").notes
 
 
 def test_latin_1_is_read(tmp_path: Path) -> None:

@@ -7,9 +7,9 @@ from itertools import accumulate
 from pathlib import Path
 from types import ModuleType
 
-from derive.reading.document import CodeCell, Display, Document, Kind
+from derive.reading.document import CodeCell, Display, Document, Kind, Place
 from derive.reading.formats import html, markdown, notebook, restructuredtext, tex
-from derive.reading.scanning import Excerpt, Unclosed
+from derive.reading.scanning import Excerpt, Unread
 from solvers.io.toml_input import InputError, read_bytes
 
 KINDS: dict[str, Kind] = {
@@ -33,8 +33,8 @@ FORMATS: dict[Kind, ModuleType] = {
 MAX_BYTES, MAX_NOTEBOOK_BYTES = 2_000_000, 20_000_000
 #: Displays and inline formulas of a document.
 MAX_FORMULAS = 20_000
-#: Displays without an end that are noted.
-MAX_NOTES = 20
+#: Places that a note lists.
+MAX_PLACES = 5
 
 
 def read_document(path: str | os.PathLike[str]) -> Document:
@@ -103,14 +103,14 @@ def _scanned(
     """The document with the formulas of its parts, each of which starts at a position."""
     form = FORMATS[document.kind]
     displays: list[Display] = []
-    unclosed: list[str] = []
+    unread: dict[str, list[Place]] = {}
     found = ((offset, part, one) for offset, part in parts for one in form.excerpts(part))
     for count, (offset, part, one) in enumerate(found):
         if count == MAX_FORMULAS:
             raise InputError(f"{document.file} has more than {MAX_FORMULAS} formulas")
-        if isinstance(one, Unclosed):
+        if isinstance(one, Unread):
             place = document.place(offset + one.start)
-            unclosed.append(f"line {place.line}: {one.delimiter} is not closed")
+            unread.setdefault(one.reason, []).append(place)
         elif latex := form.decoded(part, one).rstrip():
             start = offset + one.start + len(latex) - len(latex.lstrip())
             displays.append(_display(document, start, latex.lstrip(), offset, one))
@@ -123,8 +123,14 @@ def _scanned(
         document,
         displays=tuple(numbered),
         definitions=definitions,
-        notes=(*notes, *unclosed[:MAX_NOTES]),
+        notes=(*notes, *(_note(reason, places) for reason, places in unread.items())),
     )
+
+
+def _note(reason: str, places: Sequence[Place]) -> str:
+    shown = [f"{f'cell {p.cell}, ' if p.cell else ''}line {p.line}" for p in places[:MAX_PLACES]]
+    more = len(places) - len(shown)
+    return f"{'; '.join(shown)}{f' and {more} more' if more else ''}: {reason}"
 
 
 def _display(document: Document, start: int, latex: str, offset: int, excerpt: Excerpt) -> Display:

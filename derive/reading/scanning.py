@@ -48,16 +48,16 @@ class Excerpt:
 
 
 @dataclass(frozen=True)
-class Unclosed:
-    """The opening delimiter of a display that has no end."""
+class Unread:
+    """A display that is not read, and why."""
 
     start: int
-    delimiter: str
+    reason: str
 
 
 def scanned(
     text: str, tokens: Sequence[Token], start: int = 0, end: int | None = None
-) -> Iterator[Excerpt | Unclosed]:
+) -> Iterator[Excerpt | Unread]:
     """Formulas in the order of the text, and displays without an end."""
     openings = _expression("|".join(f"(?P<t{i}>{one.opening})" for i, one in enumerate(tokens)))
     end = len(text) if end is None else end
@@ -80,16 +80,21 @@ def scanned(
         if not mark:
             without_end.add(pattern)
         if token.delimiter and not token.is_inline:
-            yield Unclosed(opening.start(), token.delimiter)
+            delimiter = opening.group() if token.is_environment else token.delimiter
+            yield Unread(opening.start(), f"{delimiter} is not closed")
 
 
-def _excerpt(text: str, token: Token, opening: re.Match[str], mark: re.Match[str]) -> Excerpt:
+def _excerpt(
+    text: str, token: Token, opening: re.Match[str], mark: re.Match[str]
+) -> Excerpt | Unread:
     start, end, delimiter = opening.end(), mark.start(), token.delimiter
     if token.is_environment:
         start, end, delimiter = opening.start(), mark.end(), environment(opening)
     if token.inner:
         inner = _expression(token.inner).search(text, start, end)
-        start, end = inner.span(1) if inner else (start, start)
+        if inner is None:
+            return Unread(opening.start(), f"<{delimiter}> contains no LaTeX")
+        start, end = inner.span(1)
     return Excerpt(start, end, (opening.start(), mark.end()), delimiter, token.is_inline)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from html import unescape
 
 from derive.reading.formats.tex import environments
-from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unclosed, scanned
+from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
 
 #: Elements whose text is shown as it stands, or not at all.
 RAW = r"(?i:<(?:script|style|pre|code|textarea|noscript|svg|head|title)\b[^<>]*+>)"
@@ -23,12 +23,17 @@ def raw_end(opening: re.Match[str]) -> str:
     return rf"(?P<end>(?i:</{name}\b))"
 
 
+#: Formulas in MathML.
+MATH = (
+    Token(r"(?i:<math\b[^<>]{0,300}?display=[\"']?block[^<>]*+>)", MATHML, "math", inner=LATEX),
+    Token(r"(?i:<math\b[^<>]*+>)", MATHML, "math", is_inline=True, inner=LATEX),
+)
+
 TOKENS = (
     Token(COMMENT, r"(?P<end>-->)"),
     Token(SCRIPT + r";\s*mode=display[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex"),
     Token(SCRIPT + r"[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex", is_inline=True),
-    Token(r"(?i:<math\b[^<>]{0,300}?display=[\"']?block[^<>]*+>)", MATHML, "math", inner=LATEX),
-    Token(r"(?i:<math\b[^<>]*+>)", MATHML, "math", is_inline=True, inner=LATEX),
+    *MATH,
     Token(RAW, raw_end),
     Token(TAG),
     Token(r"\\[\\$]"),
@@ -45,7 +50,7 @@ TOKENS = (
 )
 
 
-def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
+def excerpts(text: str) -> Iterator[Excerpt | Unread]:
     """The formulas of a page."""
     return scanned(text, TOKENS)
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from derive.reading.formats import html, restructuredtext
 from derive.reading.formats.tex import environments
-from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unclosed, scanned
+from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
 
 #: The start of a line in a list or a quotation; an item of a list up to its text.
 MARGIN = r"^[ \t>]*+(?:(?:[-*+]|\d{1,9}[.)])[ \t]++)?"
@@ -42,6 +42,7 @@ TOKENS = (
     Token(MARGIN + r"(?:`{3,}|~{3,})[ \t]*+(?:math|\{math\})[ \t]*+$", _fence_end, "```math"),
     Token(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end),
     Token("<!--", "(?P<end>-->)"),
+    *html.MATH,
     Token(html.RAW, html.raw_end),
     Token(TAG),
     # inline formulas of GitHub and of Documenter.jl; code
@@ -67,12 +68,12 @@ TOKENS = (
 )
 
 
-def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
+def excerpts(text: str) -> Iterator[Excerpt | Unread]:
     """The formulas of a text."""
     code = _indented_code(text)
     indented = Token("^(?: {4}| {0,3}\t)", "(?P<end>$)", applies=lambda one: one.start() in code)
     for found in scanned(text, (indented, *TOKENS)):
-        if isinstance(found, Unclosed):
+        if isinstance(found, Unread):
             yield found
         elif found.delimiter == "$$":
             yield replace(found, is_inline=_is_in_sentence(text, found))

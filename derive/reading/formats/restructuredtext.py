@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unclosed, scanned
+from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
 
 CODE = (
     "code|code-block|sourcecode|literalinclude|parsed-literal|highlight|raw|ipython|doctest|"
@@ -31,7 +31,7 @@ TOKENS = (
 )
 
 
-def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
+def excerpts(text: str) -> Iterator[Excerpt | Unread]:
     """The formulas of a text."""
     return scanned(text, TOKENS)
 

@@ -6,7 +6,7 @@ Comments and verbatim text are skipped. ``\input`` and ``\include`` are not foll
 import re
 from collections.abc import Iterator
 
-from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unclosed, environment, scanned
+from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, environment, scanned
 
 #: Escaped characters, which are no delimiters; comments, up to the end of the line.
 ESCAPED, COMMENT = r"\\[\\$%]", r"%[^\n]*+"
@@ -49,7 +49,7 @@ def environments(passed: str) -> tuple[Token, ...]:
     )
 
 
-def excerpts(text: str) -> Iterator[Excerpt | Unclosed]:
+def excerpts(text: str) -> Iterator[Excerpt | Unread]:
     """The formulas of a text in LaTeX: between the document's begin and end if it has them."""
     passed = rf"{ESCAPED}|{COMMENT}"
     tokens = (
