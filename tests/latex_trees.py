@@ -24,7 +24,7 @@ from derive.reading.latex.tree import (
 
 
 def show(node: Node | Statement | Unreadable) -> str:
-    """A tree as text: ``l*θ.^2`` has a letter with one dot, ``[a/b]`` is a quotient."""
+    """A tree as text: ``l theta.^2`` has a letter with one dot, ``[a / b]`` is a quotient."""
     match node:
         case Number():
             return node.digits
@@ -41,24 +41,24 @@ def show(node: Node | Statement | Unreadable) -> str:
         case Quotient():
             return f"[{show(node.numerator)} / {show(node.denominator)}]"
         case Power():
-            return f"{{{show(node.base)}}}^{show(node.exponent)}"
+            return f"{tight(node.base)}^{tight(node.exponent)}"
         case Root():
-            return f"root{node.degree}({show(node.radicand)})"
+            return f"root{node.degree}{brackets(node.radicand)}"
         case Call():
-            return f"{node.function}({show(node.argument)})"
+            return node.function + brackets(node.argument)
         case Application():
             return f"{show(node.head)}@({', '.join(map(show, node.arguments))})"
         case Derivative():
             variables = ", ".join(map(show, node.variables))
             return f"{'∂' if node.is_partial else 'd'}({show(node.operand)}; {variables})"
         case Dotted():
-            return f"dots{node.dots}({show(node.operand)})"
+            return f"dots{node.dots}{brackets(node.operand)}"
         case Matrix():
             return f"[{'; '.join(', '.join(map(show, row)) for row in node.rows)}]"
         case Tuple():
             return f"<{', '.join(map(show, node.items))}>"
         case Transpose():
-            return f"{show(node.operand)}^T"
+            return f"{tight(node.operand)}^T"
         case Norm():
             return f"|{show(node.operand)}|"
         case Summation():
@@ -70,3 +70,11 @@ def show(node: Node | Statement | Unreadable) -> str:
             return show(node.sides[0]) + "".join(f" {sign} {side}" for sign, side in pairs)
         case Unreadable():
             return f"unreadable: {node.reason}"
+
+
+def brackets(node: Node) -> str:
+    return show(node) if isinstance(node, Sum) else f"({show(node)})"
+
+
+def tight(node: Node) -> str:
+    return f"({show(node)})" if isinstance(node, Product | Power | Transpose) else show(node)

@@ -1,6 +1,7 @@
 """Syntax trees from the rules of the grammar: one method a rule, with its children."""
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from derive.reading.latex.parts import Operator, Part, SumSign, Written, around, is_symbol, node
 from derive.reading.latex.products import applied, divided, fraction, product
@@ -22,9 +23,17 @@ from derive.reading.latex.tree import (
     Tuple,
 )
 
+AMBIGUOUS = "where the argument of a function ends is ambiguous without brackets"
+
 
 class Build:
     """The methods that the parser calls, in the order in which rules end."""
+
+    def start(self, children: list[list[Part]]) -> Node:
+        """A side of a statement; several expressions are a list of values."""
+        (items,) = children
+        nodes = tuple(map(node, items))
+        return Tuple(nodes, around(nodes)) if len(nodes) > 1 else nodes[0]
 
     def expression(self, children: list[Part]) -> Part:
         """Terms with signs."""
@@ -135,24 +144,25 @@ class Build:
     def sum(self, children: list[Part]) -> SumSign:
         """The sign of a sum with its bounds."""
         bounds = [c for c in children if isinstance(c, Bound)]
-        index = next((b.index for b in bounds if b.index), None)
-        lower = next((b.value for b in bounds if not b.is_upper), None)
-        upper = next((b.value for b in bounds if b.is_upper), None)
-        return SumSign(index, lower, upper, around(children))
+        indices = next((b.indices for b in bounds if b.indices), ())
+        lower = next((b.value for b in bounds if b.indices), None)
+        upper = next((b.value for b in bounds if not b.indices), None)
+        return SumSign(indices, lower, upper, around(children))
 
     def lower(self, children: list[Part]) -> "Bound":
-        """The index of a sum and its first value."""
-        index = node(children[2])
-        if not isinstance(index, Letter) or len(children) not in (4, 6):
-            raise Unread("the index of a sum is not a letter")
-        if len(children) == 6 and children[3].value != "=":
+        """The indices of a sum and their first value."""
+        _, _, items, *first, _ = children
+        indices = tuple(node(item) for item in items)
+        if first and first[0].value != "=":
             raise Unread("a sum over a condition")
-        value = node(children[4]) if len(children) == 6 else None
-        return Bound(value, around(children[1:]), index)
+        letters = tuple(index for index in indices if isinstance(index, Letter))
+        if len(letters) < len(indices):
+            raise Unread("the index of a sum is no letter")
+        return Bound(node(first[1]) if first else None, around(children[:2]), letters)
 
     def upper(self, children: list[Part]) -> "Bound":
         """The last value of the index of a sum."""
-        return Bound(node(children[1]), children[1].span, is_upper=True)
+        return Bound(node(children[1]), children[1].span)
 
     def call(self, children: list[Part]) -> Part:
         """A function, its power and its argument."""
@@ -191,14 +201,21 @@ class Build:
 
     def bare(self, children: list[Part]) -> Written:
         """An argument without brackets."""
-        factors: list[Node] = []
-        for child in children:
-            factors += child if isinstance(child, list) else [node(child)]
-        latin = [f for f in factors if not isinstance(f, Number) and not _is_pi(f)]
-        if len(latin) > 1 and not isinstance(children[-1], list):
-            raise Unread("where the argument of a function ends is ambiguous without brackets")
-        whole = product(factors)
-        return Written(whole, around(factors), "bare")
+        ends_well = isinstance(children[-1], list)
+        factors = [f for c in children for f in (c if isinstance(c, list) else [node(c)])]
+        letters = [f for f in factors if not isinstance(f, Number) and not _is_pi(f)]
+        is_tight = all(a.span[1] == b.span[0] for a, b in pairwise(factors))
+        if len(letters) > 1 and not ends_well and not is_tight:
+            raise Unread(AMBIGUOUS)
+        return Written(product(factors), around(factors), "bare")
+
+    def counted(self, children: list[Part]) -> Written:
+        """An argument of a number and brackets, a fraction or a letter with dots."""
+        number, *rest = [c for c in children if not is_symbol(c, "TIMES")]
+        if len(rest) > 1:
+            raise Unread(AMBIGUOUS)
+        factors = [node(number), node(rest[0])]
+        return Written(product(factors), around(children), "bare")
 
     def scaled(self, children: list[Part]) -> Node:
         """A number before a sign of multiplication, in an argument without brackets."""
@@ -224,8 +241,7 @@ class Bound:
 
     value: Node | None
     span: Span
-    index: Letter | None = None
-    is_upper: bool = False
+    indices: tuple[Letter, ...] = ()  # of the lower bound
 
 
 def _is_pi(factor: Node) -> bool:

@@ -13,6 +13,7 @@ from derive.reading.latex.symbols import (
     BOLD,
     BRACKETS,
     CONNECTIVES,
+    FRAMES,
     GAPS,
     LAYOUT,
     MARKS,
@@ -29,6 +30,30 @@ from derive.reading.latex.tokens import Token, Unread
 WIDE = {"cm": 0.5, "mm": 5, "em": 1, "ex": 2, "pt": 10, "in": 0.2, "mu": 18}
 #: Commands of one argument that an index or an exponent without braces takes with it.
 UNARY = {*ACCENTS, *MARKS, *BOLD, *UPRIGHT, *SCRIPT, *TEXT, "sqrt"}
+
+
+#: Fonts that hold to the end of their braces.
+OLD_FONTS = {
+    "rm": "mathrm", "bf": "mathbf", "cal": "mathcal", "it": "mathit", "sf": "mathsf",
+    "tt": "mathtt",
+}  # fmt: skip
+
+
+def with_new_fonts(tokens: list[Token]) -> list[Token]:
+    r"""Tokens in which ``{\bf r}`` is ``\mathbf{r}``."""
+    result: list[Token] = []
+    for token in tokens:
+        if token.kind == "command" and token.text in OLD_FONTS:
+            brace = max(0, len(result) - 1)
+            while brace and result[brace].kind == "space":
+                brace -= 1
+            if not result or result[brace].kind != "{":
+                raise Unread(rf"\{token.text} does not stand behind a brace")
+            font = replace(token, text=OLD_FONTS[token.text], span=result[brace].span)
+            result.insert(brace, font)
+        else:
+            result.append(token)
+    return result
 
 
 class Layout:
@@ -106,9 +131,19 @@ class Layout:
             at = self._star(at)
             for _ in range(LAYOUT[name]):
                 at = self._end_of_argument(at)
+            if name in FRAMES:
+                return self._frame(token, at)
         else:
             self.result.append(token)
         return at
+
+    def _frame(self, token: Token, at: int) -> int:
+        """The brace behind a command that frames its content belongs to the command."""
+        brace = self._skip(at)
+        if brace >= len(self.tokens) or self.tokens[brace].kind != "{":
+            return at
+        self.result.append(replace(self.tokens[brace], span=token.span))
+        return brace + 1
 
     def _star(self, at: int) -> int:
         return at + 1 if at < len(self.tokens) and self.tokens[at].kind == "*" else at
@@ -222,10 +257,13 @@ class Layout:
         """A brace over or under an expression, whose label is left out."""
         end = self._end_of_argument(at)
         inner = Layout(self.latex, self.tokens[at:end]).tokens_without_layout()
-        self.result += inner
         label = self._skip(end)
         if label < len(self.tokens) and self.tokens[label].kind in "_^":
-            return self._end_of_argument(label + 1)
+            end = self._end_of_argument(label + 1)
+        last = self.tokens[end - 1].span[1]
+        self.result.append(Token("{", "{", token.span))
+        self.result += inner
+        self.result.append(Token("}", "}", (last, last)))
         return end
 
     def _over_relation(self, token: Token, at: int) -> int:

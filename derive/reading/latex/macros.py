@@ -1,17 +1,20 @@
 r"""Macros that a document defines, and their expansion.
 
 Read are ``\newcommand``, ``\renewcommand``, ``\providecommand``, ``\DeclareMathOperator`` and
-``\def`` with parameters one after the other.
+``\def`` with parameters one after the other. Some macros of the package physics are known, such as
+``\dv{x}{t}``.
 """
 
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import islice
 
 from derive.reading.latex.tokens import Token, Unread, tokenize
+from derive.reading.latex.tree import Span
 
 #: Tokens of a display after the expansion of macros.
-MAX_TOKENS = 60_000
+MAX_TOKENS = 30_000
 #: Macros within macros.
 MAX_DEPTH = 40
 
@@ -32,12 +35,25 @@ class Macro:
     default: str | None = None
 
 
+#: Macros of the package physics, if the document does not define others of that name.
+PHYSICS = {
+    "abs": Macro("abs", r"\left|#1\right|", 1),
+    "norm": Macro("norm", r"\left\|#1\right\|", 1),
+    "dd": Macro("dd", r"\mathrm{d}"),
+    "vu": Macro("vu", r"\hat{\mathbf{#1}}", 1),
+    "qty": Macro("qty", ""),
+}
+DERIVATIVES = {"dv": r"\mathrm{d}", "odv": r"\mathrm{d}", "pdv": r"\partial"}
+#: Macros of a document, and characters of a definition.
+MAX_MACROS, MAX_LENGTH = 1000, 1000
+
+
 def macros_of(text: str) -> dict[str, Macro]:
     """The macros that a document defines; a later definition replaces an earlier one."""
     macros: dict[str, Macro] = {}
-    for match in START.finditer(text):
+    for match in islice(START.finditer(text), MAX_MACROS):
         if not _is_comment(text, match.start()):
-            excerpt = text[match.start() : match.start() + 4000]
+            excerpt = text[match.start() : match.start() + MAX_LENGTH]
             found = definition(excerpt, tokenize(excerpt), 0)
             if found is not None:
                 macros[found[0].name] = found[0]
@@ -127,7 +143,7 @@ def expanded(latex: str, tokens: list[Token], macros: Mapping[str, Macro]) -> li
     Unread
         If a macro calls itself, has too few arguments, or becomes too long.
     """
-    known = dict(macros)
+    known = PHYSICS | dict(macros)
     result: list[Token] = []
     waiting = [(token, 0) for token in reversed(tokens)]  # with the number of macros around it
     at = 0
@@ -146,6 +162,9 @@ def expanded(latex: str, tokens: list[Token], macros: Mapping[str, Macro]) -> li
             if depth >= MAX_DEPTH:
                 raise Unread(rf"the macro \{token.text} calls itself")
             body = _call(known[token.text], token, waiting)
+            waiting += [(t, depth + 1) for t in reversed(body)]
+        elif token.text in DERIVATIVES:
+            body = _derivative(DERIVATIVES[token.text], token, waiting)
             waiting += [(t, depth + 1) for t in reversed(body)]
         else:
             result.append(token)
@@ -168,7 +187,33 @@ def _call(macro: Macro, call: Token, waiting: list[tuple[Token, int]]) -> list[T
             raise Unread(rf"\{macro.name} needs {macro.arguments} arguments")
         arguments.append(given[0])
         end = max(end, given[1])
-    span = call.span[0], end
+    return _substituted(macro, arguments, (call.span[0], end))
+
+
+def _derivative(sign: str, call: Token, waiting: list[tuple[Token, int]]) -> list[Token]:
+    r"""The fraction that ``\dv{x}{t}``, ``\dv{t}`` or ``\pdv[2]{L}{x}`` is."""
+    option = _optional(waiting)
+    order = f"^{{{''.join(t.text for t in option)}}}" if option else ""
+    arguments: list[list[Token]] = []
+    end = call.span[1]
+    while len(arguments) < 3 and waiting and waiting[-1][0].kind == "{":
+        given = _taken(waiting)
+        if given is None:
+            raise Unread("a brace is never closed")
+        arguments.append(given[0])
+        end = given[1]
+    body = {
+        1: rf"\frac{{{sign}{order}}}{{{sign} #1{order}}}",
+        2: rf"\frac{{{sign}{order} #1}}{{{sign} #2{order}}}",
+        3: rf"\frac{{{sign}^2 #1}}{{{sign} #2 {sign} #3}}",
+    }.get(len(arguments))
+    if body is None:
+        raise Unread(rf"\{call.text} needs an argument in braces")
+    return _substituted(Macro(call.text, body, len(arguments)), arguments, (call.span[0], end))
+
+
+def _substituted(macro: Macro, arguments: list[list[Token]], span: Span) -> list[Token]:
+    """The body of a macro with its arguments, all of them in the place of the call."""
     body = tokenize(macro.body)
     result: list[Token] = []
     at = 0

@@ -4,9 +4,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from derive.reading.latex.letters import Symbol
 from derive.reading.latex.tokens import Unread
 from derive.reading.latex.tree import Letter, Node, Span
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A terminal of the grammar, its value and its place."""
+
+    type: str
+    value: Any
+    span: Span
 
 
 @dataclass(frozen=True)
@@ -31,7 +39,7 @@ class Operator:
 class SumSign:
     """The sign of a sum without its terms."""
 
-    index: Letter | None
+    indices: tuple[Letter, ...]
     lower: Node | None
     upper: Node | None
     span: Span

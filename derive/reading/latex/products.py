@@ -1,6 +1,15 @@
 """Products, quotients and derivatives."""
 
-from derive.reading.latex.parts import Operator, Part, SumSign, Written, around, is_symbol, node
+from derive.reading.latex.parts import (
+    Operator,
+    Part,
+    SumSign,
+    Symbol,
+    Written,
+    around,
+    is_symbol,
+    node,
+)
 from derive.reading.latex.tokens import Unread
 from derive.reading.latex.tree import (
     Application,
@@ -16,6 +25,7 @@ from derive.reading.latex.tree import (
     Summation,
 )
 
+VARIATIONS = ("delta", "Delta")
 AMBIGUOUS = "what stands below the slash is ambiguous without brackets"
 
 
@@ -27,6 +37,8 @@ def fraction(numerator: Node, denominator: Node, span: Span) -> Node | Operator:
         if isinstance(inner, Derivative):
             return Sum(((sign, inner),), span)
         return Quotient(numerator, denominator, span)
+    if _sign(numerator) in VARIATIONS and _sign(denominator) == _sign(numerator):
+        raise Unread("a quotient of differences or variations")
     found = _differential(numerator)
     variables = found and _variables(denominator, found[0])
     if found is None or variables is None:
@@ -41,6 +53,13 @@ def fraction(numerator: Node, denominator: Node, span: Span) -> Node | Operator:
 
 def _factors(factors: Node) -> tuple[Node, ...]:
     return factors.factors if isinstance(factors, Product) else (factors,)
+
+
+def _sign(factors: Node) -> str:
+    """The name of the letter with which a product starts."""
+    if isinstance(factors, Product) and isinstance(factors.factors[0], Letter):
+        return factors.factors[0].identifier
+    return ""
 
 
 def _sign_of_differential(factor: Node) -> str | None:
@@ -107,7 +126,8 @@ def divided(children: list[Part]) -> list[Part]:
             at = stop
             continue
         if is_symbol(child, "TIMES"):
-            _check_times(child.value, node(children[at - 1]), node(children[at + 1]))
+            if child.value == "times" and any(map(_is_bold, children[at - 1 : at + 2 : 2])):
+                raise Unread("a vector product")
         else:
             if is_symbol(child, "NUMBER") and at and is_symbol(children[at - 1], "NUMBER"):
                 raise Unread("two numbers side by side")
@@ -116,10 +136,9 @@ def divided(children: list[Part]) -> list[Part]:
     return result
 
 
-def _check_times(sign: str, left: Node, right: Node) -> None:
-    is_bold = any(isinstance(n, Letter) and n.is_bold for n in (left, right))
-    if sign == "times" and is_bold:
-        raise Unread("a vector product")
+def _is_bold(part: Part) -> bool:
+    letter = part.value if isinstance(part, Symbol) else part
+    return isinstance(letter, Letter) and letter.is_bold
 
 
 def _quotient(before: list[Part], behind: list[Part]) -> list[Part]:
@@ -199,11 +218,12 @@ def applied(parts: list[Part]) -> Part:
                 operands, done = done[::-1], []
             operand = product([node(p) for p in operands])
             span = around([part, *operands])
-            done.append(
-                Derivative(operand, part.variables, part.is_partial, span)
-                if isinstance(part, Operator)
-                else Summation(operand, part.index, part.lower, part.upper, span)
-            )
+            if isinstance(part, Operator):
+                operand = Derivative(operand, part.variables, part.is_partial, span)
+            else:
+                for index in reversed(part.indices or (None,)):
+                    operand = Summation(operand, index, part.lower, part.upper, span)
+            done.append(operand)
         else:
             done.append(part)
     parts = done[::-1]

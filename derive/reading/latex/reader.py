@@ -26,11 +26,12 @@ from pathlib import Path
 from typing import Any
 
 from derive.reading.latex.build import Build
-from derive.reading.latex.layout import Layout
-from derive.reading.latex.letters import Symbol, Symbols
+from derive.reading.latex.layout import Layout, with_new_fonts
 from derive.reading.latex.macros import Macro, expanded, macros_of
-from derive.reading.latex.parts import node
-from derive.reading.latex.rows import flattened, pairs, statements
+from derive.reading.latex.pairs import pairs
+from derive.reading.latex.parts import Symbol
+from derive.reading.latex.rows import flattened, statements
+from derive.reading.latex.terminals import Terminals
 from derive.reading.latex.tokens import Token, Unread, tokenize, with_unicode_scripts
 from derive.reading.latex.tree import Letter, Node, Span, Statement, Unreadable
 
@@ -70,7 +71,8 @@ def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | U
     try:
         tokens = expanded(latex, tokenize(latex), macros)
         pairs(tokens)  # refuses deep braces before anything descends into them
-        tokens = Layout(latex, with_unicode_scripts(tokens)).tokens_without_layout()
+        tokens = with_new_fonts(with_unicode_scripts(tokens))
+        tokens = Layout(latex, tokens).tokens_without_layout()
         found = statements(flattened(tokens))
     except Unread as error:
         return [Unreadable(str(error), whole)]
@@ -134,9 +136,9 @@ def _tree(tokens: list[Token]) -> Node:
     lark, parser = _parser()
     try:
         parse = parser.parse_interactive("")
-        for symbol in Symbols(tokens).all():
+        for symbol in Terminals(tokens).all():
             parse.feed_token(symbol)
-        tree = node(parse.feed_token(Symbol("$END", "", (0, 0))))
+        tree = parse.feed_token(Symbol("$END", "", (0, 0)))
     except lark.UnexpectedToken as error:
         raise Unread(_unexpected(error.token, tokens)) from error
     _check(tree)

@@ -10,17 +10,16 @@ ends of rows. A part continues the statement before it
   with ``&`` and the first row of the statement does not;
 - if its row starts with ``&`` and has no relation, and the first row of the statement does not.
 
+A number behind a comma is a further value, as in ``i = 1, 2``.
 An integer in brackets after a wide space at the end of a row is the number of the equation.
 """
 
 from dataclasses import dataclass, field
 
-from derive.reading.latex.symbols import MATRICES, ROWS, SLASHES, TIMES
+from derive.reading.latex.pairs import inside, is_operator, pairs
+from derive.reading.latex.symbols import ELLIPSES, MATRICES, ROWS
 from derive.reading.latex.tokens import Token, Unread
 
-#: Brackets within brackets.
-MAX_DEPTH = 60
-OPENERS = {"{": "}", "open": "close", "begin": "end"}
 HARD = frozenset({",", ";", "prose", "."})
 SEPARATORS = HARD | {"gap", "row", "&"}
 
@@ -30,54 +29,16 @@ class Part:
     """Tokens between two separators."""
 
     tokens: list[Token] = field(default_factory=list)
-    boundaries: set[str] = field(default_factory=set)  # kinds of the separators before
+    separators: list[Token] = field(default_factory=list)  # before the tokens
     starts_row: bool = False  # behind an & at the start of its row
     ends_row: bool = False
     has_relation: bool = False
     row_has_relation: bool = False  # here or in the cells of the row behind it
 
-
-def pairs(tokens: list[Token]) -> dict[int, int]:
-    """The partner of each bracket, brace and matrix that has one."""
-    partner: dict[int, int] = {}
-    stack: list[int] = []
-    for at, token in enumerate(tokens):
-        if token.kind in OPENERS:
-            stack.append(at)
-        elif token.kind == "bar":
-            top = tokens[stack[-1]] if stack else None
-            if top is not None and top.kind == "bar" and not _awaits(tokens, at):
-                _join(partner, stack.pop(), at)
-            else:
-                stack.append(at)
-        elif token.kind in ("}", "close", "end"):
-            while stack and tokens[stack[-1]].kind == "bar":
-                stack.pop()
-            if stack and _fits(tokens[stack[-1]], token):
-                _join(partner, stack.pop(), at)
-        if len(stack) > MAX_DEPTH:
-            raise Unread(f"more than {MAX_DEPTH} brackets within one another")
-    return partner
-
-
-def _join(partner: dict[int, int], start: int, end: int) -> None:
-    partner[start], partner[end] = end, start
-
-
-def _fits(start: Token, end: Token) -> bool:
-    return OPENERS.get(start.kind) == end.kind and (start.kind == "{" or start.text == end.text)
-
-
-def _awaits(tokens: list[Token], at: int) -> bool:
-    """Whether an expression must follow the tokens before a place."""
-    before = next((t for t in reversed(tokens[:at][-9:]) if t.kind not in ("space", "gap")), None)
-    return before is None or _is_operator(before) or before.kind in ("relation", "open", "bar", "{")
-
-
-def _is_operator(token: Token) -> bool:
-    return token.kind in ("+", "-", "*", "/") or (
-        token.kind == "command" and (token.text in TIMES or token.text in SLASHES)
-    )
+    @property
+    def boundaries(self) -> set[str]:
+        """The kinds of the separators before the tokens."""
+        return {token.kind for token in self.separators}
 
 
 def flattened(tokens: list[Token]) -> list[Token]:
@@ -96,78 +57,56 @@ def flattened(tokens: list[Token]) -> list[Token]:
                 raise Unread(rf"\begin{{{token.text}}} has no \end")
             if _is_matrix(tokens, at, end, partner):
                 kept |= {at, end}
-            elif token.text not in ROWS:
+            elif token.text not in ROWS and token.text not in MATRICES:
                 raise Unread(f"the environment {token.text!r} is not known")
             elif token.text in ("cases", "dcases") and not _starts_statement(result):
                 kept |= {at, end}
             if at not in kept:
-                row = Token("row", "", (token.span[1], token.span[1]))
-                if result and result[-1].kind == "open" and at - 1 not in partner:
-                    result.pop()
-                token = row
+                token = Token("row", "", (token.span[1], token.span[1]))
         elif token.kind == "end" and at not in kept:
             token = Token("row", "", (token.span[0], token.span[0]))
-        closes_rows = token.kind == "close" and at not in partner and _ends_rows(result)
-        if not closes_rows and not _holds_statement(tokens, at, partner):
+        if not _encloses_statement(tokens, at, partner):
             result.append(token)
     return result
 
 
-def _ends_rows(tokens: list[Token]) -> bool:
-    return bool(tokens) and tokens[-1].kind == "row" and not tokens[-1].text
-
-
 def _starts_statement(tokens: list[Token]) -> bool:
-    before = next((t for t in reversed(tokens) if t.kind not in ("space", "&")), None)
-    if before is not None and before.kind == "open":
-        return True
-    return before is None or before.kind in (*HARD, "row", "gap")
-
-
-def _inside(start: int, end: int, partner: dict[int, int]) -> list[int]:
-    """Places between two brackets and outside the brackets between them."""
-    places = []
-    at = start + 1
-    while at < end:
-        places.append(at)
-        at = partner[at] + 1 if partner.get(at, 0) > at else at + 1
-    return places
+    """Whether nothing stands before a place in its row but brackets."""
+    before = next((t for t in reversed(tokens) if t.kind not in ("space", "&", "open")), None)
+    return before is None or before.kind in SEPARATORS
 
 
 def _is_matrix(tokens: list[Token], start: int, end: int, partner: dict[int, int]) -> bool:
     name = tokens[start].text
-    if name != "array":
-        return name in MATRICES
-    return not any(tokens[at].kind == "relation" for at in _inside(start, end, partner))
+    places = inside(start, end, partner)
+    has_relation = any(tokens[place].kind == "relation" for place in places)
+    return name in MATRICES and not (name == "array" and has_relation)
 
 
-def _holds_statement(tokens: list[Token], at: int, partner: dict[int, int]) -> bool:
-    """Whether a token is one of a pair of braces around a statement."""
-    if tokens[at].kind not in ("{", "}") or at not in partner:
+def _encloses_statement(tokens: list[Token], at: int, partner: dict[int, int]) -> bool:
+    """Whether a token is a brace around a statement, or a bracket of an environment of rows."""
+    token = tokens[at]
+    if token.kind in ("open", "close"):
+        step = 1 if token.kind == "open" else -1
+        other = at + step
+        while 0 <= other < len(tokens) and tokens[other].kind in ("space", "row"):
+            other += step
+        if not 0 <= other < len(tokens) or tokens[other].kind not in ("begin", "end"):
+            return False
+        start, end = sorted((other, partner.get(other, other)))
+        return not _is_matrix(tokens, start, end, partner)
+    if token.kind not in ("{", "}") or at not in partner:
         return False
     start, end = sorted((at, partner[at]))
     before = next(
         (t for t in reversed(tokens[max(0, start - 9) : start]) if t.kind != "space"), None
     )
-    if before is not None and (before.kind in ("^", "_", "command", "}")):
+    if before is not None and before.kind in ("^", "_", "command", "}"):
         return False
-    kinds = ("relation", "&", "row", "prose", "begin")
-    return any(tokens[place].kind in kinds for place in _inside(start, end, partner)) and (
-        not _within_matrix(tokens, start, end, partner)
-    )
-
-
-def _within_matrix(tokens: list[Token], start: int, end: int, partner: dict[int, int]) -> bool:
-    """Whether braces hold a matrix and no relation."""
-    kinds = {tokens[place].kind for place in _inside(start, end, partner)}
-    return (
-        "begin" in kinds
-        and not kinds & {"relation", "&", "row", "prose"}
-        and all(
-            tokens[place].text in MATRICES
-            for place in _inside(start, end, partner)
-            if tokens[place].kind == "begin"
-        )
+    return any(
+        tokens[place].kind in ("relation", "&", "row", "prose")
+        or (tokens[place].kind == "begin" and tokens[place].text in ROWS)
+        for place in inside(start, end, partner)
     )
 
 
@@ -180,12 +119,12 @@ def parts(tokens: list[Token]) -> list[Part]:
         token, part = tokens[at], result[-1]
         end = partner.get(at, 0)
         if end > at:
-            part.tokens += _on_one_row(tokens[at : end + 1])
+            part.tokens += tokens[at : end + 1]
             at, row_is_empty = end, False
         elif token.kind in SEPARATORS and (token.kind != "." or _ends_sentence(tokens, at)):
             if any(t.kind != "space" for t in part.tokens):
                 result.append(Part())
-            result[-1].boundaries.add(token.kind)
+            result[-1].separators.append(token)
             is_first = token.kind == "&" and row_is_empty
             result[-1].starts_row = is_first or (token.kind == "gap" and result[-1].starts_row)
             row_is_empty = token.kind == "row" or (row_is_empty and token.kind in ("&", "gap"))
@@ -205,20 +144,6 @@ def parts(tokens: list[Token]) -> list[Part]:
     return result
 
 
-def _on_one_row(tokens: list[Token]) -> list[Token]:
-    r"""An expression in brackets without the ends of rows in it, those of a matrix aside.
-
-    Brackets of a fixed size may be on different rows, unlike ``\left`` and ``\right``.
-    """
-    result: list[Token] = []
-    depth = 0
-    for token in tokens:
-        depth += (token.kind == "begin") - (token.kind == "end")
-        if depth or token.kind not in ("row", "&"):
-            result.append(token)
-    return result
-
-
 def _ends_sentence(tokens: list[Token], at: int) -> bool:
     after = next((t for t in tokens[at + 1 : at + 9] if t.kind != "space"), None)
     return after is None or after.kind in ("row", "gap", "prose", "&", "begin", "end", ".")
@@ -230,7 +155,9 @@ def statements(tokens: list[Token]) -> list[list[Token]]:
     for part in parts(tokens):
         if _is_number_of_equation(part):
             continue
-        if result and _continues(result[-1], part):
+        if result and _lists_value(result[-1], part):
+            result[-1].tokens += part.separators + part.tokens
+        elif result and _continues(result[-1], part):
             result[-1].tokens += part.tokens
             result[-1].has_relation |= part.has_relation
         else:
@@ -249,6 +176,17 @@ def _is_number_of_equation(part: Part) -> bool:
     )
 
 
+def _lists_value(statement: Part, part: Part) -> bool:
+    r"""Whether a part is a further value, as in ``i = 1, 2, \dots, n``."""
+    if not statement.has_relation or part.boundaries != {","}:
+        return False
+    last = [token for token in statement.tokens[-9:] if token.kind != "space"][-1]
+    tokens = [token for token in part.tokens if token.kind != "space"]
+    if len(tokens) == 1 and (tokens[0].text in ELLIPSES or last.text in ELLIPSES):
+        return True
+    return all(token.kind in ("digit", ".") for token in tokens)
+
+
 def _continues(statement: Part, part: Part) -> bool:
     start = next(token for token in part.tokens if token.kind != "space")
     last = next(token for token in reversed(statement.tokens) if token.kind != "space")
@@ -256,9 +194,9 @@ def _continues(statement: Part, part: Part) -> bool:
         return True
     if part.boundaries & HARD:
         return False
-    if last.kind == "relation" or _is_operator(last):
+    if last.kind == "relation" or is_operator(last):
         return True
-    if _is_operator(start) and start.kind != "-":
+    if is_operator(start) and start.kind != "-":
         return True
     is_indented = part.starts_row and not statement.starts_row
     if start.kind == "-":

@@ -44,7 +44,9 @@ MARKS = {
 }  # fmt: skip
 BOLD = frozenset("mathbf boldsymbol bm pmb mathbfit symbf vec overrightarrow vb va".split())
 UPRIGHT = frozenset("mathrm operatorname mathsf mathtt mathup".split())
-SCRIPT = frozenset("mathcal mathscr mathfrak mathbb mathit mathnormal cal".split())
+SCRIPT = frozenset("mathcal mathscr mathfrak mathbb mathit mathnormal".split())
+FONTS = BOLD | UPRIGHT | SCRIPT
+FRACTIONS = frozenset("frac tfrac dfrac cfrac".split())
 TEXT = frozenset("text textrm textit textbf textsf textnormal mbox hbox textup".split())
 
 #: Commands without a meaning, by their number of arguments.
@@ -52,7 +54,7 @@ LAYOUT = {
     **dict.fromkeys(
         """nonumber notag displaystyle textstyle scriptstyle scriptscriptstyle limits nolimits
         allowbreak nobreak noindent strut mathstrut hfill hfil hline centering relax middle protect
-        rm it bf cal normalsize small footnotesize scriptsize large Large break nobreakspace null
+        normalsize small footnotesize scriptsize large Large break nobreakspace null
         boxed fbox cancel bcancel xcancel mathop mathrel mathbin mathord mathopen mathclose
         mathinner ensuremath smash mathpunct qedhere""".split(),
         0,
@@ -60,6 +62,8 @@ LAYOUT = {
     **dict.fromkeys("label tag vspace phantom hphantom vphantom color cite".split(), 1),
     "textcolor": 1, "definecolor": 3, "colorbox": 1, "rule": 2,
 }  # fmt: skip
+#: Commands that frame, strike or colour the argument behind them.
+FRAMES = frozenset("boxed fbox cancel bcancel xcancel textcolor colorbox mathop smash".split())
 SPACES = frozenset(", ; : ! > ~ / thinspace medspace thickspace negthinspace enspace".split())
 GAPS = frozenset("quad qquad enskip".split())
 
@@ -104,8 +108,7 @@ CHARACTERS = {
     "∈": r"\in", "±": r"\pm", "∓": r"\mp", "∫": r"\int", "…": r"\dots", "⋯": r"\cdots",
     "′": "'", "’": "'", "″": "''", "‴": "'''", "ℓ": r"\ell", "ℒ": "L", "ℋ": "H", "ϕ": r"\phi",
     "ϑ": r"\vartheta", "ϵ": r"\epsilon", "ϱ": r"\varrho", "ς": r"\varsigma", "µ": r"\mu",
-    "½": r"\frac{1}{2}", "¼": r"\frac{1}{4}", "¾": r"\frac{3}{4}", "⅓": r"\frac{1}{3}",
-    "⅔": r"\frac{2}{3}", "⅛": r"\frac{1}{8}", "ᵀ": r"^{\top}", "⊤": r"\top", "°": r"^{\circ}",
+    "⊤": r"\top", "°": r"^{\circ}",
     "‖": r"\|", "∥": r"\|", "⟨": r"\langle", "⟩": r"\rangle",
     "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\u2003": r"\quad",
     "\u200a": " ", "\u2002": " ", "\u2062": " ",
@@ -119,5 +122,3 @@ CHARACTERS = {
         "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
     ), strict=True)),
 }  # fmt: skip
-SUPERSCRIPTS = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ⁿⁱ", "0123456789+-ni", strict=True))
-SUBSCRIPTS = dict(zip("₀₁₂₃₄₅₆₇₈₉₊₋ᵢⱼₖₙₓₚₜ", "0123456789+-ijknxpt", strict=True))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import groupby
 
-from derive.reading.latex.symbols import CHARACTERS, COMBINING, SUBSCRIPTS, SUPERSCRIPTS
+from derive.reading.latex.symbols import CHARACTERS, COMBINING
 from derive.reading.latex.tree import Span
 
 
@@ -71,9 +71,11 @@ def _as_latex(character: str) -> tuple[str, ...]:
     """LaTeX for a character of Unicode; the character itself if none is known."""
     if character in CHARACTERS:
         return (CHARACTERS[character],)
-    if character in SUPERSCRIPTS or character in SUBSCRIPTS or character in COMBINING:
+    if character in COMBINING or _script_of(character):
         return (character,)
     simple = unicodedata.normalize("NFKC", character)
+    if unicodedata.decomposition(character).startswith("<fraction>"):
+        return (r"\frac{{{}}}{{{}}}".format(*simple.split("⁄")),)
     parts = unicodedata.normalize("NFD", simple)
     if parts == character or len(parts) > 3:
         return (character,)
@@ -86,17 +88,18 @@ def with_unicode_scripts(tokens: list[Token]) -> list[Token]:
     for kind, group in groupby(tokens, _script):
         marked = list(group)
         if kind == "accent":
+            letter = [result.pop()] if result else []
+            if not letter or letter[0].kind not in ("letter", "command"):
+                raise Unread(f"the accent {marked[0].text!r} has no letter")
             for token in marked:
-                before = result.pop() if result else None
-                if before is None or before.kind not in ("letter", "command", "}"):
-                    raise Unread(f"the accent {token.text!r} has no letter")
-                accent = Token("command", COMBINING[token.text], (before.span[0], token.span[1]))
-                start = _unit_start(result, before)
-                result[start:] = [accent, *_braced([*result[start:], before])]
+                start, end = letter[0].span[0], token.span[1]
+                accent = Token("command", COMBINING[token.text], (start, end))
+                letter = [accent, *_braced(letter)[:-1], Token("}", "}", (end, end))]
+            result += letter
         elif kind:
-            table = SUPERSCRIPTS if kind == "^" else SUBSCRIPTS
             span = marked[0].span[0], marked[-1].span[1]
-            inner = [next(_tokens(table[token.text], token.span)) for token in marked]
+            simple = [unicodedata.normalize("NFKC", token.text) for token in marked]
+            inner = [t for text in simple for t in _tokens(text, span)]
             result += [Token(kind, kind, span), *_braced(inner)]
         else:
             result += marked
@@ -104,21 +107,15 @@ def with_unicode_scripts(tokens: list[Token]) -> list[Token]:
 
 
 def _script(token: Token) -> str:
-    for kind, table in (("accent", COMBINING), ("^", SUPERSCRIPTS), ("_", SUBSCRIPTS)):
-        if token.text in table and token.kind == token.text:
-            return kind
-    return ""
+    """Whether a character is an accent, raised or lowered."""
+    if token.kind != token.text or token.kind.isascii():
+        return ""
+    return "accent" if token.text in COMBINING else _script_of(token.text)
 
 
-def _unit_start(tokens: list[Token], last: Token) -> int:
-    """Where the braced accent that ends with the last token starts, or the end of the tokens."""
-    if last.kind != "}":
-        return len(tokens)
-    depth, start = 1, len(tokens)
-    while depth and start:
-        start -= 1
-        depth += {"}": 1, "{": -1}.get(tokens[start].kind, 0)
-    return start - 1 if start and tokens[start - 1].kind == "command" else start
+def _script_of(character: str) -> str:
+    kind = unicodedata.decomposition(character).partition(">")[0]
+    return {"<super": "^", "<sub": "_"}.get(kind, "")
 
 
 def _braced(tokens: list[Token]) -> list[Token]:
