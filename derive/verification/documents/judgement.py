@@ -10,7 +10,7 @@ from derive.verification.documents.candidates import Candidate, candidates
 from derive.verification.documents.corrections import corrected
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.letters import Letters, letters_of
-from derive.verification.documents.matching import Match, best_match
+from derive.verification.documents.matching import Match, best_match, trivial_comparisons
 from derive.verification.documents.meaning import meaning
 from derive.verification.documents.positions import stated_candidates, stated_systems
 from derive.verification.documents.resolution import resolved
@@ -25,8 +25,9 @@ from derive.verification.documents.templates import templates
 from derive.verification.documents.translation import Translator, nodes
 from derive.verification.documents.verdicts import Judge, SideVerdict
 
-#: The least part of the comparisons that must hold, for a system to be that of a document.
-LEAST = 0.3
+#: The least part of the comparisons that must hold for a system to be that of a document, unless
+#: so many hold.
+LEAST, ENOUGH = 0.3, 3
 #: Verdicts from the gravest: that of a formula with an index is the gravest of its instances.
 GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
 
@@ -69,12 +70,14 @@ def judge_document(document: Document) -> JudgedDocument:
 def interpretation(statements: Translated) -> Interpretation:
     """Find the meaning of letters for which most formulas hold."""
     letters = letters_of(statements.formulas, statements.derivatives)
+    formulas, derivatives = statements.formulas, statements.derivatives
+    trivial = trivial_comparisons(letters, formulas, derivatives)
     best: Match | None = None
     for tried in _candidates(letters, statements):
-        match = best_match(tried, letters, statements.formulas, statements.derivatives)
+        match = best_match(tried, letters, formulas, derivatives, trivial)
         if match and match.holding and (best is None or match.holding > best.holding):
             best = match
-    is_convincing = best is not None and best.holding >= LEAST * best.compared
+    is_convincing = best is not None and (best.holding >= min(ENOUGH, LEAST * best.compared))
     return Interpretation(letters, best if is_convincing else None)
 
 

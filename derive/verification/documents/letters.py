@@ -64,6 +64,7 @@ class Letters:
     momenta: Mapping[str, str]  # and their coordinates
     quantities: Mapping[str, str]  # and their kinds
     parameters: tuple[str, ...]  # all others that no formula defines
+    accelerated: tuple[str, ...] = ()  # coordinates whose accelerations occur, and no definition
 
     def orders(self, are_angles: Sequence[bool]) -> Iterator[tuple[str, ...]]:
         """Yield coordinates for those of a system, of which some are angles.
@@ -127,10 +128,11 @@ def letters_of(
     coordinates = [one for one in moving if one not in momenta]
     coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
     # a document can define r by other coordinates, and go on with r alone
+    accelerated = tuple(one for one in coordinates if orders[one] == 2)
     coordinates += [one for one in stems if orders[one] == 2 and one in defined]
     known = {*quantities, *defined, *moving, *momenta, "t", *subjects}
     parameters = [one for one in stems if one not in known and not GENERIC.match(one)]
-    return Letters(tuple(coordinates), momenta, quantities, tuple(parameters))
+    return Letters(tuple(coordinates), momenta, quantities, tuple(parameters), accelerated)
 
 
 def _quantity(name: str) -> str | None:
@@ -162,15 +164,17 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         others = {stem(word) for side in formula.sides[1:] for word in _words(side.text)}
         moves = any(orders.get(one) for one in others)
         is_solution = orders.get(name) and not moves
-        if formula.sides[-1].text.replace(".", "").isdigit():  # a value, such as m = l = 1
+        last = formula.sides[-1]
+        if last.text.replace(".", "").isdigit():  # a value, such as m = l = 1
+            continue
+        if last.entries and orders.get(name) == 2:  # the state (x, x_dot) is often called x, too
             continue
         if name and not order(name) and name not in others and not is_solution:
             defined.add(name)
         # theta_dot = omega defines omega
-        last = formula.sides[-1].text
-        is_name = last.isidentifier() and not order(last) and len(formula.sides) == 2
-        if name and order(name) and is_name and orders.get(last, 0) < 2:
-            defined.add(last)
+        is_name = last.text.isidentifier() and not order(last.text) and len(formula.sides) == 2
+        if name and order(name) and is_name and orders.get(last.text, 0) < 2:
+            defined.add(last.text)
     return defined
 
 

@@ -17,20 +17,27 @@ class Linear:
     def __init__(self, derivation: Derivation) -> None:
         self._derivation = derivation
 
+    def agrees(self, difference: sp.Expr, model: Model) -> bool:
+        """Whether a difference vanishes to first order at the origin."""
+        scaled = self._scaled(difference)
+        try:
+            values = (scaled.subs(EPSILON, 0), scaled.diff(EPSILON).subs(EPSILON, 0))
+            return all(map(model.context.is_zero, values))
+        except (ExpressionError, NotImplementedError):
+            return False
+
     def holds(self, difference: sp.Expr, model: Model) -> bool:
         """Whether a difference that is linear in the state vanishes along small motions."""
         system = self._derivation.system
         state = (*system.q, *system.qdot, *system.qddot)
-        if not difference.free_symbols & {*state}:
+        if not difference.free_symbols & {*state} or self._accelerations is None:
             return False
         scaled = self._scaled(difference)
         try:
             if not model.context.is_zero(scaled.subs(EPSILON, 0)):
                 return False
             linear = scaled.diff(EPSILON).subs(EPSILON, 0)
-            if model.context.is_zero(linear):
-                return True
-            if self._accelerations is None or not difference.free_symbols & {*system.qddot}:
+            if not model.context.is_zero(scaled.diff(EPSILON, 2)):
                 return False
             return model.context.is_zero(linear.xreplace(self._accelerations))
         except (ExpressionError, NotImplementedError):

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from derive.verification.documents.candidates import Candidate
 from derive.verification.documents.jets import Array, Jet, UnknownNameError, Value, evaluated
 from derive.verification.documents.letters import Letters
-from derive.verification.documents.motions import Motions
+from derive.verification.documents.motions import ArbitraryMotion, Motions
+from derive.verification.documents.near import is_near
 from derive.verification.documents.rates import RATES, order, stem
 from derive.verification.documents.statements import DocumentFormula, definitions
 
@@ -30,13 +31,36 @@ Derivatives = Mapping[str, tuple[str, tuple[str, ...]]]
 Votes = NDArray[np.bool_]
 
 
+#: The worth of a formula that holds but for one term.
+NEARLY = 0.5
+#: Comparisons of a document in which such formulas are considered.
+FEW = 12
+
+#: A comparison: its formula's number, and the text of a side.
+Comparison = tuple[int, str]
+
+
 @dataclass(frozen=True)
 class Match:
-    """A candidate, and the numbers of comparisons that hold and that were possible."""
+    """A candidate, how many comparisons hold with it, and how many were possible."""
 
     candidate: Candidate
-    holding: int
+    holding: float
     compared: int
+
+
+def trivial_comparisons(
+    letters: Letters, formulas: Sequence[DocumentFormula], derivatives: Derivatives
+) -> frozenset[Comparison]:
+    """Comparisons that hold whatever the motion is, such as those of a definition."""
+    numbers = Numbers(ArbitraryMotion(letters), letters, derivatives)
+    numbers.define(formulas)
+    return frozenset(
+        (index, side)
+        for index, formula in enumerate(formulas)
+        for side, vote in numbers.comparisons(formula)
+        if vote.all()
+    )
 
 
 def best_match(
@@ -44,27 +68,38 @@ def best_match(
     letters: Letters,
     formulas: Sequence[DocumentFormula],
     derivatives: Derivatives,
+    trivial: frozenset[Comparison],
 ) -> Match | None:
     """The candidate of one system for which most formulas hold; None if none can be compared."""
     if not tried:
         return None
-    numbers = Numbers(tried, letters, derivatives)
+    numbers = Numbers(Motions(tried, letters), letters, derivatives)
     numbers.define(formulas)
-    votes = [vote for formula in formulas for vote in numbers.comparisons(formula)]
+    votes = {
+        (index, side): vote
+        for index, formula in enumerate(formulas)
+        for side, vote in numbers.comparisons(formula)
+        if (index, side) not in trivial
+    }
     if not votes:
         return None
-    holding = np.array(votes).sum(axis=0)
+    holding = np.array(list(votes.values())).sum(axis=0).astype(float)
+    if len(votes) <= FEW:
+        for (index, side), vote in votes.items():
+            near = numbers.is_near(formulas[index].sides[0].text, side)
+            if near is not None:
+                holding += NEARLY * (near & ~vote)
     best = int(np.argmax(holding))  # the first of several: the likeliest
-    return Match(tried[best], int(holding[best]), len(votes))
+    return Match(tried[best], float(holding[best]), len(votes))
 
 
 class Numbers:
     """Values of a document's names for several candidates of one system."""
 
     def __init__(
-        self, tried: Sequence[Candidate], letters: Letters, derivatives: Derivatives
+        self, motions: Motions | ArbitraryMotion, letters: Letters, derivatives: Derivatives
     ) -> None:
-        self._letters, self._motions = letters, Motions(tried, letters)
+        self._letters, self._motions = letters, motions
         self._definitions: dict[str, str] = {}
         self.values: dict[str, Value] = {
             "t": self._motions.time,
@@ -102,8 +137,8 @@ class Numbers:
                     if isinstance(value, Jet):
                         self.set_rates(name, value)
 
-    def comparisons(self, formula: DocumentFormula) -> Iterator[Votes]:
-        """Whether each side of a formula agrees with the first that has a value."""
+    def comparisons(self, formula: DocumentFormula) -> Iterator[tuple[str, Votes]]:
+        """Yield the sides of a formula, and whether each agrees with the first with a value."""
         kind = self._letters.quantities.get(formula.subject)
         values = [self._value(side.text) for side in formula.sides]
         start = 0 if values[0] is not None else 1
@@ -117,9 +152,16 @@ class Numbers:
                 continue
             if start or not self._is_definition(formula, side.text):  # which decides nothing
                 for entry in differences:
-                    yield self._vanishes(entry.value, up_to_a_constant=kind in UP_TO_A_CONSTANT)
+                    vanishes = self._vanishes(entry.value, kind in UP_TO_A_CONSTANT)
+                    yield side.text, vanishes
             if formula.subject and kind is None and isinstance(right, Jet):
-                yield from self._position(right.value)
+                yield from ((side.text, vote) for vote in self._position(right.value))
+
+    def is_near(self, *sides: str) -> Votes | None:
+        """Whether two sides are equal but for one term."""
+        speeds = [one[None] for one in self._motions.speeds.values()]
+        near = is_near(sides, self._value, speeds)
+        return None if near is None else np.broadcast_to(near, self._motions.shape[:1]) > 0
 
     def _value(self, text: str) -> Value | None:
         try:
@@ -127,7 +169,7 @@ class Numbers:
         except UnknownNameError:
             return None
 
-    def _vanishes(self, value: Array, *, up_to_a_constant: bool) -> Votes:
+    def _vanishes(self, value: Array, up_to_a_constant: bool) -> Votes:
         value = np.broadcast_to(value, self._motions.shape)
         if up_to_a_constant:
             value = value - value[:, :1]

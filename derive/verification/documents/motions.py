@@ -25,6 +25,33 @@ def _derivation(system: System) -> Derivation:
     return Derivation(system)
 
 
+class ArbitraryMotion:
+    """Random values in place of those of a motion: formulas that hold with them say nothing."""
+
+    def __init__(self, letters: Letters) -> None:
+        self._random = np.random.default_rng(1)
+        self.shape = (1, STATES)
+        self.places = {q: self._random.uniform(0.3, 1.3, STATES) for q in letters.coordinates}
+        self.speeds = {q: self._random.uniform(-1, 1, STATES) for q in letters.coordinates}
+        self.parameters = {p: float(self._random.uniform(0.5, 1.5)) for p in letters.parameters}
+        self.accelerations = {q: self._array() for q in letters.coordinates}
+        energies = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
+        self.energies = {kind: self._array() for kind in energies}
+        self.positions: Sequence[Array] = ()
+        self.time = Jet.of(self._array(), 1.0)
+
+    def momentum(self, coordinate: str) -> Jet:
+        """A random momentum and rate."""
+        return Jet.of(self._array(), self._array(), np.nan)
+
+    def gradient(self, kind: str, coordinate: str, order: int) -> Array:
+        """A random derivative."""
+        return self._array()
+
+    def _array(self) -> Array:
+        return self._random.uniform(0.5, 1.5, self.shape)
+
+
 class Motions:
     """Motions of candidates of one system at random states of the document's coordinates."""
 

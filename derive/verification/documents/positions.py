@@ -34,8 +34,8 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
         return
     positions = sp.Tuple(*(r for mass in masses for r in mass.position)).free_symbols
     q = [symbols[name] for name in letters.coordinates if symbols[name] in positions]
-    if not q or TIME in q:
-        return
+    if not q or any(symbols[name] not in q for name in letters.accelerated):
+        return  # the positions are those of a part of the system
     coordinates = [Coordinate(one, "m", "a coordinate") for one in q]
     for sign in (1, -1) if gravity is not None else (0,):
         weight = sp.Add(*(sign * (gravity or 0) * m.mass * m.position[-1] for m in masses))
@@ -101,6 +101,7 @@ def _points(
     found = {
         index: tuple(axes.get(k, sp.S.Zero) for k in range(3 if 2 in axes else 2))
         for index, axes in points.items()
+        if len(axes) > 1
     }
     return found or columns
 

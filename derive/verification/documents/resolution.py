@@ -7,8 +7,9 @@ from derive.verification.documents.candidates import Candidate
 from derive.verification.documents.jets import UnknownNameError, evaluated
 from derive.verification.documents.letters import OPERATORS, Letters
 from derive.verification.documents.matching import Numbers
+from derive.verification.documents.motions import Motions
 from derive.verification.documents.rates import RATES
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import WORD, DocumentFormula
 
 #: Unknown letters of a formula that are sought at once, and comparisons that must hold.
 MAX_UNKNOWN, SUPPORT = 2, 2
@@ -22,10 +23,10 @@ def resolved(
 ) -> dict[str, str]:
     """Formulas in known letters for letters without a meaning.
 
-    A meaning is accepted if at least two comparisons hold with it, so that a mistake in a single
-    letter is not taken for another letter.
+    A meaning is accepted if at least two comparisons and more than half of them hold with it, so
+    that a mistake in a single letter is not taken for another letter.
     """
-    numbers = Numbers([candidate], letters, derivatives)
+    numbers = Numbers(Motions([candidate], letters), letters, derivatives)
     meanings: dict[str, str] = {}
     used = {
         *candidate.parameters.values(),
@@ -82,10 +83,17 @@ def _meaning(
         except UnknownNameError:
             continue
         numbers.values.update(jets)
-        votes = [bool(vote.all()) for one in formulas for vote in numbers.comparisons(one)]
+        votes = [
+            bool(vote.all())
+            for one in formulas
+            for side, vote in numbers.comparisons(one)
+            if set(names) & {*WORD.findall(f"{side} {one.sides[0].text}")}
+        ]
         for name in names:
             del numbers.values[name]
-        if len(votes) >= SUPPORT and all(votes):
+        # no mistake in a letter makes a sum of it
+        least = 1 if all("+" in text for text in texts) else SUPPORT
+        if votes.count(True) >= max(least, len(votes) // 2 + 1):
             return dict(zip(names, texts, strict=True))
     return None
 

@@ -73,7 +73,8 @@ class DocumentScope:
         for formula in formulas:
             last = formula.sides[-1].text
             names = [self.names.get(side.text) for side in formula.sides[:-1]]
-            if last.isdigit() and all(name in self._system.params for name in names):
+            is_value = {*formula.relations} == {"="} and last.isdigit() and int(last)
+            if is_value and all(name in self._system.params for name in names):
                 found |= dict.fromkeys(names, sp.Integer(last))
         return found
 

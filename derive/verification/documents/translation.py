@@ -52,10 +52,18 @@ class Text:
     text: str
     binding: int = ATOM
     parts: tuple[tuple[int, int, Span], ...] = ()
+    entries: tuple["Text", ...] = ()  # of a column or matrix that is written out, row by row
 
     def shifted(self, offset: int) -> Iterator[tuple[int, int, Span]]:
         """The parts, `offset` characters later."""
         return ((start + offset, end + offset, span) for start, end, span in self.parts)
+
+    def part(self, start: int, end: int) -> "Text":
+        """The characters from `start` to `end`."""
+        inner = tuple(
+            (a - start, b - start, span) for a, b, span in self.parts if start <= a and b <= end
+        )
+        return Text(self.text[start:end], SUM, inner)
 
     def source(self, start: int, end: int) -> Span | None:
         """The LaTeX of the characters from `start` to `end`: of all parts within them."""
@@ -126,6 +134,8 @@ class Translator:
                 return self._matrix(rows)
             case Tuple(items=items):
                 return self._matrix([(item,) for item in items])
+            case Transpose(operand=Tuple() as column):
+                return self._text(column)
             case Transpose(operand=operand):
                 return _joined(ATOM, "transpose(", self.text(operand), ")")
             case Norm(operand=operand):
@@ -210,12 +220,14 @@ class Translator:
 
     def _matrix(self, rows: Sequence[Sequence[Node]]) -> Text:
         pieces: list[Text | str] = ["["]
+        entries: list[Text] = []
         for i, row in enumerate(rows):
             pieces.append(", [" if i else "[")
             for j, entry in enumerate(row):
-                pieces += [", " * bool(j), self.text(entry)]
+                entries.append(self.text(entry))
+                pieces += [", " * bool(j), entries[-1]]
             pieces.append("]")
-        return _joined(ATOM, *pieces, "]")
+        return replace(_joined(ATOM, *pieces, "]"), entries=tuple(entries))
 
     def _summation(self, node: Summation) -> Text:
         first, last = _whole(node.lower, 1), _whole(node.upper, self.notation.count)
@@ -230,16 +242,6 @@ def identifier(letter: Letter) -> str:
     name = letter.identifier.replace("+", "_plus_").replace("-", "_minus_")
     name = re.sub(r"\W", "_", name)
     return name if name[:1].isalpha() else f"letter_{name}"
-
-
-def entries(node: Node) -> list[Node] | None:
-    """The entries of a column or matrix that is written out; None for other formulas."""
-    match node:
-        case Matrix(rows=rows):
-            return [entry for row in rows for entry in row]
-        case Tuple(items=items):
-            return [*items]
-    return None
 
 
 def indexed(node: Node, index: str, value: int) -> Node:

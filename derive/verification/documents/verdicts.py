@@ -1,16 +1,18 @@
 """Verdicts on the formulas of a document whose letters are known."""
 
+import re
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Value
+from derive.formulas.expression import ExpressionError, Value, parse
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.partial_energies import PartialEnergies
 from derive.verification.documents.rates import order, stem
 from derive.verification.documents.scope import DocumentScope
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.documents.translation import Text
 from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on
@@ -42,16 +44,20 @@ class Judge:
         """The verdict on a formula: that on its first side that is not correct."""
         if not formula.relations:
             return _plain("context", formula, "it is no statement")
-        if unknown := self._unknown(formula):
-            return _plain("context", formula, f"no meaning was found for {', '.join(unknown)}")
         if any(one not in ("=", ":=", "~") for one in formula.relations):
             return _plain("context", formula, "it is no equation")
         if self._is_special(formula):
             return _plain("context", formula, "it states a value")
-        results = [self._side(formula, k) for k in range(1, len(formula.sides))]
+        unknown = self._unknown(formula.sides)
+        if self._unknown(formula.sides[:1]):
+            return _plain("context", formula, f"no meaning was found for {', '.join(unknown)}")
+        known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
+        results = [self._side(formula, k) for k in known]
         for result in results:
             if result.verdict.verdict not in CORRECT:
                 return result
+        if unknown:
+            return _plain("context", formula, f"no meaning was found for {', '.join(unknown)}")
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
@@ -70,8 +76,10 @@ class Judge:
             and all(one in names and isinstance(names[one], sp.Symbol) for one in others)
         )
 
-    def _unknown(self, formula: DocumentFormula) -> list[str]:
-        return sorted(name for name in formula.words if name not in self._scope.all_names)
+    def _unknown(self, sides: Sequence[Text]) -> list[str]:
+        """The names in some sides of a formula that have no meaning."""
+        words = dict.fromkeys(word for side in sides for word in WORD.findall(side.text))
+        return [name for name in words if name not in self._scope.all_names]
 
     def _side(self, formula: DocumentFormula, k: int) -> SideVerdict:
         first, side = formula.sides[0], formula.sides[k]
@@ -94,13 +102,13 @@ class Judge:
         self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
     ) -> SideVerdict:
         if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
-            return self._matrices(formula, left, right)
+            return self._matrices(formula, first, side, left, right)
         note = self._holds(left - right)
         if note is not None:
             return _plain("verified", formula, note)
         small = "it holds for small motions about the origin"
         if "~" in formula.relations:
-            is_small = self._linear.holds(left - right, self._model)
+            is_small = self._linear.agrees(left - right, self._model)
             note = small if is_small else "it is an approximation"
             return _plain("verified" if is_small else "context", formula, note)
         result = self._role(formula, first, side, left, right)
@@ -124,14 +132,24 @@ class Judge:
             return dict.fromkeys(sorted(left.free_symbols & parameters, key=str), sp.S.One)
         return self._scope.special_values
 
-    def _matrices(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
+    def _matrices(
+        self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
+    ) -> SideVerdict:
+        """The verdict on the first entries that differ, or on the whole."""
         shapes = [getattr(one, "shape", None) for one in (left, right)]
         if shapes[0] != shapes[1]:
             return _plain("context", formula, "it compares quantities of different shapes")
-        for a, b in zip(left, right, strict=True):
-            note = self._holds(a - b)
-            if note is None and not self._linear.holds(a - b, self._model):
-                return _plain("wrong", formula, "", self._model.context.witness(b, a))
+        for index, (a, b) in enumerate(zip(left, right, strict=True)):
+            if self._holds(a - b) is not None or self._linear.holds(a - b, self._model):
+                continue
+            mine, other = (one.entries[index] if one.entries else None for one in (first, side))
+            if mine and other and depends_on(a - b, self._scope.derivation.system.qddot):
+                return self._equation(mine, other)
+            if other:
+                return self._value(other, "entry", a)
+            if mine:
+                return self._value(mine, "entry", b)
+            return _plain("wrong", formula, "", self._model.context.witness(b, a))
         return _plain("verified", formula, "")
 
     def _holds(self, difference: sp.Expr) -> str | None:
@@ -169,11 +187,41 @@ class Judge:
                 verdict = judge_formula(self._model, "", side.text, kind, name)
                 if verdict.verdict != "unreadable":
                     return SideVerdict(verdict, ((0, side),), kind)
-        if depends_on((left - right).xreplace(self._model.momenta), system.qddot):
-            text = f"{first.text} = {side.text}"
-            verdict = judge_formula(self._model, "", text, "euler_lagrange")
-            return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
-        return self._value(side, subject, left)
+        inside = self._inside_rate(first, side)
+        if inside is not None:
+            return inside
+        if not depends_on((left - right).xreplace(self._model.momenta), system.qddot):
+            return self._value(side, subject, left)
+        if subject.isidentifier():
+            result = self._value(side, subject, left)
+            if result.verdict.corrections:
+                return result
+        return self._equation(first, side)
+
+    def _inside_rate(self, first: Text, side: Text) -> SideVerdict | None:
+        """The verdict on a wrong momentum whose rate is taken, if there is one."""
+        system, names = self._scope.derivation.system, self._scope.all_names
+        for one, other in ((first, side), (side, first)):
+            for start, end in _rates(one.text):
+                inner = one.part(start, end)
+                for q, p in zip(system.q, self._model.momenta.values(), strict=True):
+                    name = next(n for n, v in names.items() if v == q)
+                    scope = {**names, "momentum": p}
+                    text = f"{one.text[:start]}momentum{one.text[end:]}"
+                    with suppress(ExpressionError):
+                        if (
+                            self._holds(parse(text, scope) - self._scope.value(other.text))
+                            is not None
+                        ):
+                            verdict = judge_formula(self._model, "", inner.text, "momenta", name)
+                            return SideVerdict(verdict, ((0, inner),), "momenta")
+        return None
+
+    def _equation(self, first: Text, side: Text) -> SideVerdict:
+        """The verdict on an equation of motion."""
+        text = f"{first.text} = {side.text}"
+        verdict = judge_formula(self._model, "", text, "euler_lagrange")
+        return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
 
     def _value(self, side: Text, name: str, value: sp.Expr) -> SideVerdict:
         """The verdict on a side that must have a value, to which a name is given."""
@@ -182,6 +230,16 @@ class Judge:
         return SideVerdict(
             judge_formula(model, "", side.text, "value", name), ((0, side),), "value"
         )
+
+
+def _rates(text: str) -> Iterator[tuple[int, int]]:
+    """The places of operands of d/dt."""
+    for match in re.finditer(r"\bddt\(", text):
+        depth, end = 1, match.end()
+        while depth:
+            depth += {"(": 1, ")": -1}.get(text[end], 0)
+            end += 1
+        yield match.end(), end - 1
 
 
 def _plain(verdict: str, formula: DocumentFormula, note: str, witness: str = "") -> SideVerdict:

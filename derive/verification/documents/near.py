@@ -1,0 +1,65 @@
+"""Formulas that hold but for one term: which of the meanings of letters are still supported."""
+
+import ast
+import re
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from derive.formulas.expression import ExpressionError, summands, syntax_tree
+from derive.verification.documents.jets import Array, Jet, Value
+
+#: The largest relative variation of a ratio that counts as none.
+CONSTANT = 1e-6
+SWAPPED = {"sin(": "cos(", "cos(": "sin("}
+
+
+def is_near(
+    sides: Sequence[str], value: Callable[[str], Value | None], velocities: Sequence[Array]
+) -> Array | None:
+    """For each candidate, whether one changed term makes both sides equal; None if unknown.
+
+    The change is a constant factor, such as a sign or a parameter, a sine for a cosine, or a
+    velocity more or less.
+    """
+    terms = [
+        (sign * side_sign, ast.unparse(node))
+        for side_sign, side in zip((1, -1), sides, strict=True)
+        for node, sign in _summands(side)
+    ]
+    values = [value(text) for _, text in terms]
+    jets = [one for one in values if isinstance(one, Jet)]
+    if not terms or len(jets) < len(values):
+        return None
+    with np.errstate(all="ignore"):
+        arrays = [sign * one.value for (sign, _), one in zip(terms, jets, strict=True)]
+        total = sum(np.broadcast_arrays(*arrays)) if len(arrays) > 1 else arrays[0]
+        result: Array | None = None
+        for (_, text), own in zip(terms, arrays, strict=True):
+            for other in _variants(text, own, value, velocities):
+                ratio = (own - total) / other
+                middle = np.abs(ratio).mean(axis=-1)
+                hit = np.ptp(ratio, axis=-1) <= CONSTANT * middle
+                result = hit if result is None else result | hit
+    return result
+
+
+def _summands(side: str) -> list[tuple[ast.expr, int]]:
+    try:
+        return summands(syntax_tree(side))
+    except ExpressionError:
+        return []
+
+
+def _variants(
+    text: str, own: Array, value: Callable[[str], Value | None], velocities: Sequence[Array]
+) -> Iterator[Array]:
+    """The term, and terms that a slip of the pen makes of it."""
+    yield own
+    for match in re.finditer(r"\b(sin|cos)\(", text):
+        changed = text[: match.start()] + SWAPPED[match[0]] + text[match.end() :]
+        if isinstance(other := value(changed), Jet):
+            yield other.value
+    for speed in velocities:
+        yield own * speed
+        yield own / speed
