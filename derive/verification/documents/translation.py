@@ -128,6 +128,9 @@ class Translator:
                 return self._application(node)
             case Derivative():
                 return self._derivative(node)
+            case Dotted(operand=Power(base=Letter() as base, exponent=exponent), dots=dots):
+                # a dot over a power is that of the letter, which is wide enough for both
+                return self._power(replace(base, dots=base.dots + dots), exponent)
             case Dotted(operand=operand, dots=dots):
                 return self._rate(self._text(operand), dots)
             case Matrix(rows=rows):
