@@ -71,6 +71,14 @@ DELIMITERS = [
     ("a.md", "so $`«x = 1»`$", "$`", True),
     ("a.md", r"so ``«\dot x = 1»`` and ``x = 1``", "``", True),
     ("a.md", "«\\begin{gather}\nx\n\\end{gather}»", "gather", False),
+    (
+        "a.md",
+        '<img src="https://render.githubusercontent.com/render/math?math=«x = 1»">',
+        "image",
+        False,
+    ),
+    ("a.md", "![x](https://latex.codecogs.com/svg.latex?«x=(1)»)", "image", False),
+    ("a.md", "the length ![](https://latex.codecogs.com/png.latex?«l») is", "image", True),
     ("a.txt", "so $$«x = 1»$$", "$$", False),
     ("a.rst", ".. math:: «x = 1»", ".. math::", False),
     ("a.rst", ".. note::\n\n  .. math::\n\n     «x\n\n     y»\n\n  more", ".. math::", False),
@@ -138,6 +146,7 @@ def test_text_that_is_no_formula(tmp_path: Path, name: str, text: str) -> None:
     [
         ("a.md", r"$$\dot x\_p = T\_{cart} \\\\ q\*y$$", r"\dot x _p = T _{cart}   \\ q *y"),
         ("a.md", r"\\[ a\_1 = \\{2\\} \\\\ b \\]", r"a _1 =  \{2 \}   \\ b"),
+        ("a.md", "![](https://latex.codecogs.com/svg.latex?%5Cdot%20x=1)", r"\dot   x=1"),
         ("a.md", r"$$a \\* b &lt; c$$", r"a \\* b    < c"),
         ("a.md", "> $$\n> x\n> = 1\n> $$", "x\n  = 1"),
         ("a.html", "<p>$$a &amp;= b<br>c &#x3B8;$$", "a     &= b    c       θ"),

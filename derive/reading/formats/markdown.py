@@ -19,6 +19,12 @@ DOUBLED = re.compile(SINGLE + r"|\\(\\[{}|,;:!%&_#$])")
 ESCAPES = re.compile(SINGLE)
 #: Brackets in a text may be escaped; a formula has a relation or a command.
 FORMULA = re.compile(r"=|\\[A-Za-z]")
+#: Services that draw the formula in the address of an image.
+SERVICE = (
+    r"https?://(?:render\.githubusercontent\.com/render/math\?math=|"
+    r"(?:latex|tex)\.[\w.-]{1,40}/[\w./-]{1,40}\?)"
+)
+IMAGE, ENCODED = "image", re.compile("%([0-7][0-9A-Fa-f])")
 #: Characters in which text beside a formula is looked for.
 NEAR = 100
 #: A tag on one line.
@@ -42,6 +48,10 @@ TOKENS = (
     Token(MARGIN + r"(?:`{3,}|~{3,})[ \t]*+(?:math|\{math\})[ \t]*+$", _fence_end, "```math"),
     Token(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end),
     Token("<!--", "(?P<end>-->)"),
+    Token(rf"(?i:<img\b[^<>\n]{{0,200}}?src=\"){SERVICE}", r"(?P<end>\")|(?P<stop>\n)", IMAGE),
+    Token(
+        rf"!\[[^\]\n]{{0,200}}\]\({SERVICE}", r"(?P<end>\)(?=[\s.,;:!?|]|\Z))|(?P<stop>\s)", IMAGE
+    ),
     *html.MATH,
     Token(html.RAW, html.raw_end),
     Token(TAG),
@@ -75,7 +85,7 @@ def excerpts(text: str) -> Iterator[Excerpt | Unread]:
     for found in scanned(text, (indented, *TOKENS)):
         if isinstance(found, Unread):
             yield found
-        elif found.delimiter == "$$":
+        elif found.delimiter in ("$$", IMAGE):
             yield replace(found, is_inline=_is_in_sentence(text, found))
         elif found.delimiter != r"\[" or FORMULA.search(text, found.start, found.end):
             yield found
@@ -83,7 +93,7 @@ def excerpts(text: str) -> Iterator[Excerpt | Unread]:
 
 def _is_in_sentence(text: str, excerpt: Excerpt) -> bool:
     """Whether it is no equation, with text on its line: some renderers know no other delimiter."""
-    start, end = excerpt.start - 2, excerpt.end + 2
+    start, end = excerpt.extent
     before = text[max(0, start - NEAR) : start].rpartition("\n")[2]
     after = text[end : end + NEAR].partition("\n")[0]
     has_text = any(map(str.isalnum, before + after))
@@ -122,6 +132,8 @@ def decoded(text: str, excerpt: Excerpt) -> str:
         latex = QUOTED.sub(lambda margin: " " * len(margin[0]), latex)
     if excerpt.delimiter == "```math":
         return restructuredtext.options_removed(latex)
+    if excerpt.delimiter == IMAGE:
+        return ENCODED.sub(lambda code: chr(int(code[1], 16)).rjust(3), latex)
     escapes = DOUBLED if excerpt.delimiter in (r"\\[", r"\\(") else ESCAPES
     return html.characters(escapes.sub(_unescaped, latex))
 
