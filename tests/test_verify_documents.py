@@ -54,6 +54,16 @@ def test_formulas_of_notebooks_have_cells() -> None:
     assert document_record(judged)["formulas"][0]["cell"] == 2
 
 
+def test_the_table_of_a_document_without_formulas_is_not_empty(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, page = tmp_path / "empty.md", tmp_path / "page.html"
+    path.write_text("A text.")
+    assert main(["verify", str(path), "--annotate", str(page)]) == 0
+    assert capsys.readouterr().out.splitlines() == [str(path), "no formulas"]
+    assert "It has no formulas." in page.read_text()
+
+
 def test_json_has_the_formulas_of_each_document(
     pendulum: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -103,11 +113,12 @@ def test_a_missing_document_is_refused_and_the_others_are_judged(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["a.docx"], "a.docx is no document: documents end in .tex, .md"),
         (["--annotate", "a.html"], "give a document"),
         (["a.md", "--annotate", "a.pdf"], "must end in .html or .tex"),
     ],
 )
-def test_annotations_are_refused_first(
+def test_files_of_unknown_kinds_are_refused(
     arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["verify", *arguments]) == 2

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from derive.reading.document import Document
-from derive.reading.documents import KINDS, read_document
+from derive.reading.documents import read_document
 from derive.verification.documents.annotation import annotate, check_annotation
 from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.judgement import judge_document
@@ -21,6 +21,8 @@ from solvers.io.text_table import text_table
 #: The verdicts that are counted, and the width of the column of files.
 COUNTED: tuple[VerdictName, ...] = ("verified", "equivalent", "misprint", "wrong", "unreadable")
 FILE_WIDTH = 26
+#: Endings of system names and of files with typed equations.
+NOT_DOCUMENTS = ("", ".toml")
 
 Judged: TypeAlias = HandDerivation | JudgedDocument
 
@@ -30,7 +32,7 @@ def verify(names: Sequence[str], *, as_json: bool, annotation: Path | None = Non
 
     Return 0, 1 if an equation is wrong, or 2 if an equation or a file is unreadable.
     """
-    files = [name for name in names if Path(name).suffix.lower() in KINDS]
+    files = [name for name in names if Path(name).suffix not in NOT_DOCUMENTS]
     if annotation:
         check_annotation(annotation, files)
     results: dict[str, Judged | None] = {}

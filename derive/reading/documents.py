@@ -48,7 +48,7 @@ def read_document(path: str | os.PathLike[str]) -> Document:
     file = Path(path)
     kind = KINDS.get(file.suffix.lower())
     if kind is None:
-        raise InputError(f"{file} is no document: its name must end in {', '.join(KINDS)}")
+        raise InputError(f"{file} is no document: documents end in {', '.join(KINDS)}")
     most = MAX_NOTEBOOK_BYTES if kind == "notebook" else MAX_BYTES
     try:
         text = _text(file, read_bytes(file, most))

@@ -12,6 +12,8 @@ def document_lines(judged: JudgedDocument, width: int) -> Iterator[str]:
     """Yield the lines of a table: each formula with its line; only correct ones are abbreviated."""
     yield wrapped(": ".join(filter(None, (judged.file, judged.system))), width, 0)
     yield from (wrapped(note, width, 0) for note in judged.notes)
+    if not judged.formulas:
+        yield "no formulas"
     labels = [_label(one) for one in judged.formulas]
     label_width = max(map(len, labels), default=0) + 2
     for label, one in zip(labels, judged.formulas, strict=True):
