@@ -10,6 +10,7 @@ import sympy as sp
 
 from derive import Derivation, load, names
 from derive.formulas.lettering import lettering
+from derive.handout.notation import Notation
 from derive.handout.sections import document
 from derive.handout.tex import equation_rows
 from derive.mechanics.derivation import TIME
@@ -79,7 +80,7 @@ def expected(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     """What stands behind the left sides of a document, by the first side as text."""
     s, many = d.system, len(d.system.q) > 1
     slopes = [d.lagrangian.diff(q) for q in s.q]
-    masses = [f"r{k}" if len(s.masses) > 1 else "r" for k in range(1, len(s.masses) + 1)]
+    masses = Notation(s).positions
     values = {
         **{f"{r}_vector": sp.Matrix(m.position) for r, m in zip(masses, s.masses, strict=True)},
         **{f"{r}_vector_dot": v for r, v in zip(masses, d.velocities, strict=True)},
@@ -110,7 +111,7 @@ def expected(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     if d.is_linearisable:
         linear, omega = d.linearisation(), sp.Symbol("omega", positive=True)
         M, K = linear.mass_matrix, linear.stiffness_matrix
-        values |= {"M_0": M, "K": K, "det(K - omega**2*M_0)": (K - omega**2 * M).det()}
+        values |= {"M_0": M, "K_0": K, "det(K_0 - omega**2*M_0)": (K - omega**2 * M).det()}
         values["omega**2"] = K[0] / M[0]
     return with_entries(values)
 

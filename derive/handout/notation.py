@@ -7,6 +7,7 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.formulas.lettering import lettering
 from derive.formulas.textbook_order import Kind, TextbookOrder
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -24,6 +25,18 @@ class Notation:
     def letter(self, name: str) -> str:
         """`name`, or with the index ``sys`` if a symbol of the system has this name."""
         return f"{name}_sys" if name in {symbol.name for symbol in self._symbols} else name
+
+    @cached_property
+    def positions(self) -> list[str]:
+        """The letters of the positions: r for a single one, or with the indices of the masses."""
+        masses = [mass.mass for mass in self.system.masses]
+        read = [lettering(mass.name) for mass in masses if mass.is_Symbol]
+        indices = ["".join(one.indices) for one in read]
+        if len(masses) == 1:
+            return ["r"]
+        if not all(map(str.isdigit, indices)) or len({*indices}) < len(masses):
+            indices = [str(k) for k in range(1, len(masses) + 1)]
+        return [f"r{index}" for index in indices]
 
     def force(self, i: int) -> str:
         """The generalized force without a potential of a coordinate: "" if there is none."""

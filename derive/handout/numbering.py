@@ -42,8 +42,7 @@ class Numbering:
         self, rate: str, values: Sequence[sp.MatrixBase], *, is_given: bool = False
     ) -> Iterator[Block]:
         """Positions or velocities of the masses; by components where a column is too wide."""
-        for k, value in enumerate(values, 1):
-            r = f"r{k}" if len(values) > 1 else "r"
+        for r, value in zip(self.notation.positions, values, strict=True):
             if self.fits(value):
                 yield self.equation(f"{r}_vector{rate}", value=value, is_given=is_given)
             else:

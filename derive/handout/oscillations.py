@@ -30,7 +30,7 @@ def oscillations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     except SystemDefinitionError as error:
         yield Paragraph(f"There are no normal modes: {str(error).partition(':')[0]}.")
         return
-    M, K, u = (formulas.notation.letter(name) for name in ("M_0", "K", "u"))
+    M, K, u = (formulas.notation.letter(name) for name in ("M_0", "K_0", "u"))
     is_column = len(d.system.q) > 1
     vector = f"{u}_vector" if is_column else u
     if any(linear.equilibrium):
