@@ -71,8 +71,10 @@ def width_of(node: ast.expr) -> float:
             return max(width_of(left), width_of(right)) + 0.5
         case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
             return _operand_width(base, ATOM) + INDEX * width_of(exponent)
+        case ast.Call(func=ast.Name(id="d"), args=[value, variable]):
+            return max(width_of(value), width_of(variable)) + 2
         case ast.Call(func=ast.Name(id=name), args=arguments):
-            head = 3.0 if name in ("d", "ddt") else 0.9 * len(name) + 0.3
+            head = 2.0 if name == "ddt" else 0.9 * len(name)
             return head + BRACKETS + sum(map(width_of, arguments))
         case ast.Tuple(elts=items):
             return max(map(width_of, items)) + 3

@@ -14,7 +14,7 @@ from derive.formulas.expression import syntax_tree
 from derive.formulas.textbook_order import TextbookOrder
 
 #: Width of the lines of formulas, in digits.
-WIDTH = 72
+WIDTH = 78
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from derive.handout.document import WIDTH, Block, Equation, Paragraph, in_text
 from derive.handout.notation import Notation
 
 #: Width of the left side of a column or matrix, and lines of the longest readable formula.
-NAME_WIDTH, READABLE = 8, 5
+NAME_WIDTH, READABLE = 8, 3
 
 
 @dataclass(frozen=True)
