@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
-from math import inf
+from math import inf, lcm
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polydiv, polytrim, polyval
+from numpy.polynomial.polynomial import polyder, polydiv, polytrim
 from numpy.typing import NDArray
 
 #: Coefficients of x⁰, x¹, …, all of them Fractions, with which NumPy computes exactly.
@@ -30,18 +30,19 @@ def nonnegative_interval(polynomial: Polynomial) -> float:
         return inf
     if p[0] < 0:
         return 0.0
-    chain = _sturm_chain(p)
+    chain = [*map(_whole, _sturm_chain(p))]
+    whole = chain[0]
     bound = 1 + max(map(abs, p)) / abs(p[-1])  # Cauchy's bound of all roots
 
     def sign_change(a: Fraction, b: Fraction) -> Fraction | None:
         """The first change to negative values in (a, b], whose ends are no roots."""
         count = _variations(chain, a) - _variations(chain, b)
-        if count == 0 or (count == 1 and polyval(b, p) > 0):
+        if count == 0 or (count == 1 and _sign(whole, b) > 0):
             return None
         if count == 1:
-            return _root(p, a, b)
+            return _root(whole, a, b)
         middle = (a + b) / 2
-        while polyval(middle, p) == 0:
+        while _sign(whole, middle) == 0:
             middle = (a + middle) / 2
         left = sign_change(a, middle)
         return sign_change(middle, b) if left is None else left
@@ -50,11 +51,11 @@ def nonnegative_interval(polynomial: Polynomial) -> float:
     return inf if root is None else float(root)
 
 
-def _root(p: Polynomial, above: Fraction, below: Fraction) -> Fraction:
+def _root(p: Sequence[int], above: Fraction, below: Fraction) -> Fraction:
     """The root between `above`, where `p` is positive, and `below`, where it is negative."""
     while below - above > RESOLUTION * below:
         middle = (above + below) / 2
-        above, below = (middle, below) if polyval(middle, p) > 0 else (above, middle)
+        above, below = (middle, below) if _sign(p, middle) > 0 else (above, middle)
     return above
 
 
@@ -69,7 +70,21 @@ def _sturm_chain(p: Polynomial) -> list[Polynomial]:
     return chain
 
 
-def _variations(chain: Sequence[Polynomial], x: Fraction) -> int:
+def _whole(p: Polynomial) -> list[int]:
+    """A positive multiple with whole coefficients, which are computed with faster."""
+    denominator = lcm(*(c.denominator for c in p))
+    return [int(c * denominator) for c in p]
+
+
+def _sign(p: Sequence[int], x: Fraction) -> int:
+    """The sign of p(x): that of p(x) times a power of the denominator of x."""
+    total, power = 0, 1
+    for c in reversed(p):
+        total, power = total * x.numerator + c * power, power * x.denominator
+    return (total > 0) - (total < 0)
+
+
+def _variations(chain: Sequence[Sequence[int]], x: Fraction) -> int:
     """Changes of sign along the chain's values at x."""
-    signs = [value > 0 for value in (polyval(x, p) for p in chain) if value]
+    signs = [sign for sign in (_sign(p, x) for p in chain) if sign]
     return sum(a != b for a, b in pairwise(signs))
