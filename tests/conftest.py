@@ -17,6 +17,7 @@ from sharing import Shared
 from derive import Derivation, load
 from solvers.app.modules import load as load_module
 from solvers.scenes.reading import find
+from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability.critical_step import CriticalStep
 from solvers.studies.stability.scene_stability import SceneStability
 
@@ -67,6 +68,13 @@ def report_steps(shared: Shared) -> dict[str, CriticalStep]:
     """Critical steps of all methods for the scene of the report."""
     steps = shared("report_steps", lambda: SceneStability.of(find("report", load_module)).steps)
     return {step.method: step for step in steps}
+
+
+@pytest.fixture(scope="session")
+def chaotic(shared: Shared) -> ChaosResults:
+    """The study of chaos with small settings."""
+    results: ChaosResults = shared("chaos", lambda: Chaos.small().run(load_module))
+    return results
 
 
 @pytest.fixture(scope="session")

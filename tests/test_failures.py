@@ -12,7 +12,7 @@ from solvers.app.modules import load
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
-from solvers.studies.failure_modes.chaos import LONG_RUNS, Chaos, ChaosResults
+from solvers.studies.failure_modes.chaos import LONG_RUNS, ChaosResults
 from solvers.studies.failure_modes.drift import CASES, EnergyDrift
 from solvers.studies.failure_modes.lyapunov import INDEPENDENT, Mean, lyapunov
 from solvers.studies.failure_modes.study import studies
@@ -156,11 +156,6 @@ def test_the_standard_error_of_a_mean_is_that_of_repeated_means() -> None:
     means = [Mean.of(row, 40 * INDEPENDENT) for row in walk]
     spread = np.std([m.value for m in means])
     assert np.mean([m.error for m in means]) == pytest.approx(spread, rel=0.15)
-
-
-@pytest.fixture(scope="module")
-def chaotic() -> ChaosResults:
-    return Chaos.small().run(load)
 
 
 def test_a_small_difference_grows_as_variational_equations_predict(
