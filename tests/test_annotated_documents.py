@@ -148,6 +148,13 @@ def test_the_source_of_an_unreadable_formula_is_shown(tmp_path: Path) -> None:
     assert r"<code>\foo &lt; 1</code>" in text
 
 
+def test_a_hostile_formula_is_cut(tmp_path: Path) -> None:
+    read = document(tmp_path, f"$${'{' * 500_000}$$", "a.md")
+    verdicts = judged(read, ("{" * 500_000, {"verdict": "unreadable"}))
+    assert len(page([(verdicts, read)])) < 20_000
+    assert len(latex_notes(verdicts, read)) < 10_000
+
+
 def test_several_documents_stand_on_one_page(tmp_path: Path) -> None:
     names = ("a.md", "b.md")
     reads = [document(tmp_path, "$$x = 1$$", name) for name in names]

@@ -47,6 +47,12 @@ def test_the_table_abbreviates_only_correct_formulas() -> None:
     ]  # fmt: skip
 
 
+def test_a_hostile_formula_is_cut() -> None:
+    formulas = (JudgedFormula(1, 1, 1, "{" * 1_000_000, "unreadable"),)
+    judged = JudgedDocument("a.md", "markdown", "", formulas)
+    assert len("".join(document_lines(judged, 80))) < 3000
+
+
 def test_formulas_of_notebooks_have_cells() -> None:
     formulas = (JudgedFormula(3, 1, 1, "x = 1", "verified", cell=2),)
     judged = JudgedDocument("a.ipynb", "notebook", "", formulas)

@@ -31,8 +31,8 @@ FORMATS: dict[Kind, ModuleType] = {
 }
 #: Bytes of the largest document and of the largest notebook, most of which are outputs.
 MAX_BYTES, MAX_NOTEBOOK_BYTES = 2_000_000, 20_000_000
-#: Displays and inline formulas of a document.
-MAX_FORMULAS = 20_000
+#: Displays of a document, and all of its formulas.
+MAX_DISPLAYS, MAX_FORMULAS = 2_000, 20_000
 #: Places that a note lists.
 MAX_PLACES = 5
 
@@ -114,6 +114,8 @@ def _scanned(
         elif latex := form.decoded(part, one).rstrip():
             start = offset + one.start + len(latex) - len(latex.lstrip())
             displays.append(_display(document, start, latex.lstrip(), offset, one))
+    if sum(not one.is_inline for one in displays) > MAX_DISPLAYS:
+        raise InputError(f"{document.file} has more than {MAX_DISPLAYS} displays")
     numbers = accumulate(int(not one.is_inline) for one in displays)
     numbered = (
         one if one.is_inline else replace(one, number=number)

@@ -6,6 +6,9 @@ from derive.reading.document import Kind
 from derive.reading.latex.tree import Span
 from derive.verification.verdict import VerdictName
 
+#: Characters of the longest formula that is shown whole.
+MAX_LATEX = 2000
+
 
 @dataclass(frozen=True)
 class JudgedFormula:
@@ -55,3 +58,9 @@ class JudgedDocument:
     system: str  # the system that the formulas describe, "" if none was found
     formulas: tuple[JudgedFormula, ...]
     notes: tuple[str, ...] = ()
+
+
+def one_line(latex: str) -> str:
+    """LaTeX in one line; a formula that no reader would read to its end is cut."""
+    line = " ".join(latex.split())
+    return line if len(line) <= MAX_LATEX else f"{line[:MAX_LATEX]} ..."

@@ -6,6 +6,7 @@ from string import ascii_letters
 from unicodedata import normalize
 
 from derive.formulas.lettering import GREEK
+from derive.verification.documents.judged import one_line
 
 SPECIAL = {
     "\\": r"\textbackslash{}",
@@ -114,7 +115,7 @@ def formula(latex: str, macros: Collection[str] = ()) -> str:
     macros
         Names of commands that the document defines.
     """
-    kept = " ".join(DROPPED.sub(" ", latex).split())
+    kept = one_line(DROPPED.sub(" ", latex))
     if not kept:
         return ""
     if not _is_known(kept, macros):

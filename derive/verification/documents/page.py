@@ -10,7 +10,7 @@ from typing import get_args
 from derive.reading.document import Document
 from derive.reading.latex.reader import Macro, formulas, macros_of
 from derive.reading.latex.tree import Span, Statement
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula, one_line
 from derive.verification.documents.mathml import statement_html
 from derive.verification.verdict import VerdictName
 
@@ -116,7 +116,7 @@ def _math(latex: str, macros: Mapping[str, Macro], marked: Sequence[Span], word:
     statements = formulas(latex, macros)
     read = [one for one in statements if isinstance(one, Statement)]
     if not read or len(read) < len(statements):
-        return f"<code>{escape(' '.join(latex.split()))}</code>"
+        return f"<code>{escape(one_line(latex))}</code>"
     lines = (statement_html(latex, one, marked, word) for one in read)
     return "".join(f'<div class="formula">{line}</div>' for line in lines)
 

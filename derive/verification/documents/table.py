@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula, one_line
 from derive.verification.verdict import table_row, wrapped
 
 
@@ -38,7 +38,7 @@ def _details(one: JudgedFormula) -> Iterator[str]:
 
 def _line(latex: str) -> str:
     """LaTeX in one line, without the signs that align its relations."""
-    return " ".join(re.sub(r"&\s*(?=[=<>:])|(?<==)\s*&", "", latex).split())
+    return one_line(re.sub(r"&\s*(?=[=<>:])|(?<==)\s*&", "", latex))
 
 
 def document_record(judged: JudgedDocument) -> dict[str, Any]:
