@@ -195,3 +195,186 @@ def hamilton(t, y, m, l, g):
     theta, p = y
     return [p / (m * l**2), -m * g * l * sin(theta)]
 """
+
+#: A step of the classical method in loops over entries, with arrays that functions change.
+C_PROGRAM = r"""
+#include <stdio.h>
+#include <math.h>
+
+#define G 9.81
+const double m1 = 1.0, m2 = 2.0; /* kg */
+static double l1 = 1.0, l2 = 0.5;
+
+void slope(double t, const double *y, double *f)
+{
+    double d = y[1] - y[0];
+    double c = cos(d), s = sin(d);
+    double below = m1 + m2 - m2*c*c, upper;
+
+    f[0] = y[2];
+    f[1] = y[3];
+    upper = m2*l1*pow(y[2], 2)*s*c + m2*G*sin(y[1])*c;
+    upper += m2*l2*y[3]*y[3]*s - (m1 + m2)*G*sin(y[0]);
+    f[2] = upper/(l1*below);
+    f[3] = (-m2*l2*y[3]*y[3]*s*c + (m1 + m2)*(G*sin(y[0])*c - l1*y[2]*y[2]*s - G*sin(y[1])))
+        / (l2*below);
+}
+
+void step(double t, double h, double y[])
+{
+    double k1[4], k2[4], k3[4], k4[4], z[4];
+    int i;
+    slope(t, y, k1);
+    for (i = 0; i < 4; i++) z[i] = y[i] + 0.5*h*k1[i];
+    slope(t + h/2, z, k2);
+    for (i = 0; i < 4; i++) { z[i] = y[i] + 0.5*h*k2[i]; }
+    slope(t + h/2, z, k3);
+    for (i = 0; i < 4; i++) z[i] = y[i] + h*k3[i];
+    slope(t + h, z, k4);
+    for (i = 0; i < 4; i++)
+        y[i] += h*(k1[i] + 2*k2[i] + 2*k3[i] + k4[i])/6.0;
+}
+
+int main(void)
+{
+    double y[4] = {1.0, 2.0, 0.0, 0.0};
+    for (int n = 0; n < 1000; n++) {
+        step(n*0.01, 0.01, y);
+        printf("%g %g\n", y[0], y[1]);
+    }
+    return 0;
+}
+"""
+
+#: A pendulum on a spring: members without `this`, a method outside its class.
+CPP_PROGRAM = r"""
+#include <cmath>
+
+class Spring {
+    double r, theta, vr = 0.0, vtheta = 0.0;
+    const double mass_, k_, rest_;
+    static constexpr double g = 9.81;
+public:
+    Spring(double m, double k, double l) : r(l), theta(0.3), mass_(m), k_(k), rest_(l) {}
+    void advance(double dt);
+    double radial() const { return r*vtheta*vtheta + g*std::cos(theta) - k_/mass_*(r - rest_); }
+};
+
+void Spring::advance(double dt)
+{
+    const double a = radial();
+    const double b = -(g*std::sin(theta) + 2.0f*vr*vtheta)/r;
+    vr += a*dt;
+    vtheta += dt*b;
+    this->r += vr*dt;
+    theta += vtheta*dt;
+}
+"""
+
+MATLAB_PROGRAM = """
+function pendulum_demo()
+  % masses in kg
+  m1 = 1; m2 = 2; l1 = 1; l2 = 0.5; g = 9.81;
+  y0 = [30; 0; 0; 0];
+  options = odeset('RelTol', 1e-8);
+  [t, y] = ode45(@(t, y) rates(t, y, m1, m2, l1, l2, g), [0 20], y0, options);
+  plot(t, y(:, 1), 'k--');
+end
+
+function dydt = rates(~, y, m1, m2, l1, l2, g)
+  q = y(1:2);  v = y(3:4);
+  d = q(1) - q(2);
+  M = [(m1 + m2)*l1, m2*l2*cos(d)
+       l1*cos(d),    l2];
+  f = [-m2*l2*v(2)^2*sin(d) - (m1 + m2)*g*sin(q(1));  l1*v(1)^2*sin(d) - g*sin(q(2))];
+  dydt = [v; M\\f];
+end
+"""
+
+OCTAVE_PROGRAM = """
+# a pendulum, in Octave
+g = 9.81; len = 2; h = 0.01; n = 500;
+phi = zeros(1, n); w = phi;
+phi(1) = pi/3;
+for k = 1:n-1
+  acc = -(g/len)*sin(phi(k));
+  phi(k+1) = phi(k) + h*w(k);
+  w(k+1) = w(k) + h*acc;
+endfor
+"""
+
+FORTRAN_PROGRAM = """
+module parameters
+  implicit none
+  integer, parameter :: dp = kind(1.0d0)
+  real(dp), parameter :: g = 9.81_dp, M1 = 1.0d0, m2 = 2.0d0, l1 = 1.d0, l2 = 0.5_dp
+end module parameters
+
+program pendulum
+  use parameters
+  implicit none
+  real(dp) :: y(4), k1(4), k2(4), k3(4), k4(4), h, t
+  integer :: i
+  y = (/ 1.d0, 0.d0, 2.d0, 0.d0 /)
+  h = 0.01d0
+  t = 0
+  do i = 1, 1000
+    call Slope(t, y, k1)
+    call slope(t + h/2, y + h/2*k1, k2)
+    call slope(t + h/2, y + h/2*k2, k3)
+    call slope(t + h, y + h*k3, k4)
+    y = y + h/6*(k1 + 2*k2 + 2*k3 + k4)
+    t = t + h
+    write(*, *) t, y(1), y(3)
+  end do
+contains
+  subroutine slope(t, y, dydt)
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(4)
+    real(dp) :: d, den
+    d = y(3) - y(1)
+    den = m1 + m2 - m2*COS(d)**2
+    dydt(1) = y(2)
+    dydt(2) = (m2*l1*y(2)**2*sin(d)*cos(d) + m2*g*sin(y(3))*cos(d) &
+            + m2*l2*y(4)**2*dsin(d) - (m1 + m2)*g*sin(y(1)))/(l1*den)
+    dydt(3) = y(4)
+    dydt(4) = (-m2*l2*y(4)**2*sin(d)*cos(d) &
+            + (m1 + m2)*(g*sin(y(1))*cos(d) - l1*y(2)**2*sin(d) - g*sin(y(3))))/(l2*den)
+  end subroutine slope
+end program pendulum
+"""
+
+JULIA_PROGRAM = """
+using DifferentialEquations
+
+const g = 9.81
+
+function pendulum!(du, u, p, t)
+    (; m1, m2, l1, l2) = p
+    θ₁, ω₁, θ₂, ω₂ = u
+    Δ = θ₁ - θ₂
+    q = 2m1 + m2 - m2 * cos(2Δ)
+    du[1] = ω₁
+    du[2] = (-g * (2m1 + m2) * sin(θ₁) - m2 * g * sin(θ₁ - 2θ₂) -
+             2sin(Δ) * m2 * (ω₂^2 * l2 + ω₁^2 * l1 * cos(Δ))) / (l1 * q)
+    du[3] = ω₂
+    du[4] = 2sin(Δ) * (ω₁^2 * l1 * (m1 + m2) + g * (m1 + m2) * cos(θ₁) +
+             ω₂^2 * l2 * m2 * cos(Δ)) / (l2 * q)
+    nothing
+end
+
+u0 = [π / 2, 0.0, 120.0, 0.0]
+problem = ODEProblem(pendulum!, u0, (0.0, 10.0), (m1 = 1.0, m2 = 1.0, l1 = 1.0, l2 = 1.0))
+"""
+
+JULIA_MATRIX = """
+function slope(u, p, t)
+    m1, m2, l1, l2, g = p
+    q, v = u[1:2], u[3:4]
+    c = cos(q[1] - q[2]); s = sin(q[1] - q[2])
+    M = [(m1 + m2)*l1^2 m2*l1*l2*c; m2*l1*l2*c m2*l2^2]
+    C = [0 m2*l1*l2*s*v[2]; -m2*l1*l2*s*v[1] 0]
+    G = [(m1 + m2)*g*l1*sin(q[1]), m2*g*l2*sin(q[2])]
+    return [v; M \\ (-C*v - G)]
+end
+"""

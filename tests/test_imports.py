@@ -16,7 +16,7 @@ STANDARD = set(sys.stdlib_module_names)
 
 #: Packages that the modules of a package may import; solvers/app may import all of them.
 ALLOWED = {
-    # mpmath is the arithmetic of SymPy
+    # mpmath is SymPy's arithmetic; NumPy tries many meanings of a document's letters at once
     "derive": {"derive", "sympy", "mpmath", "numpy", "lark", "tree_sitter", "solvers.io"},
     "generated": {"numpy"},
     "solvers": {"solvers", "numpy", "scipy", "matplotlib"},

@@ -2,23 +2,24 @@
 
 from collections.abc import Sequence
 
+from derive.reading.programs.languages.language import Language
 from derive.reading.programs.trees import Array, Item, Name, Number, Operation, Result, Tree
 
 
-def combined(line: int, operator: str, operands: Sequence[Tree], *, is_matrix: bool) -> Tree:
-    """The value of an operation; with `is_matrix`, ``*`` of matrices is their product."""
+def combined(line: int, operator: str, operands: Sequence[Tree], language: Language) -> Tree:
+    """The value of an operation."""
     if not any(map(is_array, operands)):
         return Operation(line, operator, tuple(operands))
     values = [Array(one.line, entries(one) or ()) if is_array(one) else one for one in operands]
     if operator == "transpose":
         return transposed(values[0])
     if len(values) == 1:
-        return _each(line, operator, values)
+        return _each(line, operator, values, language)
     left, right = values
-    if operator == "@" or (operator == "*" and is_matrix and is_square(left)):
-        return product(line, left, right)
+    if operator == "@" or (operator == "*" and language.has_matrix_products and is_square(left)):
+        return product(line, left, right, language)
     if operator in ("+", "-", "*", "/", "**"):
-        return _each(line, operator, values)
+        return _each(line, operator, values, language)
     return Operation(line, operator, tuple(values))
 
 
@@ -75,24 +76,23 @@ def transposed(tree: Tree) -> Tree:
     return tree
 
 
-def product(line: int, left: Tree, right: Tree) -> Tree:
+def product(line: int, left: Tree, right: Tree, language: Language) -> Tree:
     """The product of a matrix and a column, or of two columns."""
     if isinstance(left, Operation) and left.operator == "inverse":
         return Operation(line, "solve", (left.operands[0], flat(right)))
     right = flat(right)
     if is_square(left) and isinstance(left, Array) and isinstance(right, Array):
-        return Array(line, tuple(_dot(line, row, right) for row in left.items))
+        return Array(line, tuple(_dot(line, row, right, language) for row in left.items))
     if isinstance(left, Array) and isinstance(right, Array):
-        return _dot(line, left, right)
+        return _dot(line, left, right, language)
     return Operation(line, "@", (left, right))
 
 
-def _dot(line: int, left: Tree, right: Array) -> Tree:
+def _dot(line: int, left: Tree, right: Array, language: Language) -> Tree:
     if not isinstance(left, Array) or len(left.items) != len(right.items):
         return Operation(line, "@", (left, right))
     terms = [
-        combined(line, "*", pair, is_matrix=False)
-        for pair in zip(left.items, right.items, strict=True)
+        combined(line, "*", pair, language) for pair in zip(left.items, right.items, strict=True)
     ]
     total = terms[0]
     for term in terms[1:]:
@@ -100,23 +100,23 @@ def _dot(line: int, left: Tree, right: Array) -> Tree:
     return total
 
 
-def _each(line: int, operator: str, values: Sequence[Tree]) -> Tree:
+def _each(line: int, operator: str, values: Sequence[Tree], language: Language) -> Tree:
     values = [flat(one) for one in values]
     lengths = {len(one.items) for one in values if isinstance(one, Array)}
     if len(lengths) > 1:
         return Operation(line, operator, tuple(values))
     (length,) = lengths
-    rows = [_repeated(one, length, is_sum=operator in ("+", "-")) for one in values]
+    rows = [_repeated(one, length, operator in "+-", language.first_index) for one in values]
     return Array(
         line,
-        tuple(combined(line, operator, row, is_matrix=False) for row in zip(*rows, strict=True)),
+        tuple(combined(line, operator, row, language) for row in zip(*rows, strict=True)),
     )
 
 
-def _repeated(value: Tree, length: int, *, is_sum: bool) -> Sequence[Tree]:
+def _repeated(value: Tree, length: int, is_sum: bool, first: int) -> Sequence[Tree]:
     """The operands for each entry; an array is multiplied by numbers, and added to arrays."""
     if isinstance(value, Array):
         return value.items
     if is_sum and isinstance(value, Name):
-        return [Name(value.line, f"{value.path}[{i}]") for i in range(length)]
+        return [Name(value.line, f"{value.path}[{i + first}]") for i in range(length)]
     return (value,) * length

@@ -22,7 +22,7 @@ from derive.reading.programs.trees import (
 )
 
 #: Expressions that are followed in one program.
-MAX_STEPS = 100_000
+MAX_STEPS = 60_000
 #: Methods that add an entry to an array.
 APPENDING = ("append", "push", "push_back", "emplace_back")
 
@@ -37,6 +37,8 @@ class Context:
     fixed: dict[int, set[str]] = field(default_factory=dict)
     #: The values of those with one value in the whole program.
     constants: dict[str, Tree] = field(default_factory=dict)
+    #: Names that are assigned anywhere.
+    variables: set[str] = field(default_factory=set)
     #: Names that are assigned once, and their values.
     shared: dict[str, Tree] = field(default_factory=dict)
     steps: int = 0
@@ -50,7 +52,7 @@ class Context:
     def function(self, path: str, owner: str) -> Definition | None:
         """The function that a name stands for in a class; None if there is none, or several."""
         base, _, name = path.rpartition(".")
-        if base not in ("", "self", "this", owner):
+        if base not in ("", "self", "this", "obj", owner):
             return None
         found = self.functions.get(name, [])
         own = [one for one in found if one.owner == owner]

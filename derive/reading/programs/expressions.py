@@ -73,7 +73,12 @@ class ExpressionTranslator:
         return word if self.language.is_case_sensitive else word.lower()
 
     def _number_tree(self, node: "Node") -> Tree:
-        if not (match := DIGITS.fullmatch(text(node))):
+        if text(node).startswith("-"):
+            return Operation(line(node), "-", (self._digits(node, text(node)[1:]),))
+        return self._digits(node, text(node))
+
+    def _digits(self, node: "Node", given: str) -> Tree:
+        if not (match := DIGITS.fullmatch(given)):
             return Opaque(line(node), f"{shown(node)!r} is not followed")
         digits, exponent = match[1].replace("_", ""), match[2]
         return Number(line(node), digits + (f"e{exponent}" if exponent else ""))
@@ -94,6 +99,8 @@ class ExpressionTranslator:
 
     def _member_tree(self, node: "Node") -> Tree:
         base, *_, name = self.children(node)
+        if self.language.has_bare_members and text(base) == "this":
+            return self.tree(name)
         return Member(line(node), self.tree(base), self.word(name))
 
     def _item_tree(self, node: "Node") -> Tree:
@@ -115,6 +122,9 @@ class ExpressionTranslator:
         if len(bounds) > 2:
             return Opaque(line(node), "a range with a step is not followed")
         return Slice(line(node), bounds[0], bounds[-1])
+
+    def _all_tree(self, node: "Node") -> Tree:
+        return Slice(line(node), None, None)
 
     def _call_tree(self, node: "Node") -> Tree:
         function, *rest = [one for one in self.children(node) if self.role(one) != "skip"]
@@ -140,7 +150,10 @@ class ExpressionTranslator:
         return Operation(line(node), operator, (self.tree(left), self.tree(right)))
 
     def _product_tree(self, node: "Node") -> Tree:
-        return Operation(line(node), "*", self._trees(self.children(node)))
+        left, right = self.children(node)
+        if left.end_byte != right.start_byte:
+            return Opaque(line(node), f"{shown(node)!r} is not understood")
+        return Operation(line(node), "*", (self.tree(left), self.tree(right)))
 
     def _unary_tree(self, node: "Node") -> Tree:
         sign, operand = [one for one in node.children if not one.is_extra][:2]

@@ -16,6 +16,7 @@ from derive.reading.programs.trees import (
     Branch,
     Call,
     Choice,
+    Declaration,
     Definition,
     Evaluation,
     Fault,
@@ -90,6 +91,8 @@ class Follower(Values):
                     self._loop(one)
                 case Fault(line=line, reason=reason):
                     self.faults.append((line, reason))
+                case Declaration(name=name):
+                    self.declared.add(name)
                 case Definition():
                     pass  # followed by itself
 
@@ -216,10 +219,12 @@ class Follower(Values):
             self.assign(call.line, last, arguments[0])
             return made
         if name == "dot" and len(arguments) == 1 and isinstance(call.function, Member):
-            return product(call.line, self.value(call.function.base), arguments[0])
+            return product(
+                call.line, self.value(call.function.base), arguments[0], self.context.language
+            )
         match name, arguments:
             case ("dot" | "matmul", (left, right)):
-                return product(call.line, left, right)
+                return product(call.line, left, right, self.context.language)
             case ("solve" | "linsolve" | "mldivide", (matrix, column)):
                 return Operation(call.line, "solve", (matrix, flat(column)))
             case ("inv" | "pinv" | "inverse", (matrix,)):
@@ -238,9 +243,7 @@ class Follower(Values):
         """Whether round brackets contain an index."""
         if not self.context.language.has_round_indices or not isinstance(call.function, Name):
             return False
-        return path in self.parameters or any(
-            key == path or key.startswith(f"{path}[") for key in self.variables
-        )
+        return path in self.context.variables or path in self.parameters
 
     def _function(self, tree: Tree, path: str) -> Definition | None:
         value = self.variables.get(path)
@@ -252,7 +255,7 @@ class Follower(Values):
         if self.depth >= MAX_CALLS:
             return Opaque(call.line, f"calls of {function.name} within calls are not followed")
         parameters = [one.name for one in function.parameters]
-        if parameters[:1] == ["self"]:
+        if parameters[:1] in (["self"], ["obj"]) and isinstance(call.function, Member):
             parameters = parameters[1:]
         own = {*parameters, *function.results}
         if self.context.language.assigns_locals:
@@ -277,7 +280,7 @@ class Follower(Values):
         self.calls += callee.calls
         self._take_back(callee, own, call)
         value = callee.result(function)
-        return Result(call.line, call, _trimmed(value) if _has_results(call) else value)
+        return Result(call.line, call, self._trimmed(call, value))
 
     def _take_back(self, callee: "Follower", own: set[str], call: Call) -> None:
         """Take the values of variables that a function changes outside itself."""
@@ -289,8 +292,21 @@ class Follower(Values):
         for place in references:
             array = self._collected(call.line, place)
             if array is not None:
-                self.assign(call.line, Name(call.line, place), Result(call.line, call, array))
+                self.assign(
+                    call.line,
+                    Name(call.line, place),
+                    Result(call.line, call, self._trimmed(call, array)),
+                )
         self.steps += [one for one in callee.steps if root(one.path) not in own]
+
+    def _trimmed(self, call: Call, value: Tree) -> Tree:
+        """A value with large entries left out, in the later stages of a method."""
+        if isinstance(value, Array):
+            items = tuple(self._trimmed(call, one) for one in value.items)
+            return Array(value.line, items)
+        if value.size > MAX_NESTED and _has_results(call):
+            return Opaque(value.line, "the formula is too large")
+        return value
 
     def result(self, function: Definition) -> Tree:
         """The value that the function returns."""
@@ -320,15 +336,6 @@ def _applied(line: int, path: str, arguments: tuple[Tree, ...]) -> Tree | None:
 def _has_results(tree: Tree) -> bool:
     """Whether values of functions of the program occur, as in the stages of a method."""
     return isinstance(tree, Result) or any(map(_has_results, tree.parts))
-
-
-def _trimmed(tree: Tree) -> Tree:
-    """A value with large entries left out, which the stages of a method have."""
-    if isinstance(tree, Array):
-        return Array(tree.line, tuple(map(_trimmed, tree.items)))
-    if tree.size > MAX_NESTED:
-        return Opaque(tree.line, "the formula is too large")
-    return tree
 
 
 def _listed(call: Call) -> Tree:

@@ -43,8 +43,8 @@ class Findings:
         """Add the equations and the method of a region."""
         follower = region.follower
         self._unread += [Unread(line, why, region.name) for line, why in follower.faults]
-        self._findings += library_findings(iter(follower.calls), region.name)
-        for path, state in integrated(iter(follower.calls)):
+        self._findings += library_findings(follower.calls, region.name)
+        for path, state in integrated(follower.calls):
             if entries(state) is not None:
                 self._integrated.setdefault(path.rpartition(".")[2], state)
         found = rates(region.definition, region.follower)
@@ -127,7 +127,12 @@ class Findings:
         functions = self._own_equations()
         read = {equation.line for one in functions for equation in one.equations}
         unread = {(one.line, one.reason): one for one in self._unread if one.line not in read}
-        findings = {(one.line, one.kind, one.text): one for one in self._findings}
+        starts = {one.name: one.line for one in self._functions}
+        findings: dict[tuple[int, str], Finding] = {}
+        for one in self._findings:
+            known = findings.get((one.line, one.kind))
+            if known is None or starts.get(known.function, 0) < starts.get(one.function, 0):
+                findings[one.line, one.kind] = one
         constants = [
             Constant(name, text, value.line)
             for name, value in self._context.constants.items()

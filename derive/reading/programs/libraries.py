@@ -1,10 +1,10 @@
 """Integrators of libraries that a program calls."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from derive.reading.programs.mathematics import split
 from derive.reading.programs.program import Finding
-from derive.reading.programs.trees import Call, Member, Name, Number, Text, Tree
+from derive.reading.programs.trees import Call, Definition, Lambda, Member, Name, Return, Text, Tree
 
 #: Functions that integrate, and the library and the method by default.
 INTEGRATORS = {
@@ -26,9 +26,11 @@ INTEGRATORS = {
     "diffeqsolve": ("diffrax", "the solver of the call"),
     "complex_ode": ("SciPy", "the integrator of the call"),
 }
+#: Those that take the initial state before the times.
+STATE_FIRST = ("odeint", "ODEProblem", "SecondOrderODEProblem")
 
 
-def library_findings(calls: Iterator[Call], function: str) -> Iterator[Finding]:
+def library_findings(calls: Iterable[Call], function: str) -> Iterator[Finding]:
     """The integrators among calls."""
     for call in calls:
         name = split(_path(call.function))[1]
@@ -43,16 +45,22 @@ def library_findings(calls: Iterator[Call], function: str) -> Iterator[Finding]:
             yield Finding(call.line, "library", function, text)
 
 
-def integrated(calls: Iterator[Call]) -> Iterator[tuple[str, Tree]]:
-    """Functions that are passed to an integrator, and the initial state."""
+def integrated(calls: Iterable[Call]) -> Iterator[tuple[str, Tree]]:
+    """Functions that are passed to an integrator, and their initial states."""
     for call in calls:
         name = split(_path(call.function))[1]
-        if name in INTEGRATORS and call.arguments:
-            names = [one.path for one in call.arguments if isinstance(one, Name)]
-            states = call.arguments[1:]
-            for path in names[:1]:
-                for state in states:
-                    yield path, state
+        functions = [path for one in call.arguments if (path := _function(one))]
+        place = 1 if name in STATE_FIRST else 2
+        if name in INTEGRATORS and functions and len(call.arguments) > place:
+            yield functions[0], call.arguments[place]
+
+
+def _function(tree: Tree) -> str:
+    """A function by its name, or the function that one without a name calls."""
+    match tree:
+        case Lambda(function=Definition(body=(Return(value=Call(function=inner)),))):
+            return _path(inner)
+    return _path(tree)
 
 
 def _path(tree: Tree) -> str:
@@ -62,8 +70,3 @@ def _path(tree: Tree) -> str:
         case Member(base=base, name=name):
             return f"{_path(base)}.{name}"
     return ""
-
-
-def literal(tree: Tree) -> float | None:
-    """The value of a number as written."""
-    return float(tree.digits) if isinstance(tree, Number) else None

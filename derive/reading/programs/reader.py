@@ -1,10 +1,11 @@
 """Read a program: its equations, and its method of integration."""
 
+import re
 from pathlib import Path
 
 from derive.reading.programs.context import Context
 from derive.reading.programs.judged import Findings
-from derive.reading.programs.languages import javascript, python
+from derive.reading.programs.languages import cpp, fortran, javascript, julia, matlab, python
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.regions import prepare, regions
@@ -15,9 +16,17 @@ LANGUAGES: tuple[Language, ...] = (
     python.language,
     javascript.language,
     javascript.typescript,
+    cpp.language,
+    matlab.language,
+    fortran.language,
+    julia.language,
 )
 #: Characters of the longest program.
-MAX_LENGTH = 200_000
+MAX_LENGTH = 100_000
+#: Characters of the longest line; only generated programs have longer ones.
+MAX_LINE = 5_000
+#: The end of a line that is continued in the next one.
+CONTINUED = re.compile(r"(?:\.\.\.|&|\\)[^\S\n]*\n")
 
 
 def read_program(source: Path | str, language: str | None = None) -> Program:
@@ -44,6 +53,9 @@ def read_program(source: Path | str, language: str | None = None) -> Program:
         text, file, chosen = source, "", by_name(language)
     if len(text) > MAX_LENGTH:
         raise ProgramError(f"a program of {len(text)} characters; at most {MAX_LENGTH} allowed")
+    longest = max(map(len, CONTINUED.sub("", text).splitlines()), default=0)
+    if longest > MAX_LINE:
+        raise ProgramError(f"a line has {longest} characters; at most {MAX_LINE} allowed")
     if "\0" in text:
         raise ProgramError("the program is no text: it contains null characters")
     return _read(file, text, chosen)
@@ -60,18 +72,17 @@ def by_suffix(path: Path) -> Language:
 
 def by_name(name: str) -> Language:
     """The language of a name, in capital letters or small ones."""
-    for one in LANGUAGES:
-        if one.name.lower() == name.lower() or f".{name.lower()}" in one.suffixes:
+    names = {other: one for one in LANGUAGES for other in (one.name, *one.other_names)}
+    for other, one in names.items():
+        if name.lower() == other.lower():
             return one
-    names = [one.name for one in LANGUAGES]
     raise ProgramError(
         f"unknown language {name[:50]!r}{did_you_mean(name, names)}; known are: {', '.join(names)}"
     )
 
 
 def _read(file: str, text: str, language: Language) -> Program:
-    tree = language.parser().parse(language.prepared(text).encode())
-    body = Translator(language).statements([tree.root_node])
+    body = Translator(language).statements([language.parse(text)])
     context = Context(language)
     prepare(context, body)
     findings = Findings(context, body)

@@ -16,6 +16,7 @@ from derive.reading.programs.trees import (
     Loop,
     Member,
     Name,
+    Opaque,
     Statement,
     Tree,
 )
@@ -34,9 +35,11 @@ class Region:
 def prepare(context: Context, body: tuple[Statement, ...]) -> None:
     """Collect the functions and constants of a program."""
     everything = [*statements(body, inner=True)]
+    context.variables = {*assigned(body, inner=True)}
     for one in everything:
         if isinstance(one, Definition):
             context.functions.setdefault(one.name, []).append(one)
+            context.variables.discard(one.name)
     values: dict[str, list[Tree]] = {}
     counts: Counter[str] = Counter()
     for scope in (body, *(one.body for one in everything if isinstance(one, Definition))):
@@ -80,7 +83,7 @@ def regions(context: Context, body: tuple[Statement, ...]) -> list[Region]:
     for region in found:
         own = {one.name for one in region.definition.parameters}
         for path, value in region.follower.variables.items():
-            if path in once - own and number(value) is None and not _contains(value, path):
+            if path in once - own and _is_formula(value) and not _contains(value, path):
                 context.shared[path] = value
     return [*_regions(context, body)]
 
@@ -91,14 +94,20 @@ def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
     for one in statements(body, inner=True):
         if isinstance(one, Assignment):
             for target in targets(one.target):
-                is_number = isinstance(target, Name | Member) and number(one.value) is not None
-                counts[static_path(target)] += 2 if one.operator else not is_number
+                is_whole = isinstance(target, Name | Member) and not one.operator
+                is_number = number(one.value) is not None
+                counts[static_path(target)] += (not is_number) if is_whole else 2
         elif isinstance(one, Evaluation) and isinstance(one.value, Call):
             # a function can change its arguments, and a method its object
-            counts.update(static_path(part) for part in one.value.parts)
+            changed = [*one.value.parts]
             if isinstance(one.value.function, Member):
-                counts[static_path(one.value.function.base)] += 2
+                changed.append(one.value.function.base)
+            counts.update({static_path(part): 2 for part in changed})
     return {path for path, count in counts.items() if count == 1}
+
+
+def _is_formula(value: Tree) -> bool:
+    return number(value) is None and not isinstance(value, Opaque)
 
 
 def _contains(tree: Tree, path: str) -> bool:
@@ -130,17 +139,27 @@ def _followed(
         name = f"{definition.owner}.{name}"
     yield Region(name, definition.line, definition, follower)
     for loop, before in follower.loops:
-        yield from _followed(context, _as_function(loop, definition), _kept(loop, before), scope)
+        yield from _followed(
+            context, _as_function(loop, definition), _kept(context, loop, before), scope
+        )
 
 
 def _as_function(loop: Loop, outer: Definition) -> Definition:
     return Definition(loop.line, outer.name, outer.parameters, loop.body, outer.owner)
 
 
-def _kept(loop: Loop, before: dict[str, Tree]) -> dict[str, Tree]:
+def _kept(context: Context, loop: Loop, before: dict[str, Tree]) -> dict[str, Tree]:
     """The values before a loop of the variables that it does not change."""
-    changed = {root(path) for path in assigned(loop.body)} | {loop.variable}
     whole = {*assigned(loop.body)}
+    changed = {root(path) for path in whole} | {loop.variable}
+    for one in statements(loop.body, inner=False):
+        if isinstance(one, Evaluation) and isinstance(one.value, Call):
+            # a function can change arrays that are passed
+            is_own = context.function(static_path(one.value.function), "") is not None
+            for part in one.value.arguments:
+                path = static_path(part)
+                if is_own or isinstance(before.get(path), Array):
+                    whole.add(path)
     return {
         path: value
         for path, value in before.items()

@@ -67,6 +67,10 @@ def method(increment: Tree) -> Method | None:
     rows = [_row(call, calls) for call in calls]
     if None in rows or not any(any(row) for row in rows if row):
         return None
+    doubled = _coefficients(increment, calls, 2.0)
+    if doubled == weights and (size := sum(weights)):  # the step size is a number
+        weights = tuple(x / size for x in weights)
+        rows = [tuple(x / size for x in row) if row else row for row in rows]
     order = sorted(range(len(calls)), key=lambda i: sum(map(bool, rows[i] or ())))
     A = tuple(tuple((rows[i] or ())[j] for j in order) for i in order)
     return Method(A, tuple(weights[i] for i in order))

@@ -4,12 +4,13 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from derive.reading.programs.expressions import ExpressionTranslator, line, shown, text
+from derive.reading.programs.expressions import DIGITS, ExpressionTranslator, line, shown, text
 from derive.reading.programs.trees import (
     Array,
     Assignment,
     Branch,
     Call,
+    Declaration,
     Definition,
     Evaluation,
     Fault,
@@ -66,10 +67,17 @@ class Translator(ExpressionTranslator):
         yield from self.statements(self.children(node))
 
     def _declaration_statements(self, node: "Node") -> Iterator[Statement]:
-        for one in self.statements([n for n in self.children(node) if self._is_assigned(n)]):
-            if isinstance(one, Assignment):
-                one = Assignment(one.line, one.target, one.operator, one.value, True)
-            yield one
+        for child in self.children(node):
+            if self._is_assigned(child):
+                for one in self._statement(child):
+                    if isinstance(one, Assignment):
+                        one = Assignment(one.line, one.target, one.operator, one.value, True)
+                    yield one
+            elif self.role(child) != "skip" and (name := self._name_in(child)):
+                yield Declaration(line(child), self.word(name))
+
+    def _name_in(self, node: "Node") -> "Node | None":
+        return node if self.role(node) == "name" else self._first(node, "name")
 
     def _is_assigned(self, node: "Node") -> bool:
         return self.role(node) == "assign" and len(self.children(node)) > 1
@@ -85,7 +93,9 @@ class Translator(ExpressionTranslator):
     def _field_statements(self, node: "Node") -> Iterator[Statement]:
         children = [one for one in self.children(node) if self.role(one) != "skip"]
         if len(children) > 1:
-            target = Member(line(node), Name(line(node), "this"), self.word(children[0]))
+            target: Tree = Name(line(node), self.word(children[0]))
+            if not self.language.has_bare_members:
+                target = Member(line(node), Name(line(node), "this"), self.word(children[0]))
             yield from self._assigned(line(node), target, "", self.tree(children[-1]))
 
     def _assign_statements(self, node: "Node") -> Iterator[Statement]:
@@ -98,7 +108,11 @@ class Translator(ExpressionTranslator):
         if self.role(right) == "assign":  # a = b = 1
             yield from self._statement(right)
             right = next(one for one in self.children(right) if self.role(one) != "skip")
-        yield from self._assigned(line(node), self.tree(left), operator, self.tree(right))
+        target = self.tree(left)
+        if text(left).startswith("(;") and isinstance(target, Array):  # members by their names
+            names = [(one.path, one) for one in target.items if isinstance(one, Name)]
+            target = Record(target.line, tuple(names))
+        yield from self._assigned(line(node), target, operator, self.tree(right))
 
     def _assigned(
         self, number: int, target: Tree, operator: str, value: Tree
@@ -134,6 +148,24 @@ class Translator(ExpressionTranslator):
         target = self.tree(self.children(node)[0])
         yield Assignment(line(node), target, operator, Number(line(node), "1"))
 
+    def _macro_statements(self, node: "Node") -> Iterator[Statement]:
+        name, *value = self.children(node)
+        if value and DIGITS.fullmatch(text(value[0]).strip("() ")):
+            number = Number(line(node), text(value[0]).strip("() "))
+            yield Assignment(line(node), Name(line(node), self.word(name)), "", number)
+
+    def _initializers_statements(self, node: "Node") -> Iterator[Statement]:
+        """Members with their values, before the body of a constructor."""
+        for one in self.children(node):
+            name, *rest = self.children(one)
+            values = [value for part in rest for value in self.children(part)]
+            if len(values) == 1:
+                yield Assignment(line(one), self.tree(name), "", self.tree(values[0]))
+
+    def _keyword_statements(self, node: "Node") -> Iterator[Statement]:
+        if text(node).lower() == "return":
+            yield Return(line(node), None)
+
     def _return_statements(self, node: "Node") -> Iterator[Statement]:
         values = [self.tree(one) for one in self.children(node)]
         value = Array(line(node), tuple(values)) if len(values) > 1 else None
@@ -164,7 +196,8 @@ class Translator(ExpressionTranslator):
         nodes = [body] if body else blocks or self._body(node)
         header = next((one for one in self.children(node) if one not in nodes), None)
         name = self._first(header, "name") if header else None
-        variable = "" if "while" in node.type or name is None else self.word(name)
+        is_while = "while" in text(node)[:10].lower()
+        variable = "" if is_while or name is None else self.word(name)
         yield Loop(line(node), variable, self.statements(nodes))
 
     def _body(self, node: "Node") -> list["Node"]:
@@ -177,8 +210,16 @@ class Translator(ExpressionTranslator):
         named = header.child_by_field_name("name") or self._first(header, "name")
         yield self._definition(node, self.word(named) if named else "", parameters)
 
+    def _owner_of(self, node: "Node") -> str:
+        """The class of a method that is defined outside it, such as P of ``P::step``."""
+        header = node.child_by_field_name("declarator")
+        named = header.child_by_field_name("declarator") if header else None
+        scope = named.child_by_field_name("scope") if named else None
+        return text(scope) if scope else self._owner
+
     def _lambda_tree(self, node: "Node") -> Tree:
         parameters = node.child_by_field_name("parameter") or self._first(node, "parameters")
+        parameters = parameters or self.children(node)[0]
         return Lambda(line(node), self._definition(node, "", parameters))
 
     def _definition(self, node: "Node", name: str, given: "Node | None") -> Definition:
@@ -187,13 +228,17 @@ class Translator(ExpressionTranslator):
         nodes = [body] if body else blocks or self._body(node)
         if name == "" and len(nodes) > 1:
             nodes = nodes[-1:]  # the parameter of a short function stands before its body
-        statements = self.statements(nodes)
+        first = [one for one in self.children(node) if self.role(one) == "initializers"]
+        statements = self.statements([*first, *nodes])
         if self.language.returns_last or self.role(nodes[0] if nodes else node) != "block":
             statements = _with_return(statements)
         found = self._first(node, "results")
         results = tuple(self.word(one) for one in self._names(found)) if found else ()
+        if node.type == "function" and not results:
+            results = (name,)  # of Fortran
         parameters = tuple(self._parameters(given)) if given else ()
-        return Definition(line(node), name, parameters, statements, self._owner, results)
+        owner = self._owner_of(node) if name else self._owner
+        return Definition(line(node), name, parameters, statements, owner, results)
 
     def _parameters(self, node: "Node") -> Iterator[Parameter]:
         if self.role(node) == "name":
@@ -201,7 +246,10 @@ class Translator(ExpressionTranslator):
             return
         for child in self.children(node):
             name = child if self.role(child) == "name" else self._first(child, "name")
-            default = child.child_by_field_name("value") or child.child_by_field_name("right")
+            default = next(
+                filter(None, map(child.child_by_field_name, ("value", "right", "default_value"))),
+                None,
+            )
             if name:
                 yield Parameter(self.word(name), self.tree(default) if default else None)
 

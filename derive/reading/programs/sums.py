@@ -38,15 +38,16 @@ def factors(tree: Tree, is_whole: Callable[[Tree], bool]) -> list[Tree]:
 
 def product(line: int, found: Sequence[Tree]) -> Tree:
     """The product of factors, 1 for none."""
-    ones = [one for one in found if one != Number(0, "1")] or [Number(line, "1")]
-    result = ones[0]
-    for one in ones[1:]:
-        match one:
+    one, minus = Number(line, "1"), Operation(line, "-", (Number(line, "1"),))
+    result: Tree | None = None
+    for factor in (factor for factor in found if factor not in (one, minus)):
+        match factor:
             case Operation(operator="/", operands=(Number(digits="1"), below)):
-                result = Operation(line, "/", (result, below))
+                result = Operation(line, "/", (result or one, below))
             case _:
-                result = Operation(line, "*", (result, one))
-    return result
+                result = Operation(line, "*", (result, factor)) if result else factor
+    is_negative = sum(factor == minus for factor in found) % 2
+    return Operation(line, "-", (result or one,)) if is_negative else result or one
 
 
 def total(line: int, found: Sequence[Term]) -> Tree:

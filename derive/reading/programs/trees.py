@@ -205,6 +205,14 @@ class Assignment:
 
 
 @dataclass(frozen=True)
+class Declaration:
+    """A variable of a function, without a value."""
+
+    line: int
+    name: str
+
+
+@dataclass(frozen=True)
 class Return:
     """The end of a function, and its value if it has one."""
 
@@ -266,7 +274,9 @@ class Fault:
     reason: str
 
 
-Statement: TypeAlias = Assignment | Return | Evaluation | Branch | Loop | Definition | Fault
+Statement: TypeAlias = (
+    Assignment | Declaration | Return | Evaluation | Branch | Loop | Definition | Fault
+)
 
 
 def replaced(tree: Tree, parts: tuple[Tree, ...]) -> Tree:

@@ -55,8 +55,7 @@ class Values:
                 return self._item(tree)
             case Operation(operator=operator, operands=operands):
                 values = tuple(map(self.value, operands))
-                is_matrix = self.context.language.has_matrix_products
-                return combined(tree.line, operator, values, is_matrix=is_matrix)
+                return combined(tree.line, operator, values, self.context.language)
             case Call():
                 return self.called(tree)
             case Array():

@@ -4,12 +4,18 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
+from time import thread_time
 from typing import TYPE_CHECKING
 
 from derive.reading.programs.program import ProgramError
 
 if TYPE_CHECKING:
-    from tree_sitter import Parser
+    from tree_sitter import Node, Parser
+
+#: Some grammars need a time that grows with the square of the length of invalid text.
+MAX_SECONDS = 1
+#: Bytes that a parser reads at once.
+CHUNK = 4096
 
 
 @dataclass(frozen=True)
@@ -24,6 +30,7 @@ class Language:
     module: str  # of the grammar
     roles: Mapping[str, str]  # role of each type of node
     grammar: str = "language"  # the function of the module
+    other_names: tuple[str, ...] = ()
     first_index: int = 0
     #: Whether the upper bound of a range is not an index.
     is_half_open: bool = True
@@ -35,13 +42,26 @@ class Language:
     assigns_locals: bool = True
     #: Whether the value of a function is its last expression.
     returns_last: bool = False
+    #: Whether a member of the own object is written without it.
+    has_bare_members: bool = False
     is_case_sensitive: bool = True
     #: The text as the grammar reads it, with the same lines.
     prepared: Callable[[str], str] = field(default=lambda text: text)
 
-    def parser(self) -> "Parser":
-        """The parser of the language; `ProgramError` if it is not installed."""
-        return _parser(self.module, self.grammar)
+    def parse(self, text: str) -> "Node":
+        """The syntax tree of a program; `ProgramError` if there is no parser, or if it is slow."""
+        parser, source = _parser(self.module, self.grammar), self.prepared(text).encode()
+        end = thread_time() + MAX_SECONDS
+        try:
+            tree = parser.parse(
+                lambda start, _: source[start : start + CHUNK],
+                progress_callback=lambda *_: thread_time() > end,
+            )
+        except ValueError as error:
+            parser.reset()
+            reason = f"the program takes more than {MAX_SECONDS} s to parse"
+            raise ProgramError(f"{reason}: is it written in {self.name}?") from error
+        return tree.root_node
 
 
 @cache

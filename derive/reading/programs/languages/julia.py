@@ -1,0 +1,77 @@
+"""Julia."""
+
+import re
+
+from derive.reading.programs.languages.language import Language
+
+#: A number before a name in a row of a matrix; the grammar would read their product.
+NUMBER = re.compile(r"(?<![\w.])(\d[\d_]*+\.?+\d*+(?:e[+-]?\d++)?+)(?=[ \t]+[^\W\d])")
+
+
+def prepared(text: str) -> str:
+    """The text with such numbers in brackets."""
+    return NUMBER.sub(r"(\1)", text)
+
+
+language = Language(
+    name="Julia",
+    suffixes=(".jl",),
+    module="tree_sitter_julia",
+    prepared=prepared,
+    first_index=1,
+    is_half_open=False,
+    has_matrix_products=True,
+    returns_last=True,
+    roles={
+        "source_file": "block",
+        "module_definition": "block",
+        "compound_statement": "block",
+        "let_statement": "block",
+        "const_statement": "block",
+        "global_statement": "block",
+        "local_statement": "block",
+        "try_statement": "block",
+        "macro_argument_list": "block",
+        "macrocall_expression": "block",
+        "macro_identifier": "skip",
+        "struct_definition": "skip",
+        "using_statement": "skip",
+        "import_statement": "skip",
+        "export_statement": "skip",
+        "catch_clause": "skip",
+        "function_definition": "function",
+        "signature": "header",
+        "arrow_function_expression": "lambda",
+        "assignment": "assign",
+        "compound_assignment_expression": "assign",
+        "let_binding": "assign",
+        "return_statement": "return",
+        "if_statement": "branch",
+        "else_clause": "otherwise",
+        "elseif_clause": "otherwise",
+        "for_statement": "loop",
+        "while_statement": "loop",
+        "for_binding": "header",
+        "identifier": "name",
+        "integer_literal": "number",
+        "float_literal": "number",
+        "string_literal": "text",
+        "field_expression": "member",
+        "index_expression": "item",
+        "call_expression": "call",
+        "broadcast_call_expression": "call",
+        "argument_list": "arguments",
+        "named_argument": "keyword",
+        "range_expression": "slice",
+        "parenthesized_expression": "wrapper",
+        "typed_expression": "first",
+        "binary_expression": "binary",
+        "juxtaposition_expression": "product",
+        "unary_expression": "unary",
+        "adjoint_expression": "transpose",
+        "vector_expression": "array",
+        "tuple_expression": "array",
+        "open_tuple": "array",
+        "matrix_expression": "matrix",
+    },
+)
