@@ -155,6 +155,26 @@ def test_a_hostile_formula_is_cut(tmp_path: Path) -> None:
     assert len(latex_notes(verdicts, read)) < 10_000
 
 
+def test_the_page_fits_narrow_screens_and_hides_verdicts(driver: Any, tmp_path: Path) -> None:
+    long = " + ".join(rf"\frac{{m_{{{k}}} l^2 + I}}{{2}}\dot\theta_{{{k}}}^2" for k in range(30))
+    wide = rf"x = \frac{{{long}}}{{2}}"
+    read = document(tmp_path, f"$$T = {long}$$ $${wide}$$ $$y = 1$$", "a.md")
+    rows = [(f"T = {long}", {}), (wide, {}), ("y = 1", {"verdict": "wrong"})]
+    annotate(tmp_path / "a.html", [(judged(read, *rows), read)])
+    driver.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": False},
+    )
+    driver.get((tmp_path / "a.html").as_uri())
+    assert driver.execute_script("return document.documentElement.scrollWidth") <= 390
+    items = driver.find_elements("css selector", "li")
+    assert [item.is_displayed() for item in items] == [True] * 3
+    assert items[0].rect["height"] > 60  # the sum has several lines
+    driver.find_element("css selector", "#show-verified").click()
+    assert [item.is_displayed() for item in items] == [False, False, True]
+    assert driver.get_log("browser") == []
+
+
 def test_several_documents_stand_on_one_page(tmp_path: Path) -> None:
     names = ("a.md", "b.md")
     reads = [document(tmp_path, "$$x = 1$$", name) for name in names]
