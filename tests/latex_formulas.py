@@ -43,6 +43,12 @@ A_{1}B_2  ⟶  A_1 B_2
 \dot{\theta^2}  ⟶  dots1(theta^2)
 \dot{AB}  ⟶  dots1(A B)
 \dot{(x+y)}  ⟶  dots1(x + y)
+\mathcal E_N = \dot{\mathcal E}_N  ⟶  E_N = E_N.
+{\dot x}^2  ⟶  x.^2
+{\ddot\theta}_1  ⟶  theta_1..
+m x = const  ⟶  m x = const
+\text{dead\_zone}  ⟶  dead_zone
+I_{robot\_assembly}  ⟶  I_robot_assembly
 """
 
 FRACTIONS = r"""
@@ -144,6 +150,13 @@ mcos^2{\theta}  ⟶  m cos(theta)^2
 \det\mathbf{M}  ⟶  det(bold M)
 5\text{sec}  ⟶  5 sec
 \cosh x  ⟶  cosh(x)
+mgl \space cos\theta  ⟶  m g l cos(theta)
+mcos2\theta  ⟶  m cos(2 theta)
+\sin\Delta\cos\Delta  ⟶  sin(Delta) cos(Delta)
+\sin\Delta\dot\theta  ⟶  sin(Delta) theta.
+\sin\Delta t  ⟶  sin(Delta t)
+\sin(\Delta\theta)  ⟶  sin(Delta theta)
+\cos{\left(\theta_{1}{\left(t \right)} \right)}  ⟶  cos(theta_1@(t))
 """
 
 BRACKETS = r"""
@@ -181,6 +194,12 @@ g(\sin\theta)l  ⟶  g@(sin(theta)) l
 (a \\ + b) c  ⟶  (a + b) c
 \left( a + \right. \\ \left. b \right) c  ⟶  (a + b) c
 {+} a  ⟶  a
+\theta_{1}{\left(t \right)}  ⟶  theta_1@(t)
+x{\left(t \right)} y  ⟶  x@(t) y
+\text{sat}(q - a)  ⟶  sat@((q - a))
+-2(1) + 0  ⟶  (- 2 1 + 0)
+f(3)  ⟶  f@(3)
+(q(t), \dot{q}(t), t)  ⟶  <q@(t), q.@(t), t>
 """
 
 DERIVATIVES = r"""
@@ -212,6 +231,9 @@ m d\theta/dt  ⟶  m d(theta; t)
 \frac{d}{l}  ⟶  [d / l]
 \frac{d x}{l}  ⟶  [d x / l]
 \frac{l}{d}  ⟶  [l / d]
+\frac{\partial L}{\partial \dot{q}^i}  ⟶  ∂(L; q.^i)
+\frac{d^{2}}{d t^{2}} \theta_{1}{\left(t \right)}  ⟶  d(theta_1@(t); t, t)
+l \frac{d}{dr}[U(r) + a] b  ⟶  l d((U@(r) + a); r) b
 """
 
 MATRICES = r"""
@@ -235,6 +257,9 @@ M \begin{pmatrix} a \end{pmatrix}^{-1} x  ⟶  M [a]^(- 1) x
 \sum\limits_i \left( a_i \right) b  ⟶  sum(a_i b; i = ..)
 \sum_{i,j=1}^{2} a_{ij}  ⟶  sum(sum(a_ij; j = 1..2); i = 1..2)
 \sum_{i=1}^2 \sum_{j=1}^2 a_{ij}  ⟶  sum(sum(a_ij; j = 1..2); i = 1..2)
+\begin{bmatrix} a & 0 \cr 0 & b \end{bmatrix}  ⟶  [a, 0; 0, b]
+\frac{\sum_i m_i x_i}{\sum_i m_i}  ⟶  [sum(m_i x_i; i = ..) / sum(m_i; i = ..)]
+\sum \tau = I\alpha  ⟶  sum(tau;  = ..) = I alpha
 """
 
 LAYOUT = r"""
@@ -255,6 +280,9 @@ a\times b \ast c * d  ⟶  a b c d
 \displaystyle x  ⟶  x
 x \mathrel{=} 1  ⟶  x = 1
 a \\[2pt] + b  ⟶  (a + b)
+\dot\theta_1^{\,2}  ⟶  theta_1.^2
+a \;+\; b  ⟶  (a + b)
+x &= a \\ &\phantom{=}\; + b  ⟶  x = (a + b)
 """
 
 UNICODE = r"""
@@ -328,6 +356,16 @@ x &= a & - y &= b  ⟶  x = a | (- y) = b
 \begin{multline} x = a \\ + b \end{multline}  ⟶  x = (a + b)
 x = \begin{split} a \\ + b \end{split}  ⟶  x = (a + b)
 L &= a \intertext{and so} M &= b  ⟶  L = a | M = b
+\begin{array}{r c l} x & \hspace{-1ex} =& a \\ y & \hspace{-1ex} =& b \end{array}  ⟶  x = a | y = b
+L & = a \\ & + b \\ M & - c = 0, \quad d = 0  ⟶  L = (a + b) | (M - c) = 0 | d = 0
+x > 0~~(1)  ⟶  x > 0
+x = a\;\;(12)  ⟶  x = a
+F = a + \text{friction of air}  ⟶  F = (a + friction_of_air)
+x = 1 \text{ for all } t  ⟶  x = 1 | t
+\text{for }1 \le i \le n.  ⟶  1 <= i <= n
+a &= b && \text{(momentum)} \\ c &= d  ⟶  a = b | c = d
+\boxed{ a = b, \qquad c = d. }  ⟶  a = b | c = d
+E = T + V = \text{const.}  ⟶  E = (T + V) = const
 """
 
 UNREADABLE = r"""
@@ -392,4 +430,11 @@ x_{a=1}  ⟶  unreadable: an index that is neither letters, numbers nor a word
 a = (b = c  ⟶  a = c | unreadable: a bracket is never closed
 x = a \\ y = \foo \\ z = b  ⟶  x = a | unreadable: the command \foo is not known | z = b
 x = a = \foo = b  ⟶  x = a = b | unreadable: the command \foo is not known
+\cos\Delta\theta  ⟶  unreadable: where the argument of a function ends is ambiguous without brackets
+x/\Delta t  ⟶  unreadable: what stands below the slash is ambiguous without brackets
+\frac{a}{b}(3)  ⟶  unreadable: a number in brackets, which may be that of the equation
+\frac{\partial d}{\partial dt} x  ⟶  unreadable: ∂ outside of a derivative
+{}^{S}J  ⟶  unreadable: '^' cannot stand here
+\binom{a}{b}  ⟶  unreadable: the command \binom is not known
+\lambda = \pm i  ⟶  unreadable: two signs at once
 """

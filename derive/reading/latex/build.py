@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from derive.reading.latex.functions import AMBIGUOUS
 from derive.reading.latex.parts import Operator, Part, SumSign, Written, around, is_symbol, node
 from derive.reading.latex.products import applied, divided, fraction, product
 from derive.reading.latex.tokens import Unread
@@ -22,8 +23,6 @@ from derive.reading.latex.tree import (
     Transpose,
     Tuple,
 )
-
-AMBIGUOUS = "where the argument of a function ends is ambiguous without brackets"
 
 
 class Build:
@@ -96,8 +95,7 @@ class Build:
             return Tuple(tuple(map(node, items)), span)
         if isinstance(items[0], Operator | SumSign):
             return replace(items[0], span=span)
-        is_bracketed = isinstance(items[0], Written) and items[0].form == "brackets"
-        return Written(node(items[0]), span, "brackets" if is_bracketed else "braces")
+        return Written(node(items[0]), span, "braces")
 
     def norm(self, children: list[Part]) -> Node:
         """An expression between bars; of a matrix, its determinant."""
@@ -168,9 +166,6 @@ class Build:
         """A function, its power and its argument."""
         function, *powers, argument = children
         span = around(children)
-        if isinstance(argument, Raised):
-            base = self.call([function, *powers, argument.argument])
-            return Power(node(base), node(argument.exponent), span)
         is_bare = isinstance(argument, Written) and argument.form == "bare"
         result: Node = Call(function.value, node(argument), span)
         if powers:
@@ -188,12 +183,9 @@ class Build:
         """The argument of a function."""
         return children[0]
 
-    def raised_group(self, children: list[Part]) -> "Raised":
-        """A power behind braces, which is one of the function if the braces hold brackets."""
-        group, _, exponent = children
-        if not isinstance(group, Written) or group.form != "brackets":
-            raise Unread("an exponent of the function or of its argument")
-        return Raised(group, exponent, around(children))
+    def raised_group(self, children: list[Part]) -> Node:
+        """A power behind braces."""
+        raise Unread("an exponent of the function or of its argument")
 
     def raised_accented(self, children: list[Part]) -> Written:
         """A letter with dots, with its exponent."""
@@ -224,15 +216,6 @@ class Build:
     def last(self, children: list[Part]) -> list[Node]:
         """The end of an argument without brackets."""
         return [node(child) for child in children]
-
-
-@dataclass(frozen=True)
-class Raised:
-    """The argument of a function whose value has the exponent behind it."""
-
-    argument: Part
-    exponent: Part
-    span: Span
 
 
 @dataclass(frozen=True)

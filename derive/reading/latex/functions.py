@@ -10,6 +10,7 @@ from derive.reading.latex.tokens import Token
 SPELLED = re.compile(r"(?:arc)?(?:sin|cos|tan)h?|exp|log")
 SPELLED_ALONE = re.compile(r"(?:ln|sec|csc|cot|det|sgn)(?![a-z])")
 LONGEST = 7
+AMBIGUOUS = "where the argument of a function ends is ambiguous without brackets"
 #: Kinds of tokens with which an argument can start.
 STARTS = frozenset({"letter", "word", "digit", "command", "open", "bar", "{", "^"})
 LETTER_TYPES = frozenset({"LATIN", "GREEK", "TIME", "ACCENTED"})

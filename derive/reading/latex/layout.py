@@ -8,6 +8,7 @@ Further kinds of tokens arise: ``word`` (``\text{kin}``), ``prose`` (``\text{and
 import re
 from dataclasses import replace
 
+from derive.reading.latex.pairs import is_operator
 from derive.reading.latex.symbols import (
     ACCENTS,
     BOLD,
@@ -82,7 +83,7 @@ class Layout:
             kind, shape = BRACKETS[token.kind]
             self.result.append(Token(kind, shape, token.span))
         elif token.kind == "~":
-            self.result.append(Token("space", " ", token.span))
+            self.result.append(Token("space", "~", token.span))
         elif not (token.kind == "}" and at in self.removed_braces):
             self.result.append(token)
         return at + 1
@@ -112,11 +113,11 @@ class Layout:
             kind, shape = BRACKETS["\\" + name]
             self.result.append(Token(kind, shape, token.span))
         elif name in SEPARATORS:
-            self.result.append(Token("prose", name, token.span))
+            self.result.append(Token(";", name, token.span))
         elif name in GAPS:
             self.result.append(Token("gap", " ", token.span))
         elif name in SPACES or name.isspace():
-            self.result.append(Token("space", " ", token.span))
+            self.result.append(Token("space", "~", token.span))
         elif name in ("hspace", "hskip", "kern", "mkern", "mskip"):
             return self._space(token, at)
         elif name in ("begin", "end"):
@@ -236,6 +237,7 @@ class Layout:
         span = token.span[0], max(token.span[1], self.tokens[end - 1].span[1])
         words = re.sub(r"[~\s]+|\\[ ,;:]|\\q?quad", " ", text).strip(" ,.;:")
         is_text = token.text not in UPRIGHT
+        is_word = re.fullmatch(r"[A-Za-z][A-Za-z0-9_'-]*", words)
         if not words:
             self.result.append(Token("gap" if is_text and text.strip(" ") else "space", " ", span))
             if text.strip() in tuple(",.;:"):
@@ -244,14 +246,21 @@ class Layout:
             re.fullmatch(r"d[a-z]", words) and not is_text  # \mathrm{dt}
         ):
             self.result += [Token("letter", letter, span) for letter in words]
-        elif re.fullmatch(r"[A-Za-z][A-Za-z0-9'-]*", words) and words.lower() not in CONNECTIVES:
-            self.result.append(Token("word", words, span))
+        elif (is_word and words.lower() not in CONNECTIVES) or (is_text and self._is_operand()):
+            self.result.append(Token("word", re.sub(r"\W+", "_", words), span))
         elif is_text:
             self.result.append(Token("prose", words, span))
         else:  # \mathrm{x + 1} and the like
             self.result.append(replace(token, text="mathrm"))
             return at
         return end
+
+    def _is_operand(self) -> bool:
+        r"""Whether an expression must come next, such as ``\text{losses of heat}`` behind +."""
+        before = next(
+            (t for t in reversed(self.result) if t.kind not in ("space", "gap", "&")), None
+        )
+        return before is not None and (before.kind == "relation" or is_operator(before))
 
     def _brace(self, token: Token, at: int) -> int:
         """A brace over or under an expression, whose label is left out."""

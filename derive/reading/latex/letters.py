@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from derive.reading.latex.arguments import Arguments
-from derive.reading.latex.functions import function_at
+from derive.reading.latex.functions import SPELLED, function_at
 from derive.reading.latex.symbols import ACCENTS, BOLD, ELLIPSES, FONTS, GREEK, LETTERS, MARKS
 from derive.reading.latex.tokens import Token, Unread
 from derive.reading.latex.tree import Letter
@@ -110,7 +110,7 @@ class Letters(Arguments):
         return None if letter is None else (replace(letter, span=self.tokens[at].span), after)
 
     def _spelled(self, at: int, end: int) -> tuple[Letter, int] | None:
-        """A name such as ``t1`` or ``td2``, as in programs: letters, then digits as the index."""
+        """A name such as ``t1`` or ``td2``, as in programs, with its digits as the index."""
         tokens = self.tokens
         if tokens[at].text in GREEK:
             stop = at + 1
@@ -123,11 +123,12 @@ class Letters(Arguments):
         last = stop
         while self.kind(last, end) == "digit":
             last += 1
-        if stop in (at, last):
+        run = "".join(token.text for token in tokens[at:stop])
+        if run == "const":
+            return Letter(run, (tokens[at].span[0], tokens[stop - 1].span[1])), stop
+        if stop in (at, last) or SPELLED.search(run):
             return None
-        name, index = (
-            "".join(t.text for t in part) for part in (tokens[at:stop], tokens[stop:last])
-        )
+        name, index = run, "".join(token.text for token in tokens[stop:last])
         if name in ("e", "E") and at and tokens[at - 1].kind == "digit":
             raise Unread("a number with an exponent behind e")
         span = tokens[at].span[0], tokens[last - 1].span[1]

@@ -10,6 +10,7 @@ from derive.reading.latex.parts import (
     is_symbol,
     node,
 )
+from derive.reading.latex.symbols import VARIATIONS
 from derive.reading.latex.tokens import Unread
 from derive.reading.latex.tree import (
     Application,
@@ -25,7 +26,7 @@ from derive.reading.latex.tree import (
     Summation,
 )
 
-VARIATIONS = ("delta", "Delta")
+NUMERIC = ("NUMBER", "TIMES", "SLASH")
 AMBIGUOUS = "what stands below the slash is ambiguous without brackets"
 
 
@@ -96,7 +97,8 @@ def _variables(denominator: Node, name: str) -> tuple[Node, ...] | None:
         return None
     for sign, raised in zip(factors[::2], factors[1::2], strict=True):
         variable, count = _raised(raised)
-        if _sign_of_differential(sign) != name or not isinstance(variable, Letter | Application):
+        letter = variable.base if isinstance(variable, Power) else variable  # of q^i
+        if _sign_of_differential(sign) != name or not isinstance(letter, Letter | Application):
             return None
         variables += [variable] * count
     return tuple(variables)
@@ -129,11 +131,26 @@ def divided(children: list[Part]) -> list[Part]:
             if child.value == "times" and any(map(_is_bold, children[at - 1 : at + 2 : 2])):
                 raise Unread("a vector product")
         else:
-            if is_symbol(child, "NUMBER") and at and is_symbol(children[at - 1], "NUMBER"):
+            before = children[at - 1] if at else None
+            if is_symbol(child, "NUMBER") and is_symbol(before, "NUMBER"):
                 raise Unread("two numbers side by side")
+            is_last = at == len(children) - 1 and not isinstance(before, Operator | SumSign | None)
+            if is_last and _may_be_number(child) and not is_symbol(before, *NUMERIC):
+                raise Unread("a number in brackets, which may be that of the equation")
             result.append(child)
         at += 1
     return result
+
+
+def _may_be_number(part: Part) -> bool:
+    """Whether a part is a whole number in brackets, like the number of an equation."""
+    is_enclosed = isinstance(part, Written) and part.form == "brackets"
+    return is_enclosed and isinstance(part.node, Number) and part.node.digits.isdigit()
+
+
+def _is_variation(part: Part) -> bool:
+    """Whether a part is the letter Δ, which may belong to the letter behind it."""
+    return isinstance(part, Symbol) and getattr(part.value, "identifier", "") in VARIATIONS
 
 
 def _is_bold(part: Part) -> bool:
@@ -155,7 +172,11 @@ def _quotient(before: list[Part], behind: list[Part]) -> list[Part]:
             count += 1
     elif is_symbol(right, "NUMBER"):
         pass
-    elif (is_tight and not isinstance(behind[1], Written)) or _has_brackets(right):
+    elif (
+        _is_variation(right)
+        or (is_tight and not isinstance(behind[1], Written))
+        or _has_brackets(right)
+    ):
         raise Unread(AMBIGUOUS)
     below = product([node(part) for part in behind[:count]])
     return [Quotient(node(left), below, around([left, *behind[:count]])), *behind[count:]]

@@ -155,6 +155,7 @@ def statements(tokens: list[Token]) -> list[list[Token]]:
     for part in parts(tokens):
         if _is_number_of_equation(part):
             continue
+        part.tokens = _without_number(part)
         if result and _lists_value(result[-1], part):
             result[-1].tokens += part.separators + part.tokens
         elif result and _continues(result[-1], part):
@@ -167,13 +168,25 @@ def statements(tokens: list[Token]) -> list[list[Token]]:
 
 def _is_number_of_equation(part: Part) -> bool:
     tokens = [token for token in part.tokens if token.kind != "space"]
+    return bool(part.boundaries & {"gap", "&"}) and part.ends_row and _is_number(tokens)
+
+
+def _is_number(tokens: list[Token]) -> bool:
+    """Whether tokens are a number in brackets, such as (12) or (2.3)."""
     return (
-        bool(part.boundaries & {"gap", "&"})
-        and part.ends_row
-        and len(tokens) > 2
+        len(tokens) > 2
         and (tokens[0].kind, tokens[-1].kind) == ("open", "close")
         and all(token.kind in ("digit", ".", "-") for token in tokens[1:-1])
     )
+
+
+def _without_number(part: Part) -> list[Token]:
+    r"""Tokens without the number of the equation behind ``~`` or ``\;`` at the end of a row."""
+    start = len(part.tokens) - 1
+    while part.ends_row and start > 0 and part.tokens[start].kind in ("close", "digit", ".", "-"):
+        start -= 1
+    is_apart = start > 0 and part.tokens[start - 1].text == "~"
+    return part.tokens[:start] if is_apart and _is_number(part.tokens[start:]) else part.tokens
 
 
 def _lists_value(statement: Part, part: Part) -> bool:

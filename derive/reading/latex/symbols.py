@@ -1,5 +1,7 @@
 """Commands of LaTeX and characters of Unicode by their meaning in a formula."""
 
+#: Letters that mean a difference or a variation of the letter behind them.
+VARIATIONS = ("Delta", "delta")
 GREEK = frozenset(
     """alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi
     omicron rho varrho sigma varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda
@@ -64,7 +66,7 @@ LAYOUT = {
 }  # fmt: skip
 #: Commands that frame, strike or colour the argument behind them.
 FRAMES = frozenset("boxed fbox cancel bcancel xcancel textcolor colorbox mathop smash".split())
-SPACES = frozenset(", ; : ! > ~ / thinspace medspace thickspace negthinspace enspace".split())
+SPACES = frozenset(", ; : ! > ~ / thinspace medspace thickspace negthinspace enspace space".split())
 GAPS = frozenset("quad qquad enskip".split())
 
 BRACKETS = {

@@ -6,8 +6,14 @@ including the first Greek letter, and a ``t`` behind it: the terminals tell thes
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 
-from derive.reading.latex.functions import LETTER_TYPES, ends_bare_argument, function_at
+from derive.reading.latex.functions import (
+    AMBIGUOUS,
+    LETTER_TYPES,
+    ends_bare_argument,
+    function_at,
+)
 from derive.reading.latex.letters import Letters
 from derive.reading.latex.pairs import inside, is_operator
 from derive.reading.latex.parts import Symbol
@@ -21,6 +27,7 @@ from derive.reading.latex.symbols import (
     MARKS,
     SLASHES,
     TIMES,
+    VARIATIONS,
 )
 from derive.reading.latex.tokens import Token, Unread
 from derive.reading.latex.tree import Letter, Number
@@ -76,7 +83,11 @@ class Terminals(Letters):
         if function := function_at(self.tokens, at, end):
             return self._function(function[0], at, function[1], end, result)
         if letter := self.letter(at, end):
-            result.append(Symbol(_type(letter[0]), letter[0], letter[0].span))
+            kind = _type(letter[0])
+            is_behind = ends_bare_argument(result) == "GREEK" and kind in ("LATIN", "GREEK")
+            if is_behind and result[-1].value.identifier in VARIATIONS:
+                raise Unread(AMBIGUOUS)
+            result.append(Symbol(kind, letter[0], letter[0].span))
             if letter[2]:
                 self._superscript(letter[2], end, result)
             return letter[1]
@@ -123,7 +134,7 @@ class Terminals(Letters):
             return True
         end_of_argument = ends_bare_argument(result)
         if end_of_argument == "LATIN":
-            raise Unread("where the argument of a function ends is ambiguous without brackets")
+            raise Unread(AMBIGUOUS)
         return not end_of_argument and result[-1].value.name != "partial"
 
     def _number(self, at: int, end: int, result: list[Symbol]) -> int:
@@ -181,12 +192,31 @@ class Terminals(Letters):
         if at not in self.partner:
             raise Unread("a brace is never closed")
         stop = self.partner[at]
+        first, last = self.skip(at + 1, stop), self._skip_back(stop - 1)
+        if self.kind(first, stop) == "open" and self.partner.get(first) == last:
+            return self._bracket_in_braces(at, first, last, result)
         inner = self._between(at + 1, stop)
         if len(inner) == 1 and inner[0].type in ("SIGN", "TIMES", "SLASH", "COMMA"):
             result += inner  # {+}
         elif inner:
             self._grouped(at, inner, stop, result)
         return stop + 1
+
+    def _skip_back(self, at: int) -> int:
+        while self.tokens[at].kind == "space":
+            at -= 1
+        return at
+
+    def _bracket_in_braces(self, at: int, first: int, last: int, result: list[Symbol]) -> int:
+        r"""Brackets in braces are brackets, as in ``\theta{\left(t\right)}``."""
+        inner = self._between(first + 1, last)
+        opening = self._simple(first, result)
+        start, end = self.tokens[at].span[0], self.tokens[self.partner[at]].span[1]
+        result.append(replace(opening, span=(start, opening.span[1])))
+        result += inner
+        closing = self._simple(last, result)
+        result.append(replace(closing, span=(closing.span[0], end)))
+        return self.partner[at] + 1
 
     def _grouped(self, at: int, inner: list[Symbol], stop: int, result: list[Symbol]) -> None:
         result.append(Symbol("GROUP_OPEN", "", self.tokens[at].span))
