@@ -4,6 +4,7 @@ import json
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -12,10 +13,11 @@ import nbformat
 import pytest
 import sympy as sp
 
-from derive import Derivation, load, names
+from derive import Derivation, Parameter, load, names
 from derive.commands.derive import main
 from derive.formulas.numeric import Evaluator
 from derive.formulas.sampling import STATES, sample
+from derive.handout.characters import declarations
 from derive.handout.document import Code, Document, Equation
 from derive.handout.exercises import with_exercises
 from derive.handout.mistakes import planted
@@ -53,6 +55,7 @@ position = ["x", "0"]
 mass = "m"
 position = ["x + L*sin(theta)", "-L*cos(theta)"]
 """
+L_SYS = sp.Symbol("L_sys", positive=True)
 WRITERS = {"html": page, "ipynb": notebook, "tex": tex}
 SYSTEMS = (*names(), "damped")
 
@@ -170,6 +173,16 @@ def test_latex_compiles_and_nothing_is_wider_than_the_page(documents, tmp_path, 
     assert "Undefined" not in log
 
 
+def test_characters_beyond_ascii_are_declared_in_latex() -> None:
+    assert declarations(["é ł θ ² 力 –"]) == [
+        r"\DeclareUnicodeCharacter{00B2}{\ensuremath{^{2}}}",
+        r"\DeclareUnicodeCharacter{00E9}{\'{e}}",
+        r"\DeclareUnicodeCharacter{0142}{\l{}}",
+        r"\DeclareUnicodeCharacter{03B8}{\ensuremath{\theta}}",
+        r"\DeclareUnicodeCharacter{529B}{[U+529B]}",
+    ]
+
+
 @needs_latex
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["blank", "mistakes"])
@@ -181,7 +194,10 @@ def test_latex_with_exercises_compiles(documents, tmp_path: Path, kind) -> None:
 def test_letters_of_the_system_are_not_those_of_derived_quantities(documents, derivation) -> None:
     left = {side for equation in documents("damped").equations for side in equation.before}
     assert {"T", "V", "M_sys", "L_sys", "E"} <= left
-    assert not {s.name for s in derivation("damped").system.params} & left
+    system = derivation("damped").system
+    assert not {s.name for s in system.params} & left
+    taken = replace(system, parameters=[*system.parameters, Parameter(L_SYS, "m", 1.0, "")])
+    assert Notation(taken).letter("L") == "L_sys2"
 
 
 def test_a_matrix_that_is_too_wide_is_written_by_entries(documents) -> None:

@@ -3,6 +3,7 @@
 import cmath
 from functools import cache
 from math import prod
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -13,7 +14,9 @@ from derive.formulas.lettering import lettering
 from derive.handout.notation import Notation
 from derive.handout.sections import document
 from derive.handout.tex import equation_rows
+from derive.handout.writing import write_document
 from derive.mechanics.derivation import TIME
+from derive.reading.documents import read_document
 from derive.reading.latex.reader import formulas
 from derive.reading.latex.tree import (
     Application,
@@ -29,6 +32,7 @@ from derive.reading.latex.tree import (
     Statement,
     Sum,
 )
+from derive.verification.documents.judgement import judge_document
 
 FUNCTIONS = {"sin": cmath.sin, "cos": cmath.cos, "tan": cmath.tan, "exp": cmath.exp}
 Key = tuple[str, str, int]
@@ -161,3 +165,23 @@ def test_latex_read_back_has_the_values_of_the_derivation(name: str) -> None:
                 ), (equation.number, rows)
                 compared += 1
     assert compared > 15
+
+
+@pytest.mark.parametrize("suffix", ["tex", "html", "ipynb"])
+def test_every_format_is_read_as_the_same_formulas(tmp_path: Path, suffix: str) -> None:
+    d = derivation("elastic_pendulum")
+    (path,) = write_document(d, tmp_path / f"document.{suffix}")
+    displays = [one for one in read_document(path).displays if not one.is_inline]
+    printed = [formulas(one.latex)[0] for one in displays]
+    expected = [formulas(" \\\\\n".join(equation_rows(one)))[0] for one in document(d).equations]
+    assert [len(one.sides) for one in printed] == [len(one.sides) for one in expected]
+    assert len(printed) == len(expected)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["driven_pendulum", "elastic_pendulum", "double_bar_pendulum"])
+def test_a_document_is_verified_from_its_own_latex(tmp_path: Path, name: str) -> None:
+    (path,) = write_document(derivation(name), tmp_path / "document.tex")
+    verdicts = [one.verdict for one in judge_document(read_document(path)).formulas]
+    assert {*verdicts} <= {"verified", "definition", "context"}
+    assert verdicts.count("verified") > len(verdicts) / 2

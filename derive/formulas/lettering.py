@@ -52,7 +52,7 @@ def letter_and_index(name: str) -> tuple[str, str]:
     read = lettering(name)
     markup = f"<mi>{GREEK.get(read.letter, escape(read.letter))}</mi>"
     if read.has_arrow:
-        markup = f'<mover accent="true">{markup}<mo stretchy="false">→</mo></mover>'
+        markup = f'<mover accent="true">{markup}<mo stretchy="false" mathsize="60%">→</mo></mover>'
     if read.dots:
         # without accent="true", because many fonts draw accent dots into the letter; the
         # fixed height keeps superscripts at their usual height

@@ -16,6 +16,8 @@ SPECIAL = {
 KNOWN = set("–—‘’“”…")
 #: Accents after the letter in decomposed characters, and their commands.
 ACCENTS = dict(zip("\u0300\u0301\u0302\u0303\u0308\u030a\u030c\u0327", "`'^~\"rvc", strict=True))
+#: Letters with a command of their own.
+LETTERS = dict(zip("ßæÆœŒøØłŁ", "ss ae AE oe OE o O l L".split(), strict=True))
 MATHEMATICS = {
     **{letter: rf"\{name}" for name, letter in GREEK.items()},
     **{
@@ -49,6 +51,8 @@ def declarations(texts: Iterable[str]) -> list[str]:
 def _command(character: str) -> str:
     if character in MATHEMATICS:
         return rf"\ensuremath{{{MATHEMATICS[character]}}}"
+    if character in LETTERS:
+        return rf"\{LETTERS[character]}{{}}"
     decomposed = unicodedata.normalize("NFD", character)
     base, mark = decomposed[0], decomposed[1:]
     if base.isascii() and base.isalpha() and mark in ACCENTS:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain, count
 
 import sympy as sp
 
@@ -24,7 +25,9 @@ class Notation:
 
     def letter(self, name: str) -> str:
         """`name`, or with the index ``sys`` if a symbol of the system has this name."""
-        return f"{name}_sys" if name in {symbol.name for symbol in self._symbols} else name
+        taken = {symbol.name for symbol in self._symbols}
+        names = chain((name, f"{name}_sys"), (f"{name}_sys{k}" for k in count(2)))
+        return next(one for one in names if one not in taken)
 
     @cached_property
     def positions(self) -> list[str]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from derive.formulas.latex import latex
 from derive.handout.document import Block, Code, Document, Equation, Paragraph, Table, pieces
-from derive.handout.tex import equation_rows
+from derive.handout.tex import aligned
 
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -53,8 +53,7 @@ def _block(block: Block) -> str:
         case Paragraph(text):
             return _text(text)
         case Equation(number=number):
-            rows = " \\\\\n".join(equation_rows(block))
-            return f"$$\n\\begin{{aligned}}\n{rows}\n\\end{{aligned}} \\tag{{{number}}}\n$$"
+            return f"$$\n{aligned(block)} \\tag{{{number}}}\n$$"
         case Table(head, rows):
             return "\n".join(_rows([head, ["---"] * len(head), *rows]))
         case Code(language, text):

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from derive.formulas.typesetting import elements
 from derive.handout.document import Block, Code, Document, Equation, Paragraph, Table, pieces
+from derive.handout.tex import aligned
 
 STYLE = Path(__file__).with_name("page.css")
 PAGE = """<!DOCTYPE html>
@@ -23,6 +24,11 @@ PAGE = """<!DOCTYPE html>
 </html>
 """
 
+#: The LaTeX of a formula, for programs; the formula is shown as several elements.
+SOURCE = (
+    '<math class="source" display="block" aria-hidden="true"><semantics><mrow></mrow>'
+    '<annotation encoding="application/x-tex">{}</annotation></semantics></math>'
+)
 BLANK = '<span class="blank"></span>'
 
 
@@ -43,7 +49,8 @@ def _block(block: Block) -> str:
         case Equation(number=number):
             formula = f'<div class="formula">{_formula(block)}</div>'
             label = f'<span class="number">({number})</span>'
-            return f'<div class="equation" id="formula-{number}">{formula}{label}</div>'
+            source = "" if block.is_blank else SOURCE.format(escape(aligned(block)))
+            return f'<div class="equation" id="formula-{number}">{formula}{label}{source}</div>'
         case Table(head, rows):
             titles = "".join(f"<th>{_text(cell)}</th>" for cell in head)
             lines = ("".join(f"<td>{_text(cell)}</td>" for cell in row) for row in rows)

@@ -56,6 +56,12 @@ def equation_rows(equation: Equation) -> list[str]:
     return [" = ".join([f"{first} & ", *others, BLANK, *map(latex, after)])]
 
 
+def aligned(equation: Equation) -> str:
+    """A formula in one environment, for a display without numbers of its own."""
+    rows = " \\\\\n".join(equation_rows(equation))
+    return f"\\begin{{aligned}}\n{rows}\n\\end{{aligned}}"
+
+
 def _block(block: Block) -> str:
     match block:
         case Paragraph(text):
