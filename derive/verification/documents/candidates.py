@@ -4,12 +4,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, permutations, product
 from math import pi
+from typing import Any
 
 from derive.system.system import System
 from derive.verification.documents.letters import Letters
 
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
+#: Largest number of choices of parameters of one kind, and of all.
+MAX_CHOICES = 200
 #: Letters of forces and of friction that are tried.
 MAX_FORCES = 2
 
@@ -55,35 +58,56 @@ class Candidate:
 def candidates(system: System, letters: Letters) -> Iterator[Candidate]:
     """Yield the candidates of a system, the likeliest first."""
     n = len(system.coordinates)
-    orders = [*letters.orders([one.unit == "rad" for one in system.coordinates])]
-    parameters = [*islice(_parameters(system, letters), 200)]
-    choices = product(
-        _conventions(system, letters), orders, parameters, loads(letters, "force", n),
+    choices = _likeliest(
+        [*_conventions(system, letters)],
+        [*letters.orders([one.unit == "rad" for one in system.coordinates])],
+        [*islice(_parameters(system, letters), MAX_CHOICES)],
+        loads(letters, "force", n),
         loads(letters, "damping", n),
-    )  # fmt: skip
+    )
     for (signs, offsets), order, mapping, forces, friction in islice(choices, MAX_CANDIDATES):
         yield Candidate(system, order, signs, offsets, mapping, forces, friction)
+
+
+def _likeliest(*choices: Sequence[Any]) -> Iterator[tuple[Any, ...]]:
+    """Combinations of choices, each sorted: those with the smallest sum of indices first."""
+    sizes = [len(one) for one in choices]
+    for total in range(sum(sizes) - len(sizes) + 1):
+        for indices in _with_sum(total, sizes):
+            yield tuple(one[i] for one, i in zip(choices, indices, strict=True))
+
+
+def _with_sum(total: int, sizes: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Indices with a given sum."""
+    if not sizes:
+        if not total:
+            yield ()
+        return
+    first, *rest = sizes
+    for index in range(max(0, total - sum(rest) + len(rest)), min(total + 1, first)):
+        for others in _with_sum(total - index, rest):
+            yield (index, *others)
 
 
 def _conventions(
     system: System, letters: Letters
 ) -> Iterator[tuple[tuple[tuple[int, ...], ...], tuple[int | str, ...]]]:
+    """Yield the signs and offsets of coordinates, the usual ones first."""
     angles = [c.unit == "rad" for c in system.coordinates]
     n, lengths = len(angles), angles.count(False)
     natural: list[int | str] = [0, *letters.of_kind("length")]
-    for relative in (False, True) if angles.count(True) > 1 else (False,):
-        for (sign, turn), *shifts in product(
-            ANGLES if any(angles) else ANGLES[:1],
-            *[[(s, o) for o in natural for s in (1, -1)]] * lengths,
-        ):
-            rows, offsets, rest = [], list[int | str](), iter(shifts)
-            for i, is_angle in enumerate(angles):
-                own_sign, offset = (sign, turn) if is_angle else next(rest)
-                before = range(i) if relative and is_angle else ()
-                row = [own_sign * (j == i or (j in before and angles[j])) for j in range(n)]
-                rows.append(tuple(map(int, row)))
-                offsets.append(offset)
-            yield tuple(rows), tuple(offsets)
+    for (sign, turn), relative, *shifts in _likeliest(
+        ANGLES if any(angles) else ANGLES[:1],
+        (False, True) if angles.count(True) > 1 else (False,),
+        *[[(s, o) for o in natural for s in (1, -1)]] * lengths,
+    ):
+        rows, offsets, rest = list[tuple[int, ...]](), list[int | str](), iter(shifts)
+        for i, is_angle in enumerate(angles):
+            own_sign, offset = (sign, turn) if is_angle else next(rest)
+            before = range(i) if relative and is_angle else ()
+            rows.append(tuple(own_sign * (j == i or (j in before and angles[j])) for j in range(n)))
+            offsets.append(offset)
+        yield tuple(rows), tuple(offsets)
 
 
 def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]:
@@ -91,20 +115,26 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
     groups: dict[str, list[str]] = {}
     for parameter in system.parameters:
         groups.setdefault(UNITS.get(parameter.unit, ""), []).append(parameter.symbol.name)
-    for choice in product(*(_choices(kind, names, letters) for kind, names in groups.items())):
+    for choice in _likeliest(*(_choices(kind, names, letters) for kind, names in groups.items())):
         yield {name: letter for one in choice for name, letter in one.items()}
 
 
 def _choices(kind: str, names: Sequence[str], letters: Letters) -> list[dict[str, str]]:
-    """The letters of parameters of one kind: different ones, or the same for all."""
+    """The letters of parameters of one kind: with the same indices first, also one for all."""
     usual = letters.of_kind(kind) if kind else list(letters.parameters)
     if len(usual) >= len(names):
         orders: Iterator[Sequence[str]] = permutations(usual, len(names))
     else:
         orders = product(usual, repeat=len(names))
-    chosen = [dict(zip(names, order, strict=True)) for order in islice(orders, 200)]
+    chosen = [dict(zip(names, order, strict=True)) for order in islice(orders, MAX_CHOICES)]
     same = [dict.fromkeys(names, one) for one in usual] if len(names) > 1 else []
+    chosen.sort(key=lambda one: sum(_index(name) != _index(one[name]) for name in one))
     return [*chosen, *(one for one in same if one not in chosen)] or [{}]
+
+
+def _index(name: str) -> str:
+    """The number in a name, and whether its letter is r, which stands for a centre of mass."""
+    return name[:1] * (name[:1] == "r") + "".join(filter(str.isdigit, name))
 
 
 def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ...]]:

@@ -1,7 +1,7 @@
 """Verdicts on all formulas of a document, from its displays alone."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from derive.reading.document import Display, Document
 from derive.reading.latex.reader import formulas, macros_of
@@ -28,6 +28,8 @@ from derive.verification.documents.verdicts import Judge, SideVerdict
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
 #: so many hold.
 LEAST, ENOUGH = 0.3, 3
+#: Most systems of a document.
+MAX_SYSTEMS = 3
 #: Verdicts from the gravest: that of a formula with an index is the gravest of its instances.
 GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
 
@@ -41,30 +43,42 @@ class Interpretation:
 
 
 def judge_document(document: Document) -> JudgedDocument:
-    """Judge every formula of a document."""
+    """Judge every formula of a document.
+
+    A document can treat several systems: another is sought for the formulas with letters that
+    have no meaning in those before.
+    """
     occurrences, judged = _read(document)
     statements = translated(occurrences)
-    judged += [_plain(document, place, "context", note) for place, note in statements.failures]
-    found = interpretation(statements)
-    if found.match is None:
-        note = "no system was found for which its formulas hold"
-        places = dict.fromkeys(formula.occurrence for formula in statements.formulas)
-        judged += [_plain(document, place, "context", note) for place in places]
-        return _document(document, "", judged)
-    candidate = found.match.candidate
-    meanings = resolved(candidate, found.letters, statements.formulas, statements.derivatives)
-    scope = DocumentScope(
-        meaning(candidate), found.letters, statements.formulas, statements.derivatives, meanings
-    )
-    judge, written = Judge(scope), _written(occurrences)
+    judged += [_plain(place, "context", note) for place, note in statements.failures]
+    titles: list[str] = []
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
-    for formula in statements.formulas:
-        result = judge.verdict(formula)
-        before = results.get(formula.occurrence)
-        if before is None or _is_graver(result, before[1]):
-            results[formula.occurrence] = formula, result
-    judged += [_judged(document, formula, result, written) for formula, result in results.values()]
-    return _document(document, candidate.system.title, judged)
+    remaining = statements.formulas
+    while remaining and len(titles) < MAX_SYSTEMS:
+        part = replace(statements, formulas=remaining)
+        found = interpretation(part)
+        if found.match is None:
+            break
+        judge = _judge(part, found.letters, found.match.candidate)
+        titles.append(found.match.candidate.system.title)
+        verdicts = [(formula, judge.verdict(formula)) for formula in remaining]
+        for formula, result in verdicts:
+            before = results.get(formula.occurrence)
+            if before is None or _is_graver(result, before[1]):
+                results[formula.occurrence] = formula, result
+        remaining = tuple(one for one, result in verdicts if not result.is_understood)
+    note = "no system was found for which its formulas hold"
+    places = {formula.occurrence for formula in statements.formulas} - results.keys()
+    judged += [_plain(place, "context", note) for place in places]
+    written = _written(occurrences)
+    judged += [_judged(*pair, written) for pair in results.values()]
+    return _document(document, "; ".join(dict.fromkeys(titles)), judged)
+
+
+def _judge(statements: Translated, letters: Letters, candidate: Candidate) -> Judge:
+    meanings = resolved(candidate, letters, statements.formulas, statements.derivatives)
+    system, formulas = meaning(candidate), statements.formulas
+    return Judge(DocumentScope(system, letters, formulas, statements.derivatives, meanings))
 
 
 def interpretation(statements: Translated) -> Interpretation:
@@ -75,7 +89,7 @@ def interpretation(statements: Translated) -> Interpretation:
     best: Match | None = None
     for tried in _candidates(letters, statements):
         match = best_match(tried, letters, formulas, derivatives, trivial)
-        if match and match.holding and (best is None or match.holding > best.holding):
+        if match and match.holding and (best is None or match.score > best.score):
             best = match
     is_convincing = best is not None and (best.holding >= min(ENOUGH, LEAST * best.compared))
     return Interpretation(letters, best if is_convincing else None)
@@ -99,7 +113,7 @@ def _read(document: Document) -> tuple[list[Occurrence], list[JudgedFormula]]:
             place = _occurrence(document, display, one)
             if isinstance(one, Unreadable):
                 if not display.is_inline:
-                    unreadable.append(_plain(document, place, "unreadable", one.reason))
+                    unreadable.append(_plain(place, "unreadable", one.reason))
             elif one.relations or not display.is_inline:
                 occurrences.append(place)
     return occurrences, unreadable
@@ -110,7 +124,7 @@ def _occurrence(document: Document, display: Display, tree: Statement | Unreadab
     return Occurrence(display.number, line, column, cell, display.start, display.latex, tree)
 
 
-def _plain(document: Document, place: Occurrence, verdict: str, note: str) -> JudgedFormula:
+def _plain(place: Occurrence, verdict: str, note: str) -> JudgedFormula:
     span = place.span
     return JudgedFormula(
         place.line, place.column, place.display, place.source, verdict,  # type: ignore[arg-type]
@@ -119,7 +133,7 @@ def _plain(document: Document, place: Occurrence, verdict: str, note: str) -> Ju
 
 
 def _judged(
-    document: Document, formula: DocumentFormula, result: SideVerdict, written: dict[str, str]
+    formula: DocumentFormula, result: SideVerdict, written: dict[str, str]
 ) -> JudgedFormula:
     place, verdict = formula.occurrence, result.verdict
     correction = corrected(formula, result, written)
@@ -131,6 +145,9 @@ def _judged(
 
 
 def _is_graver(one: SideVerdict, other: SideVerdict) -> bool:
+    """Whether a verdict prevails over one on another instance, or in another system."""
+    if one.is_understood != other.is_understood:
+        return one.is_understood
     order = [GRAVEST.index(result.verdict.verdict) for result in (one, other)]
     return order[0] < order[1]
 

@@ -32,6 +32,8 @@ ENERGIES = {
 KINDS_OF_ENERGIES = {"k": "kinetic_energy", "p": "potential_energy"}
 #: Most letters that can be a coordinate of one kind.
 MAX_COORDINATES = 6
+#: Names of the mass matrix M of M q̈ + C q̇ = G, of the matrix C and of the column G.
+MATRICES = {"M": "mass_matrix", "C": "coriolis_matrix", "G": "gravity", "g": "gravity"}
 #: Indices that change nothing.
 TOTAL = ("", "tot", "total")
 
@@ -49,6 +51,8 @@ KINDS: dict[str, tuple[str, ...]] = {
 
 OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
 OPERATORS |= {"asin", "acos", "atan", "sinh", "cosh", "tanh", "sign"}
+#: Abbreviations of sines and cosines, such as s_1, c_12 and s_1_plus_2.
+ABBREVIATION = re.compile(r"([sc])_(\d(?:_plus_\d|\d)*)\Z")
 GENERIC = re.compile(r"\w+_[ij]\Z")
 
 
@@ -64,7 +68,8 @@ class Letters:
     momenta: Mapping[str, str]  # and their coordinates
     quantities: Mapping[str, str]  # and their kinds
     parameters: tuple[str, ...]  # all others that no formula defines
-    accelerated: tuple[str, ...] = ()  # coordinates whose accelerations occur, and no definition
+    accelerated: tuple[str, ...]  # coordinates whose accelerations occur, and no definition
+    abbreviations: Mapping[str, tuple[str, tuple[str, ...]]]  # such as s_12: sine of q_1 and q_2
 
     def orders(self, are_angles: Sequence[bool]) -> Iterator[tuple[str, ...]]:
         """Yield coordinates for those of a system, of which some are angles.
@@ -81,6 +86,11 @@ class Letters:
         for choice in product(*(pools[is_angle] for is_angle in are_angles)):
             if len(set(choice)) == len(choice):
                 yield choice
+
+    @property
+    def ordered(self) -> tuple[str, ...]:
+        """The coordinates in the order of their names, which is that of columns."""
+        return tuple(sorted(self.coordinates))
 
     def of_kind(self, kind: str) -> list[str]:
         """Parameters that can be of a kind, the usual ones first."""
@@ -112,6 +122,7 @@ def letters_of(
         if (kind := combined.get(one) or _quantity(one))
         and (one in subjects or one in operands or one in combined)
     }
+    quantities |= _matrices(formulas)
     defined = _defined(formulas, orders)
     moving = [
         one
@@ -130,9 +141,31 @@ def letters_of(
     # a document can define r by other coordinates, and go on with r alone
     accelerated = tuple(one for one in coordinates if orders[one] == 2)
     coordinates += [one for one in stems if orders[one] == 2 and one in defined]
-    known = {*quantities, *defined, *moving, *momenta, "t", *subjects}
-    parameters = [one for one in stems if one not in known and not GENERIC.match(one)]
-    return Letters(tuple(coordinates), momenta, quantities, tuple(parameters), accelerated)
+    known = {*quantities, *defined, *moving, *momenta, "t"}
+    parameters = [
+        one
+        for one in stems
+        if one not in known and not GENERIC.match(one) and not one.endswith("_column")
+    ]
+    abbreviations = _abbreviations(stems, coordinates)
+    parameters = [one for one in parameters if one not in abbreviations]
+    return Letters(
+        tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations
+    )
+
+
+def _abbreviations(
+    names: Iterable[str], coordinates: Sequence[str]
+) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Names such as s_1 and c_12, if there are sines and cosines."""
+    found: dict[str, tuple[str, tuple[str, ...]]] = {}
+    for name in names:
+        if match := ABBREVIATION.match(name):
+            indices = re.findall(r"\d", match[2])
+            angles = [q for i in indices for q in coordinates if q.partition("_")[2] == i]
+            if len(angles) == len(indices):
+                found[name] = {"s": "sin", "c": "cos"}[match[1]], tuple(angles)
+    return found if len({function for function, _ in found.values()}) == 2 else {}
 
 
 def _quantity(name: str) -> str | None:
@@ -140,6 +173,17 @@ def _quantity(name: str) -> str | None:
     if letter == "E" and index in ENERGIES:
         return ENERGIES[index]
     return QUANTITIES.get(letter) if index in TOTAL else None
+
+
+def _matrices(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
+    """Names of the matrices of M q̈ + C q̇ = G that a document writes out."""
+    found: dict[str, str] = {}
+    for formula in formulas:
+        letter = formula.subject.removesuffix("_column").partition("_")[0]
+        count = max(len(side.entries) for side in formula.sides)
+        if letter in MATRICES and count == (2 if MATRICES[letter] == "gravity" else 4):
+            found[formula.subject] = MATRICES[letter]
+    return found
 
 
 def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
@@ -159,6 +203,7 @@ def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
 def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
     """Names that a formula in others defines, but for solutions such as theta = a*cos(omega*t)."""
     defined = set()
+    mechanical = _mechanical(formulas, orders)
     for formula in formulas:
         name = formula.subject
         others = {stem(word) for side in formula.sides[1:] for word in _words(side.text)}
@@ -169,13 +214,21 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
             continue
         if last.entries and orders.get(name) == 2:  # the state (x, x_dot) is often called x, too
             continue
-        if name and not order(name) and name not in others and not is_solution:
+        # m_2 = h*f(t, w) is about another quantity with the name of a mass
+        is_foreign = name in mechanical and not moves and not others <= mechanical
+        if name and not order(name) and name not in others and not is_solution and not is_foreign:
             defined.add(name)
         # theta_dot = omega defines omega
         is_name = last.text.isidentifier() and not order(last.text) and len(formula.sides) == 2
         if name and order(name) and is_name and orders.get(last.text, 0) < 2:
             defined.add(last.text)
     return defined
+
+
+def _mechanical(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
+    """Names in formulas with letters that move."""
+    words = [{stem(word) for word in formula.words} - OPERATORS for formula in formulas]
+    return {name for one in words if any(orders.get(word) for word in one) for name in one}
 
 
 def _words(text: str) -> list[str]:

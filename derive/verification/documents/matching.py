@@ -33,6 +33,8 @@ Votes = NDArray[np.bool_]
 
 #: The worth of a formula that holds but for one term.
 NEARLY = 0.5
+#: How much a formula that does not hold speaks against a meaning.
+FAILING = 0.5
 #: Comparisons of a document in which such formulas are considered.
 FEW = 12
 
@@ -47,6 +49,11 @@ class Match:
     candidate: Candidate
     holding: float
     compared: int
+
+    @property
+    def score(self) -> float:
+        """What speaks for the candidate: formulas that hold, less some of those that do not."""
+        return self.holding - FAILING * (self.compared - self.holding)
 
 
 def trivial_comparisons(
@@ -75,17 +82,17 @@ def best_match(
         return None
     numbers = Numbers(Motions(tried, letters), letters, derivatives)
     numbers.define(formulas)
-    votes = {
-        (index, side): vote
+    votes = [
+        (index, side, vote)
         for index, formula in enumerate(formulas)
         for side, vote in numbers.comparisons(formula)
         if (index, side) not in trivial
-    }
+    ]
     if not votes:
         return None
-    holding = np.array(list(votes.values())).sum(axis=0).astype(float)
+    holding = np.array([vote for *_, vote in votes]).sum(axis=0).astype(float)
     if len(votes) <= FEW:
-        for (index, side), vote in votes.items():
+        for index, side, vote in votes:
             near = numbers.is_near(formulas[index].sides[0].text, side)
             if near is not None:
                 holding += NEARLY * (near & ~vote)
@@ -114,7 +121,12 @@ class Numbers:
             jet = self._motions.momentum(coordinate)
             self.values[name], self.values[f"{name}_dot"] = jet, jet.rate
         for name, kind in letters.quantities.items():
-            self.values[name] = Jet.of(self._motions.energies[kind], np.nan, np.nan)
+            if kind == "mass_matrix":
+                self.values[name] = motions.mass_matrix(letters.ordered)
+            elif kind in motions.energies:
+                self.values[name] = Jet.of(motions.energies[kind], np.nan, np.nan)
+        for name, (function, angles) in letters.abbreviations.items():
+            self.values[name] = evaluated(f"{function}({' + '.join(angles)})", self.values)
         for name, (operand, variables) in derivatives.items():
             if (value := self._derivative(operand, variables)) is not None:
                 self.values[name] = value
@@ -146,6 +158,8 @@ class Numbers:
             left = values[start]
             if left is None or right is None:
                 continue
+            if isinstance(left, Jet) and isinstance(right, np.ndarray) and right.size == 1:
+                right = right[0, 0]
             try:
                 differences = np.ravel(np.array(left - right, dtype=object))
             except (ValueError, TypeError, AttributeError):  # matrices of other shapes, or a number

@@ -35,18 +35,27 @@ class ArbitraryMotion:
         self.speeds = {q: self._random.uniform(-1, 1, STATES) for q in letters.coordinates}
         self.parameters = {p: float(self._random.uniform(0.5, 1.5)) for p in letters.parameters}
         self.accelerations = {q: self._array() for q in letters.coordinates}
+        self._gradients: dict[tuple[str, str, int], Array] = {}
         energies = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
         self.energies = {kind: self._array() for kind in energies}
         self.positions: Sequence[Array] = ()
         self.time = Jet.of(self._array(), 1.0)
 
     def momentum(self, coordinate: str) -> Jet:
-        """A random momentum and rate."""
-        return Jet.of(self._array(), self._array(), np.nan)
+        """A random momentum, whose rate is ∂L/∂q: that is true of every system."""
+        momentum, rate = (self.gradient("lagrangian", coordinate, order) for order in (1, 0))
+        return Jet.of(momentum, rate, np.nan)
 
     def gradient(self, kind: str, coordinate: str, order: int) -> Array:
         """A random derivative."""
-        return self._array()
+        return self._gradients.setdefault((kind, coordinate, order), self._array())
+
+    def mass_matrix(self, order: Sequence[str]) -> Value:
+        """A random matrix."""
+        matrix = np.empty((len(order), len(order)), dtype=object)
+        for index in np.ndindex(matrix.shape):
+            matrix[index] = Jet.of(self._array(), np.nan, np.nan)
+        return matrix
 
     def _array(self) -> Array:
         return self._random.uniform(0.5, 1.5, self.shape)
@@ -78,10 +87,7 @@ class Motions:
     @cached_property
     def accelerations(self) -> Mapping[str, Array]:
         """The accelerations of each coordinate of the document; NaN where it is none."""
-        d, n = self._derivation, len(self._system.q)
-        M = np.array([[self._numbers(d.mass_matrix[i, j]) for j in range(n)] for i in range(n)])
-        f = np.array([self._numbers(entry) for entry in d.forcing])
-        M = np.einsum("bji,jlbk,blm->bkim", self._signs, M, self._signs)
+        M, f = self._mass_matrix, np.array([*map(self._numbers, self._derivation.forcing)])
         f = np.einsum("bji,jbk->bki", self._signs, f)
         f += np.stack([self._loads(one) for one in self._tried])
         with np.errstate(all="ignore"):
@@ -90,6 +96,26 @@ class Motions:
             except np.linalg.LinAlgError:
                 solution = np.full_like(f, np.nan)
         return self._by_coordinate(solution)
+
+    @cached_property
+    def _mass_matrix(self) -> Array:
+        """M' of all candidates: candidates, states, rows, columns."""
+        d, n = self._derivation, range(len(self._system.q))
+        M = np.array([[self._numbers(d.mass_matrix[i, j]) for j in n] for i in n])
+        return np.asarray(np.einsum("bji,jlbk,blm->bkim", self._signs, M, self._signs))
+
+    def mass_matrix(self, order: Sequence[str]) -> Value:
+        """The mass matrix with rows and columns in an order of the document's coordinates."""
+        names = [q for q in order if q in self._tried[0].coordinates]
+        matrix = np.empty((len(names), len(names)), dtype=object)
+        for i, j in np.ndindex(matrix.shape):
+            entry = np.full(self.shape, np.nan)
+            for b, one in enumerate(self._tried):
+                if names[i] in one.coordinates and names[j] in one.coordinates:
+                    row, column = (one.coordinates.index(names[k]) for k in (i, j))
+                    entry[b] = self._mass_matrix[b, :, row, column]
+            matrix[i, j] = Jet.of(entry, np.nan, np.nan)
+        return matrix
 
     @cached_property
     def energies(self) -> Mapping[str, Array]:

@@ -35,6 +35,12 @@ def resolved(
     for name in letters.parameters:
         if name not in used:  # a random number until now
             numbers.values.pop(name, None)
+    others = [q for q in letters.coordinates if q not in candidate.coordinates]
+    for name in (q + ending for q in others for ending in RATES[:3]):
+        numbers.values.pop(name, None)
+    numbers.define(formulas)
+    for names in _aliases(others, candidate):
+        meanings |= _accepted(names, formulas, numbers)
     numbers.define(formulas)
     while True:
         unknown = {f: u for f in formulas if 0 < len(u := _unknown(f, numbers)) <= MAX_UNKNOWN}
@@ -47,6 +53,36 @@ def resolved(
             meanings[name] = text
             numbers.set_rates(name, evaluated(text, numbers.values))
         numbers.define(formulas)
+
+
+def _aliases(names: Sequence[str], candidate: Candidate) -> Iterator[dict[str, str]]:
+    """Other letters with the same indices as the coordinates, such as phi_1 for theta_1."""
+    indexed = {q.partition("_")[2]: q for q in candidate.coordinates}
+    for letter in dict.fromkeys(name.partition("_")[0] for name in names):
+        pairs = {n: indexed.get(n.partition("_")[2]) for n in names if n.startswith(letter)}
+        found = {name: q for name, q in pairs.items() if q}
+        if len(found) == len(candidate.coordinates):
+            yield found
+
+
+def _accepted(
+    found: Mapping[str, str], formulas: Sequence[DocumentFormula], numbers: Numbers
+) -> Mapping[str, str]:
+    """The meanings if several formulas hold with them, which no other meaning would achieve."""
+    for name, q in found.items():
+        numbers.set_rates(name, numbers.values[q])
+    words = {name + ending for name in found for ending in RATES}
+    votes = [
+        bool(vote.all())
+        for one in formulas
+        if words & {*one.words}
+        for _, vote in numbers.comparisons(one)
+    ]
+    if votes.count(True) >= max(SUPPORT, len(votes) // 4):
+        return found
+    for name in (n + ending for n in found for ending in RATES[:3]):
+        numbers.values.pop(name, None)
+    return {}
 
 
 def _rates(found: Mapping[str, str], letters: Letters) -> Iterator[tuple[str, str]]:

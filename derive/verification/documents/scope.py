@@ -15,8 +15,6 @@ from derive.verification.documents.rates import RATES
 from derive.verification.documents.statements import DocumentFormula, definitions
 from derive.verification.model import Model, depends_on, own_names, time_derivative
 
-#: Abbreviations of sines and cosines, such as s_1, c_12 and s_1_plus_2.
-ABBREVIATION = re.compile(r"([sc])_(\d(?:_plus_\d|\d)*)\Z")
 #: Generalized forces, such as Q_theta.
 FORCE = re.compile(r"[QF]_(\w+)\Z")
 #: Rounds in which definitions are sought: a name can be defined after its use.
@@ -95,14 +93,13 @@ class DocumentScope:
     def _add_usual_names(self) -> None:
         """Names that documents use without a definition: sines such as s_12, and forces."""
         system = self._system
+        for name, (function, coordinates) in self.letters.abbreviations.items():
+            angles = [self.names.get(q) for q in coordinates]
+            if None not in angles:
+                self.names[name] = getattr(sp, function)(sp.Add(*angles))
         letters = [name for name in self.letters.parameters if name not in self.names]
         for name in letters:
-            if match := ABBREVIATION.match(name):
-                numbers = [int(n) for n in re.findall(r"\d", match[2])]
-                if all(0 < n <= len(system.q) for n in numbers):
-                    angle = sp.Add(*(system.q[n - 1] for n in numbers))
-                    self.names[name] = {"s": sp.sin, "c": sp.cos}[match[1]](angle)
-            elif match := FORCE.match(name):
+            if match := FORCE.match(name):
                 coordinate = self.names.get(match[1])
                 if coordinate in system.q:
                     self.names[name] = system.applied[system.q.index(coordinate)]
@@ -116,8 +113,17 @@ class DocumentScope:
             "hamiltonian": d.energy,
             "energy": d.energy,
         }
+        values |= self._matrices
         for name, kind in self.letters.quantities.items():
-            self.names[name] = values[kind]
+            if kind in values:
+                self.names[name] = values[kind]
+
+    @property
+    def _matrices(self) -> dict[str, Value]:
+        """The mass matrix with its rows in the order of the names."""
+        order = [self.names[q] for q in self.letters.ordered if self.names.get(q) in self._system.q]
+        rows = [self._system.q.index(q) for q in order]
+        return {"mass_matrix": self.derivation.mass_matrix.extract(rows, rows)}
 
     def _add_derivatives(self) -> None:
         for name, (operand, variables) in self.derivatives.items():

@@ -35,11 +35,9 @@ def _coordinates(*pairs: tuple[sp.Symbol, str]) -> list[Coordinate]:
 
 
 def _parameters(**units: str) -> list[Parameter]:
-    """Parameters by their names; a number behind the unit tells whether they can be negative."""
+    """Positive parameters by their names, and gravity, which can be negative."""
     return [
-        Parameter(
-            sp.Symbol(name, real=True, **({} if name == "g" else {"positive": True})), unit, 1.0, ""
-        )
+        Parameter(sp.Symbol(name, **{"real" if name == "g" else "positive": True}), unit, 1.0, "")
         for name, unit in units.items()
     ]
 
@@ -101,6 +99,20 @@ def _others() -> Iterator[System]:
         [RigidBody(m1, (r1 * sin(theta1), -r1 * cos(theta1)), I1 - m1 * r1**2, theta1),
          RigidBody(m2, (l1 * sin(theta1) + r2 * sin(theta2),
                         -l1 * cos(theta1) - r2 * cos(theta2)), I2 - m2 * r2**2, theta2)],
+    )  # fmt: skip
+    Ir, gr = symbols("Ir gr", positive=True)
+    g = sp.Symbol("g", real=True)
+    yield System(
+        "two_links_with_motors", "Two hinged links with moments of inertia and motors",
+        _coordinates((theta1, "rad"), (theta2, "rad")),
+        _parameters(m1="kg", m2="kg", l1="m", r1="m", r2="m", I1="kg m^2", I2="kg m^2",
+                    Ir="kg m^2", gr="1", g="m/s^2"),
+        [RigidBody(m1, (r1 * sin(theta1), -r1 * cos(theta1)), I1 - m1 * r1**2, theta1),
+         RigidBody(m2, (l1 * sin(theta1) + r2 * sin(theta2),
+                        -l1 * cos(theta1) - r2 * cos(theta2)), I2 - m2 * r2**2, theta2),
+         # rotors turn gr times as fast as the joints, each held by the link before it
+         PointMass(Ir, (gr * theta1, 0)), PointMass(Ir, (theta1 - gr * (theta2 - theta1), 0))],
+        potential=g * (-m1 * r1 * cos(theta1) - m2 * (l1 * cos(theta1) + r2 * cos(theta2))),
     )  # fmt: skip
     yield System(
         "two_oscillators",

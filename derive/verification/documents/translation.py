@@ -282,8 +282,21 @@ def letters(node: Node) -> Iterator[Letter]:
 
 
 def has_index(nodes: Collection[Node], index: str) -> bool:
-    """Whether a letter has a letter as its index."""
-    return any(index in one.index.split("_") for node in nodes for one in letters(node))
+    """Whether a letter has a letter as its index, which no sum binds."""
+
+    def walk(part: object) -> bool:
+        match part:
+            case Summation(index=Letter(name=name)) if name == index:
+                return False
+            case Letter():
+                return index in part.index.split("_")
+            case tuple():
+                return any(map(walk, part))
+            case _ if isinstance(part, Node):
+                return any(walk(getattr(part, name)) for name in part.__dataclass_fields__)
+        return False
+
+    return walk(tuple(nodes))
 
 
 def _joined(binding: int, *pieces: Text | str) -> Text:

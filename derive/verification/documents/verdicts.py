@@ -12,13 +12,15 @@ from derive.verification.documents.linear import Linear
 from derive.verification.documents.partial_energies import PartialEnergies
 from derive.verification.documents.rates import order, stem
 from derive.verification.documents.scope import DocumentScope
-from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.documents.statements import INDICES, WORD, DocumentFormula
 from derive.verification.documents.translation import Text
 from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on
 from derive.verification.quantities import judge_formula
-from derive.verification.verdict import Verdict
+from derive.verification.verdict import Correction, Verdict
 
+#: The largest denominator of a factor that is looked for.
+MAX_DENOMINATOR = 100
 #: Verdicts on formulas that are correct.
 CORRECT = ("verified", "equivalent", "definition")
 
@@ -30,6 +32,7 @@ class SideVerdict:
     verdict: Verdict
     parts: tuple[tuple[int, Text], ...]  # the sides within the judged text, and where they start
     kind: str
+    is_understood: bool = True  # all its letters have a meaning
 
 
 class Judge:
@@ -46,18 +49,18 @@ class Judge:
             return _plain("context", formula, "it is no statement")
         if any(one not in ("=", ":=", "~") for one in formula.relations):
             return _plain("context", formula, "it is no equation")
-        if self._is_special(formula):
+        if formula.subject in INDICES or self._is_special(formula):
             return _plain("context", formula, "it states a value")
         unknown = self._unknown(formula.sides)
         if self._unknown(formula.sides[:1]):
-            return _plain("context", formula, f"no meaning was found for {', '.join(unknown)}")
+            return _not_understood(formula, unknown)
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
         results = [self._side(formula, k) for k in known]
         for result in results:
             if result.verdict.verdict not in CORRECT:
                 return result
         if unknown:
-            return _plain("context", formula, f"no meaning was found for {', '.join(unknown)}")
+            return _not_understood(formula, unknown)
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
@@ -101,6 +104,8 @@ class Judge:
     def _compared(
         self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
     ) -> SideVerdict:
+        is_product = getattr(right, "shape", ()) == (1, 1)
+        left, right = _number(left), _number(right)
         if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
             return self._matrices(formula, first, side, left, right)
         note = self._holds(left - right)
@@ -111,6 +116,8 @@ class Judge:
             is_small = self._linear.agrees(left - right, self._model)
             note = small if is_small else "it is an approximation"
             return _plain("verified" if is_small else "context", formula, note)
+        if is_product:
+            return self._scaled(formula, side, left, right)
         result = self._role(formula, first, side, left, right)
         if result.verdict.verdict in CORRECT:
             return result
@@ -123,6 +130,19 @@ class Judge:
         if values and self._holds(difference) is not None:
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return _plain("equivalent", formula, f"it holds for {text}")
+        return result
+
+    def _scaled(
+        self, formula: DocumentFormula, side: Text, left: sp.Expr, right: sp.Expr
+    ) -> SideVerdict:
+        """The verdict on a wrong scalar product of columns, perhaps but for a factor."""
+        context = self._model.context
+        result = _plain("wrong", formula, "", context.witness(right, left))
+        ratio = sp.nsimplify(context.value(left) / context.value(right), rational=True)
+        if ratio.q < MAX_DENOMINATOR and self._holds(left - ratio * right) is not None:
+            correction = Correction(side.text, f"{ratio}*{side.text}")
+            verdict = replace(result.verdict, corrections=(correction,))
+            return SideVerdict(verdict, ((0, side),), "value")
         return result
 
     def _special_values(self, left: Value, right: Value) -> dict[sp.Symbol, sp.Expr]:
@@ -184,7 +204,7 @@ class Judge:
                 return self._value(side, "linearised", small)
         if kind:
             with suppress(ExpressionError):
-                verdict = judge_formula(self._model, "", side.text, kind, name)
+                verdict = judge_formula(self._model_of(side, name), "", side.text, kind, name)
                 if verdict.verdict != "unreadable":
                     return SideVerdict(verdict, ((0, side),), kind)
         inside = self._inside_rate(first, side)
@@ -213,23 +233,44 @@ class Judge:
                             self._holds(parse(text, scope) - self._scope.value(other.text))
                             is not None
                         ):
-                            verdict = judge_formula(self._model, "", inner.text, "momenta", name)
+                            model = self._model_of(inner, name)
+                            verdict = judge_formula(model, "", inner.text, "momenta", name)
                             return SideVerdict(verdict, ((0, inner),), "momenta")
         return None
 
     def _equation(self, first: Text, side: Text) -> SideVerdict:
         """The verdict on an equation of motion."""
         text = f"{first.text} = {side.text}"
-        verdict = judge_formula(self._model, "", text, "euler_lagrange")
+        verdict = judge_formula(self._model_of(first, side), "", text, "euler_lagrange")
         return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
+
+    def _model_of(self, *sides: Text | str) -> Model:
+        """The model with the names of these sides alone, in which corrections are written."""
+        texts = [one.text if isinstance(one, Text) else one for one in sides]
+        words = {word for text in texts for word in WORD.findall(text)}
+        words |= {f"p_{word}" for word in words}
+        names = {name: value for name, value in self._scope.names.items() if name in words}
+        functions = {n: v for n, v in self._scope.names.items() if not isinstance(v, Value)}
+        return replace(self._model, names={**functions, **names})
 
     def _value(self, side: Text, name: str, value: sp.Expr) -> SideVerdict:
         """The verdict on a side that must have a value, to which a name is given."""
         name = name if name.isidentifier() else "left_side"
-        model = Model(self._scope.derivation, {**self._scope.names, name: value})
+        model = self._model_of(side)
+        model = replace(model, names={**model.names, name: value})
         return SideVerdict(
             judge_formula(model, "", side.text, "value", name), ((0, side),), "value"
         )
+
+
+def _number(value: Value) -> Value:
+    """The entry of a matrix that has one, such as a scalar product."""
+    return value[0] if getattr(value, "shape", ()) == (1, 1) else value
+
+
+def _not_understood(formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
+    note = f"no meaning was found for {', '.join(unknown)}"
+    return replace(_plain("context", formula, note), is_understood=False)
 
 
 def _rates(text: str) -> Iterator[tuple[int, int]]:
