@@ -378,7 +378,8 @@ x_1_2  ⟶  unreadable: two indices at the letter x
 2e5  ⟶  unreadable: a number with an exponent behind e
 k/mx  ⟶  unreadable: what stands below the slash is ambiguous without brackets
 a/b(c+d)  ⟶  unreadable: what stands below the slash is ambiguous without brackets
-\sin\theta/2  ⟶  unreadable: what stands before the slash is ambiguous without brackets
+\sin\theta/2  ⟶  unreadable: what stands above the slash is ambiguous without brackets
+\sin\pi x/l  ⟶  unreadable: what stands above the slash is ambiguous without brackets
 \sin{\theta}^2  ⟶  unreadable: an exponent of the function or of its argument
 \sin k x  ⟶  unreadable: where the argument of a function ends is ambiguous without brackets
 \sin x(a+b)  ⟶  unreadable: where the argument of a function ends is ambiguous without brackets

@@ -3,9 +3,19 @@
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from derive.reading.latex.derivatives import applied, fraction
 from derive.reading.latex.functions import AMBIGUOUS
-from derive.reading.latex.parts import Operator, Part, SumSign, Written, around, is_symbol, node
-from derive.reading.latex.products import applied, divided, fraction, product
+from derive.reading.latex.parts import (
+    Operator,
+    Part,
+    SumSign,
+    Written,
+    around,
+    is_symbol,
+    node,
+    product,
+)
+from derive.reading.latex.products import divided
 from derive.reading.latex.tokens import Unread
 from derive.reading.latex.tree import (
     Application,

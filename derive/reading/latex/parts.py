@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from derive.reading.latex.tokens import Unread
-from derive.reading.latex.tree import Letter, Node, Span
+from derive.reading.latex.tree import Letter, Node, Product, Span
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,3 +70,16 @@ def node(part: Part) -> Node:
 def is_symbol(part: Part, *types: str) -> bool:
     """Whether a part is a terminal of one of the types."""
     return isinstance(part, Symbol) and part.type in types
+
+
+def factors_of(factors: Node) -> tuple[Node, ...]:
+    """The factors of a product; anything else is one factor."""
+    return factors.factors if isinstance(factors, Product) else (factors,)
+
+
+def product(factors: list[Node]) -> Node:
+    """A product without products in it; a single factor is itself."""
+    if len(factors) == 1:
+        return factors[0]
+    flat = tuple(inner for factor in factors for inner in factors_of(factor))
+    return Product(flat, around(factors))

@@ -26,13 +26,15 @@ from pathlib import Path
 from typing import Any
 
 from derive.reading.latex.build import Build
-from derive.reading.latex.layout import Layout, with_new_fonts
-from derive.reading.latex.macros import Macro, expanded, macros_of
+from derive.reading.latex.expansion import expanded
+from derive.reading.latex.layout import Layout
+from derive.reading.latex.macros import Macro, macros_of
 from derive.reading.latex.pairs import pairs
 from derive.reading.latex.parts import Symbol
 from derive.reading.latex.rows import flattened, statements
+from derive.reading.latex.spellings import with_new_fonts, with_unicode_scripts
 from derive.reading.latex.terminals import Terminals
-from derive.reading.latex.tokens import Token, Unread, tokenize, with_unicode_scripts
+from derive.reading.latex.tokens import Token, Unread, tokenize
 from derive.reading.latex.tree import Letter, Node, Span, Statement, Unreadable
 
 __all__ = ["Macro", "formulas", "macros_of"]
@@ -72,7 +74,7 @@ def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | U
         tokens = expanded(latex, tokenize(latex), macros)
         pairs(tokens)  # refuses deep braces before anything descends into them
         tokens = with_new_fonts(with_unicode_scripts(tokens))
-        tokens = Layout(latex, tokens).tokens_without_layout()
+        tokens = Layout(tokens).tokens_without_layout()
         found = statements(flattened(tokens))
     except Unread as error:
         return [Unreadable(str(error), whole)]

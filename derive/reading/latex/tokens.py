@@ -5,7 +5,6 @@ import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from itertools import groupby
 
 from derive.reading.latex.symbols import CHARACTERS, COMBINING
 from derive.reading.latex.tree import Span
@@ -71,7 +70,7 @@ def _as_latex(character: str) -> tuple[str, ...]:
     """LaTeX for a character of Unicode; the character itself if none is known."""
     if character in CHARACTERS:
         return (CHARACTERS[character],)
-    if character in COMBINING or _script_of(character):
+    if character in COMBINING or script_of(character):
         return (character,)
     simple = unicodedata.normalize("NFKC", character)
     if unicodedata.decomposition(character).startswith("<fraction>"):
@@ -82,42 +81,7 @@ def _as_latex(character: str) -> tuple[str, ...]:
     return tuple(CHARACTERS.get(part, part) for part in parts)
 
 
-def with_unicode_scripts(tokens: list[Token]) -> list[Token]:
-    """The tokens with accents before their letters, and raised text as an exponent."""
-    result: list[Token] = []
-    for kind, group in groupby(tokens, _script):
-        marked = list(group)
-        if kind == "accent":
-            letter = [result.pop()] if result else []
-            if not letter or letter[0].kind not in ("letter", "command"):
-                raise Unread(f"the accent {marked[0].text!r} has no letter")
-            for token in marked:
-                start, end = letter[0].span[0], token.span[1]
-                accent = Token("command", COMBINING[token.text], (start, end))
-                letter = [accent, *_braced(letter)[:-1], Token("}", "}", (end, end))]
-            result += letter
-        elif kind:
-            span = marked[0].span[0], marked[-1].span[1]
-            simple = [unicodedata.normalize("NFKC", token.text) for token in marked]
-            inner = [t for text in simple for t in _tokens(text, span)]
-            result += [Token(kind, kind, span), *_braced(inner)]
-        else:
-            result += marked
-    return result
-
-
-def _script(token: Token) -> str:
-    """Whether a character is an accent, raised or lowered."""
-    if token.kind != token.text or token.kind.isascii():
-        return ""
-    return "accent" if token.text in COMBINING else _script_of(token.text)
-
-
-def _script_of(character: str) -> str:
+def script_of(character: str) -> str:
+    """The sign of a raised or lowered character, ``^`` or ``_``, or nothing."""
     kind = unicodedata.decomposition(character).partition(">")[0]
     return {"<super": "^", "<sub": "_"}.get(kind, "")
-
-
-def _braced(tokens: list[Token]) -> list[Token]:
-    start, end = tokens[0].span[0], tokens[-1].span[1]
-    return [Token("{", "{", (start, start)), *tokens, Token("}", "}", (end, end))]
