@@ -13,6 +13,7 @@ from derive.reading.programs.trees import (
     MAX_DEPTH,
     Array,
     Call,
+    Choice,
     Item,
     Member,
     Name,
@@ -148,6 +149,11 @@ class ExpressionTranslator:
         if operator not in ("+", "-", "*", "/", "**", "@", "solve"):
             return Opaque(line(node), f"the operator {text(sign)} is not followed")
         return Operation(line(node), operator, (self.tree(left), self.tree(right)))
+
+    def _conditional_tree(self, node: "Node") -> Tree:
+        first, second, third = self.children(node)
+        after = first if self.language.name == "Python" else second  # a if condition else b
+        return Choice(line(node), self.tree(third), self.tree(after))
 
     def _product_tree(self, node: "Node") -> Tree:
         left, right = self.children(node)

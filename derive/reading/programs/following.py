@@ -38,6 +38,7 @@ from derive.reading.programs.values import Values, whole
 
 #: Calls within calls that are followed.
 MAX_CALLS = 8
+LOOP = "a loop is not followed"
 #: Nodes of the largest value of a function of values of functions.
 MAX_NESTED = 500
 STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "vstack"}
@@ -113,6 +114,8 @@ class Follower(Values):
         elif self._is_constant(target, value):
             return  # it stays a letter
         elif path := self.place(target):
+            if _is_input(value):
+                value = Name(line, path)
             if isinstance(target, Item) and whole(path[:-1].rpartition("[")[2]) is not None:
                 self._open_array(target)
             for key in [key for key in self.variables if key.startswith((f"{path}[", f"{path}."))]:
@@ -188,7 +191,8 @@ class Follower(Values):
         merged = {}
         for path in before | after:
             values = [one.get(path, Name(line, path)) for one in (before, after)]
-            merged[path] = values[0] if values[0] == values[1] else Choice(line, *values)
+            value = values[0] if values[0] == values[1] else Choice(line, *values)
+            merged[path] = Name(line, path) if _is_input(value) else value
         self.variables = merged
 
     def _loop(self, one: Loop) -> None:
@@ -199,7 +203,7 @@ class Follower(Values):
         for path in assigned(one.body):
             for key in [k for k in self.variables if k.startswith((f"{path}[", f"{path}."))]:
                 del self.variables[key]
-            self.variables[path] = Opaque(one.line, "a loop is not followed")
+            self.variables[path] = Opaque(one.line, LOOP)
 
     def called(self, call: Call) -> Tree:
         """The value of a call: of mathematics, of arrays, or of a function of the program."""
@@ -331,6 +335,11 @@ def _applied(line: int, path: str, arguments: tuple[Tree, ...]) -> Tree | None:
         values = [applied(line, path, (one,)) for one in items]
         return Array(line, tuple(v for v in values if v)) if all(values) else None
     return applied(line, path, arguments)
+
+
+def _is_input(tree: Tree) -> bool:
+    """Whether a value is one of two numbers, such as a force to the left or to the right."""
+    return isinstance(tree, Choice) and all(number(part) is not None for part in tree.parts)
 
 
 def _has_results(tree: Tree) -> bool:

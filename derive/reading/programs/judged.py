@@ -1,23 +1,25 @@
 """The equations and findings of all regions of a program, each of them once."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from derive.reading.programs.arrays import entries
 from derive.reading.programs.context import Context, statements, static_path
 from derive.reading.programs.degrees import angles, named_in_degrees, number, starts_in_degrees
 from derive.reading.programs.equations import Equations
-from derive.reading.programs.following import Step
+from derive.reading.programs.following import LOOP, Step, root
 from derive.reading.programs.libraries import integrated, library_findings
 from derive.reading.programs.methods import (
     euler_findings,
     runge_kutta_findings,
     written_methods,
+    written_pairs,
 )
 from derive.reading.programs.naming import Names
 from derive.reading.programs.program import Constant, Finding, Function, Program, Unread
 from derive.reading.programs.rates import Rates, rates
 from derive.reading.programs.regions import Region
-from derive.reading.programs.trees import Assignment, Statement, Tree
+from derive.reading.programs.trees import Assignment, Opaque, Statement, Tree
 from derive.reading.programs.updates import Updates, without_time
 from derive.reading.programs.writing import UnwrittenError, Writer
 
@@ -54,7 +56,20 @@ class Findings:
             follower.variables |= found.values
         elif found:
             self._add_rates(region, found)
-        self._add_updates(region)
+        for is_met in (False, True):
+            self._add_updates(region, is_met=is_met)
+        self._add_loops(region)
+
+    def _add_loops(self, region: Region) -> None:
+        """Note values that are left open since they are computed in loops."""
+        given = {one.name for one in region.definition.parameters}
+        values = [v for path, v in region.follower.variables.items() if root(path) in given]
+        if region.follower.returned is not None:
+            values.append(region.follower.returned)
+        for value in values:
+            for one in opaque(value):
+                if one.reason == LOOP:
+                    self._unread.append(Unread(one.line, LOOP, region.name))
 
     def _add_rates(self, region: Region, found: Rates) -> None:
         names = Names(region.follower.steps)
@@ -74,37 +89,35 @@ class Findings:
             i: q for i, q in enumerate(found.values) if q in angular
         }
 
-    def _add_updates(self, region: Region) -> None:
-        updates = Updates(region.follower)
+    def _add_updates(self, region: Region, *, is_met: bool) -> None:
+        updates = Updates(region.follower, is_met=is_met)
         written = written_methods(updates, region.follower.returned)
         self._findings += runge_kutta_findings(written, region.name)
-        changed = {name for one in written for name in one.variables}
-        pairs = tuple(one for one in updates.pairs if one.coordinate.variable not in changed)
-        if not pairs:
-            return
         names = Names(region.follower.steps)
         equations = Equations(region.name, names)
+        changed = {name for one in written for name in one.rates}
+        pairs = tuple(one for one in updates.pairs if one.coordinate.variable not in changed)
+        used, found = {}, list(written_pairs(updates, written))
         for pair in pairs:
             q = pair.coordinate.variable
-            names.define(q, names(without_time(q)))
-            names.define(pair.velocity.variable, f"{names(q)}_dot")
-        used, values = {}, []
-        for pair in pairs:
-            q, v = pair.coordinate.variable, pair.velocity
             value, used[q] = updates.acceleration(pair)
-            values.append(value)
-            equations.acceleration(value.line, q, v.variable, value)
+            found.append((q, pair.velocity.variable, value))
+        for q, v, _ in found:
+            names.define(q, names(without_time(q)))
+            names.define(v, f"{names(q)}_dot")
+        for q, v, value in found:
+            equations.acceleration(value.line, q, v, value)
+        values = [value for *_, value in found]
         self._end(region, equations, names, values)
-        self._findings += euler_findings(pairs, used, region.name, self._context.constants)
-        angular = angles(values)
-        for pair in pairs:
-            q = pair.coordinate.variable
-            if q in angular:
-                for path, start in self._starts:
-                    if path == q:
-                        self._findings += starts_in_degrees(
-                            q, start, self._context.constants, region.name
-                        )
+        self._findings += euler_findings(
+            pairs, used, region.name, self._context.constants, names.in_program
+        )
+        angular = angles(values) & {q for q, *_ in found}
+        for path, start in self._starts:
+            if path in angular:
+                self._findings += starts_in_degrees(
+                    path, start, self._context.constants, region.name
+                )
 
     def _end(self, region: Region, equations: Equations, names: Names, values: list[Tree]) -> None:
         equations.end()
@@ -149,19 +162,31 @@ class Findings:
 
     def _own_equations(self) -> tuple[Function, ...]:
         """The functions without equations that they take from functions that they call."""
-        best: dict[tuple[int, str], Function] = {}
+        best: dict[int, Function] = {}
         for function in self._functions:
             for equation in function.equations:
-                key = (equation.line, equation.text)
-                known = best.get(key)
-                if known is None or known.line < function.line <= equation.line:
-                    best[key] = function
+                line, known = equation.line, best.get(equation.line)
+                if known is None or _nearness(known, line) < _nearness(function, line):
+                    best[line] = function
         found = []
         for function in self._functions:
-            own = tuple(e for e in function.equations if best[e.line, e.text] is function)
+            own = tuple(e for e in function.equations if best[e.line] is function)
             if own:
                 found.append(replace(function, equations=own))
         return tuple(found)
+
+
+def _nearness(function: Function, line: int) -> int:
+    """The larger, the nearer a function begins before a line."""
+    return function.line if function.line <= line else -function.line
+
+
+def opaque(tree: Tree) -> Iterator[Opaque]:
+    """The parts of a value that cannot be followed."""
+    if isinstance(tree, Opaque):
+        yield tree
+    for part in tree.parts:
+        yield from opaque(part)
 
 
 def _written(value: Tree) -> str:

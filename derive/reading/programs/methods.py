@@ -1,11 +1,12 @@
 """The method by which coordinates are changed step by step, and its faults."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from derive.reading.programs.program import Finding
-from derive.reading.programs.runge_kutta import Method, method
-from derive.reading.programs.sums import inner, total
+from derive.reading.programs.runge_kutta import Method, method, value_at
+from derive.reading.programs.sums import inner, terms, total
 from derive.reading.programs.trees import Array, Name, Number, Tree
 from derive.reading.programs.updates import Pair, Update, Updates
 
@@ -13,32 +14,55 @@ from derive.reading.programs.updates import Pair, Update, Updates
 DRAWING = {"draw", "animate", "animation", "render", "redraw", "tick", "frame", "drawframe"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class Written:
-    """A method that is written out, and the variables that it changes."""
+    """A method that is written out, and the rates of the variables that it changes."""
 
     line: int
     method: Method
-    variables: tuple[str, ...]
+    rates: dict[str, Tree]
 
 
 def written_methods(updates: Updates, returned: Tree | None) -> list[Written]:
     """The Runge-Kutta methods by which variables, or a value that is returned, are changed."""
-    found: list[Written] = []
     changes = [
         (name, one.line, total(one.line, one.increment)) for name, one in updates.updates.items()
     ]
     value = None if returned is None else inner(returned)
-    entries = value.items if isinstance(value, Array) else () if value is None else (value,)
-    changes += [("", entry.line, entry) for entry in entries]
+    for entry in value.items if isinstance(value, Array) else () if value is None else (value,):
+        parts = [*terms(entry, lambda _: False)]
+        own = next((one for one in parts if one[0] == 1 and isinstance(one[1], Name)), None)
+        if own and isinstance(own[1], Name):
+            rest = [one for one in parts if one is not own]
+            changes.append((own[1].path, entry.line, total(entry.line, rest)))
+    found: list[Written] = []
     for name, line, increment in changes:
-        if (one := method(increment)) is not None:
-            same = next((other for other in found if other.method == one), None)
-            if same is not None:
-                found.remove(same)
-            known = same or Written(line, one, ())
-            found.append(Written(known.line, one, (*known.variables, name)))
+        if (result := method(increment)) is not None:
+            one = next((other for other in found if other.method == result[0]), None)
+            if one is None:
+                found.append(one := Written(line, result[0], {}))
+            one.rates[name] = result[1]
     return found
+
+
+def written_pairs(updates: Updates, written: Sequence[Written]) -> Iterator[tuple[str, str, Tree]]:
+    """Coordinates, velocities and accelerations of methods that are written for each of them.
+
+    The first stage of a coordinate is its velocity: its increment is proportional to it.
+    """
+    rates = {name: value for one in written for name, value in one.rates.items()}
+    at_rest = dict.fromkeys(updates.updates, 0.0)
+    for name, update in updates.updates.items():
+        if name in rates:
+            continue
+        increment = total(update.line, update.increment)
+        for velocity, value in rates.items():
+            with suppress(ArithmeticError, ValueError):
+                if value_at(increment, at_rest) or not value_at(
+                    increment, at_rest | {velocity: 1.0}
+                ):
+                    continue
+                yield name, velocity, value
 
 
 def runge_kutta_findings(written: Sequence[Written], function: str) -> Iterator[Finding]:
@@ -60,6 +84,7 @@ def euler_findings(
     used: Mapping[str, frozenset[str]],
     function: str,
     constants: Mapping[str, Tree],
+    shown: Callable[[str], str],
 ) -> Iterator[Finding]:
     """Remarks on coordinates and velocities that are changed by their rates.
 
@@ -69,32 +94,28 @@ def euler_findings(
     velocities = {pair.velocity.variable for pair in pairs}
     for pair in pairs:
         q, v = pair.coordinate, pair.velocity
+        x, rate = shown(q.variable), shown(v.variable)
         new = used.get(q.variable, frozenset())
         moved = new & coordinates
         if pair.has_other_terms:
             continue
         if pair.uses_new_velocity:
-            text = f"semi-implicit Euler: {v.variable} first (line {v.line}), then {q.variable}"
+            text = f"semi-implicit Euler: {rate} first (line {v.line}), then {x}"
             yield Finding(q.line, "semi_implicit_euler", function, text)
         elif q.variable in moved:
-            text = f"semi-implicit Euler: {q.variable} first, then {v.variable} (line {v.line})"
+            text = f"semi-implicit Euler: {x} first, then {rate} (line {v.line})"
             yield Finding(q.line, "semi_implicit_euler", function, text)
         else:
-            text = (
-                f"explicit Euler: {q.variable} grows by the old value of {v.variable}, "
-                "so that the energy grows"
-            )
+            text = f"explicit Euler: {x} grows by the old value of {rate}"
             yield Finding(q.line, "explicit_euler", function, text, True)
         partly = (new & velocities) | (moved if moved != coordinates else frozenset())
         if partly:
-            text = (
-                f"the acceleration for {v.variable} uses values after the step: "
-                f"{', '.join(sorted(partly))}"
-            )
+            changed = ", ".join(sorted(map(shown, partly)))
+            text = f"the acceleration for {rate} uses values after the step: {changed}"
             yield Finding(v.line, "mixed_update", function, text, True)
     yield from _steps(pairs, function, constants)
     for pair in pairs:
-        yield from _damping(pair.velocity, function)
+        yield from _damping(pair.velocity, function, shown)
 
 
 def _steps(
@@ -116,7 +137,9 @@ def _steps(
         return
 
 
-def _damping(velocity: Update, function: str) -> Iterator[Finding]:
+def _damping(
+    velocity: Update, function: str, shown: Callable[[str], str]
+) -> Iterator[Finding]:
     if velocity.damping is not None:
-        text = f"{velocity.variable} is multiplied by a factor each step: damping"
+        text = f"{shown(velocity.variable)} is multiplied by a factor each step: damping"
         yield Finding(velocity.damping_line or velocity.line, "damping", function, text, True)

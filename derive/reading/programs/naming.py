@@ -25,6 +25,10 @@ class Names:
         """Give a variable a name, such as theta_dot."""
         self.given[path] = name
 
+    def in_program(self, path: str) -> str:
+        """The name of a variable in the program."""
+        return self._others.get(path, path)
+
     def __call__(self, path: str) -> str:
         """The name of a variable."""
         if path not in self.given:

@@ -112,7 +112,7 @@ def _is_formula(value: Tree) -> bool:
 
 def _contains(tree: Tree, path: str) -> bool:
     if isinstance(tree, Name):
-        return tree.path == path
+        return tree.path == path or tree.path.startswith((f"{path}[", f"{path}."))
     return any(_contains(part, path) for part in tree.parts)
 
 

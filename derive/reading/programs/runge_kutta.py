@@ -56,13 +56,16 @@ class Method:
         return 4
 
 
-def method(increment: Tree) -> Method | None:
-    """The method whose step adds `increment`; None if it is none of several stages."""
-    calls = _calls(increment)
+def method(increment: Tree) -> tuple[Method, Tree] | None:
+    """The method whose step adds `increment`, and the value of its first stage.
+
+    None if it is no method of several stages.
+    """
+    calls = _with_earlier(_calls(increment))
     if not 1 < len(calls) <= MAX_STAGES:
         return None
     weights = _coefficients(increment, calls)
-    if weights is None:
+    if weights is None or abs(value_at(increment, {}, calls)) > TOLERANCE:
         return None
     rows = [_row(call, calls) for call in calls]
     if None in rows or not any(any(row) for row in rows if row):
@@ -73,7 +76,20 @@ def method(increment: Tree) -> Method | None:
         rows = [tuple(x / size for x in row) if row else row for row in rows]
     order = sorted(range(len(calls)), key=lambda i: sum(map(bool, rows[i] or ())))
     A = tuple(tuple((rows[i] or ())[j] for j in order) for i in order)
-    return Method(A, tuple(weights[i] for i in order))
+    found = Method(A, tuple(weights[i] for i in order))
+    return found, _result(increment, calls[order[0]]) or increment
+
+
+def _result(tree: Tree, call: Call) -> Tree | None:
+    """The value of a call in a combination."""
+    if called(tree) == call:
+        return inner(tree)
+    return next((found for part in tree.parts if (found := _result(part, call))), None)
+
+
+def value_at(tree: Tree, names: Mapping[str, float], calls: Sequence[Call] = ()) -> float:
+    """A combination at values of names, 1 for others, with 0 for the values of calls."""
+    return _number(tree, calls, [0.0] * len(calls), names)
 
 
 def called(tree: Tree) -> Call | None:
@@ -97,6 +113,18 @@ def _calls(tree: Tree) -> list[Call]:
     found: list[Call] = []
     for part in tree.parts:
         found += [one for one in _calls(part) if one not in found]
+    return found
+
+
+def _with_earlier(calls: list[Call]) -> list[Call]:
+    """Calls, and the calls of the same functions in their arguments."""
+    found = [*calls]
+    for call in found:  # which grows
+        for argument in call.arguments:
+            for one in _calls(argument):
+                is_stage = any(one.function == other.function for other in calls)
+                if is_stage and one not in found and len(found) <= MAX_STAGES:
+                    found.append(one)
     return found
 
 
@@ -127,15 +155,16 @@ def _is_proportional(tree: Tree, calls: list[Call], row: tuple[float, ...]) -> b
 def _coefficients(tree: Tree, calls: Sequence[Call], step: float = 1.0) -> tuple[float, ...] | None:
     """The coefficients of the values of calls in a combination, with 1 for all names."""
     zeros = [0.0] * len(calls)
+    names = {"": step}
     try:
-        start = _number(tree, calls, zeros, step)
+        start = _number(tree, calls, zeros, names)
         found = []
         for index in range(len(calls)):
             values = [*zeros]
             values[index] = 1.0
-            once = _number(tree, calls, values, step) - start
+            once = _number(tree, calls, values, names) - start
             values[index] = 2.0
-            twice = _number(tree, calls, values, step) - start
+            twice = _number(tree, calls, values, names) - start
             if abs(twice - 2 * once) > 1e-9 * (1 + abs(once)):
                 return None
             found.append(round(once, 12))
@@ -144,23 +173,26 @@ def _coefficients(tree: Tree, calls: Sequence[Call], step: float = 1.0) -> tuple
     return tuple(found)
 
 
-def _number(tree: Tree, calls: Sequence[Call], values: Sequence[float], step: float) -> float:
+def _number(
+    tree: Tree, calls: Sequence[Call], values: Sequence[float], names: Mapping[str, float]
+) -> float:
+    """A combination with `values` of calls, and of names; that of others is names[""] or 1."""
     if (call := called(tree)) is not None:
         return values[calls.index(call)] if call in calls else 0.0
     match tree:
         case Number(digits=digits):
             return float(digits)
         case Name(path=path):
-            return math.pi if path == "pi" else step
+            return math.pi if path == "pi" else names.get(path, names.get("", 1.0))
         case Operation(operator="-", operands=(operand,)):
-            return -_number(operand, calls, values, step)
+            return -_number(operand, calls, values, names)
         case Operation(operator=operator, operands=(left, right)):
-            a, b = (_number(one, calls, values, step) for one in (left, right))
+            a, b = (_number(one, calls, values, names) for one in (left, right))
             return _value(operator, a, b)
         case Call(function=Name(path=path), arguments=(argument,)) if path in FUNCTIONS:
-            return FUNCTIONS[path](_number(argument, calls, values, step))
+            return FUNCTIONS[path](_number(argument, calls, values, names))
         case Item():
-            return step
+            return names.get("", 1.0)
     raise ValueError("no number")
 
 

@@ -45,9 +45,10 @@ class Pair:
 
 
 class Updates:
-    """The updates of a function or a loop."""
+    """The updates of a function or a loop; under conditions, without or with `is_met`."""
 
-    def __init__(self, follower: Follower) -> None:
+    def __init__(self, follower: Follower, *, is_met: bool) -> None:
+        self._is_met = is_met
         self._steps = [part for step in follower.steps for part in _parts(step, follower)]
         final = {}
         for path, value in follower.variables.items():
@@ -57,27 +58,35 @@ class Updates:
         self._old = {step.path: previous(step.path, used) for step in self._steps}
         #: Values that variables take, by identity.
         self._owners = {
-            id(inner(step.value)): self._old[step.path]
+            id(value): self._old[step.path]
             for step in self._steps
-            if not isinstance(inner(step.value), Name | Number)
+            if not isinstance(value := self._chosen(step.value, step.path), Name | Number)
         }
-        lines = {step.path: step.line for step in self._steps}
-        found = (self._update(path, value, lines.get(path, 0)) for path, value in final.items())
+        found = (self._update(path, value) for path, value in final.items())
         self.updates: dict[str, Update] = {one.variable: one for one in found if one}
 
     def _is_whole(self, tree: Tree) -> bool:
         return id(tree) in self._owners
 
-    def _update(self, path: str, value: Tree, line: int) -> Update | None:
+    def _chosen(self, value: Tree, old: str) -> Tree:
+        """A value without conditions: that which changes a variable, or one of two that do."""
+        value = inner(value)
+        while isinstance(value, Choice):
+            unchanged = Name(0, old)
+            takes_after = value.before == unchanged or (self._is_met and value.after != unchanged)
+            value = inner(value.after if takes_after else value.before)
+        return value
+
+    def _update(self, path: str, value: Tree) -> Update | None:
         old = self._old.get(path, path)
-        value = _unconditional(value, old)
+        value = self._chosen(value, old)
         damping, damping_line = None, 0
         match value:
             case Operation(operator="*", operands=(earlier, factor)) if self._owners.get(
                 id(earlier)
             ) == old or earlier == Name(0, old):
                 damping, damping_line, value = factor, value.line, earlier
-        line = next((s.line for s in self._steps if s.value is value and s.path == path), line)
+        line = value.line
         first = [*terms(value, lambda tree: tree is not value and self._is_whole(tree))]
         own = [one for one in first if one[1] == Name(0, old)]
         if len(own) != 1 or own[0][0] != 1:
@@ -113,9 +122,18 @@ class Updates:
                 if any(self._moves(one) for one in others):
                     continue
                 step = product(term.line, others) if others else None
-                more = is_part or len(coordinate.increment) > 1
+                rest = [one for one in coordinate.increment if one[1] is not term]
+                more = is_part or bool(rest)
+                if any(self._has_acceleration(one, step) for _, one in rest):
+                    return None
                 return Pair(coordinate, velocity, step, is_new, more)
         return None
+
+    def _has_acceleration(self, term: Tree, step: Tree | None) -> bool:
+        """Whether a term has a variable that is no step size: an acceleration from before."""
+        steps = {*names(step)} if step else set()
+        parts = factors(term, self._is_whole)
+        return any(isinstance(one, Name) and one.path not in {*steps, "pi"} for one in parts)
 
     def _velocity(self, tree: Tree) -> tuple[Update | None, bool, bool]:
         """The variable that a factor is, whether after its update, and whether in between."""
@@ -198,10 +216,3 @@ def names(tree: Tree) -> Iterator[str]:
         yield tree.path
     for part in tree.parts:
         yield from names(part)
-
-
-def _unconditional(value: Tree, old: str) -> Tree:
-    """A value without conditions: a reset after an update, or an update under a condition."""
-    while isinstance(value, Choice):
-        value = value.after if value.before == Name(0, old) else value.before
-    return value

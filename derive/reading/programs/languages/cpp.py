@@ -33,6 +33,7 @@ language = Language(
         "init_declarator": "assign",
         "assignment_expression": "assign",
         "update_expression": "update",
+        "conditional_expression": "conditional",
         "return_statement": "return",
         "if_statement": "branch",
         "else_clause": "otherwise",

@@ -32,6 +32,7 @@ language = Language(
         "assignment_expression": "assign",
         "augmented_assignment_expression": "assign",
         "update_expression": "update",
+        "ternary_expression": "conditional",
         "return_statement": "return",
         "if_statement": "branch",
         "else_clause": "otherwise",

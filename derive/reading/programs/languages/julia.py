@@ -45,6 +45,7 @@ language = Language(
         "assignment": "assign",
         "compound_assignment_expression": "assign",
         "let_binding": "assign",
+        "ternary_expression": "conditional",
         "return_statement": "return",
         "if_statement": "branch",
         "else_clause": "otherwise",

@@ -20,6 +20,7 @@ language = Language(
         "assignment": "assign",
         "augmented_assignment": "assign",
         "named_expression": "assign",
+        "conditional_expression": "conditional",
         "return_statement": "return",
         "if_statement": "branch",
         "else_clause": "otherwise",
