@@ -378,3 +378,89 @@ function slope(u, p, t)
     return [v; M \\ (-C*v - G)]
 end
 """
+
+#: Steps of Runge and Kutta for each variable.
+SCALAR_STEPS = """
+import math
+
+def acc1(t1, t2, w1, w2, m1, m2, l1, l2, g):
+    above = -g*(2*m1 + m2)*math.sin(t1) - m2*g*math.sin(t1 - 2*t2)
+    above -= 2*math.sin(t1 - t2)*m2*(w2**2*l2 + w1**2*l1*math.cos(t1 - t2))
+    return above/(l1*(2*m1 + m2 - m2*math.cos(2*t1 - 2*t2)))
+
+def acc2(t1, t2, w1, w2, m1, m2, l1, l2, g):
+    above = w1**2*l1*(m1 + m2) + g*(m1 + m2)*math.cos(t1) + w2**2*l2*m2*math.cos(t1 - t2)
+    return 2*math.sin(t1 - t2)*above/(l2*(2*m1 + m2 - m2*math.cos(2*t1 - 2*t2)))
+
+def step(t1, t2, w1, w2, h, *p):
+    a1, b1 = h*w1, h*w2
+    c1, d1 = h*acc1(t1, t2, w1, w2, m1, m2, l1, l2, g), h*acc2(t1, t2, w1, w2, m1, m2, l1, l2, g)
+    a2, b2 = h*(w1 + c1/2), h*(w2 + d1/2)
+    c2 = h*acc1(t1 + a1/2, t2 + b1/2, w1 + c1/2, w2 + d1/2, m1, m2, l1, l2, g)
+    d2 = h*acc2(t1 + a1/2, t2 + b1/2, w1 + c1/2, w2 + d1/2, m1, m2, l1, l2, g)
+    t1, t2, w1, w2 = t1 + a2, t2 + b2, w1 + c2, w2 + d2
+    return t1, t2, w1, w2
+"""
+
+#: A step that depends on a condition, and a force with one of two values.
+CONDITIONAL = """
+class Model:
+    def step(self, action):
+        x, v = self.state
+        force = self.push if action else -1.0
+        kick = 10 if action else -10
+        a = (kick - self.k*x)/self.m
+        if self.kind == "euler":
+            x = x + self.h*v
+            v = v + self.h*a
+        else:
+            v = v + self.h*a
+            x = x + self.h*v
+        self.state = x, v
+
+    def other(self, t, y):
+        if y[0] > 1:
+            force = self.push*y[0]
+        else:
+            force = 0
+        return [y[1], force - y[0]]
+"""
+
+#: Parts that are not followed.
+UNREADABLE = """
+def chain(t, y, n):
+    theta, omega = y[:n], y[n:]
+    a = np.zeros(n)
+    for i in range(n):
+        for j in range(n):
+            a[i] -= omega[j]**2*sin(theta[i] - theta[j])
+    return np.concatenate([omega, a])
+
+def table(t, y):
+    return [y[1], lookup(y[0]) - y[1]]
+
+def early(t, y):
+    if y[0] > 1:
+        return [0, 0]
+    return [y[1], -y[0]]
+
+def broken(t, y):
+    k = 2 +* 3
+    return [y[1], -k*y[0]]
+
+def verlet(x, v, a, h, k):
+    x = x + v*h + 0.5*a*h**2
+    new = -k*x
+    v = v + 0.5*(a + new)*h
+    return x, v, new
+"""
+
+#: The second acceleration uses the new velocity of the first.
+MIXED = """
+function step() {
+  w1 += h * (-Math.sin(t1) - k * w2);
+  w2 += h * (-Math.sin(t2) - k * w1);
+  t1 += h * w1;
+  t2 += h * w2;
+}
+"""

@@ -97,6 +97,13 @@ CASES = {
         1,
     ),
     "history": ("Python", programs.HISTORY, "single_pendulum", {"L": "l"}, 1),
+    "scalar steps": (
+        "Python",
+        programs.SCALAR_STEPS,
+        "double_pendulum",
+        {"t1": "theta1", "t2": "theta2"},
+        2,
+    ),
     "C": ("C++", programs.C_PROGRAM, "double_pendulum", ENTRIES | {"G": "g"}, 2),
     "C++": ("C++", programs.CPP_PROGRAM, "elastic_pendulum", {"mass": "m", "rest": "l"}, 2),
     "MATLAB": ("MATLAB", programs.MATLAB_PROGRAM, "double_pendulum", ENTRIES_FROM_1, 2),
@@ -212,6 +219,41 @@ def test_methods_are_found_in_all_languages() -> None:
     assert kinds(octave, faults=False) == {"explicit_euler"}
     cpp = read_program(programs.CPP_PROGRAM, "C++")
     assert kinds(cpp, faults=False) == {"semi_implicit_euler"}
+
+
+def test_parts_that_are_not_followed_are_reported_and_never_guessed() -> None:
+    text = programs.UNREADABLE
+    program = read_program(text, "Python")
+    assert not program.equations
+    reasons = {one.function: (one.line, one.reason) for one in program.unread}
+    assert reasons["chain"] == (line_of(text, "for i in"), "a loop is not followed")
+    assert reasons["table"][1] == "the function lookup is not followed"
+    assert reasons["early"] == (line_of(text, "if y[0]"), "the value depends on a condition")
+    assert "is not understood" in reasons["broken"][1]
+    assert reasons["verlet"][1] == "the update of x has the acceleration a of another step"
+
+
+def test_conditions_on_the_method_give_both_methods_and_those_on_formulas_none() -> None:
+    program = read_program(programs.CONDITIONAL, "Python")
+    assert [one.text for one in program.equations] == ["x_ddot = (kick - k*x)/m"]
+    found = {one.kind: one.line for one in program.findings}
+    text = programs.CONDITIONAL
+    assert found["explicit_euler"] == line_of(text, "x = x + self.h*v")
+    assert found["semi_implicit_euler"] > found["explicit_euler"]
+    (unread,) = program.unread
+    assert unread.function == "Model.other"
+    assert "conditional" in unread.reason
+
+
+def test_accelerations_with_values_after_the_step_are_reported() -> None:
+    program = read_program(programs.MIXED, "JavaScript")
+    mixed = finding(program, "mixed_update")
+    assert mixed.text == "the acceleration for w2 uses values after the step: w1"
+    assert mixed.line == line_of(programs.MIXED, "w2 +=")
+    assert [one.text for one in program.equations] == [
+        "t1_ddot = -sin(t1) - k*t2_dot",
+        "t2_ddot = -sin(t2) - k*t1_dot",
+    ]
 
 
 def test_coefficients_of_runge_kutta_methods_are_checked() -> None:

@@ -4,22 +4,10 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from derive.reading.programs.code import Assignment, Branch, Definition, Evaluation, Loop, Statement
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.program import ProgramError
-from derive.reading.programs.trees import (
-    Array,
-    Assignment,
-    Branch,
-    Call,
-    Definition,
-    Evaluation,
-    Item,
-    Loop,
-    Member,
-    Name,
-    Statement,
-    Tree,
-)
+from derive.reading.programs.trees import Array, Call, Item, Member, Name, Tree
 
 #: Expressions that are followed in one program.
 MAX_STEPS = 60_000

@@ -1,17 +1,7 @@
 """Loops over the entries of arrays, as statements about whole arrays."""
 
-from derive.reading.programs.trees import (
-    Assignment,
-    Call,
-    Item,
-    Loop,
-    Name,
-    Number,
-    Operation,
-    Statement,
-    Tree,
-    replaced,
-)
+from derive.reading.programs.code import Assignment, Loop, Statement
+from derive.reading.programs.trees import Call, Item, Name, Number, Operation, Tree, replaced
 
 
 class _NotElementwiseError(Exception):

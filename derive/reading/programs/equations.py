@@ -49,7 +49,8 @@ class Equations:
             matrix, column = system.parts
             values = entries(column)
             count = len(matrix.items) if isinstance(matrix, Array) else 0
-            if not is_square(matrix) or values is None or set(unknowns) != {*range(count)}:
+            is_known = is_square(matrix) and values is not None and len(values) == count
+            if not is_known or values is None or set(unknowns) != {*range(count)}:
                 reason = "a linear system for the accelerations is not followed"
                 self.unread.append(Unread(system.line, reason, self._function))
                 continue

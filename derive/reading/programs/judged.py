@@ -4,10 +4,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from derive.reading.programs.arrays import entries
+from derive.reading.programs.calls import CONDITION, Step
+from derive.reading.programs.code import Assignment, Statement
 from derive.reading.programs.context import Context, statements, static_path
 from derive.reading.programs.degrees import angles, named_in_degrees, number, starts_in_degrees
 from derive.reading.programs.equations import Equations
-from derive.reading.programs.following import LOOP, Step, root
+from derive.reading.programs.following import LOOP
 from derive.reading.programs.libraries import integrated, library_findings
 from derive.reading.programs.methods import (
     euler_findings,
@@ -19,8 +21,9 @@ from derive.reading.programs.naming import Names
 from derive.reading.programs.program import Constant, Finding, Function, Program, Unread
 from derive.reading.programs.rates import Rates, rates
 from derive.reading.programs.regions import Region
-from derive.reading.programs.trees import Assignment, Opaque, Statement, Tree
+from derive.reading.programs.trees import Opaque, Tree
 from derive.reading.programs.updates import Updates, without_time
+from derive.reading.programs.values import root
 from derive.reading.programs.writing import UnwrittenError, Writer
 
 
@@ -58,18 +61,21 @@ class Findings:
             self._add_rates(region, found)
         for is_met in (False, True):
             self._add_updates(region, is_met=is_met)
-        self._add_loops(region)
+        self._add_open(region)
 
-    def _add_loops(self, region: Region) -> None:
-        """Note values that are left open since they are computed in loops."""
+    def _add_open(self, region: Region) -> None:
+        """Note values that are open since they are computed in loops or under conditions."""
         given = {one.name for one in region.definition.parameters}
         values = [v for path, v in region.follower.variables.items() if root(path) in given]
         if region.follower.returned is not None:
             values.append(region.follower.returned)
+        result = region.follower.result(region.definition)
+        if region.follower.other_returns and isinstance(result, Opaque):
+            values.append(result)
         for value in values:
             for one in opaque(value):
-                if one.reason == LOOP:
-                    self._unread.append(Unread(one.line, LOOP, region.name))
+                if one.reason in (LOOP, CONDITION):
+                    self._unread.append(Unread(one.line, one.reason, region.name))
 
     def _add_rates(self, region: Region, found: Rates) -> None:
         names = Names(region.follower.steps)
@@ -97,6 +103,7 @@ class Findings:
         equations = Equations(region.name, names)
         changed = {name for one in written for name in one.rates}
         pairs = tuple(one for one in updates.pairs if one.coordinate.variable not in changed)
+        self._unread += [Unread(line, why, region.name) for line, why in updates.unread]
         used, found = {}, list(written_pairs(updates, written))
         for pair in pairs:
             q = pair.coordinate.variable

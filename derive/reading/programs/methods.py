@@ -137,9 +137,7 @@ def _steps(
         return
 
 
-def _damping(
-    velocity: Update, function: str, shown: Callable[[str], str]
-) -> Iterator[Finding]:
+def _damping(velocity: Update, function: str, shown: Callable[[str], str]) -> Iterator[Finding]:
     if velocity.damping is not None:
         text = f"{shown(velocity.variable)} is multiplied by a factor each step: damping"
         yield Finding(velocity.damping_line or velocity.line, "damping", function, text, True)

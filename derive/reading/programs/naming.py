@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from derive.reading.programs.following import Step
+from derive.reading.programs.calls import Step
 from derive.reading.programs.trees import Name
 from derive.reading.programs.writing import cleaned
 

@@ -2,12 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from derive.reading.programs.arrays import entries, flat
+from derive.reading.programs.code import Definition
 from derive.reading.programs.following import Follower
 from derive.reading.programs.sums import inner, terms
-from derive.reading.programs.trees import Definition, Name, Record, Tree
+from derive.reading.programs.trees import Name, Record, Tree
 from derive.reading.programs.values import whole
 
 #: Names of time as the first parameter.
@@ -20,7 +21,7 @@ class Rates:
 
     values: Mapping[str, Tree]
     lines: Mapping[str, int]
-    is_step: bool  # the values are not rates, but the variables after a step
+    is_step: bool = False  # the values are not rates, but the variables after a step
 
     @property
     def velocities(self) -> dict[str, str]:
@@ -38,16 +39,17 @@ def rates(definition: Definition, follower: Follower) -> Rates | None:
     for outputs, lines in _outputs(definition, follower):
         if len(outputs) >= 2 and (keys := _state(definition, follower, outputs)) is not None:
             found = dict(zip(keys, outputs.values(), strict=True))
-            return Rates(found, dict(zip(keys, lines, strict=True)), _is_step(found))
+            result = Rates(found, dict(zip(keys, lines, strict=True)))
+            return replace(result, is_step=not result.velocities and _is_step(found))
     return None
 
 
 def _is_step(values: Mapping[str, Tree]) -> bool:
     """Whether values are those of the same variables later, not their rates."""
     return any(
-        inner(term) == Name(0, path)
+        sign == 1 and inner(term) == Name(0, path)
         for path, value in values.items()
-        for _, term in terms(inner(value), lambda _: False)
+        for sign, term in terms(inner(value), lambda _: False)
     )
 
 

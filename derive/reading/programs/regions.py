@@ -4,22 +4,12 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from derive.reading.programs.code import Assignment, Definition, Evaluation, Loop, Statement
 from derive.reading.programs.context import Context, assigned, statements, static_path, targets
 from derive.reading.programs.degrees import number
-from derive.reading.programs.following import Follower, root
-from derive.reading.programs.trees import (
-    Array,
-    Assignment,
-    Call,
-    Definition,
-    Evaluation,
-    Loop,
-    Member,
-    Name,
-    Opaque,
-    Statement,
-    Tree,
-)
+from derive.reading.programs.following import Follower
+from derive.reading.programs.trees import Array, Call, Member, Name, Opaque, Tree
+from derive.reading.programs.values import root
 
 
 @dataclass(frozen=True)

@@ -1,29 +1,32 @@
 """From the syntax tree of a grammar to statements."""
 
-from collections import deque
+import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from derive.reading.programs.expressions import DIGITS, ExpressionTranslator, line, shown, text
-from derive.reading.programs.trees import (
-    Array,
+from derive.reading.programs.code import (
     Assignment,
     Branch,
-    Call,
     Declaration,
     Definition,
     Evaluation,
     Fault,
+    Loop,
+    Parameter,
+    Return,
+    Statement,
+)
+from derive.reading.programs.definitions import DefinitionTranslator
+from derive.reading.programs.expressions import DIGITS, line, shown, text
+from derive.reading.programs.trees import (
+    Array,
+    Call,
     Item,
     Lambda,
-    Loop,
     Member,
     Name,
     Number,
-    Parameter,
     Record,
-    Return,
-    Statement,
     Tree,
 )
 
@@ -32,15 +35,17 @@ if TYPE_CHECKING:
 
 #: Levels of blocks in blocks.
 MAX_BLOCKS = 60
-#: Roles of nodes that are no statements of a body.
-HEADERS = ("header", "parameters", "results", "skip", "otherwise")
+#: Variables that a text assigns, and characters of the text in which they are searched.
+ASSIGNED = re.compile(
+    r"([^\W\d][\w.]{0,50})(?:\[[^\]]{0,30}\]|\([^)]{0,30}\))?\s{0,9}[-+*/^]?=(?!=)"
+)
+MAX_FAULT = 5_000
 
 
-class Translator(ExpressionTranslator):
-    """Translates statements, and functions without a name."""
+class Translator(DefinitionTranslator):
+    """Translates statements."""
 
     _blocks = 0
-    _owner = ""
 
     def statements(self, nodes: Sequence["Node"]) -> tuple[Statement, ...]:
         """The statements at nodes, with those of blocks among them in one row."""
@@ -53,9 +58,9 @@ class Translator(ExpressionTranslator):
         method: Callable[[Node], Iterator[Statement]] | None
         method = getattr(self, f"_{role}_statements", None)
         if self._blocks > MAX_BLOCKS:
-            yield Fault(line(node), "the blocks are nested too deeply")
+            yield _fault(node, "the blocks are nested too deeply")
         elif node.has_error and (method is None or role in ("assign", "update", "return", "")):
-            yield Fault(line(node), f"{shown(node)!r} is not understood")
+            yield _fault(node, f"{shown(node)!r} is not understood")
         elif method is None:
             yield Evaluation(line(node), self.tree(node))
         else:
@@ -188,7 +193,7 @@ class Translator(ExpressionTranslator):
         return self.statements(children)
 
     def _choice_statements(self, node: "Node") -> Iterator[Statement]:
-        yield Fault(line(node), "a choice between cases is not followed")
+        yield _fault(node, "a choice between cases is not followed")
 
     def _loop_statements(self, node: "Node") -> Iterator[Statement]:
         body = node.child_by_field_name("body")
@@ -200,85 +205,7 @@ class Translator(ExpressionTranslator):
         variable = "" if is_while or name is None else self.word(name)
         yield Loop(line(node), variable, self.statements(nodes))
 
-    def _body(self, node: "Node") -> list["Node"]:
-        fields = [node.child_by_field_name(name) for name in ("condition", "name")]
-        return [n for n in self.children(node) if self.role(n) not in HEADERS and n not in fields]
 
-    def _function_statements(self, node: "Node") -> Iterator[Statement]:
-        parameters = self._first(node, "parameters")
-        header = next((one for one in self.children(node) if self.role(one) == "header"), node)
-        named = header.child_by_field_name("name") or self._first(header, "name")
-        yield self._definition(node, self.word(named) if named else "", parameters)
-
-    def _owner_of(self, node: "Node") -> str:
-        """The class of a method that is defined outside it, such as P of ``P::step``."""
-        header = node.child_by_field_name("declarator")
-        named = header.child_by_field_name("declarator") if header else None
-        scope = named.child_by_field_name("scope") if named else None
-        return text(scope) if scope else self._owner
-
-    def _lambda_tree(self, node: "Node") -> Tree:
-        parameters = node.child_by_field_name("parameter") or self._first(node, "parameters")
-        parameters = parameters or self.children(node)[0]
-        return Lambda(line(node), self._definition(node, "", parameters))
-
-    def _definition(self, node: "Node", name: str, given: "Node | None") -> Definition:
-        body = node.child_by_field_name("body")
-        blocks = [one for one in self.children(node) if self.role(one) == "block"]
-        nodes = [body] if body else blocks or self._body(node)
-        if name == "" and len(nodes) > 1:
-            nodes = nodes[-1:]  # the parameter of a short function stands before its body
-        first = [one for one in self.children(node) if self.role(one) == "initializers"]
-        statements = self.statements([*first, *nodes])
-        if self.language.returns_last or self.role(nodes[0] if nodes else node) != "block":
-            statements = _with_return(statements)
-        found = self._first(node, "results")
-        results = tuple(self.word(one) for one in self._names(found)) if found else ()
-        if node.type == "function" and not results:
-            results = (name,)  # of Fortran
-        parameters = tuple(self._parameters(given)) if given else ()
-        owner = self._owner_of(node) if name else self._owner
-        return Definition(line(node), name, parameters, statements, owner, results)
-
-    def _parameters(self, node: "Node") -> Iterator[Parameter]:
-        if self.role(node) == "name":
-            yield Parameter(self.word(node))
-            return
-        for child in self.children(node):
-            name = child if self.role(child) == "name" else self._first(child, "name")
-            default = next(
-                filter(None, map(child.child_by_field_name, ("value", "right", "default_value"))),
-                None,
-            )
-            if name:
-                yield Parameter(self.word(name), self.tree(default) if default else None)
-
-    def _names(self, node: "Node") -> Iterator["Node"]:
-        for child in self.children(node):
-            if self.role(child) == "name":
-                yield child
-            else:
-                yield from self._names(child)
-
-    def _first(self, node: "Node", role: str) -> "Node | None":
-        """The first node of a role within a node, the nearest levels first."""
-        nodes = deque(self.children(node))
-        for _ in range(200):
-            if not nodes:
-                break
-            one = nodes.popleft()
-            if self.role(one) == role:
-                return one
-            if self.role(one) not in ("skip", "block"):
-                nodes.extend(self.children(one))
-        return None
-
-
-def _with_return(statements: tuple[Statement, ...]) -> tuple[Statement, ...]:
-    """The statements of a function whose value is its last expression."""
-    match statements:
-        case (*rest, Evaluation(line=number, value=value)):
-            return (*rest, Return(number, value))
-        case (*rest, Branch(line=number, body=body, otherwise=otherwise)):
-            return (*rest, Branch(number, _with_return(body), _with_return(otherwise)))
-    return statements
+def _fault(node: "Node", reason: str) -> Fault:
+    names = dict.fromkeys(ASSIGNED.findall(text(node)[:MAX_FAULT]))
+    return Fault(line(node), reason, tuple(names))

@@ -9,7 +9,8 @@ from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from functools import cached_property
 
-from derive.reading.programs.following import Follower, Step
+from derive.reading.programs.calls import Step
+from derive.reading.programs.following import Follower
 from derive.reading.programs.sums import Term, factors, inner, product, terms, total
 from derive.reading.programs.trees import Array, Choice, Name, Number, Operation, Tree, replaced
 
@@ -49,6 +50,8 @@ class Updates:
 
     def __init__(self, follower: Follower, *, is_met: bool) -> None:
         self._is_met = is_met
+        #: Lines and reasons of updates that are not followed.
+        self.unread: list[tuple[int, str]] = []
         self._steps = [part for step in follower.steps for part in _parts(step, follower)]
         final = {}
         for path, value in follower.variables.items():
@@ -124,16 +127,19 @@ class Updates:
                 step = product(term.line, others) if others else None
                 rest = [one for one in coordinate.increment if one[1] is not term]
                 more = is_part or bool(rest)
-                if any(self._has_acceleration(one, step) for _, one in rest):
+                for earlier in (name for _, one in rest for name in self._others(one, step)):
+                    change = f"the update of {coordinate.variable} has the acceleration {earlier}"
+                    self.unread.append((coordinate.line, f"{change} of another step"))
                     return None
                 return Pair(coordinate, velocity, step, is_new, more)
         return None
 
-    def _has_acceleration(self, term: Tree, step: Tree | None) -> bool:
-        """Whether a term has a variable that is no step size: an acceleration from before."""
+    def _others(self, term: Tree, step: Tree | None) -> list[str]:
+        """The variables in a term that are no step size: accelerations from before."""
         steps = {*names(step)} if step else set()
         parts = factors(term, self._is_whole)
-        return any(isinstance(one, Name) and one.path not in {*steps, "pi"} for one in parts)
+        found = [one.path for one in parts if isinstance(one, Name)]
+        return [path for path in found if path not in {*steps, "pi"}]
 
     def _velocity(self, tree: Tree) -> tuple[Update | None, bool, bool]:
         """The variable that a factor is, whether after its update, and whether in between."""

@@ -195,6 +195,11 @@ def _field(tree: Tree, name: str) -> Tree | None:
     return None
 
 
+def root(path: str) -> str:
+    """The variable of an entry or member."""
+    return path.partition("[")[0].partition(".")[0]
+
+
 def whole(text: str) -> int | None:
     """An index that is a number."""
     return int(text) if text.lstrip("-").isdigit() else None
