@@ -293,6 +293,9 @@ UNICODE = r"""
 √(x+y) z  ⟶  root2(x + y) z
 𝜃₁ ẋ₁  ⟶  theta_1 x_1.
 α_1 ≈ x′  ⟶  alpha_1 ~ x'
+x = A cos ωt  ⟶  x = A cos(omega t)
+θ″ + ω² θ = 0  ⟶  (theta'' + omega^2 theta) = 0
+ω = √(g/l)  ⟶  omega = root2([g / l])
 sinθ cosθ  ⟶  sin(theta) cos(theta)
 x̂ ≤ ℓ  ⟶  xhat <= ell
 φ̈ = −(g⁄l) sin φ  ⟶  phi.. = (- [g / l] sin(phi))
@@ -354,6 +357,7 @@ x &= a & - y &= b  ⟶  x = a | (- y) = b
 \begin{array}{rcl} x &=& a \\ y &=& b \end{array}  ⟶  x = a | y = b
 \begin{eqnarray} x &=& a \\ &=& b \end{eqnarray}  ⟶  x = a = b
 \begin{multline} x = a \\ + b \end{multline}  ⟶  x = (a + b)
+\begin{multline} x = a \\ b + c \\ - d = e \end{multline}  ⟶  x = (a b + c - d) = e
 x = \begin{split} a \\ + b \end{split}  ⟶  x = (a + b)
 L &= a \intertext{and so} M &= b  ⟶  L = a | M = b
 \begin{array}{r c l} x & \hspace{-1ex} =& a \\ y & \hspace{-1ex} =& b \end{array}  ⟶  x = a | y = b

@@ -82,7 +82,15 @@ def nodes(value: Any, around: tuple[int, int] = (-1, -1)) -> Iterator[Node]:
 
 
 #: Formulas of which a part has no text of its own: ``1, 2`` of ``i = 1, 2``, and ``t`` of ``dt``.
-WITHOUT_TEXT = (r"\text{friction of", r"\dot\theta^2_1", r"\mathrm{dt}", r"\pdv", "i = 1", *"²½⅞")
+WITHOUT_TEXT = (
+    r"\text{friction of",
+    "multline",
+    r"\dot\theta^2_1",
+    r"\mathrm{dt}",
+    r"\pdv",
+    "i = 1",
+    *"²½⅞",
+)
 
 
 @pytest.mark.parametrize("latex", [latex for latex, _ in READABLE])

@@ -50,6 +50,7 @@ def flattened(tokens: list[Token]) -> list[Token]:
     partner = pairs(tokens)
     result: list[Token] = []
     kept: set[int] = set()
+    joined: set[int] = set()  # ends of lines within one equation
     for at, token in enumerate(tokens):
         if token.kind == "begin":
             end = partner.get(at)
@@ -61,11 +62,14 @@ def flattened(tokens: list[Token]) -> list[Token]:
                 raise Unread(f"the environment {token.text!r} is not known")
             elif token.text in ("cases", "dcases") and not _starts_statement(result):
                 kept |= {at, end}
+            if token.text in ("multline", "multlined"):
+                joined |= set(inside(at, end, partner))
             if at not in kept:
                 token = Token("row", "", (token.span[1], token.span[1]))
         elif token.kind == "end" and at not in kept:
             token = Token("row", "", (token.span[0], token.span[0]))
-        if not _encloses_statement(tokens, at, partner):
+        is_joined = token.kind == "row" and at in joined
+        if not is_joined and not _encloses_statement(tokens, at, partner):
             result.append(token)
     return result
 

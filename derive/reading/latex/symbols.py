@@ -48,7 +48,7 @@ BOLD = frozenset("mathbf boldsymbol bm pmb mathbfit symbf vec overrightarrow vb 
 UPRIGHT = frozenset("mathrm operatorname mathsf mathtt mathup".split())
 SCRIPT = frozenset("mathcal mathscr mathfrak mathbb mathit mathnormal".split())
 FONTS = BOLD | UPRIGHT | SCRIPT
-FRACTIONS = frozenset("frac tfrac dfrac cfrac".split())
+FRACTIONS = frozenset("frac tfrac dfrac cfrac nicefrac sfrac flatfrac".split())
 TEXT = frozenset("text textrm textit textbf textsf textnormal mbox hbox textup".split())
 
 #: Commands without a meaning, by their number of arguments.
@@ -61,11 +61,15 @@ LAYOUT = {
         mathinner ensuremath smash mathpunct qedhere""".split(),
         0,
     ),
-    **dict.fromkeys("label tag vspace phantom hphantom vphantom color cite".split(), 1),
-    "textcolor": 1, "definecolor": 3, "colorbox": 1, "rule": 2,
+    **dict.fromkeys(
+        """label tag vspace phantom hphantom vphantom color cite ref eqref cref require textcolor
+        colorbox class cssId style href""".split(),
+        1,
+    ),
+    "definecolor": 3, "rule": 2,
 }  # fmt: skip
 #: Commands that frame, strike or colour the argument behind them.
-FRAMES = frozenset("boxed fbox cancel bcancel xcancel textcolor colorbox mathop smash".split())
+FRAMES = frozenset("boxed fbox cancel bcancel xcancel textcolor colorbox mathop smash href".split())
 SPACES = frozenset(", ; : ! > ~ / thinspace medspace thickspace negthinspace enspace space".split())
 GAPS = frozenset("quad qquad enskip".split())
 
