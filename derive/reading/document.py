@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple, TypeAlias
 
-Kind: TypeAlias = Literal["latex", "markdown", "restructuredtext", "html", "notebook"]
+Kind: TypeAlias = Literal["latex", "markdown", "restructuredtext", "html", "notebook", "program"]
 
 
 class Place(NamedTuple):

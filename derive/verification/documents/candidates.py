@@ -1,7 +1,7 @@
 """What the letters of a document can mean: a system, an order of coordinates, a convention."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice, permutations, product
 from math import pi
 from typing import Any
@@ -48,6 +48,8 @@ class Candidate:
     parameters: Mapping[str, str]  # of the system, and the document's letters
     forces: tuple[tuple[str, int], ...] = ()  # letters of forces on coordinates of the document
     friction: tuple[tuple[str, int], ...] = ()
+    #: Numbers in place of parameters that have no letter.
+    numbers: Mapping[str, str] = field(default_factory=dict)
 
     def offset(self, index: int, values: Mapping[str, float]) -> float:
         """The offset of a coordinate in numbers."""
@@ -55,8 +57,13 @@ class Candidate:
         return values[offset] if isinstance(offset, str) else offset * pi / 2
 
 
-def candidates(system: System, letters: Letters) -> Iterator[Candidate]:
-    """Yield the candidates of a system, the likeliest first."""
+def candidates(
+    system: System, letters: Letters, numbers: Mapping[str, str] | None = None
+) -> Iterator[Candidate]:
+    """Yield the candidates of a system, the likeliest first.
+
+    With `numbers`, by kinds of parameters, these have the numbers instead of letters.
+    """
     n = len(system.coordinates)
     choices = _likeliest(
         [*_conventions(system, letters)],
@@ -66,7 +73,21 @@ def candidates(system: System, letters: Letters) -> Iterator[Candidate]:
         loads(letters, "damping", n),
     )
     for (signs, offsets), order, mapping, forces, friction in islice(choices, MAX_CANDIDATES):
-        yield Candidate(system, order, signs, offsets, mapping, forces, friction)
+        own = _numbers(system, mapping, numbers or {})
+        if numbers is None or own:
+            yield Candidate(system, order, signs, offsets, mapping, forces, friction, own)
+
+
+def _numbers(
+    system: System, mapping: Mapping[str, str], numbers: Mapping[str, str]
+) -> dict[str, str]:
+    """Numbers for the parameters without a letter."""
+    kinds = {p.symbol.name: UNITS.get(p.unit, "") for p in system.parameters}
+    return {
+        name: numbers.get(kind, "1")
+        for name, kind in kinds.items()
+        if numbers and name not in mapping
+    }
 
 
 def _likeliest(*choices: Sequence[Any]) -> Iterator[tuple[Any, ...]]:

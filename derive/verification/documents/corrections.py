@@ -1,7 +1,7 @@
 """Wrong terms of formulas as the document writes them, and the formulas with correct ones."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from derive.formulas.expression import is_sum, syntax_tree
@@ -43,7 +43,7 @@ def corrected(
     changes.sort(reverse=True)
     text, start = latex, tree.span[0]
     for (a, b), new in changes:
-        text = _inserted(text[:a], text[a:b], new, text[b:])
+        text = inserted(text[:a], text[a:b], new, text[b:])
     end = tree.span[1] + len(text) - len(latex)
     spans = tuple(span for span, _ in reversed(changes))
     terms = [latex[slice(*span)] for span in spans if span[0] < span[1]]
@@ -56,18 +56,21 @@ def _place(formula: DocumentFormula, result: SideVerdict, one: Correction) -> Sp
         side = result.parts[0][1]
         whole = side.source(0, len(side.text))
         return whole and (whole[1], whole[1])
-    tokens = re.findall(r"\w+|\*\*|\S", one.wrong)
-    pattern = r"\s*".join(map(re.escape, tokens))
     for _, side in result.parts:
-        for match in re.finditer(pattern, side.text):
-            if _is_delimited(side.text, *match.span()) and (found := side.source(*match.span())):
+        for start, end in places(side.text, one.wrong):
+            if found := side.source(start, end):
                 return _with_sign(formula.occurrence.latex, found) if one.wrong[0] == "-" else found
     return None
 
 
-def _is_delimited(text: str, start: int, end: int) -> bool:
-    before, after = text[:start].rstrip()[-1:], text[end:].lstrip()[:1]
-    return (before in "(+-=,*/" or text[start] == "-") and after in ")+-=,*/"
+def places(text: str, term: str) -> Iterator[tuple[int, int]]:
+    """Where a term stands in a formula of our syntax, whatever its spaces."""
+    tokens = re.findall(r"\w+|\*\*|\S", term)
+    for match in re.finditer(r"\s*".join(map(re.escape, tokens)), text):
+        before, after = text[: match.start()].rstrip()[-1:], text[match.end() :].lstrip()[:1]
+        begins = before in "(+-=,*/[" or text[match.start()] == "-"
+        if begins and after in ")+-=,*/]":
+            yield match.span()
 
 
 def _with_sign(latex: str, span: Span) -> Span:
@@ -78,7 +81,7 @@ def _with_sign(latex: str, span: Span) -> Span:
     return span
 
 
-def _inserted(before: str, old: str, new: str, after: str) -> str:
+def inserted(before: str, old: str, new: str, after: str) -> str:
     """Put a term in place of another, and join its sign with the one before it."""
     head = before.rstrip()
     if not old:

@@ -1,45 +1,26 @@
 """Verdicts on all formulas of a document, from its displays alone."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 from derive.reading.document import Display, Document
 from derive.reading.latex.reader import formulas, macros_of
 from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
-from derive.verification.documents.candidates import Candidate, candidates
 from derive.verification.documents.corrections import corrected
+from derive.verification.documents.interpretation import interpretation, judge_of
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
-from derive.verification.documents.letters import Letters, letters_of
-from derive.verification.documents.matching import Match, best_match, trivial_comparisons
-from derive.verification.documents.meaning import meaning
-from derive.verification.documents.positions import stated_candidates, stated_systems
-from derive.verification.documents.resolution import resolved
-from derive.verification.documents.scope import DocumentScope
 from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
-    Translated,
     translated,
 )
-from derive.verification.documents.templates import templates
 from derive.verification.documents.translation import Translator, nodes
-from derive.verification.documents.verdicts import Judge, SideVerdict
+from derive.verification.documents.verdicts import SideVerdict
 
-#: The least part of the comparisons that must hold for a system to be that of a document, unless
-#: so many hold.
-LEAST, ENOUGH = 0.3, 3
 #: Most systems of a document.
 MAX_SYSTEMS = 3
 #: Verdicts from the gravest: that of a formula with an index is the gravest of its instances.
 GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
-
-
-@dataclass(frozen=True)
-class Interpretation:
-    """What a document is about: its letters and the system that suits them best."""
-
-    letters: Letters
-    match: Match | None
 
 
 def judge_document(document: Document) -> JudgedDocument:
@@ -59,7 +40,7 @@ def judge_document(document: Document) -> JudgedDocument:
         found = interpretation(part)
         if found.match is None:
             break
-        judge = _judge(part, found.letters, found.match.candidate)
+        judge = judge_of(part, found.letters, found.match.candidate)
         titles.append(found.match.candidate.system.title)
         verdicts = [(formula, judge.verdict(formula)) for formula in remaining]
         for formula, result in verdicts:
@@ -73,35 +54,6 @@ def judge_document(document: Document) -> JudgedDocument:
     written = _written(occurrences)
     judged += [_judged(*pair, written) for pair in results.values()]
     return _document(document, "; ".join(dict.fromkeys(titles)), judged)
-
-
-def _judge(statements: Translated, letters: Letters, candidate: Candidate) -> Judge:
-    meanings = resolved(candidate, letters, statements.formulas, statements.derivatives)
-    system, formulas = meaning(candidate), statements.formulas
-    return Judge(DocumentScope(system, letters, formulas, statements.derivatives, meanings))
-
-
-def interpretation(statements: Translated) -> Interpretation:
-    """Find the meaning of letters for which most formulas hold."""
-    letters = letters_of(statements.formulas, statements.derivatives)
-    formulas, derivatives = statements.formulas, statements.derivatives
-    trivial = trivial_comparisons(letters, formulas, derivatives)
-    best: Match | None = None
-    for tried in _candidates(letters, statements):
-        match = best_match(tried, letters, formulas, derivatives, trivial)
-        if match and match.holding and (best is None or match.score > best.score):
-            best = match
-    is_convincing = best is not None and (best.holding >= min(ENOUGH, LEAST * best.compared))
-    return Interpretation(letters, best if is_convincing else None)
-
-
-def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[Candidate]]:
-    """Candidates of one system after another: of those that the document states first."""
-    for system in stated_systems(letters, statements.formulas):
-        yield [*stated_candidates(system, letters)]
-    for count in range(len(letters.coordinates), 0, -1):
-        for system in templates(count):
-            yield [*candidates(system, letters)]
 
 
 def _read(document: Document) -> tuple[list[Occurrence], list[JudgedFormula]]:

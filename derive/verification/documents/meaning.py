@@ -33,6 +33,9 @@ def meaning(candidate: Candidate) -> Meaning:
     values: dict[sp.Symbol, sp.Expr] = {}
     for parameter in template.parameters:
         own = parameter.symbol
+        if own.name in candidate.numbers:
+            values[own] = sp.Rational(candidate.numbers[own.name])
+            continue
         letter = candidate.parameters.get(own.name)
         name = valid_name(letter) if letter else own.name + UNNAMED
         values[own] = sp.Symbol(name, **own._assumptions_orig)
@@ -52,7 +55,7 @@ def meaning(candidate: Candidate) -> Meaning:
         units.setdefault(symbols[name].name, "N")
         forces[i] += symbols[name] * (1 if (name, i) in candidate.forces else -qdot[i])
     parameters = {s.name: s for s in symbols.values() if s not in q}
-    parameters |= {values[p].name: values[p] for p in template.params}
+    parameters |= {v.name: v for p in template.params if isinstance(v := values[p], sp.Symbol)}
     kinds = {one.symbol.name: one.unit for one in template.coordinates}
     coordinates = [
         Coordinate(symbol, _unit(candidate, i, kinds), "a coordinate of the document")

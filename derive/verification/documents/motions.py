@@ -185,6 +185,12 @@ class Motions:
         value = evaluated(sp.sstr(expression), self._names).value
         return np.asarray(np.broadcast_to(value, self.shape))
 
+    def _parameter(self, candidate: Candidate, name: str, default: float) -> float:
+        """The value of a parameter of the system."""
+        if name in candidate.numbers:
+            return float(candidate.numbers[name])
+        return self.parameters.get(candidate.parameters.get(name, ""), default)
+
     def _system_names(self, own: Mapping[str, float]) -> dict[str, Value]:
         """Coordinates, velocities and parameters of the system."""
         place, speed = (
@@ -200,8 +206,6 @@ class Motions:
         for i, (symbol, rate) in enumerate(zip(self._system.q, self._system.qdot, strict=True)):
             names[symbol.name], names[rate.name] = Jet.of(q[:, i]), Jet.of(qdot[:, i])
         for p in own:
-            column = [
-                [self.parameters.get(one.parameters.get(p, ""), own[p])] for one in self._tried
-            ]
+            column = [[self._parameter(one, p, own[p])] for one in self._tried]
             names[p] = Jet.of(np.broadcast_to(np.array(column), self.shape))
         return names

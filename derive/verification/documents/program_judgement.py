@@ -1,0 +1,86 @@
+"""Verdicts on the equations of programs, and on their methods of integration."""
+
+from collections.abc import Iterator
+
+from derive.reading.latex.tree import Letter, Statement
+from derive.reading.programs.program import Equation, Finding, Program
+from derive.verification.documents.corrections import inserted, places
+from derive.verification.documents.interpretation import interpretation, judge_of
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
+from derive.verification.documents.translation import Text
+from derive.verification.documents.verdicts import SideVerdict
+from derive.verification.verdict import VerdictName
+
+#: The note on equations for which no system is found.
+NO_SYSTEM = "no system was found for which its equations hold"
+
+
+def judge_program(program: Program) -> JudgedDocument:
+    """Judge the equations of every function of a program, and its method of integration."""
+    titles: list[str] = []
+    judged: list[JudgedFormula] = []
+    for function in program.functions:
+        formulas = [_formula(equation) for equation in function.equations]
+        found = interpretation(Translated(tuple(formulas), (), {}))
+        if found.match is None:
+            judged += [_plain(equation, NO_SYSTEM) for equation in function.equations]
+            continue
+        titles.append(found.match.candidate.system.title)
+        judge = judge_of(Translated(tuple(formulas), (), {}), found.letters, found.match.candidate)
+        for equation, formula in zip(function.equations, formulas, strict=True):
+            judged.append(_judged(equation, judge.verdict(formula)))
+    judged += [_finding(one) for one in program.findings]
+    judged.sort(key=lambda one: one.line)
+    title = "; ".join(dict.fromkeys(titles))
+    return JudgedDocument(program.file, "program", title, tuple(judged), tuple(_notes(program)))
+
+
+def _formula(equation: Equation) -> DocumentFormula:
+    """An equation as a formula of a document; it has no LaTeX."""
+    text = equation.text
+    tree = Statement((Letter(text, (0, len(text))),), (), (0, len(text)))
+    occurrence = Occurrence(0, equation.line, 1, 0, 0, text, tree)
+    left, _, right = text.partition(" = ")
+    return DocumentFormula(occurrence, (Text(left), Text(right)), ("=",))
+
+
+def _judged(equation: Equation, result: SideVerdict) -> JudgedFormula:
+    verdict, text = result.verdict, equation.text
+    terms, line = list[str](), equation.line
+    for one in verdict.corrections:
+        start, end = next(places(text, one.wrong), (0, 0)) if one.wrong else (0, 0)
+        if start < end:
+            line = _line(equation, start, end)
+            terms.append(one.wrong)
+            text = inserted(text[:start], one.wrong, one.correct, text[end:])
+    correction = verdict.correction
+    if terms and len(terms) == len(verdict.corrections):
+        correction = text
+    elif correction and "=" not in correction:
+        correction = f"{equation.text.partition(' = ')[0]} = {correction}"
+    return JudgedFormula(
+        line, 1, 0, equation.text, verdict.verdict, "; ".join(terms), correction,
+        verdict.witness, verdict.note,
+    )  # fmt: skip
+
+
+def _line(equation: Equation, start: int, end: int) -> int:
+    """The line of the smallest part of an equation that contains a term."""
+    around = [one for one in equation.origins if one.start <= start and end <= one.end]
+    return min(around, key=lambda one: one.end - one.start).line if around else equation.line
+
+
+def _plain(equation: Equation, note: str) -> JudgedFormula:
+    return JudgedFormula(equation.line, 1, 0, equation.text, "context", note=note)
+
+
+def _finding(finding: Finding) -> JudgedFormula:
+    verdict: VerdictName = "wrong" if finding.is_fault else "context"
+    return JudgedFormula(finding.line, 1, 0, "method of integration", verdict, note=finding.text)
+
+
+def _notes(program: Program) -> Iterator[str]:
+    for one in program.unread:
+        place = f" in {one.function}" if one.function else ""
+        yield f"line {one.line}{place} is not read: {one.reason}"
