@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from derive.reading.document import Document
-from derive.reading.documents import read_document
 from derive.verification.documents.annotation import annotate, check_annotation
+from derive.verification.documents.files import judge_file
 from derive.verification.documents.judged import JudgedDocument
-from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.table import document_lines, document_record
 from derive.verification.hand import HandDerivation, judge
 from derive.verification.verdict import VerdictName, table_width, verdict_rows, wrapped
@@ -40,8 +39,8 @@ def verify(names: Sequence[str], *, as_json: bool, annotation: Path | None = Non
     for name in names:
         try:
             if name in files:
-                document = read_document(name)
-                results[name] = judged = judge_document(document)
+                judged, document = judge_file(name)
+                results[name] = judged
                 documents.append((judged, document))
             else:
                 results[name] = judge(name)

@@ -88,7 +88,8 @@ def _short(one: JudgedFormula) -> str:
 def _listed(judged: JudgedDocument, document: Document) -> str:
     """A document that lists the formulas with their verdicts."""
     definitions = _provided(document.definitions)
-    entries = "\n".join(_entry(one, _names(definitions)) for one in judged.formulas)
+    macros = None if document.kind == "program" else _names(definitions)
+    entries = "\n".join(_entry(one, macros) for one in judged.formulas)
     title = rf"\textbf{{\large Verdicts on the formulas of {escaped(Path(judged.file).name)}}}"
     body = f"{title}\n{_summary(judged)}\n{entries}"
     return "\n".join([HEAD + "\n".join(definitions), BEGIN, body, END, ""])
@@ -118,11 +119,11 @@ def _summary(judged: JudgedDocument) -> str:
     return "".join(f"\n\\par\\noindent {line}" for line in lines)
 
 
-def _entry(one: JudgedFormula, macros: Collection[str]) -> str:
+def _entry(one: JudgedFormula, macros: Collection[str] | None) -> str:
     """A formula with its verdict and all details."""
     place = f"Cell {one.cell}, line {one.line}" if one.cell else f"Line {one.line}"
     details = [
-        formula(one.latex, macros),
+        _written(one.latex, macros),
         *(f"{title}: {text}" for title, text in _details(one, macros) if text),
     ]
     lines = "".join(f"\n\\par\\noindent {detail}" for detail in details)
@@ -130,8 +131,15 @@ def _entry(one: JudgedFormula, macros: Collection[str]) -> str:
     return rf"\par\medskip{{\raggedright\noindent\textbf{{{head}}}{lines}\par}}"
 
 
-def _details(one: JudgedFormula, macros: Collection[str]) -> Iterator[tuple[str, str]]:
-    yield "wrong term", formula(one.wrong_term, macros)
-    yield "correct formula", formula(one.correction, macros)
+def _written(text: str, macros: Collection[str] | None) -> str:
+    """A formula in LaTeX, or one of a program, which has no macros."""
+    return (
+        rf"\texttt{{{escaped(text)}}}" if macros is None and text else formula(text, macros or ())
+    )
+
+
+def _details(one: JudgedFormula, macros: Collection[str] | None) -> Iterator[tuple[str, str]]:
+    yield "wrong term", _written(one.wrong_term, macros)
+    yield "correct formula", _written(one.correction, macros)
     yield "value", escaped(one.witness)
     yield "note", escaped(one.note)

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path
-from typing import get_args
+from typing import TypeAlias, get_args
 
 from derive.reading.document import Document
 from derive.reading.latex.reader import Macro, formulas, macros_of
@@ -13,6 +13,9 @@ from derive.reading.latex.tree import Span, Statement
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula, one_line
 from derive.verification.documents.mathml import statement_html
 from derive.verification.verdict import VerdictName
+
+#: The macros of a document in LaTeX; None for a program.
+Macros: TypeAlias = Mapping[str, Macro] | None
 
 STYLE = Path(__file__).with_name("page.css")
 #: Parts of LaTeX that are compared when a term is looked for.
@@ -75,7 +78,8 @@ def _hidden(verdict: VerdictName) -> str:
 
 
 def _section(judged: JudgedDocument, document: Document, title: str) -> str:
-    macros = macros_of("\n".join(document.definitions))
+    is_program = document.kind == "program"
+    macros = None if is_program else macros_of("\n".join(document.definitions))
     remarks = [f"System: {judged.system}" if judged.system else "", *judged.notes]
     remarks += [] if judged.formulas else ["It has no formulas."]
     notes = "".join(f"<p>{escape(one)}</p>" for one in remarks if one)
@@ -83,7 +87,7 @@ def _section(judged: JudgedDocument, document: Document, title: str) -> str:
     return f"<section>{title}{notes}<ol>\n{items}\n</ol></section>"
 
 
-def _item(one: JudgedFormula, macros: Mapping[str, Macro]) -> str:
+def _item(one: JudgedFormula, macros: Macros) -> str:
     """A formula, with its verdict in the margin and details below it."""
     cell = f"cell {one.cell}, " if one.cell else ""
     display = f", display {one.display}" if one.display else ""
@@ -103,7 +107,7 @@ def _item(one: JudgedFormula, macros: Mapping[str, Macro]) -> str:
     )
 
 
-def _details(one: JudgedFormula, macros: Mapping[str, Macro]) -> Iterator[tuple[str, str]]:
+def _details(one: JudgedFormula, macros: Macros) -> Iterator[tuple[str, str]]:
     if one.correction:
         changed = _changed(one.latex, one.correction)
         yield "should be", _math(one.correction, macros, changed, "right-term")
@@ -111,8 +115,10 @@ def _details(one: JudgedFormula, macros: Mapping[str, Macro]) -> Iterator[tuple[
     yield "note", escape(one.note)
 
 
-def _math(latex: str, macros: Mapping[str, Macro], marked: Sequence[Span], word: str) -> str:
-    """The statements of a formula as MathML; its source if it cannot be read."""
+def _math(latex: str, macros: Macros, marked: Sequence[Span], word: str) -> str:
+    """The statements of a formula as MathML; its source if it is a program or cannot be read."""
+    if macros is None:
+        return f"<code>{escape(latex)}</code>"
     statements = formulas(latex, macros)
     read = [one for one in statements if isinstance(one, Statement)]
     if not read or len(read) < len(statements):

@@ -1,0 +1,61 @@
+"""Documents and programs by the names of their files."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from derive.reading.document import Document
+from derive.reading.documents import KINDS, read_document
+from derive.reading.programs.program import Program, ProgramError
+from derive.reading.programs.reader import LANGUAGES, read_program
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.program_judgement import judge_program
+from solvers.io.toml_input import InputError
+
+
+def is_document(name: str) -> bool:
+    """Whether a file is a document, by its name."""
+    return Path(name).suffix.lower() in KINDS
+
+
+def is_program(name: str) -> bool:
+    """Whether a file is a program, by its name."""
+    return any(Path(name).suffix in one.suffixes for one in LANGUAGES)
+
+
+def judge_file(name: str) -> tuple[JudgedDocument, Document]:
+    """Judge the formulas of a document, also in the programs of a notebook, or of a program.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or is no text.
+    """
+    if is_program(name):
+        program = _program(Path(name))
+        return judge_program(program), Document(name, "program", "", ())
+    document = read_document(name)
+    judged = judge_document(document)
+    for cell in document.programs:
+        try:
+            program = read_program(cell.text, cell.language)
+        except ProgramError:  # a language that is not read, such as that of a shell
+            continue
+        inside = judge_program(program)
+        formulas = (*judged.formulas, *(_in_cell(one, cell.number) for one in inside.formulas))
+        systems = dict.fromkeys(filter(None, (judged.system, inside.system)))
+        judged = replace(judged, formulas=formulas, system="; ".join(systems))
+    return judged, document
+
+
+def _program(path: Path) -> Program:
+    try:
+        return read_program(path)
+    except ProgramError as error:
+        raise InputError(f"{path}: {error}") from error
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}") from error
+
+
+def _in_cell(formula: JudgedFormula, cell: int) -> JudgedFormula:
+    return replace(formula, cell=cell)
