@@ -16,8 +16,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         "wrong (in the report, if it has no proved correction), and 2 if one is unreadable."
     )
     meaning = (
-        "documents (.tex, .md, .txt, .rst, .html, .ipynb), programs (.py, .js, .c, .m, .f90, .jl), TOML "
-        "files, or systems with published equations (default: the report)"
+        "documents (.tex, .md, .txt, .rst, .html, .ipynb), programs (.py, .js, .c, .m, .f90, .jl), "
+        "TOML files, or systems with published equations (default: the report)"
     )
     parser.add_argument("equations", nargs="*", metavar="EQUATIONS", help=meaning)
     add_json(parser)
