@@ -12,6 +12,7 @@ import pytest
 
 from derive.reading.document import Document
 from derive.reading.documents import read_document
+from derive.reading.latex.reader import macros_of
 from derive.verification.documents.annotation import annotate, check_annotation
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.latex_notes import latex_notes
@@ -249,11 +250,15 @@ def test_text_is_escaped() -> None:
         ("θ", r"\texttt{\ensuremath{\theta}}"),
         (r"\q + \r", r"\texttt{\textbackslash{}q + \textbackslash{}r}"),
         (r"\q + x", r"$\displaystyle \q + x$"),
+        (r"\dot\frac{a}{b}", r"\texttt{\textbackslash{}dot\textbackslash{}frac\{a\}\{b\}}"),
+        (r"\big x", r"\texttt{\textbackslash{}big x}"),
+        ("x^{2 & 3}", r"\texttt{x\textasciicircum{}\{2 \& 3\}}"),
+        ("x^2^3", r"\texttt{x\textasciicircum{}2\textasciicircum{}3}"),
         ("", ""),
     ],
 )
 def test_only_known_formulas_are_typeset(latex: str, typeset: str) -> None:
-    assert formula(latex, {"q"}) == typeset
+    assert formula(latex, macros_of(r"\newcommand{\q}{\theta}")) == typeset
 
 
 def test_the_file_is_chosen_by_its_suffix(tmp_path: Path) -> None:

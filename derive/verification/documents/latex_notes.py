@@ -2,14 +2,15 @@
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import get_args
 
 from derive.reading.document import Display, Document
 from derive.reading.formats.tex import BODY
+from derive.reading.latex.reader import Macro, macros_of
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
-from derive.verification.documents.latex_text import COMMANDS, escaped, formula
+from derive.verification.documents.latex_text import COMMANDS, code, escaped, formula
 from derive.verification.verdict import VerdictName
 
 #: A note in the margin; in the line where there is no margin, as in boxes, floats and slides.
@@ -51,10 +52,9 @@ def latex_notes(judged: JudgedDocument, document: Document) -> str:
         if place > position:
             pieces += [text[position:place], note]
             position = place
+    macros = macros_of("\n".join(document.definitions))
     details = "\n".join(
-        _entry(one, _names(document.definitions))
-        for one in judged.formulas
-        if one.verdict in REFUTED or one.note
+        _entry(one, macros) for one in judged.formulas if one.verdict in REFUTED or one.note
     )
     name = escaped(Path(judged.file).name)
     title = rf"\clearpage\noindent\textbf{{Verdicts on the formulas of {name}}}"
@@ -88,7 +88,8 @@ def _short(one: JudgedFormula) -> str:
 def _listed(judged: JudgedDocument, document: Document) -> str:
     """A document that lists the formulas with their verdicts."""
     definitions = _provided(document.definitions)
-    macros = None if document.kind == "program" else _names(definitions)
+    is_program = document.kind == "program"
+    macros = None if is_program else macros_of("\n".join(definitions))
     entries = "\n".join(_entry(one, macros) for one in judged.formulas)
     title = rf"\textbf{{\large Verdicts on the formulas of {escaped(Path(judged.file).name)}}}"
     body = f"{title}\n{_summary(judged)}\n{entries}"
@@ -106,11 +107,6 @@ def _provided(definitions: Sequence[str]) -> list[str]:
     return list(provided)
 
 
-def _names(definitions: Sequence[str]) -> Collection[str]:
-    """Names of macros that are defined."""
-    return frozenset(re.findall(r"\\([A-Za-z]+)", one)[1] for one in definitions)
-
-
 def _summary(judged: JudgedDocument) -> str:
     counts = Counter(one.verdict for one in judged.formulas)
     numbers = ", ".join(f"{counts[one]} {one}" for one in get_args(VerdictName) if counts[one])
@@ -119,7 +115,7 @@ def _summary(judged: JudgedDocument) -> str:
     return "".join(f"\n\\par\\noindent {line}" for line in lines)
 
 
-def _entry(one: JudgedFormula, macros: Collection[str] | None) -> str:
+def _entry(one: JudgedFormula, macros: Mapping[str, Macro] | None) -> str:
     """A formula with its verdict and all details."""
     place = f"Cell {one.cell}, line {one.line}" if one.cell else f"Line {one.line}"
     details = [
@@ -131,14 +127,12 @@ def _entry(one: JudgedFormula, macros: Collection[str] | None) -> str:
     return rf"\par\medskip{{\raggedright\noindent\textbf{{{head}}}{lines}\par}}"
 
 
-def _written(text: str, macros: Collection[str] | None) -> str:
+def _written(text: str, macros: Mapping[str, Macro] | None) -> str:
     """A formula in LaTeX, or one of a program, which has no macros."""
-    return (
-        rf"\texttt{{{escaped(text)}}}" if macros is None and text else formula(text, macros or ())
-    )
+    return formula(text, macros) if macros is not None else code(text)
 
 
-def _details(one: JudgedFormula, macros: Collection[str] | None) -> Iterator[tuple[str, str]]:
+def _details(one: JudgedFormula, macros: Mapping[str, Macro] | None) -> Iterator[tuple[str, str]]:
     yield "wrong term", _written(one.wrong_term, macros)
     yield "correct formula", _written(one.correction, macros)
     yield "value", escaped(one.witness)

@@ -1,11 +1,13 @@
 """Text and formulas of any origin as LaTeX that compiles."""
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from string import ascii_letters
 from unicodedata import normalize
 
 from derive.formulas.lettering import GREEK
+from derive.reading.latex.reader import Macro, formulas
+from derive.reading.latex.tree import Statement
 from derive.verification.documents.judged import one_line
 
 SPECIAL = {
@@ -50,22 +52,36 @@ ACCENTS = {
     "\u030c": (r"\v", r"\check"),
     "\u0327": (r"\c", r""),
 }
-COMMANDS = frozenset(
-    """alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi
-    pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda
-    Xi Pi Sigma Upsilon Phi Psi Omega ell hbar imath jmath infty partial nabla star circ dagger
-    prime top bot forall in
-    sin cos tan cot sec csc sinh cosh tanh coth arcsin arccos arctan exp log ln det lim min max
-    frac dfrac tfrac cfrac binom sqrt sum prod int iint oint cdot times ast pm mp div
-    dot ddot dddot ddddot bar hat tilde vec check breve mathring overline underline widehat
-    widetilde overrightarrow overbrace underbrace
-    left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr langle rangle
-    lvert rvert lVert rVert vert Vert lbrace rbrace lbrack rbrack lfloor rfloor
-    leq geq le ge neq ne equiv approx sim simeq cong propto ll gg to rightarrow Rightarrow implies
-    iff Leftrightarrow longrightarrow mapsto quad qquad dots ldots cdots vdots ddots colon
-    mathrm mathbf mathit mathsf mathtt mathcal mathnormal boldsymbol operatorname text textrm
-    textit textbf mbox displaystyle textstyle limits nolimits boxed phantom hphantom vphantom
-    begin end""".split()
+#: Commands with arguments, with a delimiter behind them, and others.
+TAKING = frozenset(
+    """frac dfrac tfrac cfrac binom sqrt dot ddot dddot ddddot bar hat tilde vec check breve
+    mathring overline underline widehat widetilde overrightarrow mathrm mathbf mathit mathsf mathtt
+    mathcal mathnormal boldsymbol operatorname text textrm textit textbf mbox boxed phantom hphantom
+    vphantom""".split()
+)
+SIZED = frozenset(f"{size}{side}" for size in "big Big bigg Bigg".split() for side in ("", *"lr"))
+COMMANDS = (
+    TAKING
+    | SIZED
+    | frozenset(
+        """alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu
+        xi pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta
+        Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell hbar imath jmath infty partial nabla star circ
+        dagger prime top bot forall in
+        sin cos tan cot sec csc sinh cosh tanh coth arcsin arccos arctan exp log ln det lim min max
+        sum prod int iint oint cdot times ast pm mp div
+        left right middle langle rangle lvert rvert lVert rVert vert Vert lbrace rbrace lbrack
+        rbrack lfloor rfloor
+        leq geq le ge neq ne equiv approx sim simeq cong propto ll gg to rightarrow Rightarrow
+        implies iff Leftrightarrow longrightarrow mapsto quad qquad dots ldots cdots vdots ddots
+        colon displaystyle textstyle begin end""".split()
+    )
+)
+#: An argument without braces that takes arguments itself, no argument, no delimiter.
+UNSAFE = re.compile(
+    rf"\\(?:{'|'.join(TAKING)}|[dtc]?frac\s*\w)\s*\\(?:{'|'.join(TAKING)}|left)(?![A-Za-z])|"
+    rf"(?:\\(?:{'|'.join(TAKING)})|[_^])\s*(?:[&'}}]|\\\\|$)|"
+    rf"\\(?:{'|'.join(SIZED)})(?![A-Za-z])(?!\s*(?:[()\[\]|./]|\\[{{}}|]|\\[lr](?:vert|Vert|angle)))"
 )
 ENVIRONMENTS = frozenset(
     "matrix pmatrix bmatrix Bmatrix vmatrix Vmatrix smallmatrix array cases aligned split gathered "
@@ -105,21 +121,27 @@ def _character(one: str) -> str:
     return "".join(SPECIAL.get(c, c) for c in plain) or "?"
 
 
-def formula(latex: str, macros: Collection[str] = ()) -> str:
-    """A formula in a line of text, or its source where LaTeX may not know all of its commands.
+def code(text: str) -> str:
+    """Source text in a line of text."""
+    return rf"\texttt{{{escaped(one_line(text))}}}" if text else ""
+
+
+def formula(latex: str, macros: Mapping[str, Macro] = {}) -> str:
+    """A formula in a line of text, or its source where LaTeX may refuse it.
 
     Parameters
     ----------
     latex
         The formula, of any origin.
     macros
-        Names of commands that the document defines.
+        Macros that the document defines.
     """
     kept = one_line(DROPPED.sub(" ", latex))
     if not kept:
         return ""
-    if not _is_known(kept, macros):
-        return rf"\texttt{{{escaped(kept)}}}"
+    readable = all(isinstance(one, Statement) for one in formulas(kept, macros))
+    if not (readable and _is_known(kept, macros)):
+        return code(kept)
     if re.search(r"&|\\\\", kept):
         return rf"$\displaystyle\begin{{aligned}}{kept}\end{{aligned}}$"
     return rf"$\displaystyle {kept}$"
@@ -133,6 +155,7 @@ def _is_known(latex: str, macros: Collection[str]) -> bool:
         and all(one in SYMBOLS for *_, one, _, _ in tokens if one)
         and all(one in PLAIN for *_, one in tokens if one)
         and _is_closed(tokens)
+        and not UNSAFE.search(latex)
         and not latex.endswith("\\")
     )
 
@@ -140,7 +163,9 @@ def _is_known(latex: str, macros: Collection[str]) -> bool:
 def _is_closed(tokens: Sequence[tuple[str | None, ...]]) -> bool:
     """Whether braces, environments and brackets that grow are closed in the right order."""
     expected: list[str] = []
-    for environment, which, command, _, brace, _ in tokens:
+    for environment, which, command, symbol, brace, character in tokens:
+        if expected[-1:] == ["}"] and (symbol == "\\" or character == "&"):
+            return False  # a cell or a row ends within braces
         if environment == "begin" and which in ENVIRONMENTS:
             expected.append(f"end {which}")
         elif command == "left":
