@@ -1,5 +1,6 @@
 """The LaTeX of mechanics becomes the syntax tree that it shows, or is reported as unreadable."""
 
+import re
 import sys
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
@@ -8,7 +9,8 @@ from typing import Any
 
 import latex_formulas
 import pytest
-from hypothesis import given
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 from latex_trees import show
 from latex_writing import written_trees
 from shared_documents import shared
@@ -63,10 +65,27 @@ def test_formulas_that_are_ambiguous_or_broken_are_reported(latex: str, reason: 
     assert read(latex) == reason
 
 
+#: The same cases in every run; the first one waits for the parser.
+SAME = settings(derandomize=True, database=None, deadline=None)
+
+
+@SAME
 @given(written_trees())
 def test_trees_in_any_spelling_are_read_back(case: tuple[Node, str]) -> None:
     tree, latex = case
     assert read(latex) == show(tree), latex
+
+
+PIECES = sorted({p for latex, _ in READABLE for p in re.findall(r"\\[A-Za-z]+|\\.|.", latex)})
+
+
+@SAME
+@given(st.lists(st.sampled_from(PIECES)).map("".join))
+@example(r"x > 0\\~(1)")
+def test_any_text_is_read_or_reported_within_its_length(latex: str) -> None:
+    for found in formulas(latex):
+        start, end = found.span
+        assert 0 <= start <= end <= len(latex)
 
 
 def nodes(value: Any, around: tuple[int, int] = (-1, -1)) -> Iterator[Node]:

@@ -160,6 +160,8 @@ def statements(tokens: list[Token]) -> list[list[Token]]:
         if _is_number_of_equation(part):
             continue
         part.tokens = _without_number(part)
+        if all(token.kind == "space" for token in part.tokens):
+            continue
         if result and _lists_value(result[-1], part):
             result[-1].tokens += part.separators + part.tokens
         elif result and _continues(result[-1], part):
