@@ -248,6 +248,7 @@ M(q)\ddot q + C(q,\dot q)\dot q  ⟶  (M@(q) q.. + C@(q, q.) q.)
 \begin{pmatrix} a & b \end{pmatrix} \begin{pmatrix} x \\ y \end{pmatrix}  ⟶  [a, b] [x; y]
 \left[ \begin{matrix} a \\ b \\ \end{matrix} \right]^T  ⟶  [a; b]^T
 \left[ {\begin{array}{cc} a & b \\ c & d \end{array}} \right]  ⟶  [a, b; c, d]
+\begin{matrix}[a, b] & c\end{matrix}  ⟶  [<a, b>, c]
 \begin{bmatrix} - x & a \\ 0 & b - c \end{bmatrix}  ⟶  [(- x), a; 0, (b - c)]
 \begin{vmatrix} a & b \\ c & d \end{vmatrix}  ⟶  det([a, b; c, d])
 \left|\begin{matrix} a & b \\ c & d\end{matrix}\right|  ⟶  det([a, b; c, d])
@@ -356,7 +357,11 @@ x &= a & - y &= b  ⟶  x = a | (- y) = b
 \left\{ \begin{array}{l} x = a \\ y = b \end{array} \right.  ⟶  x = a | y = b
 \begin{array}{rcl} x &=& a \\ y &=& b \end{array}  ⟶  x = a | y = b
 \begin{eqnarray} x &=& a \\ &=& b \end{eqnarray}  ⟶  x = a = b
+\begin{aligned}[t] x &= a \end{aligned}  ⟶  x = a
+\begin{aligned}[a + b] &= c \end{aligned}  ⟶  (a + b) = c
 \begin{multline} x = a \\ + b \end{multline}  ⟶  x = (a + b)
+\begin{aligned}[t] x &= a \end{aligned}  ⟶  x = a
+\begin{aligned}[a + b] &= c \end{aligned}  ⟶  (a + b) = c
 \begin{multline} x = a \\ b + c \\ - d = e \end{multline}  ⟶  x = (a b + c - d) = e
 x = \begin{split} a \\ + b \end{split}  ⟶  x = (a + b)
 L &= a \intertext{and so} M &= b  ⟶  L = a | M = b

@@ -155,9 +155,9 @@ class Layout(Cursor):
     def _environment(self, token: Token, at: int) -> int:
         end = self.end_of_argument(at)
         name = self.source(at, end).strip().removesuffix("*")
-        if end < len(self.tokens) and self.tokens[end].kind == "[" and token.text == "begin":
-            kinds = [option.kind for option in self.tokens[end : end + 9]]
-            end += kinds.index("]") + 1 if "]" in kinds else 0
+        option = "".join(t.text for t in self.tokens[end : end + 3])
+        if token.text == "begin" and option in ("[t]", "[b]", "[c]"):
+            end += len(option)
         if token.text == "begin" and name in ("array", "alignat", "alignedat", "IEEEeqnarray"):
             end = self.end_of_argument(end)
         last = self.tokens[end - 1].span[1]
