@@ -79,6 +79,8 @@ class Notation:
     matrices: frozenset[str] = frozenset()  # identifiers of matrices and columns
     count: int = 1  # values of an index without bounds
     primes_are_rates: bool = False
+    calls: frozenset[str] = frozenset()  # functions whose arguments are kept: f(t + h, w)
+    factors: frozenset[str] = frozenset()  # identifiers before brackets that hold a column
 
 
 @dataclass
@@ -157,15 +159,23 @@ class Translator:
 
     def _product(self, factors: Sequence[Node]) -> Text:
         pieces: list[Text | str] = []
-        for factor in factors:
+        for factor in self._factors(factors):
             # a quotient behind a factor is one factor: a*(b/c) keeps its parts
             text = self.text(factor, PRODUCT if not pieces else POWER)
             pieces += ["*", text] if pieces else [text]
         return _joined(PRODUCT, *pieces)
 
+    def _factors(self, factors: Sequence[Node]) -> Iterator[Node]:
+        """The factors, also those of letters before brackets that are products."""
+        for factor in factors:
+            if isinstance(factor, Application) and not self._is_function(factor):
+                yield from (factor.head, _in_brackets(factor))
+            else:
+                yield factor
+
     def _power(self, base: Node, exponent: Node) -> Text:
         if isinstance(base, Application) and not self._is_function(base):
-            power = Power(base.arguments[0], exponent, (base.head.span[1], base.span[1]))
+            power = Power(_in_brackets(base), exponent, (base.head.span[1], base.span[1]))
             return self._product([base.head, power])
         inverse = isinstance(exponent, Sum) and len(exponent.terms) == 1 and exponent.terms[0]
         if inverse and inverse[0] < 0 and getattr(inverse[1], "digits", "") == "1":
@@ -189,12 +199,19 @@ class Translator:
         return _joined(ATOM, f"{name}(", self.text(argument), ")")
 
     def _application(self, node: Application) -> Text:
+        name = self.name(node.head)
+        if name in self.notation.calls:
+            pieces = [piece for one in node.arguments for piece in (", ", self.text(one))]
+            return _joined(ATOM, f"{name}(", *pieces[1:], ")")
         if self._is_function(node):
-            return Text(self.name(node.head))
-        return self._product([node.head, *node.arguments])
+            return Text(name)
+        return self._product([node.head, _in_brackets(node)])
 
     def _is_function(self, node: Application) -> bool:
-        return len(node.arguments) > 1 or self.name(node.head) in self.notation.functions
+        name = self.name(node.head)
+        if name in self.notation.functions | self.notation.calls:
+            return True
+        return len(node.arguments) > 1 and name not in self.notation.factors
 
     def _derivative(self, node: Derivative) -> Text:
         times = [one for one in node.variables if isinstance(one, Letter) and one.name == "t"]
@@ -224,6 +241,10 @@ class Translator:
     def _matrix(self, rows: Sequence[Sequence[Node]]) -> Text:
         pieces: list[Text | str] = ["["]
         entries: list[Text] = []
+        if len(rows) > 1 and all(len(row) == 1 for row in rows):
+            entries = [self.text(entry) for (entry,) in rows]
+            pieces = [piece for entry in entries for piece in (", ", entry)]
+            return replace(_joined(ATOM, "(", *pieces[1:], ")"), entries=tuple(entries))
         for i, row in enumerate(rows):
             pieces.append(", [" if i else "[")
             for j, entry in enumerate(row):
@@ -297,6 +318,13 @@ def has_index(nodes: Collection[Node], index: str) -> bool:
         return False
 
     return walk(tuple(nodes))
+
+
+def _in_brackets(node: Application) -> Node:
+    """The contents of the brackets behind a letter: an expression, or a column of several."""
+    if len(node.arguments) == 1:
+        return node.arguments[0]
+    return Tuple(node.arguments, (node.head.span[1], node.span[1]))
 
 
 def _joined(binding: int, *pieces: Text | str) -> Text:
