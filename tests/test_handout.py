@@ -348,6 +348,7 @@ def test_the_command_writes_a_document_and_the_key_of_its_exercises(
         (["single_pendulum", "--exercises", "blank"], "name its file with --document FILE"),
         (["single_pendulum", "--seed", "1"], "name its file with --document FILE"),
         (["single_pendulum", "--document", "a.tex", "--seed", "1"], "add --exercises mistakes"),
+        (["chain_11", "--document", "a.tex"], "at most 10 are allowed"),
         (["singel_pendulum", "--document", "a.tex"], "did you mean"),
     ],
 )

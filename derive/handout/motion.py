@@ -1,6 +1,7 @@
 """Sections on the equations of motion: Lagrangian, accelerations, energy."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import sympy as sp
 
@@ -111,6 +112,7 @@ def has_inverse(d: Derivation) -> bool:
     return bool(M.rows <= (LARGEST_DIAGONAL if M.is_diagonal() else LARGEST_INVERSE))
 
 
+@lru_cache(maxsize=1)  # two sections use them
 def _residuals(d: Derivation) -> list[sp.Expr]:
     """The left sides d/dt ∂L/∂q̇ - ∂L/∂q - Q of the equations of motion."""
     state = (*d.system.q, *d.system.qdot, *d.system.qddot)

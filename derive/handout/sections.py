@@ -14,6 +14,7 @@ from derive.handout.numbering import Numbering
 from derive.handout.oscillations import oscillations
 from derive.handout.setup import energies, system, velocities
 from derive.mechanics.derivation import Derivation
+from derive.system.parts import SystemDefinitionError
 
 SECTIONS = {
     "System": system,
@@ -26,6 +27,8 @@ SECTIONS = {
     "Energy balance": energy,
     "Small oscillations": oscillations,
 }
+#: Coordinates of the largest system: its document has fifty pages.
+LARGEST_SYSTEM = 10
 LANGUAGES = {".py": "Python", ".h": "C"}
 
 
@@ -44,6 +47,8 @@ def document(derivation: Derivation) -> Document:
 
     Raises
     ------
+    SystemDefinitionError
+        When the system has more than `LARGEST_SYSTEM` coordinates.
     UnsupportedFunctionError
         When an expression has no counterpart in generated code.
 
@@ -53,6 +58,12 @@ def document(derivation: Derivation) -> Document:
     >>> [section.title for section in document(Derivation(load("single_pendulum"))).sections][:3]
     ['System', 'Velocities', 'Energies']
     """
+    count = len(derivation.system.q)
+    if count > LARGEST_SYSTEM:
+        raise SystemDefinitionError(
+            f"a document of {count} coordinates is too long to read: at most {LARGEST_SYSTEM} are "
+            "allowed; choose a system with fewer"
+        )
     formulas = Numbering(Notation(derivation.system))
     sections = [
         Section(title, tuple(blocks(derivation, formulas))) for title, blocks in SECTIONS.items()

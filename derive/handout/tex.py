@@ -93,7 +93,7 @@ def _wrapped(line: str) -> str:
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     is_wide = max(len(row[-1]) for row in rows) > WIDE
-    columns = "l" * (len(head) - 1) + (r"p{0.6\linewidth}" if is_wide else "l")
+    columns = "l" * (len(head) - 1) + (r"p{0.55\linewidth}" if is_wide else "l")
     lines = [" & ".join(map(_text, row)) + r" \\" for row in (head, *rows)]
     body = "\n".join([lines[0], r"\hline", r"\endhead", *lines[1:]])
     return f"\\begin{{longtable}}[l]{{{columns}}}\n{body}\n\\end{{longtable}}"
