@@ -179,8 +179,10 @@ def _matrices(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
     """Names of the matrices of M q̈ + C q̇ = G that a document writes out."""
     found: dict[str, str] = {}
     for formula in formulas:
-        letter = formula.subject.removesuffix("_column").partition("_")[0]
+        letter, _, index = formula.subject.removesuffix("_column").partition("_")
         count = max(len(side.entries) for side in formula.sides)
+        if index == "0":
+            continue  # the value at an equilibrium
         if letter in MATRICES and count == (2 if MATRICES[letter] == "gravity" else 4):
             found[formula.subject] = MATRICES[letter]
     return found
