@@ -188,7 +188,7 @@ def test_verify_fails_if_an_equation_is_wrong_without_a_proved_correction(
 ) -> None:
     from derive.verification.report import judgement
 
-    wrong = Equation("eq47", "x1 = l1*cos(theta1)", changes=(("l1*cos", "l2*sin"),))
+    wrong = Equation("eq47", r"x_1 = l_1 \cos \theta_1", changes=((r"l_1 \cos", r"l_2 \sin"),))
     assert judgement.verdict(wrong, order).verdict == "wrong"
     monkeypatch.setattr(judgement, "EQUATIONS", {"eq47": wrong})
     assert main(["verify"]) == 1

@@ -29,16 +29,17 @@ LETTERS = {
     "phi2_dot": "φ.2",
     "phi1_ddot": "φ..1",
     "phi2_ddot": "φ..2",
+    "alpha": "α",
     "alpha1": "α1",
     "alpha2": "α2",
     "p_theta1": "pθ1",
     "p_theta2": "pθ2",
     "P_theta1": "Pθ1",
     "P_theta2": "Pθ2",
-    "Pdot_theta1": "P.θ1",
-    "Pdot_theta2": "P.θ2",
-    "pdot_theta1": "p.θ1",
-    "pdot_theta2": "p.θ2",
+    "P_theta1_dot": "P.θ1",
+    "P_theta2_dot": "P.θ2",
+    "p_theta1_dot": "p.θ1",
+    "p_theta2_dot": "p.θ2",
     "omega_x": "ωx",
     "omega_y": "ωy",
     "omega_z": "ωz",
@@ -59,11 +60,13 @@ LETTERS = {
     "y1_dot": "y.1",
     "x2_dot": "x.2",
     "y2_dot": "y.2",
-    **{f"m_{k}": f"m{k}" for k in range(1, 5)},
+    "p_phi1_dot": "p.φ1",
+    "p_phi2_dot": "p.φ2",
+    **{f"I_{axis}": f"I{axis}" for axis in ("xx", "yy", "zz")},
     **{
         name: name
-        for name in "x1 y1 x2 y2 m1 m2 l1 l2 g l t h h1 h2 f1 f2 g1 g2 K P L H v z "
-        "Ixx Iyy Izz".split()
+        for name in "x1 y1 x2 y2 m1 m2 m3 m4 l1 l2 g l t h h1 h2 f1 f2 g1 g2 v1 v2 K P L H v z "
+        "w0".split()
     },
 }
 

@@ -2,7 +2,7 @@
 
 ``"x1 = l1*sin(theta1)"`` is a statement with two sides, ``"a = b = c"`` has
 three, ``"a >= b"`` is an inequality, and ``"a = b; c = d"`` is two statements.
-A name that ends in ``_i`` stands for every index.
+An index i in a name stands for every number: ``q_i_dot`` for ``q1_dot`` and ``q2_dot``.
 """
 
 import re
@@ -19,7 +19,7 @@ from derive.formulas.zero import is_positive, vanishes
 
 State = Mapping[sp.Symbol, sp.Expr]
 
-INDEXED = re.compile(r"\b(\w+_)i\b")
+INDEXED = re.compile(r"\b([A-Za-z]\w*?)_i(?=_|\b)")
 
 #: The note on what no proof decides.
 IN_NUMBERS = f"not proved: the sides agree to {DIGITS} digits at {STATES} generic states"

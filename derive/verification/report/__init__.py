@@ -1,5 +1,5 @@
 """The technical report "Comparing Method in Double Pendulum", equation by equation.
 
-Every numbered equation and every display of Appendix A is typed as printed and
+Every numbered equation and every display of Appendix A is kept as its LaTeX and
 judged against the derivation from positions. The verdicts are computed.
 """

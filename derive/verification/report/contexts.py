@@ -41,15 +41,8 @@ FUNCTIONS: dict[str, Any] = {
     "at": lambda value, symbol, point: value.subs(symbol, point),
 }
 
-#: Names of a coordinate, its velocity, acceleration, momentum, force and Euler–Lagrange residual.
-SYNONYMS = (
-    "theta{} phi{} q_{} theta_{} phi_{}",
-    "theta{}_dot phi{}_dot omega{} qdot_{} thetadot_{} phidot_{}",
-    "theta{}_ddot phi{}_ddot",
-    "p_theta{} P_theta{} p_phi{} p_{} P_theta_{} p_theta_{} p_phi_{}",
-    "pdot_{} Pdot_theta{} Pdot_theta_{}",
-    "E{} E_{}",
-)
+#: Letters for each coordinate and its momentum, which a number follows.
+COORDINATES, MOMENTA = "theta phi q", "p p_theta p_phi P_theta"
 
 
 @cache
@@ -66,11 +59,16 @@ def double_pendulum(*, moving: bool) -> Context:
     scope |= _named("x1 y1 x2 y2 r1 r2 A B H", x1, y1, x2, y2, r1, r2, A, M, derivation.hamiltonian)
     ddt = scope["ddt"]
     scope |= {f"{name}_dot": ddt(scope[name]) for name in ("x1", "y1", "x2", "y2")}
-    rates, residuals = map(ddt, system.p), derivation.euler_lagrange
-    values = zip(system.q, system.qdot, system.qddot, system.p, rates, residuals, strict=True)
-    for number, row in enumerate(values, 1):
-        for names, value in zip(SYNONYMS, row, strict=True):
-            scope |= dict.fromkeys(names.replace("{}", str(number)).split(), value)
+    speeds = (sp.sqrt(reduced(ddt(r).dot(ddt(r)))) for r in (r1, r2))
+    scope |= _named("v1 v2", *speeds)
+    rows = zip(system.q, system.qdot, system.qddot, system.p, strict=True)
+    for n, (q, qdot, qddot, p) in enumerate(rows, 1):
+        for letter in COORDINATES.split():
+            names = f"{letter}{n} {letter}{n}_dot {letter}{n}_ddot"
+            scope |= _named(names, q, qdot, qddot)
+        for letter in MOMENTA.split():
+            scope |= _named(f"{letter}{n} {letter}{n}_dot", p, ddt(p))
+        scope |= _named(f"omega{n} E{n}", qdot, derivation.euler_lagrange[n - 1])
     # rod tensions: projections of Newton's law for each bob on its rod
     weight = Vector([0, g, 0])
     e1, e2 = r1 / l1, (r2 - r1) / l2
@@ -110,6 +108,7 @@ def rigid_body() -> Context:
     torque = spin_rate + Vector(omega).cross(spin)
     symbols = (*inertia, *omega, *omega_dot)
     scope = {s.name: s for s in symbols} | _named("tau_x tau_y tau_z", *torque)
+    scope |= _named("I_xx I_yy I_zz", *inertia)
     return Context(scope, (_numbers(symbols),), index_count=3)
 
 

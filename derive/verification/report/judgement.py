@@ -9,10 +9,11 @@ import sympy as sp
 
 from derive.formulas.expression import ExpressionError, Value, parse
 from derive.verification.engine import Check, Context
-from derive.verification.report import appendix, chapters, contexts
+from derive.verification.report import contexts
 from derive.verification.report.contexts import STRAY
 from derive.verification.report.equation import Equation
 from derive.verification.report.method import STAGES, NotRungeKuttaError, coefficients
+from derive.verification.report.table import equations
 from derive.verification.verdict import Verdict
 from solvers.io.suggestion import did_you_mean
 
@@ -20,7 +21,7 @@ from solvers.io.suggestion import did_you_mean
 OrderOf = Callable[[list[list[Fraction]], list[Fraction]], int]
 
 #: The equations of the report by id, in printed order.
-EQUATIONS = {equation.id: equation for equation in (*chapters.EQUATIONS, *appendix.EQUATIONS)}
+EQUATIONS = equations()
 
 
 def verdicts(order_of: OrderOf) -> list[Verdict]:
@@ -154,8 +155,7 @@ def _definitions(text: str, context: Context, known: dict[str, Value]) -> dict[s
             values[f"left_{number}"] = parse(part.partition("<")[0], scope)
             continue
         name, _, formula = (side.strip() for side in part.partition("="))
-        # alpha1 is also alpha_1, for statements about every index
-        values[name] = values[f"{name[:-1]}_{name[-1]}"] = parse(formula, scope)
+        values[name] = parse(formula, scope)
     return values
 
 

@@ -9,7 +9,7 @@ import sympy as sp
 from derive.formulas.expression import parse, syntax_tree
 
 STAGES = 4
-INCREMENTS = tuple(f"m_{k + 1}" for k in range(STAGES))
+INCREMENTS = tuple(f"m{k + 1}" for k in range(STAGES))
 SYMBOLS = {name: sp.Symbol(name) for name in ("t_i", "w_i", "h", *INCREMENTS)}
 
 
