@@ -204,6 +204,20 @@ def test_methods_and_their_faults_are_reported() -> None:
     assert "DOP853" in library.text
 
 
+def test_angles_in_degrees_are_right_where_sines_take_degrees() -> None:
+    text = "let a = 90, v = 0;\nfunction draw() { v -= g*sin(a)*dt; a += v*dt; }\n"
+    assert kinds(read_program(text, "JavaScript")) == {"degrees"}
+    text += "function setup() { angleMode(DEGREES); }\n"
+    assert not kinds(read_program(text, "JavaScript"))
+
+
+def test_commands_of_notebooks_are_left_out() -> None:
+    text = "%matplotlib inline\n!pip install numpy\nf = lambda t, y: (y[1], -sin(y[0]))\n"
+    program = read_program(text, "Python")
+    assert not program.unread
+    assert [(one.line, one.text) for one in program.equations] == [(3, "y_0_ddot = -sin(y_0)")]
+
+
 def test_methods_are_found_in_all_languages() -> None:
     for text, language in ((programs.C_PROGRAM, "C"), (programs.FORTRAN_PROGRAM, "Fortran")):
         assert "order 4" in finding(read_program(text, language), "runge_kutta").text

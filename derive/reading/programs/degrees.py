@@ -33,6 +33,14 @@ def starts_in_degrees(
         yield Finding(start.line, "degrees", function, text, True)
 
 
+def takes_degrees(call: Call) -> bool:
+    """Whether a call makes sines those of degrees."""
+    match call:
+        case Call(function=Name(path="angleMode"), arguments=(Name(path="DEGREES"),)):
+            return True
+    return False
+
+
 def angles(values: list[Tree]) -> set[str]:
     """The variables in the arguments of sines and cosines."""
     return {path for one in values for _, argument in arguments(one) for path in _names(argument)}

@@ -7,7 +7,13 @@ from derive.reading.programs.arrays import entries
 from derive.reading.programs.calls import CONDITION, Step
 from derive.reading.programs.code import Assignment, Statement
 from derive.reading.programs.context import Context, statements, static_path
-from derive.reading.programs.degrees import angles, named_in_degrees, number, starts_in_degrees
+from derive.reading.programs.degrees import (
+    angles,
+    named_in_degrees,
+    number,
+    starts_in_degrees,
+    takes_degrees,
+)
 from derive.reading.programs.equations import Equations
 from derive.reading.programs.following import LOOP
 from derive.reading.programs.libraries import integrated, library_findings
@@ -37,6 +43,8 @@ class Findings:
         self._unread: list[Unread] = []
         #: Functions that are passed to integrators, and initial states.
         self._integrated: dict[str, Tree] = {}
+        #: Whether sines are those of degrees, as a library for drawing allows.
+        self._takes_degrees = False
         self._angles: dict[str, dict[int, str]] = {}
         self._starts = [
             (static_path(one.target), one.value)
@@ -49,6 +57,7 @@ class Findings:
         follower = region.follower
         self._unread += [Unread(line, why, region.name) for line, why in follower.faults]
         self._findings += library_findings(follower.calls, region.name)
+        self._takes_degrees |= any(map(takes_degrees, follower.calls))
         for path, state in integrated(follower.calls):
             if entries(state) is not None:
                 self._integrated.setdefault(path.rpartition(".")[2], state)
@@ -150,6 +159,8 @@ class Findings:
         starts = {one.name: one.line for one in self._functions}
         findings: dict[tuple[int, str], Finding] = {}
         for one in self._findings:
+            if one.kind == "degrees" and self._takes_degrees:
+                continue
             known = findings.get((one.line, one.kind))
             if known is None or starts.get(known.function, 0) < starts.get(one.function, 0):
                 findings[one.line, one.kind] = one

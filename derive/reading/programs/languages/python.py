@@ -1,11 +1,23 @@
 """Python."""
 
+import re
+
 from derive.reading.programs.languages.language import Language
+
+#: Commands of notebooks.
+COMMAND = re.compile(r"^[ \t]*[%!].*$", re.MULTILINE)
+
+
+def prepared(text: str) -> str:
+    """The text without the commands of notebooks."""
+    return COMMAND.sub("", text)
+
 
 language = Language(
     name="Python",
     suffixes=(".py", ".pyw"),
     module="tree_sitter_python",
+    prepared=prepared,
     roles={
         "module": "block",
         "block": "block",
