@@ -218,6 +218,44 @@ def test_commands_of_notebooks_are_left_out() -> None:
     assert [(one.line, one.text) for one in program.equations] == [(3, "y_0_ddot = -sin(y_0)")]
 
 
+#: A function of rates with an expression, in each language, and the values of expressions.
+TEMPLATES = {
+    "Python": "def f(t, y, k):\n    x, v = y\n    return [v, EXPRESSION]\n",
+    "C": "void f(double *y, double *d, double k) {\n  double x = y[0];\n  d[0] = y[1];\n"
+    "  d[1] = EXPRESSION;\n}",
+    "MATLAB": "function d = f(t, y, k)\n  x = y(1);\n  d = [y(2); EXPRESSION];\nend",
+    "Fortran": "subroutine f(t, y, k, d)\n real :: y(2), d(2), t, k, x\n x = y(1)\n d(1) = y(2)\n"
+    " d(2) = EXPRESSION\nend subroutine",
+    "Julia": "function f(y, k, t)\n  x, v = y\n  [v, EXPRESSION]\nend",
+}
+MEANINGS = [
+    ("Python", "-x**2 - -k", "-x**2 + k"),
+    ("Python", "x**k**2/2*k", "x**k**2/2*k"),
+    ("Python", "x^2", ""),  # exclusive or
+    ("C", "1/2*x", "0*x"),  # the quotient of whole numbers
+    ("C", "1.0f/2*x - 7/2*k", "1.0/2*x - 3*k"),
+    ("C", "x^2", ""),
+    ("MATLAB", "-x^2 + k", "-x**2 + k"),
+    ("MATLAB", "x^k^2", "(x**k)**2"),
+    ("MATLAB", "k*sind(x')", "k*sin(x*(pi/180))"),
+    ("Fortran", "-x**k**2", "-x**k**2"),
+    ("Fortran", "x**(1/2)*1.5d0", "x**0*1.5e0"),
+    ("Julia", "-x^2 + 2x^2", "-x**2 + 2*x**2"),
+    ("Julia", "-3x^2k^2", "-3*x**(2*k)**2"),
+    ("Julia", "1/2k*x", "1/(2*k)*x"),
+    ("Julia", "3(x + k)", "3*(x + k)"),
+]
+
+
+@pytest.mark.parametrize(("language", "expression", "meaning"), MEANINGS)
+def test_expressions_have_the_meaning_of_their_language(
+    language: str, expression: str, meaning: str
+) -> None:
+    program = read_program(TEMPLATES[language].replace("EXPRESSION", expression), language)
+    assert [one.text for one in program.equations] == [f"x_ddot = {meaning}"] * bool(meaning)
+    assert bool(program.unread) != bool(meaning)
+
+
 def test_methods_are_found_in_all_languages() -> None:
     for text, language in ((programs.C_PROGRAM, "C"), (programs.FORTRAN_PROGRAM, "Fortran")):
         assert "order 4" in finding(read_program(text, language), "runge_kutta").text

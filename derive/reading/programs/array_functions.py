@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from derive.reading.programs.arrays import entries, flat, product
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.mathematics import IDENTITIES, applied, split
-from derive.reading.programs.trees import Array, Call, Operation, Tree
+from derive.reading.programs.trees import Array, Call, Number, Opaque, Operation, Tree
 
 #: Functions that place arrays one behind the other.
 STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "vstack"}
 #: Methods that return the array, perhaps in another shape.
-RESHAPED = {"copy", "flatten", "ravel", "reshape", "tolist", "transpose"}
+RESHAPED = {"copy", "flatten", "ravel", "tolist", "transpose"}
 
 
 def of_arrays(call: Call, path: str, base: Tree | None, language: Language) -> Tree | None:
@@ -26,6 +26,9 @@ def of_arrays(call: Call, path: str, base: Tree | None, language: Language) -> T
             return Operation(call.line, "solve", (matrix, flat(column)))
         case ("inv" | "pinv" | "inverse", (matrix,)):
             return Operation(call.line, "inverse", (matrix,))
+        case "reshape", shape if is_method and base is not None:
+            is_row = shape[-1:] in ((Number(0, "1"),), (Operation(0, "-", (Number(0, "1"),)),))
+            return flat(base) if is_row else Opaque(call.line, "another shape is not followed")
         case _ if is_method and base is not None and name in RESHAPED:
             return flat(base)
         case _, (first, *rest) if name in STACKED and (stacked := _stacked(first, rest)):

@@ -8,6 +8,8 @@ from derive.reading.programs.trees import Array, Item, Name, Number, Operation, 
 
 def combined(line: int, operator: str, operands: Sequence[Tree], language: Language) -> Tree:
     """The value of an operation."""
+    if operator == "transpose" and not is_array(operands[0]):
+        return operands[0]  # a number, or an array in one direction
     if not any(map(is_array, operands)):
         return Operation(line, operator, tuple(operands))
     values = [Array(one.line, entries(one) or ()) if is_array(one) else one for one in operands]

@@ -62,6 +62,8 @@ class Calls(Values):
     def called(self, call: Call) -> Tree:
         """The value of a call: of mathematics, of arrays, or of a function of the program."""
         path = self.place(call.function) or ""
+        if isinstance(other := self.variables.get(path), Name):
+            path = other.path  # another name of a function
         arguments = tuple(map(self.value, call.arguments))
         name = split(path)[1]
         made = Call(call.line, call.function, arguments, call.keywords)

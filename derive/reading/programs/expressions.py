@@ -6,6 +6,7 @@ of node. Types without a role are values that cannot be followed.
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import reduce
 from typing import TYPE_CHECKING
 
 from derive.reading.programs.languages.language import Language
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 #: Digits with the suffixes of all languages, such as 9.81f, 1d0 and 2.0_dp.
 DIGITS = re.compile(r"(\d[\d_]*\.?\d*|\.\d+)(?:[eEdD]([+-]?\d+))?(?:_\w+|[fFlLuU]*)")
+#: Powers of powers in a row.
+MAX_POWERS = 20
 OPERATORS = {"^": "**", "\\": "solve", "×": "*", "÷": "/", "//": "//", "dot": "@"}
 
 
@@ -148,7 +151,42 @@ class ExpressionTranslator:
         operator = OPERATORS.get(operator, operator)
         if operator not in ("+", "-", "*", "/", "**", "@", "solve"):
             return Opaque(line(node), f"the operator {text(sign)} is not followed")
-        return Operation(line(node), operator, (self.tree(left), self.tree(right)))
+        if operator == "**" and text(sign) == "^" and not self.language.has_caret_powers:
+            return Opaque(line(node), f"^ is no power in {self.language.name}")
+        if operator == "**":
+            return self._power(node)
+        operands = (self.tree(left), self.tree(right))
+        if operator == "/" and self.language.has_whole_quotients:
+            match operands:
+                case Number(digits=a), Number(digits=b) if f"{a}{b}".isdigit() and int(b):
+                    return Number(line(node), str(int(a) // int(b)))
+        return Operation(line(node), operator, operands)
+
+    def _power(self, node: "Node") -> Tree:
+        """A power; grammars differ from their languages in -x^2, in 2x^2 and in x^y^z."""
+        base, *exponents = self._powers(node)
+        if self.role(base) == "unary" and text(base).startswith("-"):
+            operand = self.children(base)[-1]
+            return Operation(line(node), "-", (self._raised(operand, exponents),))
+        if self.role(base) == "product":
+            left, right = self.children(base)
+            power = self._raised(right, exponents)
+            return Operation(line(node), "*", (self.tree(left), power))
+        return self._raised(base, exponents)
+
+    def _powers(self, node: "Node", level: int = 0) -> list["Node"]:
+        """The base and the exponents of powers of powers that are written without brackets."""
+        parts = [one for one in node.children if not one.is_extra]
+        is_power = self.role(node) == "binary" and text(parts[1]).lstrip(".") in ("^", "**")
+        if not is_power or level > MAX_POWERS:
+            return [node]
+        return [*self._powers(parts[0], level + 1), *self._powers(parts[2], level + 1)]
+
+    def _raised(self, base: "Node", exponents: Sequence["Node"]) -> Tree:
+        trees = self._trees([base, *exponents])
+        if self.language.has_left_powers:
+            return reduce(lambda a, b: Operation(a.line, "**", (a, b)), trees)
+        return reduce(lambda b, a: Operation(a.line, "**", (a, b)), reversed(trees))
 
     def _conditional_tree(self, node: "Node") -> Tree:
         first, second, third = self.children(node)

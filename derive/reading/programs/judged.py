@@ -126,7 +126,7 @@ class Findings:
         values = [value for *_, value in found]
         self._end(region, equations, names, values)
         self._findings += euler_findings(
-            pairs, used, region.name, self._context.constants, names.in_program
+            pairs, used, region, self._context.constants, names.in_program
         )
         angular = angles(values) & {q for q, *_ in found}
         for path, start in self._starts:

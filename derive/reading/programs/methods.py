@@ -5,6 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from derive.reading.programs.program import Finding
+from derive.reading.programs.regions import Region
 from derive.reading.programs.runge_kutta import Method, method, value_at
 from derive.reading.programs.sums import inner, terms, total
 from derive.reading.programs.trees import Array, Name, Number, Tree
@@ -82,7 +83,7 @@ def runge_kutta_findings(written: Sequence[Written], function: str) -> Iterator[
 def euler_findings(
     pairs: tuple[Pair, ...],
     used: Mapping[str, frozenset[str]],
-    function: str,
+    region: Region,
     constants: Mapping[str, Tree],
     shown: Callable[[str], str],
 ) -> Iterator[Finding]:
@@ -92,6 +93,7 @@ def euler_findings(
     """
     coordinates = {pair.coordinate.variable for pair in pairs}
     velocities = {pair.velocity.variable for pair in pairs}
+    function = region.name
     for pair in pairs:
         q, v = pair.coordinate, pair.velocity
         x, rate = shown(q.variable), shown(v.variable)
@@ -113,13 +115,13 @@ def euler_findings(
             changed = ", ".join(sorted(map(shown, partly)))
             text = f"the acceleration for {rate} uses values after the step: {changed}"
             yield Finding(v.line, "mixed_update", function, text, True)
-    yield from _steps(pairs, function, constants)
+    yield from _steps(pairs, region, constants)
     for pair in pairs:
         yield from _damping(pair.velocity, function, shown)
 
 
 def _steps(
-    pairs: tuple[Pair, ...], function: str, constants: Mapping[str, Tree]
+    pairs: tuple[Pair, ...], region: Region, constants: Mapping[str, Tree]
 ) -> Iterator[Finding]:
     for pair in pairs:
         line, step = pair.coordinate.line, pair.step
@@ -128,12 +130,12 @@ def _steps(
             text = "no step size: each call advances the motion by one unit of time"
         elif isinstance(value, Number) and float(value.digits) >= 1:
             text = f"the step size is {value.digits}"
-        elif function.rpartition(".")[2].lower() in DRAWING:
+        elif not region.is_loop and region.name.rpartition(".")[2].lower() in DRAWING:
             text = "one step a picture: the step size is that of the pictures"
         else:
             continue
         is_fault = step is None or isinstance(value, Number)
-        yield Finding(line, "frame_step", function, text, is_fault)
+        yield Finding(line, "frame_step", region.name, text, is_fault)
         return
 
 

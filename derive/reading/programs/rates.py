@@ -64,6 +64,10 @@ def _outputs(
         yield {str(i): one for i, one in enumerate(items)}, [one.line for one in items]
     if isinstance(record := inner(value), Record):
         yield dict(record.fields), [one.line for _, one in record.fields]
+    for parameter in definition.parameters:
+        items = entries(flat(follower.variables.get(parameter.name, value)))
+        if parameter.name in follower.variables and items is not None:
+            yield {str(i): one for i, one in enumerate(items)}, [one.line for one in items]
     groups: dict[str, dict[str, Tree]] = {}
     for path, value in follower.variables.items():
         base, key = _split(path)

@@ -51,6 +51,15 @@ def read_program(source: Path | str, language: str | None = None) -> Program:
         chosen = by_name(language) if language else by_suffix(path)
     else:
         text, file, chosen = source, "", by_name(language)
+    _check(text)
+    try:
+        return _read(file, text, chosen)
+    except RecursionError:
+        raise ProgramError("the functions of the program are nested too deeply") from None
+
+
+def _check(text: str) -> None:
+    """Raise `ProgramError` for texts that are no programs."""
     if len(text) > MAX_LENGTH:
         raise ProgramError(f"a program of {len(text)} characters; at most {MAX_LENGTH} allowed")
     longest = max(map(len, CONTINUED.sub("", text).splitlines()), default=0)
@@ -58,7 +67,6 @@ def read_program(source: Path | str, language: str | None = None) -> Program:
         raise ProgramError(f"a line has {longest} characters; at most {MAX_LINE} allowed")
     if "\0" in text:
         raise ProgramError("the program is no text: it contains null characters")
-    return _read(file, text, chosen)
 
 
 def by_suffix(path: Path) -> Language:

@@ -20,6 +20,7 @@ class Region:
     line: int
     definition: Definition  # of a loop, its body as a function without parameters
     follower: Follower
+    is_loop: bool = False
 
 
 def prepare(context: Context, body: tuple[Statement, ...]) -> None:
@@ -118,6 +119,8 @@ def _followed(
     definition: Definition,
     variables: dict[str, Tree],
     scope: tuple[Statement, ...],
+    *,
+    is_loop: bool = False,
 ) -> Iterator[Region]:
     follower = Follower(context, definition.owner)
     follower.parameters = {one.name for one in definition.parameters}
@@ -127,10 +130,14 @@ def _followed(
     name = definition.name
     if definition.owner and name:
         name = f"{definition.owner}.{name}"
-    yield Region(name, definition.line, definition, follower)
+    yield Region(name, definition.line, definition, follower, is_loop)
     for loop, before in follower.loops:
         yield from _followed(
-            context, _as_function(loop, definition), _kept(context, loop, before), scope
+            context,
+            _as_function(loop, definition),
+            _kept(context, loop, before),
+            scope,
+            is_loop=True,
         )
 
 

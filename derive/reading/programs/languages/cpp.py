@@ -9,6 +9,7 @@ language = Language(
     other_names=("C",),
     assigns_locals=False,
     has_bare_members=True,
+    has_whole_quotients=True,
     roles={
         "translation_unit": "block",
         "declaration": "declaration",

@@ -11,6 +11,7 @@ language = Language(
     has_round_indices=True,
     assigns_locals=False,
     is_case_sensitive=False,
+    has_whole_quotients=True,
     roles={
         "translation_unit": "block",
         "program": "block",

@@ -22,6 +22,7 @@ language = Language(
     is_half_open=False,
     has_matrix_products=True,
     returns_last=True,
+    has_caret_powers=True,
     roles={
         "source_file": "block",
         "module_definition": "block",

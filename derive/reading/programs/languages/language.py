@@ -36,6 +36,12 @@ class Language:
     is_half_open: bool = True
     #: Whether * of matrices is their product.
     has_matrix_products: bool = False
+    #: Whether ^ is a power.
+    has_caret_powers: bool = False
+    #: Whether a^b^c is (a^b)^c.
+    has_left_powers: bool = False
+    #: Whether the quotient of two whole numbers is a whole number.
+    has_whole_quotients: bool = False
     #: Whether y(1) can be an entry of an array.
     has_round_indices: bool = False
     #: Whether a variable that a function assigns without declaration belongs to the function.

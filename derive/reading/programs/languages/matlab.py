@@ -26,6 +26,8 @@ language = Language(
     is_half_open=False,
     has_matrix_products=True,
     has_round_indices=True,
+    has_caret_powers=True,
+    has_left_powers=True,
     roles={
         "source_file": "block",
         "block": "block",
