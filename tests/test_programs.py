@@ -181,6 +181,22 @@ def test_names_lines_and_constants_are_those_of_the_program() -> None:
     assert given == {"l1": "150", "l2": "120", "m1": "20", "m2": "10", "g": "1"}
 
 
+def test_names_of_one_function_are_not_those_of_another() -> None:
+    text = """
+class Model:
+    def __init__(self, a, b):
+        self.given = (a, b)
+    def rates(self, t, y):
+        b, a = self.given
+        return [y[1], -a*y[0] - b*y[1]]
+"""
+    (function,) = read_program(text, "Python").functions
+    assert function.equations[0].text == "y_0_ddot = -b*y_0 - a*y_0_dot"
+    text = "struct P { double m, l, g = 9.81; };"
+    (constant,) = read_program(text, "C++").constants
+    assert (constant.name, constant.value) == ("g", "9.81")
+
+
 def test_parts_of_equations_have_their_lines() -> None:
     program = read_program(programs.SKETCH, "JavaScript")
     first = program.equations[0]

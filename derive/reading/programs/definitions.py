@@ -35,6 +35,10 @@ class DefinitionTranslator(ExpressionTranslator):
         parameters = self._first(node, "parameters")
         header = next((one for one in self.children(node) if self.role(one) == "header"), node)
         named = header.child_by_field_name("name") or self._first(header, "name")
+        declared = header.child_by_field_name("declarator") or header
+        operator = declared.child_by_field_name("declarator")  # operator() of C++
+        if operator and operator.type == "operator_name":
+            named = operator
         yield self._definition(node, self.word(named) if named else "", parameters)
 
     def _owner_of(self, node: "Node") -> str:

@@ -61,6 +61,8 @@ def _function(tree: Tree) -> str:
     match tree:
         case Lambda(function=Definition(body=(Return(value=Call(function=inner)),))):
             return _path(inner)
+        case Text(value=name):
+            return name
     return _path(tree)
 
 

@@ -8,7 +8,7 @@ from derive.reading.programs.code import Assignment, Definition, Evaluation, Loo
 from derive.reading.programs.context import Context, assigned, statements, static_path, targets
 from derive.reading.programs.degrees import number
 from derive.reading.programs.following import Follower
-from derive.reading.programs.trees import Array, Call, Member, Name, Opaque, Tree
+from derive.reading.programs.trees import Array, Call, Member, Name, Opaque, Tree, replaced
 from derive.reading.programs.values import root
 
 
@@ -75,7 +75,7 @@ def regions(context: Context, body: tuple[Statement, ...]) -> list[Region]:
         own = {one.name for one in region.definition.parameters}
         for path, value in region.follower.variables.items():
             if path in once - own and _is_formula(value) and not _contains(value, path):
-                context.shared[path] = value
+                context.shared[path] = _elsewhere(value, own, region.definition.name)
     return [*_regions(context, body)]
 
 
@@ -95,6 +95,16 @@ def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
                 changed.append(one.value.function.base)
             counts.update({static_path(part): 2 for part in changed})
     return {path for path, count in counts.items() if count == 1}
+
+
+def _elsewhere(tree: Tree, parameters: set[str], function: str) -> Tree:
+    """A value with the parameters of a function as names that others do not have."""
+    if isinstance(tree, Name):
+        is_parameter = root(tree.path) in parameters - {"self", "this", "obj"}
+        return Name(tree.line, f"{function}.{tree.path}") if is_parameter else tree
+    parts = tuple(_elsewhere(part, parameters, function) for part in tree.parts)
+    is_same = all(a is b for a, b in zip(parts, tree.parts, strict=True))
+    return tree if is_same else replaced(tree, parts)
 
 
 def _is_formula(value: Tree) -> bool:

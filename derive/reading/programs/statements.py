@@ -96,12 +96,17 @@ class Translator(DefinitionTranslator):
         self._owner = outer
 
     def _field_statements(self, node: "Node") -> Iterator[Statement]:
-        children = [one for one in self.children(node) if self.role(one) != "skip"]
-        if len(children) > 1:
-            target: Tree = Name(line(node), self.word(children[0]))
-            if not self.language.has_bare_members:
-                target = Member(line(node), Name(line(node), "this"), self.word(children[0]))
-            yield from self._assigned(line(node), target, "", self.tree(children[-1]))
+        """Members of a class with their values; of C++, several in one statement."""
+        name = None
+        for index, child in enumerate(node.children):
+            match node.field_name_for_child(index):
+                case "property" | "declarator" | "name":
+                    name = self._name_in(child)
+                case "value" | "default_value" if name:
+                    target: Tree = Name(line(child), self.word(name))
+                    if not self.language.has_bare_members:
+                        target = Member(target.line, Name(target.line, "this"), self.word(name))
+                    yield from self._assigned(line(child), target, "", self.tree(child))
 
     def _assign_statements(self, node: "Node") -> Iterator[Statement]:
         children = [one for one in self.children(node) if self.role(one) != "skip"]

@@ -144,6 +144,8 @@ class Values:
     def _item(self, tree: Item) -> Tree:
         if len(tree.indices) == 1 and isinstance(tree.indices[0], Slice):
             return self._part(tree, tree.indices[0])
+        if isinstance(tree.base, Name) and tree.base.path == "SA":  # a static array of Julia
+            return Array(tree.line, tuple(map(self.value, tree.indices)))
         path, index = self.place(tree), self._index(tree.indices)
         if path and path in self.variables:
             return self.variables[path]
