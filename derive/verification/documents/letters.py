@@ -124,22 +124,28 @@ def letters_of(
     }
     quantities |= _matrices(formulas)
     defined = _defined(formulas, orders)
+    varied = {stem(v) for _, variables in derivatives.values() for v in variables}
     moving = [
         one
         for one in stems
-        if orders[one]
+        if (orders[one] or one in varied)
         and one not in {*quantities, *defined, "t"}
         and not GENERIC.match(one)
         and not one.endswith("_column")
     ]
     momenta = {}
     for one in stems:
-        if one not in quantities and (coordinate := _coordinate(one, moving)) is not None:
+        coordinate = _coordinate(one, moving) if orders[one] < 2 else None
+        if one not in quantities and coordinate is not None:
             momenta[one] = coordinate
     coordinates = [one for one in moving if one not in momenta]
     coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
+    if all(re.fullmatch(r"q_\d", one) for one in coordinates):
+        # with abbreviations such as s_1, angles need not be written
+        indices = {i for one in stems if ABBREVIATION.match(one) for i in re.findall(r"\d", one)}
+        coordinates += [q for i in sorted(indices) if (q := f"q_{i}") not in coordinates]
     # a document can define r by other coordinates, and go on with r alone
-    accelerated = tuple(one for one in coordinates if orders[one] == 2)
+    accelerated = tuple(one for one in coordinates if orders.get(one) == 2)
     coordinates += [one for one in stems if orders[one] == 2 and one in defined]
     known = {*quantities, *defined, *moving, *momenta, "t"}
     parameters = [

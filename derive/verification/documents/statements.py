@@ -177,8 +177,13 @@ def _is_matrix(node: Node, matrices: set[str]) -> bool:
 
 def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
+    first, *others = formula.sides
     if formula.subject:
-        yield from ((formula.subject, side.text) for side in formula.sides[1:])
+        yield from ((formula.subject, side.text) for side in others)
+    if first.entries:
+        for side in others:
+            for name, entry in zip(first.entries, side.entries, strict=False):
+                yield name.text, entry.text
     last = formula.sides[-1].text
     if formula.relations == ("=",) and last.isidentifier():
         yield last, formula.sides[0].text

@@ -58,12 +58,26 @@ class Judge:
         results = [self._side(formula, k) for k in known]
         for result in results:
             if result.verdict.verdict not in CORRECT:
-                return result
+                return self._first_side(formula) or result
         if unknown:
             return _not_understood(formula, unknown)
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
+
+    def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
+        """The verdict on the first side if all others agree, so that it is the wrong one."""
+        first, *others = formula.sides
+        if len(others) < 2 or "~" in formula.relations or self._unknown(others):
+            return None
+        with suppress(ExpressionError, NotImplementedError):
+            required, *rest = (self._scope.value(one.text) for one in others)
+            if all(isinstance(one, sp.Expr) for one in (required, *rest)) and all(
+                self._holds(one - required) is not None for one in rest
+            ):
+                result = self._value(first, "first_side", required)
+                return result if result.verdict.corrections else None
+        return None
 
     def _is_special(self, formula: DocumentFormula) -> bool:
         """Whether a formula states the value of a coordinate, of its rate or of a parameter."""
@@ -95,11 +109,21 @@ class Judge:
         last = self._scope.defining.get(side.text)
         if last and last[0] is formula:
             return _plain("definition", formula, "")
+        is_approximate = formula.relations[k - 1] == "~"
+        first = formula.sides[k - 1] if is_approximate else first
         try:
             values = [self._scope.value(one.text) for one in (first, side)]
+            if is_approximate:
+                return self._approximated(formula, *values)
             return self._compared(formula, first, side, *values)
         except (ExpressionError, NotImplementedError) as error:
             return _plain("context", formula, f"not judged: {error}")
+
+    def _approximated(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
+        """The verdict on an approximation, which is never wrong: others can be meant."""
+        if self._linear.agrees(left - right, self._model):
+            return _plain("verified", formula, "it holds to first order at the origin")
+        return _plain("context", formula, "it is an approximation")
 
     def _compared(
         self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
@@ -112,10 +136,6 @@ class Judge:
         if note is not None:
             return _plain("verified", formula, note)
         small = "it holds for small motions about the origin"
-        if "~" in formula.relations:
-            is_small = self._linear.agrees(left - right, self._model)
-            note = small if is_small else "it is an approximation"
-            return _plain("verified" if is_small else "context", formula, note)
         if is_product:
             return self._scaled(formula, side, left, right)
         result = self._role(formula, first, side, left, right)

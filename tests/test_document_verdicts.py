@@ -1,0 +1,176 @@
+"""Verdicts on documents whose letters and conventions are found by structure."""
+
+import json
+from collections import defaultdict
+from pathlib import Path
+from random import Random
+
+import pytest
+from derivations import DERIVATIONS
+from document_mutants import Mutant, mutants
+from shared_documents import shared
+
+from derive.reading.documents import read_document
+from derive.verification.documents.files import judge_file
+from derive.verification.documents.judged import JudgedDocument
+
+CORRECT = ("verified", "equivalent", "definition")
+SYSTEMS = {
+    "double": "Double pendulum",
+    "cart": "The system that the document states",
+    "spring": "Elastic pendulum",
+    "robot": "Double pendulum",
+    "hamilton": "Spherical pendulum",
+    "columns": "The system that the document states",
+}
+
+
+def judged(folder: Path, text: str, name: str = "a.md") -> JudgedDocument:
+    (folder / name).write_text(text, encoding="utf-8")
+    return judge_file(str(folder / name))[0]
+
+
+def verdicts(folder: Path, text: str, name: str = "a.md") -> list[str]:
+    return [one.verdict for one in judged(folder, text, name).formulas]
+
+
+@pytest.mark.parametrize("name", DERIVATIONS)
+def test_right_derivations_in_any_letters_are_verified(name: str, tmp_path: Path) -> None:
+    document = judged(tmp_path, DERIVATIONS[name])
+    assert document.system.startswith(SYSTEMS[name])
+    assert {one.verdict for one in document.formulas if one.display} <= {*CORRECT}
+    assert sum(one.verdict == "verified" for one in document.formulas) >= 3
+
+
+def problem(mutant: Mutant, document: JudgedDocument) -> str:
+    """Why a mistake is not found at its place; "" if it is."""
+    near = [one for one in document.formulas if abs(one.span[0] - mutant.formula) < 3]
+    if [one.verdict for one in near] != ["wrong"]:
+        return f"{[one.verdict for one in near]}"
+    one = near[0]
+    if not one.wrong_term:
+        return "" if mutant.kind == "omission" and one.correction else "no term"
+    for term in one.wrong_term.split("; "):
+        start = mutant.text.find(term, mutant.formula)
+        while 0 <= start < one.span[1]:
+            if start - 3 <= mutant.place <= start + len(term) + 1:
+                return ""
+            start = mutant.text.find(term, start + 1)
+    return f"elsewhere: {one.wrong_term}"
+
+
+def missed(folder: Path, chosen: list[tuple[str, Mutant]]) -> list[str]:
+    found = []
+    for name, mutant in chosen:
+        if reason := problem(mutant, judged(folder, mutant.text)):
+            around = mutant.text[mutant.place - 20 : mutant.place + 20]
+            found.append(f"{name}: {mutant.kind} {mutant.change} in {around!r}: {reason}")
+    return found
+
+
+def sampled(folder: Path, count: int) -> list[tuple[str, Mutant]]:
+    """So many mistakes of each kind, from all derivations."""
+    kinds = defaultdict(list)
+    for name, text in DERIVATIONS.items():
+        (folder / "a.md").write_text(text)
+        for mutant in mutants(read_document(folder / "a.md")):
+            kinds[mutant.kind].append((name, mutant))
+    return [one for group in kinds.values() for one in Random(2).sample(group, count)]
+
+
+def test_planted_mistakes_are_found_at_their_place(tmp_path: Path) -> None:
+    assert missed(tmp_path, sampled(tmp_path, 1)) == []
+
+
+@pytest.mark.campaign
+def test_most_planted_mistakes_are_found_at_their_place(tmp_path: Path) -> None:
+    chosen = sampled(tmp_path, 12)
+    assert len(missed(tmp_path, chosen)) <= len(chosen) // 20
+
+
+def test_a_correction_is_the_formula_with_another_term(tmp_path: Path) -> None:
+    wrong = DERIVATIONS["double"].replace(r"- m g b \cos\beta", r"- m g b \sin\beta")
+    document = judged(tmp_path, wrong)
+    (one,) = (one for one in document.formulas if one.verdict == "wrong")
+    assert (one.line, one.display) == (6, 2)
+    assert r"m g b \sin\beta" in one.wrong_term
+    assert verdicts(tmp_path, wrong.replace(one.latex, one.correction)) == ["verified"] * 6
+
+
+SLIP = r"""
+$$x = l\sin\theta,\quad y = -l\cos\theta$$
+$$\dot x = l\dot\theta\cos t1,\quad \dot y = l\dot\theta\sin t1$$
+$$\ddot\theta = -\frac gl\sin\theta$$
+"""
+
+
+def test_a_letter_without_a_meaning_is_none_of_another_index(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, SLIP) == ["definition"] * 2 + ["verified"] * 3
+    unknown = DERIVATIONS["robot"].replace("l_2 s_{12}", "l_3 s_{12}")
+    last = judged(tmp_path, unknown).formulas[-1]
+    assert (last.verdict, last.note) == ("context", "no meaning was found for l_3")
+
+
+@pytest.mark.parametrize(("text", "note"), [
+    (r"$$\ddot\theta = -\sin\theta$$", ""),
+    (r"$$H = \tfrac12 p^2 - \cos\theta, \quad \ddot\theta = -\frac gl\sin\theta$$", "it holds for"),
+])  # fmt: skip
+def test_formulas_in_units_of_the_system_are_recognised(
+    text: str, note: str, tmp_path: Path
+) -> None:
+    first = judged(tmp_path, text).formulas[0]
+    assert first.verdict in CORRECT
+    assert note in first.note
+
+
+def test_values_approximations_and_foreign_formulas_are_not_judged(tmp_path: Path) -> None:
+    text = r"""
+$$\ddot\theta + \frac gl\sin\theta = 0$$
+$$\theta = 0, \quad E = m c^2, \quad \theta < \pi, \quad \sin\theta\approx\theta, \quad x_n\to 0$$
+"""
+    assert verdicts(tmp_path, text) == [
+        "verified", "context", "context", "context", "verified", "context",
+    ]  # fmt: skip
+
+
+def test_a_document_without_mechanics_has_no_verdicts(tmp_path: Path) -> None:
+    document = judged(tmp_path, r"$$E = mc^2$$ $$a^2 + b^2 = c^2$$ $$\int_0^1 x\,dx = \frac12$$")
+    assert document.system == ""
+    assert {one.verdict for one in document.formulas} <= {"context", "unreadable"}
+
+
+PROGRAM = """
+import numpy as np
+
+def rates(t, state, m1, m2, a, b, g):
+    p, dp, q, dq = state
+    s, c = np.sin(p - q), np.cos(p - q)
+    f1 = -m2*b*dq**2*s - (m1 + m2)*g*np.sin(p)
+    f2 = a*dp**2*s - g*np.sin(q)
+    d = (m1 + m2*s**2)
+    ddp = (f1 - m2*c*f2)/(a*d)
+    ddq = ((m1 + m2)*f2 - c*f1)/(b*d)
+    return dp, ddp, dq, ddq
+"""
+
+
+def test_programs_are_judged_at_the_lines_of_their_mistakes(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, PROGRAM, "a.py") == ["verified"] * 2
+    wrong = PROGRAM.replace("- g*np.sin(q)", "+ g*np.sin(q)")
+    document = judged(tmp_path, wrong, "a.py")
+    assert {one.verdict for one in document.formulas} == {"wrong"}
+    assert 8 in {one.line for one in document.formulas}
+
+
+@pytest.mark.parametrize("name", ["verdicts.json"])
+def test_public_documents_have_the_verdicts_of_an_independent_reader(name: str) -> None:
+    folder = shared("documents")
+    problems = []
+    for document in json.loads((folder / name).read_text()):
+        judgement = judge_file(str(folder / document["file"]))[0]
+        for display in document["displays"]:
+            own = [one for one in judgement.formulas if one.display == display["n"]]
+            is_wrong = any(one.verdict == "wrong" for one in own)
+            if is_wrong != (display["verdict"] == "wrong"):
+                problems.append((document["file"], display["n"], [one.verdict for one in own]))
+    assert problems == []
