@@ -367,6 +367,7 @@ x = \begin{split} a \\ + b \end{split}  ⟶  x = (a + b)
 L &= a \intertext{and so} M &= b  ⟶  L = a | M = b
 \begin{array}{r c l} x & \hspace{-1ex} =& a \\ y & \hspace{-1ex} =& b \end{array}  ⟶  x = a | y = b
 L & = a \\ & + b \\ M & - c = 0, \quad d = 0  ⟶  L = (a + b) | (M - c) = 0 | d = 0
+x = a \quad (b \ll 1)  ⟶  x = a | b < 1
 x > 0~~(1)  ⟶  x > 0
 x = a\;\;(12)  ⟶  x = a
 F = a + \text{friction of air}  ⟶  F = (a + friction_of_air)

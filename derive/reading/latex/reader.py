@@ -7,12 +7,14 @@ Implicit products, and functions without brackets, are read by these rules:
 - The bare argument of a function holds numbers and Latin letters up to and including the first
   Greek letter, and a ``t`` behind it: ``\sin 2\theta l`` is sin(2θ) l, ``\cos\omega t`` is cos(ωt).
   Without a Greek letter it ends with the first ``t``; several Latin letters without either are
-  ambiguous. It ends before letters with dots, functions, fractions, roots and brackets, unless it
-  starts with one of these. An exponent belongs to the letter before it: ``\sin\theta^2`` is
-  sin(θ²), ``\sin(\theta)^2`` is sin(θ)².
+  ambiguous, unless no space is between them as in ``\sin kx``. It ends before letters with dots,
+  functions, fractions, roots and brackets, unless it starts with one of these. An exponent belongs
+  to the letter before it: ``\sin\theta^2`` is sin(θ²), ``\sin(\theta)^2`` is sin(θ)².
 - A letter before round brackets is an ``Application``, also with an exponent behind the brackets:
   ``m(x + y)^2`` is the power of an application. Behind a bare argument brackets are a factor.
-- A slash divides the factor before it by the factor behind it.
+- A slash divides the factor before it by the factor behind it. A number behind it takes the
+  factors that follow without a space: ``p^2/2m`` is p²/(2m), but ``1/2m`` is (1/2) m. ``k/mx`` and
+  ``\sin\theta/2`` are ambiguous.
 - A derivative without an operand, d/dt, applies to the brackets behind it, or else to the rest of
   the term; so does a sum.
 

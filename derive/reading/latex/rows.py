@@ -169,7 +169,17 @@ def statements(tokens: list[Token]) -> list[list[Token]]:
             result[-1].has_relation |= part.has_relation
         else:
             result.append(part)
-    return [part.tokens for part in result]
+    return [_without_brackets(part.tokens) for part in result]
+
+
+def _without_brackets(tokens: list[Token]) -> list[Token]:
+    r"""A condition in brackets, such as ``(x \ll 1)``, without them."""
+    places = [at for at, token in enumerate(tokens) if token.kind != "space"]
+    start, end = places[0], places[-1]
+    partner = pairs(tokens) if tokens[start].kind == "open" else {}
+    inner = inside(start, end, partner) if partner.get(start) == end else []
+    is_condition = any(tokens[at].kind == "relation" for at in inner)
+    return tokens[start + 1 : end] if is_condition else tokens
 
 
 def _is_number_of_equation(part: Part) -> bool:
