@@ -11,6 +11,8 @@ from derive.verification.documents.jets import Array, Jet, Value
 
 #: The largest relative variation of a ratio that counts as none.
 CONSTANT = 1e-6
+#: Terms of a side that are multiplied out.
+MAX_TERMS = 60
 SWAPPED = {"sin(": "cos(", "cos(": "sin("}
 
 
@@ -23,9 +25,9 @@ def is_near(
     velocity more or less.
     """
     terms = [
-        (sign * side_sign, ast.unparse(node))
+        (sign * side_sign, text)
         for side_sign, side in zip((1, -1), sides, strict=True)
-        for node, sign in _summands(side)
+        for text, sign in _terms(side)
     ]
     values = [value(text) for _, text in terms]
     jets = [one for one in values if isinstance(one, Jet)]
@@ -44,11 +46,31 @@ def is_near(
     return result
 
 
-def _summands(side: str) -> list[tuple[ast.expr, int]]:
+def _terms(side: str) -> list[tuple[str, int]]:
+    """The terms of a sum and their signs; those in brackets are multiplied out."""
     try:
-        return summands(syntax_tree(side))
+        terms = [*_distributed(syntax_tree(side))]
     except ExpressionError:
         return []
+    return terms if len(terms) <= MAX_TERMS else [(side, 1)]
+
+
+def _distributed(node: ast.expr) -> Iterator[tuple[str, int]]:
+    match node:
+        case ast.BinOp(op=ast.Add() | ast.Sub()):
+            for part, sign in summands(node):
+                yield from ((text, sign * own) for text, own in _distributed(part))
+        case ast.UnaryOp(operand=operand):
+            yield from ((text, -sign) for text, sign in _distributed(operand))
+        case ast.BinOp(left=left, op=ast.Div(), right=right):
+            below = ast.unparse(right)
+            yield from ((f"({text})/({below})", sign) for text, sign in _distributed(left))
+        case ast.BinOp(left=left, op=ast.Mult(), right=right):
+            others = [*_distributed(right)]
+            for text, sign in _distributed(left):
+                yield from ((f"({text})*({other})", sign * own) for other, own in others)
+        case _:
+            yield ast.unparse(node), 1
 
 
 def _variants(
