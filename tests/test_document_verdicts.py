@@ -12,7 +12,9 @@ from shared_documents import shared
 
 from derive.reading.documents import read_document
 from derive.verification.documents.files import judge_file
+from derive.verification.documents.hints import hints
 from derive.verification.documents.judged import JudgedDocument
+from solvers.io.toml_input import InputError
 
 CORRECT = ("verified", "equivalent", "definition")
 SYSTEMS = {
@@ -174,3 +176,31 @@ def test_public_documents_have_the_verdicts_of_an_independent_reader(name: str) 
             if is_wrong != (display["verdict"] == "wrong"):
                 problems.append((document["file"], display["n"], [one.verdict for one in own]))
     assert problems == []
+
+
+HINTED = r"$$\ddot A = -\frac{G}{w}\cos A$$"
+
+
+def test_hints_settle_the_letters(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, HINTED) == ["context"]
+    names = tmp_path / "names.toml"
+    names.write_text('system = "single_pendulum"\n[names]\nA = "theta"\nG = "g"\nw = "l"\n')
+    (tmp_path / "a.md").write_text(HINTED)
+    document, _ = judge_file(str(tmp_path / "a.md"), hints(None, names))
+    (one,) = document.formulas
+    assert (one.verdict, one.correction) == ("wrong", r"\ddot A = -\frac{G}{w} \sin\left(A\right)")
+    for angle, verdict in (("theta - pi/2", "verified"), ("pi/2 - theta", "wrong")):
+        names.write_text(f'[names]\nA = "{angle}"\nG = "g"\nw = "l"\n')
+        document, _ = judge_file(str(tmp_path / "a.md"), hints("single_pendulum", names))
+        assert [one.verdict for one in document.formulas] == [verdict]
+
+
+@pytest.mark.parametrize(("text", "message"), [
+    ('system = "single_pendulum"\n[names]\nA = "thetta"', "names.A: .*'thetta'"),
+    ('system = "single_pendulum"\n[names]\nA = "2"', "'2' is neither a parameter nor"),
+    ('sistem = "single_pendulum"', "sistem"),
+])  # fmt: skip
+def test_wrong_hints_are_refused(text: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "names.toml").write_text(text)
+    with pytest.raises(InputError, match=message):
+        hints(None, tmp_path / "names.toml")

@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 from derive.reading.document import Document
 from derive.verification.documents.annotation import annotate, check_annotation
 from derive.verification.documents.files import judge_file
+from derive.verification.documents.hints import Hints
 from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.table import document_lines, document_record
 from derive.verification.hand import HandDerivation, judge
@@ -26,7 +27,13 @@ NOT_DOCUMENTS = ("", ".toml")
 Judged: TypeAlias = HandDerivation | JudgedDocument
 
 
-def verify(names: Sequence[str], *, as_json: bool, annotation: Path | None = None) -> int:
+def verify(
+    names: Sequence[str],
+    *,
+    as_json: bool,
+    annotation: Path | None = None,
+    hints: Hints | None = None,
+) -> int:
     """Print the verdicts, for several files also their numbers.
 
     Return 0, 1 if an equation is wrong, or 2 if an equation or a file is unreadable.
@@ -39,7 +46,7 @@ def verify(names: Sequence[str], *, as_json: bool, annotation: Path | None = Non
     for name in names:
         try:
             if name in files:
-                judged, document = judge_file(name)
+                judged, document = judge_file(name, hints)
                 results[name] = judged
                 documents.append((judged, document))
             else:

@@ -6,6 +6,7 @@ from itertools import islice, permutations, product
 from math import pi
 from typing import Any
 
+from derive.system.parts import Parameter
 from derive.system.system import System
 from derive.verification.documents.letters import Letters
 
@@ -57,6 +58,11 @@ class Candidate:
         return values[offset] if isinstance(offset, str) else offset * pi / 2
 
 
+def kind_of(parameter: Parameter) -> str:
+    """The kind of a parameter by its unit, or "" for others."""
+    return UNITS.get(parameter.unit, "")
+
+
 def candidates(
     system: System, letters: Letters, numbers: Mapping[str, str] | None = None
 ) -> Iterator[Candidate]:
@@ -82,7 +88,7 @@ def _numbers(
     system: System, mapping: Mapping[str, str], numbers: Mapping[str, str]
 ) -> dict[str, str]:
     """Numbers for the parameters without a letter."""
-    kinds = {p.symbol.name: UNITS.get(p.unit, "") for p in system.parameters}
+    kinds = {p.symbol.name: kind_of(p) for p in system.parameters}
     return {
         name: numbers.get(kind, "1")
         for name, kind in kinds.items()
@@ -135,7 +141,7 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
     """Yield letters for the parameters of a system, one kind after another."""
     groups: dict[str, list[str]] = {}
     for parameter in system.parameters:
-        groups.setdefault(UNITS.get(parameter.unit, ""), []).append(parameter.symbol.name)
+        groups.setdefault(kind_of(parameter), []).append(parameter.symbol.name)
     for choice in _likeliest(*(_choices(kind, names, letters) for kind, names in groups.items())):
         yield {name: letter for one in choice for name, letter in one.items()}
 

@@ -7,6 +7,7 @@ from derive.reading.document import Document
 from derive.reading.documents import KINDS, read_document
 from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.reader import LANGUAGES, read_program
+from derive.verification.documents.hints import Hints
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.program_judgement import judge_program
@@ -23,7 +24,7 @@ def is_program(name: str) -> bool:
     return any(Path(name).suffix in one.suffixes for one in LANGUAGES)
 
 
-def judge_file(name: str) -> tuple[JudgedDocument, Document]:
+def judge_file(name: str, hints: Hints | None = None) -> tuple[JudgedDocument, Document]:
     """Judge the formulas of a document, also in the programs of a notebook, or of a program.
 
     Raises
@@ -33,15 +34,15 @@ def judge_file(name: str) -> tuple[JudgedDocument, Document]:
     """
     if is_program(name):
         program = _program(Path(name))
-        return judge_program(program), Document(name, "program", "", ())
+        return judge_program(program, hints), Document(name, "program", "", ())
     document = read_document(name)
-    judged = judge_document(document)
+    judged = judge_document(document, hints)
     for cell in document.programs:
         try:
             program = read_program(cell.text, cell.language)
         except ProgramError:  # a language that is not read, such as that of a shell
             continue
-        inside = judge_program(program)
+        inside = judge_program(program, hints)
         formulas = (*judged.formulas, *(_in_cell(one, cell.number) for one in inside.formulas))
         systems = dict.fromkeys(filter(None, (judged.system, inside.system)))
         judged = replace(judged, formulas=formulas, system="; ".join(systems))

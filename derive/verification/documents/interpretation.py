@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from derive.verification.documents.candidates import Candidate, candidates
+from derive.verification.documents.hints import Hints
 from derive.verification.documents.letters import Letters, letters_of
 from derive.verification.documents.matching import Match, best_match, trivial_comparisons
 from derive.verification.documents.meaning import meaning
@@ -28,13 +29,15 @@ class Interpretation:
     match: Match | None
 
 
-def interpretation(statements: Translated) -> Interpretation:
+def interpretation(statements: Translated, hints: Hints | None = None) -> Interpretation:
     """Find the meaning of letters for which most formulas hold.
 
     If there is none, parameters without a letter are taken for numbers: gravity for that of the
     formulas, others for 1.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
+    if hints:
+        return Interpretation(letters, _best(letters, statements, hints.candidates(letters), 0))
     found = _best(letters, statements, _candidates(letters, statements))
     if found is None or found.holding < 1:
         numbers = {"gravity": _gravity(statements)}
@@ -44,15 +47,18 @@ def interpretation(statements: Translated) -> Interpretation:
 
 
 def _best(
-    letters: Letters, statements: Translated, groups: Iterable[Sequence[Candidate]]
+    letters: Letters,
+    statements: Translated,
+    groups: Iterable[Sequence[Candidate]],
+    least: float = LEAST,
 ) -> Match | None:
-    """The candidate that most formulas support, if they are enough."""
+    """The candidate that most formulas support, if a part of them does."""
     formulas, derivatives = statements.formulas, statements.derivatives
     trivial = trivial_comparisons(letters, formulas, derivatives)
     matches = (best_match(tried, letters, formulas, derivatives, trivial) for tried in groups)
-    supported = [match for match in matches if match and match.holding]
+    supported = [match for match in matches if match and (match.holding or not least)]
     best = max(supported, key=lambda match: match.score, default=None)  # the first of several
-    if best is None or best.holding < min(ENOUGH, LEAST * best.compared):
+    if best is None or best.holding < min(ENOUGH, least * best.compared):
         return None
     return best
 

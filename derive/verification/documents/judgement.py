@@ -7,6 +7,7 @@ from derive.reading.document import Display, Document
 from derive.reading.latex.reader import formulas, macros_of
 from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
 from derive.verification.documents.corrections import corrected
+from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import interpretation, judge_of
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.statements import (
@@ -23,7 +24,7 @@ MAX_SYSTEMS = 3
 GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
 
 
-def judge_document(document: Document) -> JudgedDocument:
+def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocument:
     """Judge every formula of a document.
 
     A document can treat several systems: another is sought for the formulas with letters that
@@ -35,9 +36,9 @@ def judge_document(document: Document) -> JudgedDocument:
     titles: list[str] = []
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     remaining = statements.formulas
-    while remaining and len(titles) < MAX_SYSTEMS:
+    while remaining and len(titles) < (1 if hints else MAX_SYSTEMS):
         part = replace(statements, formulas=remaining)
-        found = interpretation(part)
+        found = interpretation(part, hints)
         if found.match is None:
             break
         judge = judge_of(part, found.letters, found.match.candidate)

@@ -7,8 +7,9 @@ alike everywhere.
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import product
+from typing import Self
 
 from derive.verification.documents.jets import FUNCTIONS
 from derive.verification.documents.rates import order, stem
@@ -70,6 +71,11 @@ class Letters:
     parameters: tuple[str, ...]  # all others that no formula defines
     accelerated: tuple[str, ...]  # coordinates whose accelerations occur, and no definition
     abbreviations: Mapping[str, tuple[str, tuple[str, ...]]]  # such as s_12: sine of q_1 and q_2
+    kinds: Mapping[str, str] = field(default_factory=dict)  # of parameters, if they are given
+
+    def hinted(self, kinds: Mapping[str, str]) -> Self:
+        """The letters with given kinds of parameters."""
+        return replace(self, kinds=kinds)
 
     def orders(self, are_angles: Sequence[bool]) -> Iterator[tuple[str, ...]]:
         """Yield coordinates for those of a system, of which some are angles.
@@ -95,10 +101,10 @@ class Letters:
     def of_kind(self, kind: str) -> list[str]:
         """Parameters that can be of a kind, the usual ones first."""
         usual = KINDS[kind]
-        named = [p for p in self.parameters if p.partition("_")[0].rstrip("0123456789") in usual]
-        return sorted(
-            named, key=lambda p: (usual.index(p.partition("_")[0].rstrip("0123456789")), p)
-        )
+        given = [name for name, own in self.kinds.items() if own == kind]
+        stems = {p: p.partition("_")[0].rstrip("0123456789") for p in self.parameters}
+        named = [p for p in self.parameters if stems[p] in usual and p not in self.kinds]
+        return [*given, *sorted(named, key=lambda p: (usual.index(stems[p]), p))]
 
 
 def letters_of(

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from derive.reading.latex.tree import Letter, Statement
 from derive.reading.programs.program import Equation, Finding, Program
 from derive.verification.documents.corrections import inserted, places
+from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import interpretation, judge_of
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
@@ -16,13 +17,13 @@ from derive.verification.verdict import VerdictName
 NO_SYSTEM = "no system was found for which its equations hold"
 
 
-def judge_program(program: Program) -> JudgedDocument:
+def judge_program(program: Program, hints: Hints | None = None) -> JudgedDocument:
     """Judge the equations of every function of a program, and its method of integration."""
     titles: list[str] = []
     judged: list[JudgedFormula] = []
     for function in program.functions:
         formulas = [_formula(equation) for equation in function.equations]
-        found = interpretation(Translated(tuple(formulas), (), {}))
+        found = interpretation(Translated(tuple(formulas), (), {}), hints)
         if found.match is None:
             judged += [_plain(equation, NO_SYSTEM) for equation in function.equations]
             continue

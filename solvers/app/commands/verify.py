@@ -23,6 +23,10 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_json(parser)
     meaning = "write the formulas of documents with their verdicts: a page (.html), or LaTeX (.tex)"
     parser.add_argument("--annotate", type=Path, metavar="OUT", help=meaning)
+    meaning = "the system of documents and programs: a name, or a TOML file"
+    parser.add_argument("--system", metavar="SYSTEM", help=meaning)
+    meaning = "a TOML file with the system and a table [names] of letters as formulas in its names"
+    parser.add_argument("--names", type=Path, metavar="FILE", help=meaning)
     add_examples(
         parser,
         "holonomic verify --json > verdicts.json",
@@ -34,10 +38,16 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Print the verdicts; return 1 if an equation is wrong, 2 if one cannot be read."""
-    if arguments.equations or arguments.annotate:
+    if arguments.equations or arguments.annotate or arguments.system or arguments.names:
         from derive.commands.verify import verify
+        from derive.verification.documents.hints import hints
 
-        return verify(arguments.equations, as_json=arguments.json, annotation=arguments.annotate)
+        return verify(
+            arguments.equations,
+            as_json=arguments.json,
+            annotation=arguments.annotate,
+            hints=hints(arguments.system, arguments.names),
+        )
     from solvers.app.verdict.report import report_verdicts, tables
     from solvers.io.progress import Progress
 
