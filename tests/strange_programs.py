@@ -464,3 +464,15 @@ function step() {
   t2 += h * w2;
 }
 """
+
+JULIA_MACROS = """
+function slope(u, p, t)
+    @unpack m1, m2, l1, l2, g = p
+    (th1, th2, w1, w2) = u
+    d = th1 - th2
+    M = [(m1+m2)*l1 m2*l2*cos(d); l1*cos(d) l2]
+    b = [-m2*l2*w2^2*sin(d) - (m1+m2)*g*sin(th1); l1*w1^2*sin(d) - g*sin(th2)]
+    a = M \\ b
+    return SA[w1, w2, a[1], a[2]]
+end
+"""

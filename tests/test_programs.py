@@ -122,6 +122,13 @@ CASES = {
         2,
     ),
     "Julia": ("Julia", programs.JULIA_PROGRAM, "double_pendulum", {}, 2),
+    "macros in Julia": (
+        "Julia",
+        programs.JULIA_MACROS,
+        "double_pendulum",
+        {"th1": "theta1", "th2": "theta2"},
+        2,
+    ),
     "matrices in Julia": (
         "Julia",
         programs.JULIA_MATRIX,

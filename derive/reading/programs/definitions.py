@@ -55,7 +55,7 @@ class DefinitionTranslator(ExpressionTranslator):
 
     def _definition(self, node: "Node", name: str, given: "Node | None") -> Definition:
         body = node.child_by_field_name("body")
-        blocks = [one for one in self.children(node) if self.role(one) == "block"]
+        blocks = [one for one in self.children(node) if one.type == "block"]
         nodes = [body] if body else blocks or self._body(node)
         if name == "" and len(nodes) > 1:
             nodes = nodes[-1:]  # the parameter of a short function stands before its body

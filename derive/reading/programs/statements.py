@@ -202,7 +202,7 @@ class Translator(DefinitionTranslator):
 
     def _loop_statements(self, node: "Node") -> Iterator[Statement]:
         body = node.child_by_field_name("body")
-        blocks = [one for one in self.children(node) if self.role(one) == "block"]
+        blocks = [one for one in self.children(node) if one.type == "block"]
         nodes = [body] if body else blocks or self._body(node)
         header = next((one for one in self.children(node) if one not in nodes), None)
         name = self._first(header, "name") if header else None
