@@ -57,7 +57,9 @@ class Updates:
         for path, value in follower.variables.items():
             for part in _parts(Step(0, path, value), follower):
                 final[part.path] = part.value
-        used = {path for step in self._steps for path in names(step.value)}
+        is_timed = any(TIMED.fullmatch(step.path) for step in self._steps)
+        values = [step.value for step in self._steps] if is_timed else []
+        used = {path for value in values for path in names(value)}
         self._old = {step.path: previous(step.path, used) for step in self._steps}
         #: Values that variables take, by identity.
         self._owners = {
