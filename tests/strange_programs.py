@@ -476,3 +476,17 @@ function slope(u, p, t)
     return SA[w1, w2, a[1], a[2]]
 end
 """
+
+#: A step of the classical method with functions of entries.
+ARRAY_STEPS = """
+const slope = ([angle, rate]) => [rate, -g / l * Math.sin(angle)];
+const moved = (y, k, h) => y.map((x, i) => x + h * k[i]);
+
+function step(y, h) {
+  const k1 = slope(y);
+  const k2 = slope(moved(y, k1, h / 2));
+  const k3 = slope(moved(y, k2, h / 2));
+  const k4 = slope(moved(y, k3, h));
+  return y.map((x, i) => x + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]));
+}
+"""

@@ -165,6 +165,20 @@ def test_a_changed_sign_changes_an_equation(name: str) -> None:
     assert max(residuals(read_program(wrong, language), system, names)) > 1e-3
 
 
+def test_a_state_can_be_separate_parameters_with_time_before_them() -> None:
+    for parameters in ("x, v, k", "t, x, v, k", "t, k, x, v"):
+        text = f"def f({parameters}):\n    return v, -k*x\n"
+        texts = [one.text for one in read_program(text, "Python").equations]
+        assert texts == ["x_ddot = -k*x"], parameters
+
+
+def test_parameters_without_a_name_keep_their_place() -> None:
+    text = "y = y + h*f(0, y);\nfunction d = f(~, y)\n  d = [y(2); -sin(y(1))];\nend\n"
+    program = read_program(text, "MATLAB")
+    assert [one.text for one in program.equations] == ["y_1_ddot = -sin(y_1)"]
+    assert kinds(program) == {"explicit_euler"}
+
+
 def test_momenta_give_rates() -> None:
     program = read_program(programs.CANONICAL, "Python")
     assert [one.text for one in program.equations] == [
@@ -284,6 +298,10 @@ def test_methods_are_found_in_all_languages() -> None:
         assert "order 4" in finding(read_program(text, language), "runge_kutta").text
         wrong = read_program(text.replace("2*k3", "k3"), language)
         assert finding(wrong, "runge_kutta").is_fault
+    arrays = programs.ARRAY_STEPS
+    assert "order 4" in finding(read_program(arrays, "JavaScript"), "runge_kutta").text
+    wrong = arrays.replace("moved(y, k3, h)", "moved(y, k2, h)")
+    assert finding(read_program(wrong, "JavaScript"), "runge_kutta").is_fault
     matlab = read_program(programs.MATLAB_PROGRAM, "MATLAB")
     assert kinds(matlab, faults=False) == {"library", "degrees"}
     assert finding(matlab, "degrees").line == line_of(programs.MATLAB_PROGRAM, "y0 = [30")

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from derive.reading.programs.array_functions import of_arrays, of_entries
 from derive.reading.programs.code import Definition, Return, Statement
 from derive.reading.programs.context import APPENDING, Context, assigned
+from derive.reading.programs.elementwise import mapped
 from derive.reading.programs.mathematics import split
 from derive.reading.programs.trees import (
     Array,
@@ -74,6 +75,11 @@ class Calls(Values):
             return self.value(Item(call.line, call.function, call.arguments))
         if (value := of_entries(call.line, path, arguments)) is not None:
             return value
+        if name == "map" and isinstance(call.function, Member):
+            match arguments:
+                case (Lambda(function=of_entry),):
+                    array = mapped(of_entry, call.function.base)
+                    return made if array is None else self.value(array)
         if name in APPENDING and isinstance(call.function, Member) and len(arguments) == 1:
             last = Item(call.line, call.function.base, (Number(call.line, "-1"),))
             self.assign(call.line, last, arguments[0])

@@ -13,13 +13,15 @@ from derive.reading.programs.code import (
     Statement,
 )
 from derive.reading.programs.expressions import ExpressionTranslator, line, text
-from derive.reading.programs.trees import Lambda, Tree
+from derive.reading.programs.trees import Lambda, Name, Tree
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
 #: Roles of nodes that are no statements of a body.
 HEADERS = ("header", "parameters", "results", "skip", "otherwise")
+#: Roles of parameters that are taken apart.
+PATTERNS = ("array", "names")
 
 
 class DefinitionTranslator(ExpressionTranslator):
@@ -68,6 +70,8 @@ class DefinitionTranslator(ExpressionTranslator):
         if node.type == "function" and not results:
             results = (name,)  # of Fortran
         parameters = tuple(self._parameters(given)) if given else ()
+        if given:
+            statements = (*self._unpacked(given), *statements)
         owner = self._owner_of(node) if name else self._owner
         return Definition(line(node), name, parameters, statements, owner, results)
 
@@ -75,14 +79,34 @@ class DefinitionTranslator(ExpressionTranslator):
         if self.role(node) == "name":
             yield Parameter(self.word(node))
             return
-        for child in self.children(node):
+        for index, child in enumerate(self._given(node)):
+            if self.role(child) in PATTERNS:
+                yield Parameter(_place(index))
+                continue
             name = child if self.role(child) == "name" else self._first(child, "name")
             default = next(
                 filter(None, map(child.child_by_field_name, ("value", "right", "default_value"))),
                 None,
             )
-            if name:
-                yield Parameter(self.word(name), self.tree(default) if default else None)
+            value = self.tree(default) if default else None
+            yield Parameter(self.word(name) if name else _place(index), value)
+
+    def _given(self, node: "Node") -> list["Node"]:
+        """The parameters in a list of them, also those without a name."""
+        return [one for one in self.children(node) if not one.type.endswith("_separator")]
+
+    def _unpacked(self, node: "Node") -> Iterator[Statement]:
+        """Assignments to the names of a parameter that is an array or a record."""
+        for index, child in enumerate(self._given(node)):
+            if self.role(child) in PATTERNS:
+                value = Name(line(child), _place(index))
+                yield from self.assigned(line(child), self.tree(child), "", value)
+
+    def assigned(
+        self, number: int, target: Tree, operator: str, value: Tree
+    ) -> Iterator[Statement]:
+        """The statements that give a target, or several, a value."""
+        raise NotImplementedError
 
     def _names(self, node: "Node") -> Iterator["Node"]:
         for child in self.children(node):
@@ -117,3 +141,8 @@ def _with_return(statements: tuple[Statement, ...]) -> tuple[Statement, ...]:
         case (*rest, Branch(line=number, body=body, otherwise=otherwise)):
             return (*rest, Branch(number, _with_return(body), _with_return(otherwise)))
     return statements
+
+
+def _place(index: int) -> str:
+    """A name for a parameter without one, which no program can use."""
+    return f"parameter {index + 1}"

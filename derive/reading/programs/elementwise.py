@@ -1,6 +1,6 @@
-"""Loops over the entries of arrays, as statements about whole arrays."""
+"""Loops over the entries of arrays, and functions of entries, for whole arrays."""
 
-from derive.reading.programs.code import Assignment, Loop, Statement
+from derive.reading.programs.code import Assignment, Definition, Loop, Return, Statement
 from derive.reading.programs.trees import Call, Item, Name, Number, Operation, Tree, replaced
 
 
@@ -22,6 +22,24 @@ def elementwise(loop: Loop) -> tuple[Statement, ...] | None:
             return None
         found.append(Assignment(one.line, target, one.operator, value))
     return tuple(found)
+
+
+def mapped(function: Definition, array: Tree) -> Tree | None:
+    """The array of the values of a function of an entry and its index; None for others."""
+    match function:
+        case Definition(parameters=(entry, *rest), body=(Return(value=value),)) if value:
+            try:
+                value = _without(value, rest[0].name if rest else "")
+            except _NotElementwiseError:
+                return None
+            return _with_array(value, entry.name, array)
+    return None
+
+
+def _with_array(tree: Tree, entry: str, array: Tree) -> Tree:
+    if isinstance(tree, Name):
+        return array if tree.path == entry else tree
+    return replaced(tree, tuple(_with_array(part, entry, array) for part in tree.parts))
 
 
 def _without(tree: Tree, variable: str) -> Tree:

@@ -11,9 +11,6 @@ from derive.reading.programs.sums import inner, terms
 from derive.reading.programs.trees import Name, Record, Tree
 from derive.reading.programs.values import whole
 
-#: Names of time as the first parameter.
-TIMES = ("t", "time", "x", "_", "tt", "T", "self")
-
 
 @dataclass(frozen=True)
 class Rates:
@@ -123,12 +120,15 @@ def _state(
 def _scalars(
     definition: Definition, outputs: dict[str, Tree], direct: set[str]
 ) -> list[str] | None:
-    """The state as separate parameters, in the order of the outputs."""
+    """The state as separate parameters, in the order of the outputs; time may stand before."""
     names = [one.name for one in definition.parameters]
-    while names and names[0] in TIMES:
-        names = names[1:]
-    keys = names[: len(outputs)]
-    return keys if len(keys) == len(outputs) and direct & {*keys} else None
+    values = [inner(one) for one in outputs.values()]
+    for start in range(min(3, len(names) - len(values) + 1)):
+        keys = names[start : start + len(values)]
+        own = (value == Name(0, key) for key, value in zip(keys, values, strict=True))
+        if direct and direct <= {*keys} and not any(own):
+            return keys
+    return None
 
 
 def _names(tree: Tree) -> Iterator[Name]:

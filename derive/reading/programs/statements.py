@@ -106,7 +106,7 @@ class Translator(DefinitionTranslator):
                     target: Tree = Name(line(child), self.word(name))
                     if not self.language.has_bare_members:
                         target = Member(target.line, Name(target.line, "this"), self.word(name))
-                    yield from self._assigned(line(child), target, "", self.tree(child))
+                    yield from self.assigned(line(child), target, "", self.tree(child))
 
     def _assign_statements(self, node: "Node") -> Iterator[Statement]:
         children = [one for one in self.children(node) if self.role(one) != "skip"]
@@ -122,11 +122,12 @@ class Translator(DefinitionTranslator):
         if text(left).startswith("(;") and isinstance(target, Array):  # members by their names
             names = [(one.path, one) for one in target.items if isinstance(one, Name)]
             target = Record(target.line, tuple(names))
-        yield from self._assigned(line(node), target, operator, self.tree(right))
+        yield from self.assigned(line(node), target, operator, self.tree(right))
 
-    def _assigned(
+    def assigned(
         self, number: int, target: Tree, operator: str, value: Tree
     ) -> Iterator[Statement]:
+        """The statements that give a target, or several, a value."""
         match target, value:
             case Name(path=name) | Member(name=name), Lambda(function=one):
                 yield Definition(one.line, name, one.parameters, one.body, self._owner)
@@ -151,7 +152,7 @@ class Translator(DefinitionTranslator):
         self, number: int, target: Tree, fields: tuple[tuple[str, Tree], ...]
     ) -> Iterator[Statement]:
         for name, value in fields:
-            yield from self._assigned(number, Member(number, target, name), "", value)
+            yield from self.assigned(number, Member(number, target, name), "", value)
 
     def _update_statements(self, node: "Node") -> Iterator[Statement]:
         operator = "+" if "++" in text(node) else "-"
