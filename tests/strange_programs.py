@@ -490,3 +490,26 @@ function step(y, h) {
   return y.map((x, i) => x + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]));
 }
 """
+
+#: Fortran in fixed form, and a state that contains parameters.
+FIXED_FORM = """
+      program pendulum
+c     theta = 0
+      double precision theta, omega, dt, g
+      g = 9.81d0
+      dt = 0.01d0
+      do i = 1, 100
+         omega = omega - g/l*
+     &           sin(theta)*dt
+         theta = theta + omega*dt
+      enddo
+      end
+"""
+
+STATE_WITH_PARAMETERS = """
+function out = rates(t, x)
+out = zeros(4, 1);
+out(1) = x(2);
+out(2) = -x(3)/x(4)*sin(x(1));
+end
+"""

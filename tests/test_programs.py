@@ -121,6 +121,14 @@ CASES = {
         {"y_1": "theta1", "y_3": "theta2"},
         2,
     ),
+    "fixed form": ("Fortran 77", programs.FIXED_FORM, "single_pendulum", {}, 1),
+    "state with parameters": (
+        "MATLAB",
+        programs.STATE_WITH_PARAMETERS,
+        "single_pendulum",
+        {"x_1": "theta", "x_3": "g", "x_4": "l"},
+        1,
+    ),
     "Julia": ("Julia", programs.JULIA_PROGRAM, "double_pendulum", {}, 2),
     "macros in Julia": (
         "Julia",

@@ -104,15 +104,16 @@ def _state(
         base, key = _split(name)
         if key and base:
             counts[base] += 1 + 100 * (name in rates_by_name)
-    own = {one.name for one in definition.parameters}
+    parameters = {one.name for one in definition.parameters}
     for base, _ in counts.most_common():
         if all(whole(key) is not None for key in outputs):
             keys = [f"{base}[{i + first}]" for i in range(len(outputs))]
         else:
             keys = [f"{base}.{key}" for key in outputs]
         used = {name for name in names if _split(name)[0] == base}
-        is_canonical = used == {*keys} and base in own
-        if used <= {*keys} and (rates_by_name & {*keys} or is_canonical):
+        own = {name for name in rates_by_name if _split(name)[0] == base}
+        is_canonical = used == {*keys} and base in parameters
+        if (own and own <= {*keys}) or is_canonical:
             return keys
     return _scalars(definition, outputs, rates_by_name)
 

@@ -19,6 +19,7 @@ LANGUAGES: tuple[Language, ...] = (
     cpp.language,
     matlab.language,
     fortran.language,
+    fortran.fixed_form,
     julia.language,
 )
 #: Characters of the longest program.

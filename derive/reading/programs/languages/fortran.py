@@ -1,4 +1,7 @@
-"""Fortran."""
+"""Fortran, in free and in fixed form."""
+
+import re
+from dataclasses import replace
 
 from derive.reading.programs.languages.language import Language
 
@@ -68,4 +71,18 @@ language = Language(
         "array_literal": "array",
         "sized_declarator": "first",
     },
+)
+
+#: Lines of fixed form: comments, and those that continue the line before.
+COMMENT = re.compile(r"^[cC*].*$", re.MULTILINE)
+CONTINUED = re.compile(r"\n {5}[^\s0]")
+
+
+def prepared(text: str) -> str:
+    """The text in free form, with the same lines."""
+    return CONTINUED.sub("&\n      ", COMMENT.sub("", text))
+
+
+fixed_form = replace(
+    language, name="Fortran 77", suffixes=(".f", ".for", ".f77"), prepared=prepared
 )
