@@ -384,6 +384,7 @@ HOSTILE_PROGRAMS = {
     "long members": ("x = y" + ".z" * 2_400 + "\n") * 20,
     "indices": "x = y" + "[0]" * 1_600,
     "huge number": "x = 9" + "9" * 4_000 + "**9**9**9",
+    "no targets": "() = x\n[] = y\n(a, (b, c)) = 1, 2\n",
     "huge exponent": "x = 1e999999999; y[10**9] = 2; y[99999999999] = 1; z = 9**9**9",
     "calls": "\n".join(
         f"def f{i}(x):\n    return f{i + 1}(x) + f{i + 1}(x + 1)*f{i + 1}(x - 1)"

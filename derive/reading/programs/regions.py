@@ -53,7 +53,7 @@ def _fixed(context: Context, body: tuple[Statement, ...]) -> dict[str, Tree]:
             given = None if one.operator else reader.value(one.value)
             single = [*targets(one.target)]
             parts: Sequence[Tree | None] = [given]
-            if len(single) > 1:
+            if len(single) != 1:
                 known = isinstance(given, Array) and len(given.items) == len(single)
                 parts = given.items if known and isinstance(given, Array) else [None] * len(single)
             for target, value in zip(single, parts, strict=True):
