@@ -180,6 +180,8 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     first, *others = formula.sides
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)
+    if square := re.fullmatch(r"(\w+)\*\*2", first.text):  # a frequency, usually
+        yield from ((square[1], f"sqrt({side.text})") for side in others)
     if first.entries:
         for side in others:
             for name, entry in zip(first.entries, side.entries, strict=False):

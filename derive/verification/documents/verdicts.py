@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.formulas.expression import ExpressionError, Value, parse
+from derive.formulas.zero import vanishes
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.partial_energies import PartialEnergies
 from derive.verification.documents.rates import order, stem
@@ -52,6 +53,8 @@ class Judge:
         if formula.subject in INDICES or self._is_special(formula):
             return _plain("context", formula, "it states a value")
         unknown = self._unknown(formula.sides)
+        if unknown and self._is_identity(formula, unknown):
+            return _plain("verified", formula, f"for any {', '.join(unknown)}")
         if self._unknown(formula.sides[:1]):
             return _not_understood(formula, unknown)
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
@@ -64,6 +67,17 @@ class Judge:
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
+
+    def _is_identity(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
+        """Whether neighbouring sides are equal for all values of letters without a meaning."""
+        scope = {**self._scope.all_names, **{name: sp.Symbol(name) for name in unknown}}
+        sides = [one for one in formula.sides if one.text != "0"]  # det(K - omega**2*M) = 0
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            first, *others = (parse(one.text, scope) for one in sides)
+            differences = [one - first for one in others]
+            numbers = all(isinstance(one, sp.Expr) for one in differences)
+            return bool(others) and numbers and all(map(vanishes, differences))
+        return False
 
     def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
         """The verdict on the first side if all others agree, so that it is the wrong one."""
