@@ -155,6 +155,10 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
             return (column.T @ column)[0, 0]
         case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
             return _value(argument, values).function(FUNCTIONS[name])
+        case ast.Tuple(elts=items):
+            column = np.empty((len(items), 1), dtype=object)
+            column[:, 0] = [_value(item, values) for item in items]
+            return column
         case ast.List(elts=rows):
             lists = [row.elts for row in rows if isinstance(row, ast.List)]
             matrix = np.empty((len(lists), len(lists[0])), dtype=object)

@@ -35,6 +35,8 @@ KINDS_OF_ENERGIES = {"k": "kinetic_energy", "p": "potential_energy"}
 MAX_COORDINATES = 6
 #: Names of the mass matrix M of M q̈ + C q̇ = G, of the matrix C and of the column G.
 MATRICES = {"M": "mass_matrix", "C": "coriolis_matrix", "G": "gravity", "g": "gravity"}
+#: Numbers of entries of matrices and columns.
+SQUARES, COLUMNS = (4, 9, 16, 25), (2, 3, 4, 5)
 #: Indices that change nothing.
 TOTAL = ("", "tot", "total")
 
@@ -54,6 +56,8 @@ OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm"
 OPERATORS |= {"asin", "acos", "atan", "sinh", "cosh", "tanh", "sign"}
 #: Abbreviations of sines and cosines, such as s_1, c_12 and s_1_plus_2.
 ABBREVIATION = re.compile(r"([sc])_(\d(?:_plus_\d|\d)*)\Z")
+#: A column of names.
+COLUMN = re.compile(r"\((\w+(?:, \w+)+)\)")
 GENERIC = re.compile(r"\w+_[ij]\Z")
 
 
@@ -71,6 +75,7 @@ class Letters:
     parameters: tuple[str, ...]  # all others that no formula defines
     accelerated: tuple[str, ...]  # coordinates whose accelerations occur, and no definition
     abbreviations: Mapping[str, tuple[str, tuple[str, ...]]]  # such as s_12: sine of q_1 and q_2
+    ordered: tuple[str, ...]  # coordinates in the order of columns and matrices
     kinds: Mapping[str, str] = field(default_factory=dict)  # of parameters, if they are given
 
     def hinted(self, kinds: Mapping[str, str]) -> Self:
@@ -92,11 +97,6 @@ class Letters:
         for choice in product(*(pools[is_angle] for is_angle in are_angles)):
             if len(set(choice)) == len(choice):
                 yield choice
-
-    @property
-    def ordered(self) -> tuple[str, ...]:
-        """The coordinates in the order of their names, which is that of columns."""
-        return tuple(sorted(self.coordinates))
 
     def of_kind(self, kind: str) -> list[str]:
         """Parameters that can be of a kind, the usual ones first."""
@@ -162,8 +162,23 @@ def letters_of(
     abbreviations = _abbreviations(stems, coordinates)
     parameters = [one for one in parameters if one not in abbreviations]
     return Letters(
-        tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations
-    )
+        tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
+        _ordered(formulas, coordinates, stems),
+    )  # fmt: skip
+
+
+def _ordered(
+    formulas: Iterable[DocumentFormula], coordinates: Sequence[str], stems: Sequence[str]
+) -> tuple[str, ...]:
+    """Coordinates in the order of a column of them, of their indices, or of their first use."""
+    for formula in formulas:
+        for column in COLUMN.findall(formula.text):
+            names = [stem(name) for name in column.split(", ")]
+            if set(names) <= set(coordinates) and len(set(names)) == len(names):
+                return (*names, *(q for q in coordinates if q not in names))
+    if len({q.partition("_")[0] for q in coordinates}) == 1:
+        return tuple(sorted(coordinates))
+    return tuple(sorted(coordinates, key=lambda q: stems.index(q) if q in stems else 0))
 
 
 def _abbreviations(
@@ -195,7 +210,7 @@ def _matrices(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
         count = max(len(side.entries) for side in formula.sides)
         if index == "0":
             continue  # the value at an equilibrium
-        if letter in MATRICES and count == (2 if MATRICES[letter] == "gravity" else 4):
+        if letter in MATRICES and count in (COLUMNS if letter in "Gg" else SQUARES):
             found[formula.subject] = MATRICES[letter]
     return found
 

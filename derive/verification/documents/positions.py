@@ -85,7 +85,7 @@ def _points(
                 value = parse(text, {**scope, **known})
             except ExpressionError:
                 continue
-            if not value.free_symbols & moving:
+            if not value.free_symbols & moving and value != 0:  # a cart has y_0 = 0
                 continue
             if isinstance(value, sp.MatrixBase) and value.cols == 1 and 1 < value.rows < 4:
                 if match := COLUMN.match(name):
@@ -101,7 +101,7 @@ def _points(
     found = {
         index: tuple(axes.get(k, sp.S.Zero) for k in range(3 if 2 in axes else 2))
         for index, axes in points.items()
-        if len(axes) > 1
+        if len(axes) > 1 and any(value.free_symbols & moving for value in axes.values())
     }
     return found or columns
 
@@ -123,7 +123,8 @@ def _masses(
         position = (*position[:-1], *[sp.S.Zero] * (dimension - len(position)), position[-1])
         yield PointMass(symbols[chosen], position)
     lines = [q for q in letters.coordinates if q.partition("_")[0] in ("x", "s", "X")]
-    if len(left) == 1 and lines and dimension == 2:
+    is_missing = not any(position[-1] == 0 for position in points.values())
+    if len(left) == 1 and lines and dimension == 2 and is_missing:
         yield PointMass(symbols[left[0]], (symbols[lines[0]], sp.S.Zero))
 
 
