@@ -15,6 +15,7 @@ from derive.verification.documents.hints import Hints
 from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.table import document_lines, document_record
 from derive.verification.hand import HandDerivation, judge
+from derive.verification.report.judgement import OrderOf
 from derive.verification.verdict import VerdictName, table_width, verdict_rows, wrapped
 from solvers.io.text_table import text_table
 
@@ -29,12 +30,15 @@ Judged: TypeAlias = HandDerivation | JudgedDocument
 
 def verify(
     names: Sequence[str],
+    order_of: OrderOf,
     *,
     as_json: bool,
     annotation: Path | None = None,
     hints: Hints | None = None,
 ) -> int:
     """Print the verdicts, for several files also their numbers.
+
+    ``order_of(A, b)`` is the order of a Runge–Kutta method, for documents that contain the report.
 
     Return 0, 1 if an equation is wrong, or 2 if an equation or a file is unreadable.
     """
@@ -46,7 +50,7 @@ def verify(
     for name in names:
         try:
             if name in files:
-                judged, document = judge_file(name, hints)
+                judged, document = judge_file(name, order_of, hints)
                 results[name] = judged
                 documents.append((judged, document))
             else:

@@ -11,6 +11,8 @@ from derive.verification.documents.hints import Hints
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.program_judgement import judge_program
+from derive.verification.report.document import judge_report
+from derive.verification.report.judgement import OrderOf
 from solvers.io.toml_input import InputError
 
 
@@ -24,8 +26,13 @@ def is_program(name: str) -> bool:
     return any(Path(name).suffix in one.suffixes for one in LANGUAGES)
 
 
-def judge_file(name: str, hints: Hints | None = None) -> tuple[JudgedDocument, Document]:
+def judge_file(
+    name: str, order_of: OrderOf, hints: Hints | None = None
+) -> tuple[JudgedDocument, Document]:
     """Judge the formulas of a document, also in the programs of a notebook, or of a program.
+
+    Without hints, the report is recognised by its displays; the orders of Runge–Kutta methods in
+    it are ``order_of(A, b)``.
 
     Raises
     ------
@@ -36,7 +43,8 @@ def judge_file(name: str, hints: Hints | None = None) -> tuple[JudgedDocument, D
         program = _program(Path(name))
         return judge_program(program, hints), Document(name, "program", "", ())
     document = read_document(name)
-    judged = judge_document(document, hints)
+    judged = None if hints else judge_report(document, order_of)
+    judged = judged or judge_document(document, hints)
     for cell in document.programs:
         try:
             program = read_program(cell.text, cell.language)

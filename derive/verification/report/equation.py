@@ -42,6 +42,11 @@ class Equation(Details):
                 part = f"the incorrect part {incorrect!r}"
                 raise ValueError(f"{self.id}: {part} is printed {count} times, not once")
 
+    @property
+    def number(self) -> str:
+        """The id as the report prints it: 33, or A9."""
+        return self.id.removeprefix("eq")
+
     @cached_property
     def printed(self) -> str:
         """The equation as printed, in the syntax of formulas."""

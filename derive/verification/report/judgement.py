@@ -52,7 +52,6 @@ def equation_by_id(name: str) -> Equation:
     raise LookupError(f"the report has no equation {name[:50]!r}{suggestion}")
 
 
-@cache
 def verdict(equation: Equation, order_of: OrderOf) -> Verdict:
     """Judge one equation.
 
@@ -78,17 +77,26 @@ def verdict(equation: Equation, order_of: OrderOf) -> Verdict:
     NotImplementedError
         When it is not rational in symbols, sines and cosines, and thus undecidable here.
     """
-    label, printed, note = equation.id, equation.printed, equation.note
+    return verdict_on(equation, equation.printed, order_of)
+
+
+@cache
+def verdict_on(equation: Equation, text: str, order_of: OrderOf) -> Verdict:
+    """Judge `text` in place of the printed form: if it holds neither, it is ``wrong``."""
+    label, note = equation.id, equation.note
     if equation.exempt:
-        return Verdict(label, equation.exempt, printed, note=note)
-    result = check(equation, printed, order_of)
+        return Verdict(label, equation.exempt, text, note=note)
+    result = check(equation, text, order_of)
     if result.holds:
-        return Verdict(label, "verified", printed, note=note)
-    witness, corrected = result.witness, equation.corrected
+        return Verdict(label, "verified", text, note=note)
+    is_printed, witness = text == equation.printed, result.witness
+    corrected = equation.corrected or ("" if is_printed else equation.printed)
     if not corrected or not check(equation, corrected, order_of).holds:
-        return Verdict(label, "wrong", printed, witness=witness, note=note)
+        return Verdict(label, "wrong", text, witness=witness, note=note)
+    if not is_printed:
+        return Verdict(label, "wrong", text, corrected, witness=witness)
     residual = _residual(equation, result.comparison)
-    return Verdict(label, "misprint", printed, corrected, residual, witness=witness, note=note)
+    return Verdict(label, "misprint", text, corrected, residual, witness=witness, note=note)
 
 
 def check(equation: Equation, text: str, order_of: OrderOf) -> Check:

@@ -41,9 +41,11 @@ def run(arguments: Namespace) -> int:
     if arguments.equations or arguments.annotate or arguments.system or arguments.names:
         from derive.commands.verify import verify
         from derive.verification.documents.hints import hints
+        from solvers.runge_kutta.order_conditions import order
 
         return verify(
             arguments.equations,
+            order,
             as_json=arguments.json,
             annotation=arguments.annotate,
             hints=hints(arguments.system, arguments.names),
