@@ -133,6 +133,8 @@ def _common_scope(derivation: Derivation) -> dict[str, Any]:
 
     def only(value: Any, *symbols: sp.Symbol) -> Any:
         # the value with all other coordinates, velocities and accelerations set to 0
+        if len({*symbols}) < len(symbols):
+            raise ValueError("a quantity depends on different arguments")
         others = {*system.q, *system.qdot, *system.qddot} - {*symbols}
         return value.xreplace(momenta).subs(dict.fromkeys(others, 0))
 

@@ -20,6 +20,8 @@ from solvers.io.suggestion import did_you_mean
 #: Returns the order of the Runge–Kutta method with stage matrix A and weights b.
 OrderOf = Callable[[list[list[Fraction]], list[Fraction]], int]
 
+#: A quantity with the arguments on which alone it depends.
+ONLY = re.compile(r"only\((\w+), (.*)\)")
 #: The equations of the report by id, in printed order.
 EQUATIONS = equations()
 
@@ -163,6 +165,8 @@ def _definitions(text: str, context: Context, known: dict[str, Value]) -> dict[s
             values[f"left_{number}"] = parse(part.partition("<")[0], scope)
             continue
         name, _, formula = (side.strip() for side in part.partition("="))
+        if dependent := ONLY.fullmatch(name):
+            name, formula = dependent[1], f"only({formula}, {dependent[2]})"
         values[name] = parse(formula, scope)
     return values
 

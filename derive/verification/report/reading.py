@@ -14,19 +14,20 @@ from derive.reading.latex.reader import Macro, formulas
 from derive.reading.latex.tree import Letter, Statement, Unreadable
 from derive.verification.documents.translation import Notation, Translator
 
-#: Letters before brackets: θ(t) is a function whose argument does not matter, f(t, w) and
-#: f_i(φ, ω) are values for these arguments, and l(sin θ, cos θ, 0) is a product with a column.
+#: Quantities that are printed with the arguments on which alone they depend, as in α_1(φ_1, φ_2).
+DEPENDENT = [f"{letter}_{index}" for letter in ("alpha", "f", "g") for index in "12i"]
+#: Letters before brackets: θ(t) is a function whose argument does not matter, f(t, w) is a value
+#: for these arguments, and l(sin θ, cos θ, 0) is a product with a column.
 NOTATION = Notation(
     functions=frozenset({"theta"}),
-    calls=frozenset({"f", "y", "f_i", "alpha_i"}),
+    calls=frozenset({"f", "y", *DEPENDENT}),
     factors=frozenset({"l", "l_1", "l_2"}),
     matrices=frozenset({"A", "B"}),
 )
 #: Translations of the report's equations by their LaTeX, so that no LaTeX is parsed for them.
 STORED = Path(__file__).with_name("translations.json")
 WORD = re.compile(r"[A-Za-z_]\w*")
-#: A quantity with the arguments on which alone it depends.
-DEPENDENT = re.compile(r"\b(\w+_i)\(")
+CALL = re.compile(rf"\b({'|'.join(DEPENDENT)})\(")
 
 
 def statements(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | Unreadable]:
@@ -55,8 +56,8 @@ def text(statement: Statement) -> str:
             return f"d({function}, {', '.join(map(_name, variables))})"
         return _name(match[0])
 
-    named = WORD.sub(name, " ".join([sides[0], *pieces]))
-    return DEPENDENT.sub(r"only(\1, ", named)
+    joined = " ".join([sides[0], *pieces])
+    return WORD.sub(name, CALL.sub(r"only(\1, ", joined))
 
 
 def _name(word: str) -> str:
