@@ -179,6 +179,21 @@ def test_unreadable_displays_and_others_are_reported(tmp_path: Path) -> None:
     assert (result.formulas[0].verdict, result.formulas[0].note) == ("context", OTHER)
 
 
+def test_formulas_beside_a_missing_or_unreadable_equation_are_others(tmp_path: Path) -> None:
+    text = FILE.read_text(encoding="utf-8")
+    beside = r"-mg(\sin\theta)l = ml^2\frac{d^2\theta}{dt^2}"
+    equation = EQUATIONS["eq6"].latex
+    for instead in ("v = v", equation.replace("^2", "", 1)):
+        path = tmp_path / "report.md"
+        changed = text.replace(equation, f"{beside} \\\\ {instead}")
+        path.write_text(changed, encoding="utf-8")
+        result = judge_report(read_document(path), order)
+        assert result
+        (one,) = [one for one in result.formulas if "mg(" in one.latex and "sin" in one.latex]
+        assert (one.verdict, one.note) == ("context", OTHER)
+        assert "wrong" not in {one.verdict for one in result.formulas}
+
+
 def test_other_documents_are_not_the_report(tmp_path: Path) -> None:
     path = tmp_path / "other.md"
     parts = FILE.read_text(encoding="utf-8").split("\n\n")

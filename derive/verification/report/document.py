@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 from derive.reading.document import Display, Document
 from derive.reading.latex.reader import macros_of
@@ -28,10 +28,15 @@ class Written:
     display: Display
     tree: Statement | Unreadable
 
-    @property
+    @cached_property
+    def latex(self) -> str:
+        """Its LaTeX."""
+        return self.display.latex[slice(*self.tree.span)].strip()
+
+    @cached_property
     def text(self) -> str:
         """Its formula, or its LaTeX if it is unreadable."""
-        return _text(self.display.latex, self.tree)
+        return _text(self.latex, self.tree)
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,7 @@ class Stored:
 
     id: str
     text: str
+    latex: str
     correct: Statement | Unreadable
 
 
@@ -62,9 +68,9 @@ def judge_report(document: Document, order_of: OrderOf) -> JudgedDocument | None
         if not display.is_inline
         for tree in statements(display.latex, macros)
     ]
-    texts, stored = [one.text for one in written], _stored()
-    pairs = aligned(texts, [one.text for one in stored])
-    if 2 * sum(texts[w] == stored[s].text for s, w in pairs.items()) < len(stored):
+    stored = _stored()
+    pairs = aligned(*([(one.text, one.latex) for one in side] for side in (written, stored)))
+    if 2 * sum(written[w].text == stored[s].text for s, w in pairs.items()) < len(stored):
         return None
     groups: dict[tuple[str, Display], list[tuple[Stored, Written]]] = defaultdict(list)
     for place, number in sorted(pairs.items()):
@@ -89,18 +95,19 @@ def judge_report(document: Document, order_of: OrderOf) -> JudgedDocument | None
 def _stored() -> tuple[Stored, ...]:
     """The statements of the report, with the correct ones."""
     return tuple(
-        Stored(equation.id, _text(equation.latex, printed), correct)
+        Stored(equation.id, _text(latex, printed), latex, correct)
         for equation in EQUATIONS.values()
         for printed, correct in zip(
             statements(equation.latex), statements(equation.corrected_latex), strict=True
         )
+        for latex in [equation.latex[slice(*printed.span)]]
     )
 
 
 def _text(latex: str, tree: Statement | Unreadable) -> str:
     if isinstance(tree, Statement):
         return text(tree)
-    return "".join(latex[slice(*tree.span)].split())
+    return "".join(latex.split())
 
 
 def _judged(
