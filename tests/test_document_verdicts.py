@@ -15,6 +15,7 @@ from derive.verification.documents.files import judge_file
 from derive.verification.documents.hints import hints
 from derive.verification.documents.judged import JudgedDocument
 from solvers.io.toml_input import InputError
+from solvers.runge_kutta.order_conditions import order
 
 CORRECT = ("verified", "equivalent", "definition")
 SYSTEMS = {
@@ -29,7 +30,7 @@ SYSTEMS = {
 
 def judged(folder: Path, text: str, name: str = "a.md") -> JudgedDocument:
     (folder / name).write_text(text, encoding="utf-8")
-    return judge_file(str(folder / name))[0]
+    return judge_file(str(folder / name), order)[0]
 
 
 def verdicts(folder: Path, text: str, name: str = "a.md") -> list[str]:
@@ -169,7 +170,7 @@ def test_public_documents_have_the_verdicts_of_an_independent_reader(name: str) 
     folder = shared("documents")
     problems = []
     for document in json.loads((folder / name).read_text()):
-        judgement = judge_file(str(folder / document["file"]))[0]
+        judgement = judge_file(str(folder / document["file"]), order)[0]
         for display in document["displays"]:
             own = [one for one in judgement.formulas if one.display == display["n"]]
             is_wrong = any(one.verdict == "wrong" for one in own)
@@ -186,12 +187,12 @@ def test_hints_settle_the_letters(tmp_path: Path) -> None:
     names = tmp_path / "names.toml"
     names.write_text('system = "single_pendulum"\n[names]\nA = "theta"\nG = "g"\nw = "l"\n')
     (tmp_path / "a.md").write_text(HINTED)
-    document, _ = judge_file(str(tmp_path / "a.md"), hints(None, names))
+    document, _ = judge_file(str(tmp_path / "a.md"), order, hints(None, names))
     (one,) = document.formulas
     assert (one.verdict, one.correction) == ("wrong", r"\ddot A = -\frac{G}{w} \sin\left(A\right)")
     for angle, verdict in (("theta - pi/2", "verified"), ("pi/2 - theta", "wrong")):
         names.write_text(f'[names]\nA = "{angle}"\nG = "g"\nw = "l"\n')
-        document, _ = judge_file(str(tmp_path / "a.md"), hints("single_pendulum", names))
+        document, _ = judge_file(str(tmp_path / "a.md"), order, hints("single_pendulum", names))
         assert [one.verdict for one in document.formulas] == [verdict]
 
 

@@ -31,8 +31,10 @@ def goals(model: Model, kind: str, name: str, value: sp.Expr) -> Iterator[Goal]:
         yield Goal(sp.S.Zero, True, frozenset(system.p), is_equation=True)
         return
     foreign = frozenset((*system.qddot, *(system.qdot if kind in CANONICAL else system.p)))
-    foreign = frozenset() if kind == "value" else foreign
     derived = QUANTITIES[kind](model, name)
+    if kind == "value":
+        state = {*system.qdot, *system.qddot, *system.p}
+        foreign = frozenset(state - derived.free_symbols)
     yield Goal(derived, kind == "accelerations", foreign)
     if not is_expandable(value):
         return

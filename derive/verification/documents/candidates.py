@@ -52,6 +52,13 @@ class Candidate:
     #: Numbers in place of parameters that have no letter.
     numbers: Mapping[str, str] = field(default_factory=dict)
 
+    @property
+    def is_usual(self) -> bool:
+        """Whether the coordinates are those of the system, but for the elongation of a spring."""
+        n = range(len(self.coordinates))
+        is_same = all(self.signs[i][j] == (i == j) for i in n for j in n)
+        return is_same and not any(isinstance(one, int) and one for one in self.offsets)
+
     def offset(self, index: int, values: Mapping[str, float]) -> float:
         """The offset of a coordinate in numbers."""
         offset = self.offsets[index]
@@ -121,12 +128,14 @@ def _conventions(
 ) -> Iterator[tuple[tuple[tuple[int, ...], ...], tuple[int | str, ...]]]:
     """Yield the signs and offsets of coordinates, the usual ones first."""
     angles = [c.unit == "rad" for c in system.coordinates]
-    n, lengths = len(angles), angles.count(False)
+    n = len(angles)
     natural: list[int | str] = [0, *letters.of_kind("length")]
+    positions = [c.symbol for c in system.coordinates if c.unit != "rad"]
+    directions = [(1,) if symbol.is_positive else (1, -1) for symbol in positions]
     for (sign, turn), relative, *shifts in _likeliest(
         ANGLES if any(angles) else ANGLES[:1],
         (False, True) if angles.count(True) > 1 else (False,),
-        *[[(s, o) for o in natural for s in (1, -1)]] * lengths,
+        *([(s, o) for o in natural for s in signs] for signs in directions),
     ):
         rows, offsets, rest = list[tuple[int, ...]](), list[int | str](), iter(shifts)
         for i, is_angle in enumerate(angles):

@@ -33,6 +33,8 @@ Votes = NDArray[np.bool_]
 
 #: The worth of a formula that holds but for one term.
 NEARLY = 0.5
+#: How much it speaks against a meaning that angles are not those from hanging.
+UNUSUAL = 0.25
 #: How much a formula that does not hold speaks against a meaning.
 FAILING = 0.5
 #: Comparisons of a document in which such formulas are considered.
@@ -53,7 +55,8 @@ class Match:
     @property
     def score(self) -> float:
         """What speaks for the candidate: formulas that hold, less some of those that do not."""
-        return self.holding - FAILING * (self.compared - self.holding)
+        unusual = UNUSUAL * (not self.candidate.is_usual)
+        return self.holding - FAILING * (self.compared - self.holding) - unusual
 
 
 def trivial_comparisons(
@@ -96,7 +99,8 @@ def best_match(
             near = numbers.is_near(formulas[index].sides[0].text, side)
             if near is not None:
                 holding += NEARLY * (near & ~vote)
-    best = int(np.argmax(holding))  # the first of several: the likeliest
+    unusual = np.array([not one.is_usual for one in tried])
+    best = int(np.argmax(holding - UNUSUAL * unusual))  # the first of several: the likeliest
     return Match(tried[best], float(holding[best]), len(votes))
 
 
@@ -192,10 +196,11 @@ class Numbers:
     def _position(self, value: Array) -> Iterator[Votes]:
         """Whether a quantity is a component of a position, up to its sign."""
         value = np.abs(np.broadcast_to(value, self._motions.shape))
-        moving = [np.abs(r) for r in self._motions.positions if r.std() > CLOSE]
-        hits = [np.all(np.abs(r - value) <= CLOSE, axis=1) for r in moving]
-        if value.std() > CLOSE and np.any(hits):
-            yield np.any(hits, axis=0)
+        with np.errstate(invalid="ignore"):  # unknown values
+            moving = [np.abs(r) for r in self._motions.positions if r.std() > CLOSE]
+            hits = [np.all(np.abs(r - value) <= CLOSE, axis=1) for r in moving]
+            if value.std() > CLOSE and np.any(hits):
+                yield np.any(hits, axis=0)
 
     def _is_definition(self, formula: DocumentFormula, text: str) -> bool:
         return any(

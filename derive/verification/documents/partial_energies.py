@@ -1,6 +1,7 @@
 """Energies of single bodies or forces, such as T_1 and V_spring, which have a sum."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import cached_property
 
 import sympy as sp
@@ -8,6 +9,7 @@ import sympy as sp
 from derive.formulas.expression import ExpressionError
 from derive.verification.documents.letters import KINDS_OF_ENERGIES, QUANTITIES, TOTAL
 from derive.verification.documents.scope import DocumentScope
+from derive.verification.documents.statements import DocumentFormula
 
 #: Energies whose parts are considered.
 SUMMED = ("kinetic_energy", "potential_energy")
@@ -19,8 +21,21 @@ class PartialEnergies:
     def __init__(self, scope: DocumentScope) -> None:
         self._scope, self._model = scope, scope.model
 
-    def required(self, name: str) -> sp.Expr | None:
-        """The value that a name must have, if it is the one wrong part of a sum; else None."""
+    def required(self, formula: DocumentFormula) -> sp.Expr | None:
+        """The value that a name must have; None if it is not known to have another.
+
+        It is that of another side that is a part of the energy, or what the sum requires.
+        """
+        name = formula.subject
+        kind = _kind(name)
+        own = self._scope.names[name]
+        if kind is None or isinstance(own, sp.MatrixBase) or self._is_part(kind, own):
+            return None
+        for side in formula.sides[1:]:
+            with suppress(ExpressionError):
+                value = self._scope.value(side.text)
+                if not isinstance(value, sp.MatrixBase) and self._is_part(kind, value):
+                    return value
         return self._required.get(name)
 
     @cached_property
@@ -44,12 +59,8 @@ class PartialEnergies:
         """The names of partial energies that the document defines, one for each body or force."""
         groups: dict[str, list[str]] = {}
         for name in self._scope.defining:
-            letter, _, index = name.partition("_")
-            kind = QUANTITIES.get(letter)
-            if letter == "E":
-                kind = KINDS_OF_ENERGIES.get(index[:1])
-            is_number = isinstance(self._scope.names[name], sp.Expr)
-            if kind in SUMMED and index not in TOTAL and is_number:
+            kind = _kind(name)
+            if kind and not isinstance(self._scope.names[name], sp.MatrixBase):
                 groups.setdefault(kind, []).append(name)
         masses = len(self._scope.derivation.system.masses)
         return {
@@ -69,8 +80,12 @@ class PartialEnergies:
             sp.Add(*(inertia * self._speed_squared(r) / 2 for inertia, r in mass.motions))
             for mass in d.system.masses
         ]
-        terms = [*sp.Add.make_args(sp.expand(d.potential_energy))]
-        return {"kinetic_energy": kinetic, "potential_energy": [*terms, d.potential_energy]}
+        terms = sp.Add.make_args(sp.expand(d.potential_energy))
+        of_one = [
+            sp.Add(*(term for term in terms if p in term.free_symbols)) for p in d.system.params
+        ]
+        potential = [*terms, *of_one, d.potential_energy]
+        return {"kinetic_energy": kinetic, "potential_energy": potential}
 
     def _speed_squared(self, position: tuple[sp.Expr, ...]) -> sp.Expr:
         system = self._scope.derivation.system
@@ -89,3 +104,10 @@ class PartialEnergies:
             )
         except (ExpressionError, NotImplementedError):
             return False
+
+
+def _kind(name: str) -> str | None:
+    """The energy of which a name denotes a part."""
+    letter, _, index = name.partition("_")
+    kind = KINDS_OF_ENERGIES.get(index[:1]) if letter == "E" else QUANTITIES.get(letter)
+    return kind if kind in SUMMED and index not in TOTAL else None

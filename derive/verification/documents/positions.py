@@ -146,8 +146,10 @@ def _potentials(
                 value = parse(side.text, scope)
             except ExpressionError:
                 continue
+            if isinstance(value, sp.MatrixBase):
+                continue
             rest = sp.expand(value - weight)
-            if isinstance(value, sp.Expr) and (gravity is None or gravity not in rest.free_symbols):
+            if gravity is None or gravity not in rest.free_symbols:
                 yield value
                 return
 

@@ -128,8 +128,9 @@ def _meaning(
         for name in names:
             del numbers.values[name]
         # no mistake in a letter makes a sum of it
-        least = 1 if all("+" in text for text in texts) else SUPPORT
-        if votes.count(True) >= max(least, len(votes) // 2 + 1):
+        is_sum = all("+" in text for text in texts)
+        least = max(1, len(votes) // 2) if is_sum else max(SUPPORT, len(votes) // 2 + 1)
+        if votes.count(True) >= least:
             return dict(zip(names, texts, strict=True))
     return None
 

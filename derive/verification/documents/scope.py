@@ -140,7 +140,7 @@ class DocumentScope:
         kind = self.letters.quantities.get(operand)
         for one in variables:
             variable = scope[one]
-            if isinstance(variable, sp.MatrixBase) and isinstance(value, sp.Expr):
+            if isinstance(variable, sp.MatrixBase) and not isinstance(value, sp.MatrixBase):
                 if not all(entry.is_Symbol for entry in variable):
                     return None
                 value = sp.ImmutableDenseMatrix([value.diff(entry) for entry in variable])

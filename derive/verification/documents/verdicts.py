@@ -75,7 +75,7 @@ class Judge:
         with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
             first, *others = (parse(one.text, scope) for one in sides)
             differences = [one - first for one in others]
-            numbers = all(isinstance(one, sp.Expr) for one in differences)
+            numbers = all(not isinstance(one, sp.MatrixBase) for one in differences)
             return bool(others) and numbers and all(map(vanishes, differences))
         return False
 
@@ -86,7 +86,7 @@ class Judge:
             return None
         with suppress(ExpressionError, NotImplementedError):
             required, *rest = (self._scope.value(one.text) for one in others)
-            if all(isinstance(one, sp.Expr) for one in (required, *rest)) and all(
+            if all(not isinstance(one, sp.MatrixBase) for one in (required, *rest)) and all(
                 self._holds(one - required) is not None for one in rest
             ):
                 result = self._value(first, "first_side", required)
@@ -102,7 +102,7 @@ class Judge:
             return False
         others = [side.text for side in formula.sides[:-1]]
         return (
-            isinstance(value, sp.Expr)
+            not isinstance(value, sp.MatrixBase)
             and value.is_number
             and all(one in names and isinstance(names[one], sp.Symbol) for one in others)
         )
@@ -116,7 +116,7 @@ class Judge:
         first, side = formula.sides[0], formula.sides[k]
         defined = self._scope.defining.get(formula.subject)
         if defined and defined[0] is formula and defined[1] == side.text:
-            required = self._energies.required(formula.subject)
+            required = self._energies.required(formula)
             if required is not None:
                 return self._value(side, formula.subject, required)
             return _plain("definition", formula, "")
