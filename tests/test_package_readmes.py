@@ -162,7 +162,7 @@ def first_column(path: Path, head: str) -> list[str]:
 def test_the_hand_derivation_of_the_readme_has_the_verdicts_shown(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (file,) = blocks(VERIFICATION, "toml")
+    file, _ = blocks(VERIFICATION, "toml")
     (tmp_path / "page.toml").write_text(file)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
@@ -180,7 +180,22 @@ def test_the_document_of_the_readme_has_the_verdicts_shown(
     monkeypatch.setenv("COLUMNS", "100")
     assert main(["verify", "pendulum.md"]) == 1
     expected = f"$ holonomic verify pendulum.md\n{capsys.readouterr().out}"
-    assert blocks(VERIFICATION, "text")[1:] == [expected]
+    assert blocks(VERIFICATION, "text")[1] == expected
+    (tmp_path / "letters.toml").write_text(blocks(VERIFICATION, "toml")[1])
+    (tmp_path / "other.md").write_text(r"$$\ddot\alpha = -\frac gw\cos\alpha$$")
+    assert main(["verify", "other.md", "--names", "letters.toml"]) == 0
+
+
+def test_the_program_of_the_readme_has_the_verdicts_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (file,) = blocks(VERIFICATION, "js")
+    (tmp_path / "pendulum.js").write_text(file)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    assert main(["verify", "pendulum.js"]) == 1
+    expected = f"$ holonomic verify pendulum.js\n{capsys.readouterr().out}"
+    assert blocks(VERIFICATION, "text")[2:] == [expected]
 
 
 def test_the_keys_fields_and_verdicts_of_the_readme_are_those_of_the_code() -> None:
