@@ -110,10 +110,15 @@ def test_verdicts_on_the_text_are_those_of_the_table(report: str, tmp_path: Path
     assert [(one.verdict, one.note) for one in found] == [(v.verdict, v.note) for v in expected]
     for one, equation, result in zip(found, EQUATIONS.values(), expected, strict=True):
         if result.verdict == "misprint":
-            assert one.correction == equation.corrected_latex
+            assert one.correction == equation.equation.format(equation.corrected_latex)
             assert one.witness == f"{result.residual} = {result.witness}"
             assert one.wrong_term in one.latex
             assert one.wrong_term
+    terms = {key: one.wrong_term for key, one in zip(EQUATIONS, found, strict=True)}
+    assert terms["A10"] == r"\dot{\phi}_1"
+    assert terms["eq81"].startswith("-m_2")
+    assert terms["eq81"].endswith(r"\theta_2)")
+    assert terms["eq64"] == r"\dot{\phi}_1"
 
 
 @pytest.mark.parametrize(
@@ -127,6 +132,7 @@ def test_verdicts_on_the_text_are_those_of_the_table(report: str, tmp_path: Path
         (70, r"-\alpha_2", r"\alpha_2", r"\alpha_2 f_1"),
         (67, r"\alpha_2(\phi_1", r"\alpha_2(\phi_2", r"\phi_2"),
         (84, r"P_{\theta_1}^2", r"P_{\theta_2}^2", r"P_{\theta_2}"),
+        (93, r"- \theta_2) \\", r"- \theta_2) + m_1 \\", "+ m_1"),
         (116, r"& m_2\ell_2^2", r"& m_2\ell_1^2", r"\ell_1"),
     ],
 )

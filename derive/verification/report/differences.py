@@ -1,9 +1,13 @@
 """The first part of a formula that differs from another formula."""
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, TypeAlias
 
-from derive.reading.latex.tree import Node, Span, Statement, Sum
+from derive.reading.latex.tree import Node, Product, Span, Statement, Sum
 from derive.verification.report.reading import text
+
+#: Trees and their signs.
+Parts: TypeAlias = list[tuple[Node, int]]
 
 
 def first_difference(written: Statement, correct: Statement) -> Span:
@@ -17,8 +21,10 @@ def first_difference(written: Statement, correct: Statement) -> Span:
 
 def _difference(written: Node, correct: Node) -> Span:
     parts, others = _parts(written), _parts(correct)
-    if type(written) is not type(correct) or len(parts) != len(others):
+    if type(written) is not type(correct):
         return written.span
+    if len(parts) != len(others):
+        return _surplus(written, parts, others)
     end = written.span[0]
     for (one, mark), (other, other_mark) in zip(parts, others, strict=True):
         if mark != other_mark:  # with the sign before it
@@ -29,11 +35,30 @@ def _difference(written: Node, correct: Node) -> Span:
     return written.span
 
 
-def _parts(node: Node) -> list[tuple[Node, int]]:
+def _surplus(written: Node, parts: Parts, others: Parts) -> Span:
+    """The terms or factors without those at the start and at the end that are correct."""
+    names = [[(_name(one), mark) for one, mark in side] for side in (parts, others)]
+    first = _common(*names)
+    rest = parts[first : len(parts) - _common(names[0][first:][::-1], names[1][first:][::-1])]
+    if not rest or not isinstance(written, Sum | Product):
+        return written.span
+    start = rest[0][0].span[0]
+    if isinstance(written, Sum):  # with the sign before it
+        start = parts[first - 1][0].span[1] if first else written.span[0]
+    return start, rest[-1][0].span[1]
+
+
+def _common(one: Sequence[object], other: Sequence[object]) -> int:
+    """The number of equal items at the start."""
+    pairs = zip(one, other, strict=False)
+    return next((k for k, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))
+
+
+def _parts(node: Node) -> Parts:
     """The trees directly within a tree, with their signs."""
     if isinstance(node, Sum):
         return [(term, sign) for sign, term in node.terms]
-    found: list[tuple[Node, int]] = []
+    found: Parts = []
     waiting: list[Any] = [getattr(node, name) for name in node.__dataclass_fields__]
     while waiting:
         one = waiting.pop(0)

@@ -133,7 +133,7 @@ def _judged(
     return _formula(
         document, display, span, result.verdict,
         wrong_term=_wrong_term(group),
-        correction=equation.corrected_latex,
+        correction=equation.equation.format(equation.corrected_latex),
         witness=" = ".join(filter(None, (result.residual, result.witness))),
         note=result.note,
     )  # fmt: skip
