@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from derive.reading.document import Document
 from derive.reading.latex.reader import formulas
 from derive.reading.latex.tree import Call, Letter, Node, Number, Power, Product, Statement, Sum
-from derive.verification.documents.translation import nodes
+from derive.reading.latex.walking import nodes
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,14 @@
 """Wrong terms of formulas as the document writes them, and the formulas with correct ones."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from derive.formulas.expression import is_sum, syntax_tree
+from derive.formulas.latex import latex as latex_of
 from derive.reading.latex.tree import Span
+from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula
-from derive.verification.documents.verdicts import SideVerdict
-from derive.verification.documents.writing import written
 from derive.verification.verdict import Correction
 
 
@@ -102,9 +102,6 @@ def _in_brackets(one: Correction, new: str, before: str, after: str) -> str:
     return rf"\left({new}\right)" if is_factor and is_sum(syntax_tree(one.correct)) else new
 
 
-def letters_of_document(pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
-    """Names with the LaTeX that stands for each most often first."""
-    found: dict[str, str] = {}
-    for name, latex in pairs:
-        found.setdefault(name, latex)
-    return found
+def written(text: str, letters: Mapping[str, str]) -> str:
+    """A formula or an equation as LaTeX, with the letters as a document writes them."""
+    return " = ".join(latex_of(syntax_tree(side), letters) for side in text.split("="))

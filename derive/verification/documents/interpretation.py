@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from derive.verification.documents.candidates import Candidate, candidates
 from derive.verification.documents.hints import Hints
-from derive.verification.documents.letters import Letters, letters_of
+from derive.verification.documents.letter_search import letters_of
+from derive.verification.documents.letters import Letters
 from derive.verification.documents.matching import Match, best_match, trivial_comparisons
 from derive.verification.documents.meaning import meaning
 from derive.verification.documents.positions import stated_candidates, stated_systems

@@ -6,17 +6,18 @@ from dataclasses import replace
 from derive.reading.document import Display, Document
 from derive.reading.latex.reader import formulas, macros_of
 from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
+from derive.reading.latex.walking import nodes
 from derive.verification.documents.corrections import corrected
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import interpretation, judge_of
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
     translated,
 )
-from derive.verification.documents.translation import Translator, nodes
-from derive.verification.documents.verdicts import SideVerdict
+from derive.verification.documents.translation import Translator
 
 #: Most systems of a document.
 MAX_SYSTEMS = 3

@@ -8,9 +8,9 @@ from derive.verification.documents.corrections import inserted, places
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import interpretation, judge_of
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
-from derive.verification.documents.translation import Text
-from derive.verification.documents.verdicts import SideVerdict
+from derive.verification.documents.text import Text
 from derive.verification.verdict import VerdictName
 
 #: The note on equations for which no system is found.

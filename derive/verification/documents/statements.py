@@ -16,16 +16,9 @@ from derive.reading.latex.tree import (
     Tuple,
     Unreadable,
 )
-from derive.verification.documents.translation import (
-    Notation,
-    Text,
-    Translator,
-    UntranslatableError,
-    has_index,
-    indexed,
-    letters,
-    nodes,
-)
+from derive.reading.latex.walking import has_index, indexed, letters, nodes
+from derive.verification.documents.text import Text
+from derive.verification.documents.translation import Notation, Translator, UntranslatableError
 
 WORD = re.compile(r"[A-Za-z_]\w*")
 #: Words for quantities that do not change.

@@ -1,13 +1,9 @@
-"""Syntax trees of LaTeX as formulas in the syntax of `derive.formulas.expression`.
-
-A `Text` remembers which LaTeX each of its parts comes from, so that the wrong term of a formula
-can be shown as the document writes it.
-"""
+"""Syntax trees of LaTeX as formulas in the syntax of `derive.formulas.expression`."""
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, assert_never
+from typing import assert_never
 
 from derive.reading.latex.tree import (
     Application,
@@ -23,16 +19,14 @@ from derive.reading.latex.tree import (
     Product,
     Quotient,
     Root,
-    Span,
     Sum,
     Summation,
     Transpose,
     Tuple,
 )
+from derive.reading.latex.walking import indexed
 from derive.verification.documents.rates import RATES, order, stem
-
-#: Binding strengths: a part that binds less than its place requires is put into brackets.
-SUM, PRODUCT, POWER, ATOM = range(4)
+from derive.verification.documents.text import ATOM, POWER, PRODUCT, SUM, Text, joined_text
 
 #: Reciprocals of functions that formulas have.
 RECIPROCALS = {"sec": "cos", "csc": "sin"}
@@ -43,32 +37,6 @@ MAX_TERMS = 20
 
 class UntranslatableError(ValueError):
     """A formula that has no translation; the message states why."""
-
-
-@dataclass(frozen=True)
-class Text:
-    """A formula in our syntax, and the spans of its parts: start and end here, and in LaTeX."""
-
-    text: str
-    binding: int = ATOM
-    parts: tuple[tuple[int, int, Span], ...] = ()
-    entries: tuple["Text", ...] = ()  # of a column or matrix that is written out, row by row
-
-    def shifted(self, offset: int) -> Iterator[tuple[int, int, Span]]:
-        """The parts, `offset` characters later."""
-        return ((start + offset, end + offset, span) for start, end, span in self.parts)
-
-    def part(self, start: int, end: int) -> "Text":
-        """The characters from `start` to `end`."""
-        inner = tuple(
-            (a - start, b - start, span) for a, b, span in self.parts if start <= a and b <= end
-        )
-        return Text(self.text[start:end], SUM, inner)
-
-    def source(self, start: int, end: int) -> Span | None:
-        """The LaTeX of the characters from `start` to `end`: of all parts within them."""
-        spans = [span for a, b, span in self.parts if start <= a and b <= end]
-        return (min(s for s, _ in spans), max(e for _, e in spans)) if spans else None
 
 
 @dataclass(frozen=True)
@@ -97,7 +65,7 @@ class Translator:
         if not any(span == node.span for *_, span in result.parts):
             whole = (0, len(result.text), node.span)
             result = replace(result, parts=(*result.parts, whole))
-        return result if result.binding >= least else _joined(ATOM, "(", result, ")")
+        return result if result.binding >= least else joined_text(ATOM, "(", result, ")")
 
     def name(self, letter: Letter) -> str:
         """The identifier of a letter with its dots."""
@@ -117,13 +85,13 @@ class Translator:
             case Product(factors=factors):
                 return self._product(factors)
             case Quotient(numerator=above, denominator=below):
-                return _joined(PRODUCT, self.text(above, PRODUCT), "/", self.text(below, POWER))
+                return joined_text(PRODUCT, self.text(above, PRODUCT), "/", self.text(below, POWER))
             case Power(base=base, exponent=exponent):
                 return self._power(base, exponent)
             case Root(radicand=radicand, degree=2):
-                return _joined(ATOM, "sqrt(", self.text(radicand), ")")
+                return joined_text(ATOM, "sqrt(", self.text(radicand), ")")
             case Root(radicand=radicand, degree=degree):
-                return _joined(POWER, self.text(radicand, ATOM), f"**(1/{degree})")
+                return joined_text(POWER, self.text(radicand, ATOM), f"**(1/{degree})")
             case Call(function=name, argument=argument):
                 return self._call(name, argument)
             case Application():
@@ -142,9 +110,9 @@ class Translator:
             case Transpose(operand=Tuple() as column):
                 return self._text(column)
             case Transpose(operand=operand):
-                return _joined(ATOM, "transpose(", self.text(operand), ")")
+                return joined_text(ATOM, "transpose(", self.text(operand), ")")
             case Norm(operand=operand):
-                return _joined(ATOM, "norm(", self.text(operand), ")")
+                return joined_text(ATOM, "norm(", self.text(operand), ")")
             case Summation():
                 return self._summation(node)
         assert_never(node)
@@ -155,7 +123,7 @@ class Translator:
             between = "-" if sign < 0 else "+"
             pieces.append(f" {between} " if pieces else between * (sign < 0))
             pieces.append(self.text(term, PRODUCT))
-        return _joined(SUM, *pieces)
+        return joined_text(SUM, *pieces)
 
     def _product(self, factors: Sequence[Node]) -> Text:
         pieces: list[Text | str] = []
@@ -163,7 +131,7 @@ class Translator:
             # a quotient behind a factor is one factor: a*(b/c) keeps its parts
             text = self.text(factor, PRODUCT if not pieces else POWER)
             pieces += ["*", text] if pieces else [text]
-        return _joined(PRODUCT, *pieces)
+        return joined_text(PRODUCT, *pieces)
 
     def _factors(self, factors: Sequence[Node]) -> Iterator[Node]:
         """The factors, also those of letters before brackets that are products."""
@@ -183,26 +151,26 @@ class Translator:
                 isinstance(base, Letter) and self.name(base) in self.notation.matrices
             )
             if is_matrix:
-                return _joined(ATOM, "inverse(", self.text(base), ")")
+                return joined_text(ATOM, "inverse(", self.text(base), ")")
         if isinstance(base, Letter) and self.name(base) in self.notation.matrices:
             if getattr(exponent, "digits", "") != "2":
                 raise UntranslatableError("a power of a matrix")
-            return _joined(ATOM, "square(", self.text(base), ")")
-        return _joined(POWER, self.text(base, ATOM), "**", self.text(exponent, ATOM))
+            return joined_text(ATOM, "square(", self.text(base), ")")
+        return joined_text(POWER, self.text(base, ATOM), "**", self.text(exponent, ATOM))
 
     def _call(self, name: str, argument: Node) -> Text:
         if name in RECIPROCALS:
-            return _joined(PRODUCT, f"1/{RECIPROCALS[name]}(", self.text(argument), ")")
+            return joined_text(PRODUCT, f"1/{RECIPROCALS[name]}(", self.text(argument), ")")
         if name == "cot":
             inner = self.text(argument)
-            return _joined(PRODUCT, "cos(", inner, ")/sin(", inner, ")")
-        return _joined(ATOM, f"{name}(", self.text(argument), ")")
+            return joined_text(PRODUCT, "cos(", inner, ")/sin(", inner, ")")
+        return joined_text(ATOM, f"{name}(", self.text(argument), ")")
 
     def _application(self, node: Application) -> Text:
         name = self.name(node.head)
         if name in self.notation.calls:
             pieces = [piece for one in node.arguments for piece in (", ", self.text(one))]
-            return _joined(ATOM, f"{name}(", *pieces[1:], ")")
+            return joined_text(ATOM, f"{name}(", *pieces[1:], ")")
         if self._is_function(node):
             return Text(name)
         return self._product([node.head, _in_brackets(node)])
@@ -226,7 +194,7 @@ class Translator:
             self.derivatives[name] = operand.text, variables
             return Text(name)
         for variable in variables:
-            operand = _joined(ATOM, "diff(", operand, f", {variable})")
+            operand = joined_text(ATOM, "diff(", operand, f", {variable})")
         return operand
 
     def _rate(self, operand: Text, times: int) -> Text:
@@ -235,7 +203,7 @@ class Translator:
         if is_letter and order(name) + times < len(RATES):
             return Text(stem(name) + RATES[order(name) + times])
         for _ in range(times):
-            operand = _joined(ATOM, "ddt(", operand, ")")
+            operand = joined_text(ATOM, "ddt(", operand, ")")
         return operand
 
     def _matrix(self, rows: Sequence[Sequence[Node]]) -> Text:
@@ -244,14 +212,14 @@ class Translator:
         if len(rows) > 1 and all(len(row) == 1 for row in rows):
             entries = [self.text(entry) for (entry,) in rows]
             pieces = [piece for entry in entries for piece in (", ", entry)]
-            return replace(_joined(ATOM, "(", *pieces[1:], ")"), entries=tuple(entries))
+            return replace(joined_text(ATOM, "(", *pieces[1:], ")"), entries=tuple(entries))
         for i, row in enumerate(rows):
             pieces.append(", [" if i else "[")
             for j, entry in enumerate(row):
                 entries.append(self.text(entry))
                 pieces += [", " * bool(j), entries[-1]]
             pieces.append("]")
-        return replace(_joined(ATOM, *pieces, "]"), entries=tuple(entries))
+        return replace(joined_text(ATOM, *pieces, "]"), entries=tuple(entries))
 
     def _summation(self, node: Summation) -> Text:
         first, last = _whole(node.lower, 1), _whole(node.upper, self.notation.count)
@@ -268,74 +236,11 @@ def identifier(letter: Letter) -> str:
     return name if name[:1].isalpha() else f"letter_{name}"
 
 
-def indexed(node: Node, index: str, value: int) -> Node:
-    """The tree with a number in place of a letter that is an index."""
-
-    def changed(part: Any) -> Any:
-        if isinstance(part, Letter):
-            words = part.index.split("_") if part.index else []
-            return replace(part, index="_".join(str(value) if w == index else w for w in words))
-        if isinstance(part, tuple):
-            return tuple(map(changed, part))
-        if isinstance(part, Node):
-            names = [name for name in part.__dataclass_fields__ if name != "span"]
-            return replace(part, **{name: changed(getattr(part, name)) for name in names})
-        return part
-
-    result: Node = changed(node)
-    return result
-
-
-def nodes(node: object) -> Iterator[Node]:
-    """A tree and all trees within it."""
-    if isinstance(node, Node):
-        yield node
-        for name in node.__dataclass_fields__:
-            yield from nodes(getattr(node, name))
-    elif isinstance(node, tuple):
-        for one in node:
-            yield from nodes(one)
-
-
-def letters(node: Node) -> Iterator[Letter]:
-    """All letters of a tree."""
-    return (one for one in nodes(node) if isinstance(one, Letter))
-
-
-def has_index(nodes: Collection[Node], index: str) -> bool:
-    """Whether a letter has a letter as its index, which no sum binds."""
-
-    def walk(part: object) -> bool:
-        match part:
-            case Summation(index=Letter(name=name)) if name == index:
-                return False
-            case Letter():
-                return index in part.index.split("_")
-            case tuple():
-                return any(map(walk, part))
-            case _ if isinstance(part, Node):
-                return any(walk(getattr(part, name)) for name in part.__dataclass_fields__)
-        return False
-
-    return walk(tuple(nodes))
-
-
 def _in_brackets(node: Application) -> Node:
     """The contents of the brackets behind a letter: an expression, or a column of several."""
     if len(node.arguments) == 1:
         return node.arguments[0]
     return Tuple(node.arguments, (node.head.span[1], node.span[1]))
-
-
-def _joined(binding: int, *pieces: Text | str) -> Text:
-    text, parts = "", list[tuple[int, int, Span]]()
-    for piece in pieces:
-        if isinstance(piece, Text):
-            parts += piece.shifted(len(text))
-            text += piece.text
-        else:
-            text += piece
-    return Text(text, binding, tuple(parts))
 
 
 def _whole(node: Node | None, default: int) -> int:

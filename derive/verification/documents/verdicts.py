@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import sympy as sp
 
@@ -13,27 +13,16 @@ from derive.verification.documents.linear import Linear
 from derive.verification.documents.partial_energies import PartialEnergies
 from derive.verification.documents.rates import order, stem
 from derive.verification.documents.scope import DocumentScope
+from derive.verification.documents.side_verdict import CORRECT, SideVerdict, not_understood, plain
 from derive.verification.documents.statements import INDICES, WORD, DocumentFormula
-from derive.verification.documents.translation import Text
+from derive.verification.documents.text import Text
 from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on
 from derive.verification.quantities import judge_formula
-from derive.verification.verdict import Correction, Verdict
+from derive.verification.verdict import Correction
 
 #: The largest denominator of a factor that is looked for.
 MAX_DENOMINATOR = 100
-#: Verdicts on formulas that are correct.
-CORRECT = ("verified", "equivalent", "definition")
-
-
-@dataclass(frozen=True)
-class SideVerdict:
-    """The verdict on a side of a formula, with the place of each of its characters."""
-
-    verdict: Verdict
-    parts: tuple[tuple[int, Text], ...]  # the sides within the judged text, and where they start
-    kind: str
-    is_understood: bool = True  # all its letters have a meaning
 
 
 class Judge:
@@ -47,23 +36,23 @@ class Judge:
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
         if not formula.relations:
-            return _plain("context", formula, "it is no statement")
+            return plain("context", formula, "it is no statement")
         if any(one not in ("=", ":=", "~") for one in formula.relations):
-            return _plain("context", formula, "it is no equation")
+            return plain("context", formula, "it is no equation")
         if formula.subject in INDICES or self._is_special(formula):
-            return _plain("context", formula, "it states a value")
+            return plain("context", formula, "it states a value")
         unknown = self._unknown(formula.sides)
         if unknown and self._is_identity(formula, unknown):
-            return _plain("verified", formula, f"for any {', '.join(unknown)}")
+            return plain("verified", formula, f"for any {', '.join(unknown)}")
         if self._unknown(formula.sides[:1]):
-            return _not_understood(formula, unknown)
+            return not_understood(formula, unknown)
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
         results = [self._side(formula, k) for k in known]
         for result in results:
             if result.verdict.verdict not in CORRECT:
                 return self._first_side(formula) or result
         if unknown:
-            return _not_understood(formula, unknown)
+            return not_understood(formula, unknown)
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
@@ -119,10 +108,10 @@ class Judge:
             required = self._energies.required(formula)
             if required is not None:
                 return self._value(side, formula.subject, required)
-            return _plain("definition", formula, "")
+            return plain("definition", formula, "")
         last = self._scope.defining.get(side.text)
         if last and last[0] is formula:
-            return _plain("definition", formula, "")
+            return plain("definition", formula, "")
         is_approximate = formula.relations[k - 1] == "~"
         first = formula.sides[k - 1] if is_approximate else first
         try:
@@ -131,13 +120,13 @@ class Judge:
                 return self._approximated(formula, *values)
             return self._compared(formula, first, side, *values)
         except (ExpressionError, NotImplementedError) as error:
-            return _plain("context", formula, f"not judged: {error}")
+            return plain("context", formula, f"not judged: {error}")
 
     def _approximated(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
         """The verdict on an approximation, which is never wrong: others can be meant."""
         if self._linear.agrees(left - right, self._model):
-            return _plain("verified", formula, "it holds to first order at the origin")
-        return _plain("context", formula, "it is an approximation")
+            return plain("verified", formula, "it holds to first order at the origin")
+        return plain("context", formula, "it is an approximation")
 
     def _compared(
         self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
@@ -148,7 +137,7 @@ class Judge:
             return self._matrices(formula, first, side, left, right)
         note = self._holds(left - right)
         if note is not None:
-            return _plain("verified", formula, note)
+            return plain("verified", formula, note)
         small = "it holds for small motions about the origin"
         if is_product:
             return self._scaled(formula, side, left, right)
@@ -156,14 +145,14 @@ class Judge:
         if result.verdict.verdict in CORRECT:
             return result
         if self._linear.holds(left - right, self._model):
-            return _plain("verified", formula, small)
+            return plain("verified", formula, small)
         if side.text.startswith("sqrt(") and self._holds(left**2 - right**2) is not None:
-            return _plain("verified", formula, "it holds for one sign of the root")
+            return plain("verified", formula, "it holds for one sign of the root")
         values = self._special_values(left, right)
         difference = (left - right).xreplace(self._model.momenta).xreplace(values)
         if values and self._holds(difference) is not None:
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
-            return _plain("equivalent", formula, f"it holds for {text}")
+            return plain("equivalent", formula, f"it holds for {text}")
         return result
 
     def _scaled(
@@ -171,7 +160,7 @@ class Judge:
     ) -> SideVerdict:
         """The verdict on a wrong scalar product of columns, perhaps but for a factor."""
         context = self._model.context
-        result = _plain("wrong", formula, "", context.witness(right, left))
+        result = plain("wrong", formula, "", context.witness(right, left))
         ratio = sp.nsimplify(context.value(left) / context.value(right), rational=True)
         if ratio.q < MAX_DENOMINATOR and self._holds(left - ratio * right) is not None:
             correction = Correction(side.text, f"{ratio}*{side.text}")
@@ -192,7 +181,7 @@ class Judge:
         """The verdict on the first entries that differ, or on the whole."""
         shapes = [getattr(one, "shape", None) for one in (left, right)]
         if shapes[0] != shapes[1]:
-            return _plain("context", formula, "it compares quantities of different shapes")
+            return plain("context", formula, "it compares quantities of different shapes")
         for index, (a, b) in enumerate(zip(left, right, strict=True)):
             if self._holds(a - b) is not None or self._linear.holds(a - b, self._model):
                 continue
@@ -203,8 +192,8 @@ class Judge:
                 return self._value(other, "entry", a)
             if mine:
                 return self._value(mine, "entry", b)
-            return _plain("wrong", formula, "", self._model.context.witness(b, a))
-        return _plain("verified", formula, "")
+            return plain("wrong", formula, "", self._model.context.witness(b, a))
+        return plain("verified", formula, "")
 
     def _holds(self, difference: sp.Expr) -> str | None:
         """A note if a difference is zero at all states or along motions, otherwise None."""
@@ -302,11 +291,6 @@ def _number(value: Value) -> Value:
     return value[0] if getattr(value, "shape", ()) == (1, 1) else value
 
 
-def _not_understood(formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
-    note = f"no meaning was found for {', '.join(unknown)}"
-    return replace(_plain("context", formula, note), is_understood=False)
-
-
 def _rates(text: str) -> Iterator[tuple[int, int]]:
     """The places of operands of d/dt."""
     for match in re.finditer(r"\bddt\(", text):
@@ -315,8 +299,3 @@ def _rates(text: str) -> Iterator[tuple[int, int]]:
             depth += {"(": 1, ")": -1}.get(text[end], 0)
             end += 1
         yield match.end(), end - 1
-
-
-def _plain(verdict: str, formula: DocumentFormula, note: str, witness: str = "") -> SideVerdict:
-    one = Verdict("", verdict, formula.text, note=note, witness=witness)  # type: ignore[arg-type]
-    return SideVerdict(one, (), "")

@@ -1,0 +1,33 @@
+"""The verdict on a formula of a document, with the places of its sides."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.text import Text
+from derive.verification.verdict import Verdict
+
+#: Verdicts on formulas that are correct.
+CORRECT = ("verified", "equivalent", "definition")
+
+
+@dataclass(frozen=True)
+class SideVerdict:
+    """The verdict on a side of a formula, with the place of each of its characters."""
+
+    verdict: Verdict
+    parts: tuple[tuple[int, Text], ...]  # the sides within the judged text, and where they start
+    kind: str
+    is_understood: bool = True  # all its letters have a meaning
+
+
+def plain(verdict: str, formula: DocumentFormula, note: str, witness: str = "") -> SideVerdict:
+    """A verdict without corrections."""
+    one = Verdict("", verdict, formula.text, note=note, witness=witness)  # type: ignore[arg-type]
+    return SideVerdict(one, (), "")
+
+
+def not_understood(formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
+    """The verdict on a formula with letters that have no meaning."""
+    note = f"no meaning was found for {', '.join(unknown)}"
+    return replace(plain("context", formula, note), is_understood=False)
