@@ -42,7 +42,8 @@ def checked_before() -> Iterator[None]:
 
 def examined(motions: int) -> list[int]:
     """The motions to examine of so many: evenly distributed, with the first and the last."""
-    return np.unique(np.linspace(0, motions - 1, EXAMINED).astype(int)).tolist()
+    indices = np.linspace(0, motions - 1, EXAMINED).astype(int)
+    return np.unique(indices).tolist() if motions else []
 
 
 def check_condition(
