@@ -60,6 +60,7 @@ def check_condition(
     motion, worst, weakest = max(
         ((name, *_worst(module, t, y0, params)) for name, params, y0 in motions),
         key=lambda row: row[1],
+        default=("", 0.0, ""),  # without motions
     )
     text = (
         f"{motion}the mass matrix has condition {worst:.0e}: {weakest} has hardly any inertia of "
