@@ -42,6 +42,9 @@ The second angle $q_2$ is measured from the first link.
 $$M = \begin{bmatrix} m_1 l_1^2 + m_2 (l_1^2 + 2 l_1 l_2 c_2 + l_2^2) & m_2 (l_1 l_2 c_2 + l_2^2)\\
   m_2 (l_1 l_2 c_2 + l_2^2) & m_2 l_2^2 \end{bmatrix}$$
 $$V = -m_1 g l_1 c_1 - m_2 g (l_1 c_1 + l_2 c_{12})$$
+$$C = \begin{bmatrix} -m_2 l_1 l_2 s_2 \dot q_2 & -m_2 l_1 l_2 s_2 (\dot q_1 + \dot q_2) \\
+  m_2 l_1 l_2 s_2 \dot q_1 & 0 \end{bmatrix}$$
+$$G = \begin{bmatrix} (m_1 + m_2) g l_1 s_1 + m_2 g l_2 s_{12} \\ m_2 g l_2 s_{12} \end{bmatrix}$$
 $$\frac{\partial V}{\partial q_2} = m_2 g l_2 s_{12}$$
 """
 

@@ -5,7 +5,17 @@ from dataclasses import dataclass
 
 from derive.reading.document import Document
 from derive.reading.latex.reader import formulas
-from derive.reading.latex.tree import Call, Letter, Node, Number, Power, Product, Statement, Sum
+from derive.reading.latex.tree import (
+    Call,
+    Letter,
+    Matrix,
+    Node,
+    Number,
+    Power,
+    Product,
+    Statement,
+    Sum,
+)
 from derive.reading.latex.walking import nodes
 
 
@@ -34,7 +44,10 @@ def mutants(document: Document) -> Iterator[Mutant]:
 
 
 def _changes(latex: str, statement: Statement) -> Iterator[tuple[str, int, int, str]]:
-    for node in nodes(statement.sides):
+    first, *others = statement.sides
+    # another name on the left defines another quantity
+    sides = others if isinstance(first, Letter | Matrix) else statement.sides
+    for node in nodes(tuple(sides)):
         yield from _of_node(latex, node)
 
 

@@ -205,3 +205,18 @@ def test_wrong_hints_are_refused(text: str, message: str, tmp_path: Path) -> Non
     (tmp_path / "names.toml").write_text(text)
     with pytest.raises(InputError, match=message):
         hints(None, tmp_path / "names.toml")
+
+
+def test_formulas_that_follow_from_a_wrong_one_are_reported_as_such(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac12 m l^2\dot\theta^2,\quad V = -m g\cos\theta$$
+$$L = \frac12 m l^2\dot\theta^2 + m g\cos\theta$$
+$$\frac{\partial L}{\partial\theta} = -m g\sin\theta$$
+$$m l^2\ddot\theta + m g\sin\theta = 0$$
+$$\ddot\theta = -\frac gl\sin\theta,\quad m l^2\ddot\theta + 2 m g l\sin\theta = 0$$
+$$x = l\sin\theta,\quad y = -l\cos\theta$$
+"""
+    document = judged(tmp_path, text)
+    notes = [(one.line, one.note) for one in document.formulas if one.verdict == "wrong"]
+    follows = "it follows from line 2"
+    assert notes == [(2, ""), (3, follows), (4, follows), (5, follows), (6, "")]

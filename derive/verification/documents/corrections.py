@@ -89,7 +89,10 @@ def inserted(before: str, old: str, new: str, after: str) -> str:
         return head + sign + new.lstrip("- ") + after
     if new.startswith("-") and head[-1:] in ("+", "-"):
         return f"{head[:-1]}{'-' if head[-1] == '+' else '+'} {new[1:].lstrip()}{after}"
-    if old.startswith("-") and not new.startswith("-") and head[-1:] not in ("", *"=&({[+-,"):
+    is_term = head[-1:] not in ("", *"=&({[+-,")
+    if old.startswith("-") and new.startswith("-") and is_term:
+        return f"{head} - {new[1:].lstrip()}{after}"
+    if old.startswith("-") and not new.startswith("-") and is_term:
         return f"{before}+ {new}{after}"
     return before + new + after
 

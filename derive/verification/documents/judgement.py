@@ -44,7 +44,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
             break
         judge = judge_of(part, found.letters, found.match.candidate)
         titles.append(found.match.candidate.system.title)
-        verdicts = [(formula, judge.verdict(formula)) for formula in remaining]
+        verdicts = judge.verdicts(remaining)
         for formula, result in verdicts:
             before = results.get(formula.occurrence)
             if before is None or _is_graver(result, before[1]):

@@ -9,7 +9,9 @@ import sympy as sp
 
 from derive.formulas.expression import ExpressionError, Value, parse
 from derive.formulas.zero import vanishes
+from derive.verification.documents.consequences import Consequences
 from derive.verification.documents.linear import Linear
+from derive.verification.documents.manipulator import Manipulator
 from derive.verification.documents.partial_energies import PartialEnergies
 from derive.verification.documents.rates import order, stem
 from derive.verification.documents.scope import DocumentScope
@@ -31,7 +33,14 @@ class Judge:
     def __init__(self, scope: DocumentScope) -> None:
         self._scope, self._model = scope, scope.model
         self._linear = Linear(scope.derivation)
-        self._energies = PartialEnergies(scope)
+        self._energies, self._manipulator = PartialEnergies(scope), Manipulator(scope)
+
+    def verdicts(
+        self, formulas: Sequence[DocumentFormula]
+    ) -> list[tuple[DocumentFormula, SideVerdict]]:
+        """The verdicts on formulas in their order, with what follows from wrong ones."""
+        judged = [(formula, self.verdict(formula)) for formula in formulas]
+        return Consequences(self._scope).marked(judged)
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
@@ -108,7 +117,7 @@ class Judge:
             required = self._energies.required(formula)
             if required is not None:
                 return self._value(side, formula.subject, required)
-            return plain("definition", formula, "")
+            return self._manipulator_matrix(formula, side)
         last = self._scope.defining.get(side.text)
         if last and last[0] is formula:
             return plain("definition", formula, "")
@@ -121,6 +130,21 @@ class Judge:
             return self._compared(formula, first, side, *values)
         except (ExpressionError, NotImplementedError) as error:
             return plain("context", formula, f"not judged: {error}")
+
+    def _manipulator_matrix(self, formula: DocumentFormula, side: Text) -> SideVerdict:
+        """The verdict on a definition, which can be that of a matrix of M q̈ + C q̇ = G."""
+        required = self._manipulator.required(formula.subject)
+        if required is None:
+            return plain("definition", formula, "")
+        wrong = [k for k, value in enumerate(required) if value is not None]
+        if not wrong:
+            return plain("verified", formula, "")
+        results = [
+            self._value(side.entries[k], "entry", required[k]) for k in wrong if side.entries
+        ]
+        found = [one for one in results if one.verdict.corrections]
+        shortest = min(found, key=lambda one: len(one.verdict.corrections[0].correct), default=None)
+        return shortest or plain("wrong", formula, "it has not the forces of this system")
 
     def _approximated(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
         """The verdict on an approximation, which is never wrong: others can be meant."""
