@@ -27,6 +27,8 @@ def corrected(
     """The corrections of a verdict in LaTeX; empty if none are known."""
     latex, tree = formula.occurrence.latex, formula.occurrence.tree
     verdict = result.verdict
+    if not verdict.corrections and verdict.correction == formula.subject:
+        return Corrected()  # nothing but the quantity itself
     if not verdict.corrections or formula.index:
         whole = written(verdict.correction, letters) if verdict.correction else ""
         if whole and result.kind != "euler_lagrange" and "=" not in whole:

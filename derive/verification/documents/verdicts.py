@@ -194,9 +194,10 @@ class Judge:
 
     def _special_values(self, left: Value, right: Value) -> dict[sp.Symbol, sp.Expr]:
         """Values of parameters that the document states; units, if one side has no parameters."""
-        parameters = {*self._scope.derivation.system.params}
-        if not right.free_symbols & parameters:
-            return dict.fromkeys(sorted(left.free_symbols & parameters, key=str), sp.S.One)
+        parameters = left.free_symbols & {*self._scope.derivation.system.params}
+        # one parameter that is lacking is a mistake
+        if len(parameters) > 1 and not right.free_symbols & parameters:
+            return dict.fromkeys(sorted(parameters, key=str), sp.S.One)
         return self._scope.special_values
 
     def _matrices(
