@@ -53,7 +53,10 @@ def judged(read: Document, *formulas: tuple[str, dict[str, Any]]) -> JudgedDocum
         extents = {one.number: one.extent for one in read.displays}
         display = next((n for n, (a, b) in extents.items() if a <= start < b), 0)
         span = (start, start + len(latex))
-        fields = {"verdict": "verified", **fields}
+        wrong = fields.get("wrong_term", "")
+        first = start + latex.rfind(wrong)
+        marked = ((first, first + len(wrong)),) if wrong and wrong in latex else ()
+        fields = {"verdict": "verified", "wrong_spans": marked, **fields}
         rows.append(JudgedFormula(line, column, display, latex, span=span, cell=cell, **fields))
     return JudgedDocument(read.file, read.kind, "pendulum & cart", tuple(rows), ("line 1: <b>",))
 
@@ -128,9 +131,10 @@ def test_the_page_marks_the_wrong_term_and_the_correct_one(tmp_path: Path) -> No
         (r"x = a - b + c", "b", "−</mo><mi>b</mi>"),
         (r"x = a (b + c)^2", "2", "<mn>2</mn>"),
         (r"x = a\left(b + c\right)", r"b + c", "<mi>b</mi>"),
+        (r"b = x - b", "- b", "−</mo><mi>b</mi>"),
         (r"x = l_1 \dot\theta_2", r"\dot\theta_2", "<mn>2</mn>"),
         (r"x = l_1 \dot\theta_2", r"_2", "<mi>θ</mi>"),  # the smallest part with a meaning
-        (r"x = \frac{a}{b + c}", r"b+c", "<mi>c</mi>"),
+        (r"x = \frac{a}{b + c}", r"b + c", "<mi>c</mi>"),
         (r"x = a", "b", ""),  # not in the formula
     ],
 )

@@ -14,6 +14,7 @@ from derive.reading.documents import read_document
 from derive.verification.documents.files import judge_file
 from derive.verification.documents.hints import hints
 from derive.verification.documents.judged import JudgedDocument
+from derive.verification.documents.page import page
 from solvers.io.toml_input import InputError
 from solvers.runge_kutta.order_conditions import order
 
@@ -53,13 +54,8 @@ def problem(mutant: Mutant, document: JudgedDocument) -> str:
     one = near[0]
     if not one.wrong_term:
         return "" if mutant.kind == "omission" and one.correction else "no term"
-    for term in one.wrong_term.split("; "):
-        start = mutant.text.find(term, mutant.formula)
-        while 0 <= start < one.span[1]:
-            if start - 3 <= mutant.place <= start + len(term) + 1:
-                return ""
-            start = mutant.text.find(term, start + 1)
-    return f"elsewhere: {one.wrong_term}"
+    is_found = any(start - 3 <= mutant.place <= end + 1 for start, end in one.wrong_spans)
+    return "" if is_found else f"elsewhere: {one.wrong_term}"
 
 
 def missed(folder: Path, chosen: list[tuple[str, Mutant]]) -> list[str]:
@@ -98,6 +94,18 @@ def test_a_correction_is_the_formula_with_another_term(tmp_path: Path) -> None:
     assert (one.line, one.display) == (6, 2)
     assert r"m g b \sin\beta" in one.wrong_term
     assert verdicts(tmp_path, wrong.replace(one.latex, one.correction)) == ["verified"] * 6
+
+
+def test_a_wrong_term_that_also_stands_elsewhere_is_marked_at_its_place(tmp_path: Path) -> None:
+    kinetic, term = r"\tfrac12 m l^2\dot\theta^2", r"- m g l\cos\theta"
+    text = rf"$$L = {kinetic} - ({term}) = {kinetic} {term}, \quad l\ddot\theta = -g\sin\theta$$"
+    (one, _) = judged(tmp_path, text).formulas
+    second = text.rindex(term)
+    assert one.wrong_spans == ((second, second + len(term)),)
+    (tmp_path / "a.md").write_text(text)
+    document, read = judge_file(str(tmp_path / "a.md"), order)
+    *_, last = page([(document, read)]).partition("should be")[0].split("<wbr>")
+    assert last.startswith('<math displaystyle="true"><mrow class="wrong-term">')
 
 
 SLIP = r"""

@@ -14,7 +14,10 @@ from derive.verification.verdict import Correction
 
 @dataclass(frozen=True)
 class Corrected:
-    """LaTeX of the wrong terms and of the corrected formula, and the places of the terms."""
+    """LaTeX of the wrong terms and of the corrected formula, and the spans of the terms.
+
+    A span is empty where a term is missing.
+    """
 
     wrong_term: str = ""
     correction: str = ""

@@ -32,6 +32,8 @@ class JudgedFormula:
         Further information, such as the reason of `unreadable`.
     span
         Of the formula in the text of the document.
+    wrong_spans
+        Of the wrong terms in the text of the document; empty for programs.
     cell
         Number of a notebook's cell, counted from 1; 0 in other documents.
     """
@@ -47,6 +49,7 @@ class JudgedFormula:
     note: str = ""
     span: Span = (0, 0)
     cell: int = 0
+    wrong_spans: tuple[Span, ...] = ()
 
 
 @dataclass(frozen=True)

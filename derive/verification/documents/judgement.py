@@ -91,10 +91,11 @@ def _judged(
 ) -> JudgedFormula:
     place, verdict = formula.occurrence, result.verdict
     correction = corrected(formula, result, written)
+    spans = tuple((place.start + a, place.start + b) for a, b in correction.spans if a < b)
     return JudgedFormula(
         place.line, place.column, place.display, place.source, verdict.verdict,
         correction.wrong_term, correction.correction, verdict.witness, verdict.note,
-        place.span, place.cell,
+        place.span, place.cell, spans,
     )  # fmt: skip
 
 

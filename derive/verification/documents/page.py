@@ -18,7 +18,7 @@ from derive.verification.verdict import VerdictName
 Macros: TypeAlias = Mapping[str, Macro] | None
 
 STYLE = Path(__file__).with_name("page.css")
-#: Parts of LaTeX that are compared when a term is looked for.
+#: Parts of LaTeX that are compared.
 TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\s\\]")
 
 
@@ -95,7 +95,8 @@ def _item(one: JudgedFormula, macros: Macros) -> str:
         f'<div class="margin"><span class="word">{one.verdict}</span> '
         f"<span>{cell}line {one.line}{display}</span></div>"
     )
-    shown = _math(one.latex, macros, _places(one.latex, one.wrong_term), "wrong-term")
+    wrong = [(a - one.span[0], b - one.span[0]) for a, b in one.wrong_spans]
+    shown = _math(one.latex, macros, wrong, "wrong-term")
     details = "".join(
         f"<div><dt>{title}</dt><dd>{text}</dd></div>"
         for title, text in _details(one, macros)
@@ -125,19 +126,6 @@ def _math(latex: str, macros: Macros, marked: Sequence[Span], word: str) -> str:
         return f"<code>{escape(one_line(latex))}</code>"
     lines = (statement_html(latex, one, marked, word) for one in read)
     return "".join(f'<div class="formula">{line}</div>' for line in lines)
-
-
-def _places(latex: str, wrong: str) -> list[Span]:
-    """Where the wrong terms, separated by semicolons, first stand in a formula."""
-    tokens = list(TOKEN.finditer(latex))
-    words = [one.group() for one in tokens]
-    places = []
-    for term in filter(None, map(TOKEN.findall, wrong.split(";"))):
-        size = len(term)
-        start = next((k for k in range(len(words)) if words[k : k + size] == term), None)
-        if start is not None:
-            places.append((tokens[start].start(), tokens[start + size - 1].end()))
-    return places
 
 
 def _changed(latex: str, correction: str) -> list[Span]:

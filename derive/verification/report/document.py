@@ -4,6 +4,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import Any
 
 from derive.reading.document import Display, Document
 from derive.reading.latex.reader import macros_of
@@ -130,22 +131,24 @@ def _judged(
         result = Verdict(equation.id, "wrong", formula, equation.printed, note=note)
     if result.verdict not in ("misprint", "wrong"):
         return _formula(document, display, span, result.verdict, note=result.note)
+    start, end = _wrong_term(group) or (0, 0)
     return _formula(
         document, display, span, result.verdict,
-        wrong_term=_wrong_term(group),
+        wrong_term=display.latex[start:end].strip(),
+        wrong_spans=((display.start + start, display.start + end),) * (start < end),
         correction=equation.equation.format(equation.corrected_latex),
         witness=" = ".join(filter(None, (result.residual, result.witness))),
         note=result.note,
     )  # fmt: skip
 
 
-def _wrong_term(group: Sequence[tuple[Stored, Written]]) -> str:
-    """The LaTeX of the first part that differs from the correct equation."""
+def _wrong_term(group: Sequence[tuple[Stored, Written]]) -> Span | None:
+    """The first part of a display that differs from the correct equation."""
     for one, written in group:
         match written.tree, one.correct:
             case Statement() as tree, Statement() as correct if text(tree) != text(correct):
-                return written.display.latex[slice(*first_difference(tree, correct))].strip()
-    return ""
+                return first_difference(tree, correct)
+    return None
 
 
 def _other(document: Document, written: Written) -> JudgedFormula:
@@ -156,7 +159,7 @@ def _other(document: Document, written: Written) -> JudgedFormula:
 
 
 def _formula(
-    document: Document, display: Display, span: Span, verdict: VerdictName, **fields: str
+    document: Document, display: Display, span: Span, verdict: VerdictName, **fields: Any
 ) -> JudgedFormula:
     start, end = display.start + span[0], display.start + span[1]
     place = document.place(start)
