@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from derive.reading.programs.array_functions import of_arrays, of_entries
-from derive.reading.programs.code import Definition, Return, Statement
+from derive.reading.programs.code import Definition, Lambda, Return, Statement
 from derive.reading.programs.context import APPENDING, Context, assigned
 from derive.reading.programs.elementwise import mapped
 from derive.reading.programs.mathematics import split
@@ -11,7 +11,6 @@ from derive.reading.programs.trees import (
     Array,
     Call,
     Item,
-    Lambda,
     Member,
     Name,
     Number,

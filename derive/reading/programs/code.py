@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from derive.reading.programs.trees import Tree
@@ -79,6 +79,13 @@ class Definition:
     body: tuple[Statement, ...]
     owner: str = ""
     results: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Lambda(Tree):
+    """A function without a name, as a value."""
+
+    function: Definition = field(compare=False)
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,13 @@ from derive.reading.programs.code import (
     Branch,
     Definition,
     Evaluation,
+    Lambda,
     Parameter,
     Return,
     Statement,
 )
 from derive.reading.programs.expressions import ExpressionTranslator, line, text
-from derive.reading.programs.trees import Lambda, Name, Tree
+from derive.reading.programs.trees import Name, Tree
 
 if TYPE_CHECKING:
     from tree_sitter import Node

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Iterator
 
-from derive.reading.programs.code import Definition, Return
+from derive.reading.programs.code import Definition, Lambda, Return
 from derive.reading.programs.mathematics import split
 from derive.reading.programs.program import Finding
-from derive.reading.programs.trees import Call, Lambda, Member, Name, Text, Tree
+from derive.reading.programs.trees import Call, Member, Name, Text, Tree
 
 #: Functions that integrate, and the library and the method by default.
 INTEGRATORS = {

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
-
-if TYPE_CHECKING:
-    from derive.reading.programs.code import Definition
 
 #: Numbers, names and operations of the largest expression, written out, and its levels.
 MAX_SIZE, MAX_DEPTH = 5_000, 120
 
 
 @dataclass(frozen=True)
-class Node:
+class Tree:
     """An expression; equal ones can stand on different lines."""
 
     line: int = field(compare=False)
@@ -37,28 +33,28 @@ class Node:
 
 
 @dataclass(frozen=True)
-class Number(Node):
+class Number(Tree):
     """A number in decimal digits."""
 
     digits: str
 
 
 @dataclass(frozen=True)
-class Text(Node):
+class Text(Tree):
     """A quoted text."""
 
     value: str
 
 
 @dataclass(frozen=True)
-class Name(Node):
+class Name(Tree):
     """A variable, or an entry or member of one, such as ``y[0]`` or ``self.theta``."""
 
     path: str
 
 
 @dataclass(frozen=True)
-class Member(Node):
+class Member(Tree):
     """A member of an object."""
 
     base: Tree
@@ -70,7 +66,7 @@ class Member(Node):
 
 
 @dataclass(frozen=True)
-class Item(Node):
+class Item(Tree):
     """Entries of an array."""
 
     base: Tree
@@ -82,7 +78,7 @@ class Item(Node):
 
 
 @dataclass(frozen=True)
-class Slice(Node):
+class Slice(Tree):
     """A range of indices as an index; a bound that is not written is None."""
 
     lower: Tree | None
@@ -90,7 +86,7 @@ class Slice(Node):
 
 
 @dataclass(frozen=True)
-class Operation(Node):
+class Operation(Tree):
     """A sum, difference, product, quotient, power (``+ - * / **``), matrix product or solution.
 
     The matrix product is ``@`` and the solution of a linear system is ``solve``; one operand is
@@ -106,7 +102,7 @@ class Operation(Node):
 
 
 @dataclass(frozen=True)
-class Call(Node):
+class Call(Tree):
     """A function and its arguments."""
 
     function: Tree
@@ -119,7 +115,7 @@ class Call(Node):
 
 
 @dataclass(frozen=True)
-class Result(Node):
+class Result(Tree):
     """The value of a call, or of an entry of it, that has been followed."""
 
     call: Tree
@@ -131,7 +127,7 @@ class Result(Node):
 
 
 @dataclass(frozen=True)
-class Array(Node):
+class Array(Tree):
     """Several values in order: an array, a tuple, or a row of a matrix."""
 
     items: tuple[Tree, ...]
@@ -142,7 +138,7 @@ class Array(Node):
 
 
 @dataclass(frozen=True)
-class Record(Node):
+class Record(Tree):
     """Values with names: a dictionary or an object."""
 
     fields: tuple[tuple[str, Tree], ...]
@@ -153,7 +149,7 @@ class Record(Node):
 
 
 @dataclass(frozen=True)
-class Choice(Node):
+class Choice(Tree):
     """A value that a conditional statement may change."""
 
     before: Tree
@@ -165,35 +161,10 @@ class Choice(Node):
 
 
 @dataclass(frozen=True)
-class Lambda(Node):
-    """A function without a name."""
-
-    function: Definition = field(compare=False)
-
-
-@dataclass(frozen=True)
-class Opaque(Node):
+class Opaque(Tree):
     """A value that cannot be followed, and why."""
 
     reason: str
-
-
-Tree: TypeAlias = (
-    Number
-    | Text
-    | Name
-    | Member
-    | Item
-    | Slice
-    | Operation
-    | Call
-    | Result
-    | Array
-    | Record
-    | Choice
-    | Lambda
-    | Opaque
-)
 
 
 def replaced(tree: Tree, parts: tuple[Tree, ...]) -> Tree:

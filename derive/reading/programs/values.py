@@ -1,6 +1,7 @@
 """Values of expressions in the names that a function starts with."""
 
 from derive.reading.programs.arrays import combined, entries, flat
+from derive.reading.programs.code import Lambda
 from derive.reading.programs.context import Context
 from derive.reading.programs.mathematics import constant
 from derive.reading.programs.trees import (
@@ -10,7 +11,6 @@ from derive.reading.programs.trees import (
     Call,
     Choice,
     Item,
-    Lambda,
     Member,
     Name,
     Number,
