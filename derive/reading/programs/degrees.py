@@ -4,8 +4,9 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 
+from derive.reading.programs.arithmetic import number
 from derive.reading.programs.program import Finding
-from derive.reading.programs.trees import Call, Name, Number, Operation, Result, Tree
+from derive.reading.programs.trees import Call, Name, Tree
 
 IN_DEGREES = re.compile(r"(_|\b)deg(ree)?s?$|[a-z\d](Deg|Degrees)$|_deg_", re.IGNORECASE)
 CIRCULAR = ("sin", "cos", "tan")
@@ -53,44 +54,6 @@ def arguments(tree: Tree) -> Iterator[tuple[int, Tree]]:
             yield tree.line, argument
     for part in tree.parts:
         yield from arguments(part)
-
-
-def number(tree: Tree) -> float | None:
-    """The value of an expression of numbers and pi; None for others."""
-    match tree:
-        case Number(digits=digits):
-            return float(digits)
-        case Name(path="pi"):
-            return math.pi
-        case Result(value=inner):
-            return number(inner)
-        case Operation(operator="-", operands=(operand,)):
-            positive = number(operand)
-            return None if positive is None else -positive
-        case Operation(operator=operator, operands=(left, right)):
-            a, b = number(left), number(right)
-            if a is not None and b is not None:
-                return _combined(operator, a, b)
-    return None
-
-
-def _combined(operator: str, a: float, b: float) -> float | None:
-    try:
-        match operator:
-            case "+":
-                return a + b
-            case "-":
-                return a - b
-            case "*":
-                return a * b
-            case "/":
-                return a / b
-            case "**" if abs(b) < 100:
-                value = a**b
-                return value if isinstance(value, float) else None
-    except ArithmeticError:
-        pass
-    return None
 
 
 def _names(tree: Tree) -> Iterator[str]:

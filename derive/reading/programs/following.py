@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from copy import copy
 from typing import Self
 
+from derive.reading.programs.arithmetic import number
 from derive.reading.programs.arrays import entries, flat
 from derive.reading.programs.calls import CONDITION, Calls, Step
 from derive.reading.programs.code import (
@@ -18,7 +19,6 @@ from derive.reading.programs.code import (
     Statement,
 )
 from derive.reading.programs.context import Context, assigned, static_path
-from derive.reading.programs.degrees import number
 from derive.reading.programs.elementwise import elementwise
 from derive.reading.programs.trees import (
     Array,

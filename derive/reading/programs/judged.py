@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from derive.reading.programs.arithmetic import number
 from derive.reading.programs.arrays import entries
 from derive.reading.programs.calls import CONDITION, Step
 from derive.reading.programs.code import Assignment, Statement
@@ -10,7 +11,6 @@ from derive.reading.programs.context import Context, statements, static_path
 from derive.reading.programs.degrees import (
     angles,
     named_in_degrees,
-    number,
     starts_in_degrees,
     takes_degrees,
 )

@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from derive.reading.programs.arithmetic import number
 from derive.reading.programs.code import Assignment, Definition, Evaluation, Loop, Statement
 from derive.reading.programs.context import Context, assigned, statements, static_path, targets
-from derive.reading.programs.degrees import number
 from derive.reading.programs.following import Follower
 from derive.reading.programs.trees import Array, Call, Member, Name, Opaque, Tree, replaced
 from derive.reading.programs.values import root

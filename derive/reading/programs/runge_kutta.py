@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from derive.reading.programs.arithmetic import combined
 from derive.reading.programs.sums import inner
 from derive.reading.programs.trees import Array, Call, Item, Name, Number, Operation, Result, Tree
 
@@ -188,24 +189,9 @@ def _number(
             return -_number(operand, calls, values, names)
         case Operation(operator=operator, operands=(left, right)):
             a, b = (_number(one, calls, values, names) for one in (left, right))
-            return _value(operator, a, b)
+            return combined(operator, a, b)
         case Call(function=Name(path=path), arguments=(argument,)) if path in FUNCTIONS:
             return FUNCTIONS[path](_number(argument, calls, values, names))
         case Item():
             return names.get("", 1.0)
     raise ValueError("no number")
-
-
-def _value(operator: str, a: float, b: float) -> float:
-    match operator:
-        case "+":
-            return a + b
-        case "-":
-            return a - b
-        case "*":
-            return a * b
-        case "/":
-            return a / b
-        case "**":
-            return float(a**b)
-    raise ValueError(operator)
