@@ -110,10 +110,28 @@ def test_documents_stand_beside_derivations(
 def test_a_missing_document_is_refused_and_the_others_are_judged(
     pendulum: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["verify", str(tmp_path / "absent.tex"), pendulum]) == 2
+    assert main(["verify", str(tmp_path / "absent.tex"), pendulum]) == 1
     output, errors = capsys.readouterr()
     assert "absent.tex: No such file" in errors
     assert "line 9  wrong" in output
+
+
+UNREADABLE = r"$$\int\theta$$"
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        (PENDULUM, 1),
+        (PENDULUM + UNREADABLE, 1),
+        (PENDULUM.replace(r"{l}\cos", r"{l}\sin") + UNREADABLE, 2),
+        (PENDULUM.replace(r"{l}\cos", r"{l}\sin"), 0),
+    ],
+)
+def test_a_wrong_formula_decides_the_exit_code(text: str, code: int, tmp_path: Path) -> None:
+    path = tmp_path / "a.md"
+    path.write_text(text)
+    assert main(["verify", str(path)]) == code
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@ def verify(
 
     ``order_of(A, b)`` is the order of a Runge–Kutta method, for documents that contain the report.
 
-    Return 0, 1 if an equation is wrong, or 2 if an equation or a file is unreadable.
+    Return 1 if an equation is wrong, otherwise 2 if an equation or a file is unreadable, else 0.
     """
     files = [name for name in names if Path(name).suffix not in NOT_DOCUMENTS]
     if annotation:
@@ -69,9 +69,9 @@ def verify(
         if texts:
             print(*texts, sep="\n\n")
     verdicts = {verdict for one in results.values() if one for verdict in _verdicts(one)}
-    if "unreadable" in verdicts or None in results.values():
-        return 2
-    return int("wrong" in verdicts)
+    if "wrong" in verdicts:
+        return 1
+    return 2 if "unreadable" in verdicts or None in results.values() else 0
 
 
 def _records(results: Mapping[str, Judged | None]) -> Any:

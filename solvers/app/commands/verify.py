@@ -13,7 +13,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.description = (
         "Verify hand derivations: the double-pendulum report with its programs and claims, the "
         "formulas of a document, or equations of your own. The exit code is 1 if an equation is "
-        "wrong (in the report, if it has no proved correction), and 2 if one is unreadable."
+        "wrong (in the report, if it has no proved correction), and otherwise 2 if an equation or "
+        "a file is unreadable."
     )
     meaning = (
         "documents (.tex, .md, .txt, .rst, .html, .ipynb), programs (.py, .js, .c, .m, .f90, .jl), "
@@ -37,7 +38,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Print the verdicts; return 1 if an equation is wrong, 2 if one cannot be read."""
+    """Print the verdicts; return 1 if an equation is wrong, otherwise 2 if one is unreadable."""
     if arguments.equations or arguments.annotate or arguments.system or arguments.names:
         from derive.commands.verify import verify
         from derive.verification.documents.hints import hints
