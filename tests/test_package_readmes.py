@@ -159,43 +159,34 @@ def first_column(path: Path, head: str) -> list[str]:
     return re.findall(r"`(\w+)`", " ".join(row.split("|")[1] for row in table.split("\n")[2:]))
 
 
-def test_the_hand_derivation_of_the_readme_has_the_verdicts_shown(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("name", "language", "number"),
+    [("page.toml", "toml", 0), ("pendulum.md", "markdown", 1), ("pendulum.js", "js", 2)],
+)
+def test_derivations_of_the_readme_have_the_verdicts_shown(
+    name: str,
+    language: str,
+    number: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    file, _ = blocks(VERIFICATION, "toml")
-    (tmp_path / "page.toml").write_text(file)
+    (tmp_path / name).write_text(blocks(VERIFICATION, language)[0])
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
-    assert main(["verify", "page.toml"]) == 1
-    expected = f"$ holonomic verify page.toml\n{capsys.readouterr().out}"
-    assert blocks(VERIFICATION, "text")[0] == expected
+    assert main(["verify", name]) == 1
+    expected = f"$ holonomic verify {name}\n{capsys.readouterr().out}"
+    assert blocks(VERIFICATION, "text")[number] == expected
 
 
-def test_the_document_of_the_readme_has_the_verdicts_shown(
+def test_the_letters_of_the_readme_are_those_of_a_document(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (file,) = blocks(VERIFICATION, "markdown")
-    (tmp_path / "pendulum.md").write_text(file)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
-    assert main(["verify", "pendulum.md"]) == 1
-    expected = f"$ holonomic verify pendulum.md\n{capsys.readouterr().out}"
-    assert blocks(VERIFICATION, "text")[1] == expected
-    (tmp_path / "letters.toml").write_text(blocks(VERIFICATION, "toml")[1])
-    (tmp_path / "other.md").write_text(r"$$\ddot\alpha = -\frac gw\cos\alpha$$")
-    assert main(["verify", "other.md", "--names", "letters.toml"]) == 0
-
-
-def test_the_program_of_the_readme_has_the_verdicts_shown(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (file,) = blocks(VERIFICATION, "js")
-    (tmp_path / "pendulum.js").write_text(file)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
-    assert main(["verify", "pendulum.js"]) == 1
-    expected = f"$ holonomic verify pendulum.js\n{capsys.readouterr().out}"
-    assert blocks(VERIFICATION, "text")[2:] == [expected]
+    Path("letters.toml").write_text(blocks(VERIFICATION, "toml")[1])
+    Path("my_page.md").write_text(r"$$\ddot\alpha = -\frac gw\cos\alpha$$")
+    assert main(["verify", "my_page.md", "--names", "letters.toml"]) == 0
+    assert " verified " in capsys.readouterr().out
 
 
 def test_the_keys_fields_and_verdicts_of_the_readme_are_those_of_the_code() -> None:
