@@ -204,6 +204,14 @@ def test_hints_settle_the_letters(tmp_path: Path) -> None:
         assert [one.verdict for one in document.formulas] == [verdict]
 
 
+def test_letters_of_hints_that_no_formula_has_are_reported(tmp_path: Path) -> None:
+    (tmp_path / "a.md").write_text(HINTED)
+    names = tmp_path / "names.toml"
+    names.write_text('system = "single_pendulum"\n[names]\nA = "theta"\nGG = "g"\nw = "l"\n')
+    document, _ = judge_file(str(tmp_path / "a.md"), order, hints(None, names))
+    assert document.notes == ("names.GG: no formula has this letter (did you mean 'G'?)",)
+
+
 @pytest.mark.parametrize(("text", "message"), [
     ('system = "single_pendulum"\n[names]\nA = "thetta"', "names.A: .*'thetta'"),
     ('system = "single_pendulum"\n[names]\nA = "2"', "'2' is neither a parameter nor"),

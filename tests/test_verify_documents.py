@@ -139,6 +139,8 @@ def test_a_wrong_formula_decides_the_exit_code(text: str, code: int, tmp_path: P
     [
         (["a.docx"], "a.docx is no document: documents end in .tex, .md"),
         (["--annotate", "a.html"], "give a document"),
+        (["--system", "single_pendulum"], "give a document"),
+        (["double_pendulum", "--system", "single_pendulum"], "give a document"),
         (["a.md", "--annotate", "a.pdf"], "must end in .html or .tex"),
     ],
 )

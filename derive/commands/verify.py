@@ -18,6 +18,7 @@ from derive.verification.hand import HandDerivation, judge
 from derive.verification.report.judgement import OrderOf
 from derive.verification.verdict import VerdictName, table_width, verdict_rows, wrapped
 from solvers.io.text_table import text_table
+from solvers.io.toml_input import InputError
 
 #: The verdicts that are counted, and the width of the column of files.
 COUNTED: tuple[VerdictName, ...] = ("verified", "equivalent", "misprint", "wrong", "unreadable")
@@ -45,6 +46,8 @@ def verify(
     files = [name for name in names if Path(name).suffix not in NOT_DOCUMENTS]
     if annotation:
         check_annotation(annotation, files)
+    if hints and not files:
+        raise InputError("--system, --names: give a document, such as my_paper.tex")
     results: dict[str, Judged | None] = {}
     documents: list[tuple[JudgedDocument, Document]] = []
     for name in names:

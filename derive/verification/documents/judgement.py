@@ -1,6 +1,6 @@
 """Verdicts on all formulas of a document, from its displays alone."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from derive.reading.document import Display, Document
@@ -11,6 +11,7 @@ from derive.verification.documents.corrections import corrected
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import interpretation, judge_of
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.rates import RATES, stem
 from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
     DocumentFormula,
@@ -18,6 +19,7 @@ from derive.verification.documents.statements import (
     translated,
 )
 from derive.verification.documents.translation import Translator
+from solvers.io.suggestion import did_you_mean
 
 #: Most systems of a document.
 MAX_SYSTEMS = 3
@@ -55,7 +57,9 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
     judged += [_plain(place, "context", note) for place in places]
     written = _written(occurrences)
     judged += [_judged(*pair, written) for pair in results.values()]
-    return _document(document, "; ".join(dict.fromkeys(titles)), judged)
+    notes = (*document.notes, *_unused(hints, statements.formulas))
+    system, ordered = "; ".join(dict.fromkeys(titles)), sorted(judged, key=lambda one: one.span)
+    return JudgedDocument(document.file, document.kind, system, tuple(ordered), notes)
 
 
 def _read(document: Document) -> tuple[list[Occurrence], list[JudgedFormula]]:
@@ -117,6 +121,10 @@ def _written(occurrences: Sequence[Occurrence]) -> dict[str, str]:
     return found
 
 
-def _document(document: Document, system: str, judged: list[JudgedFormula]) -> JudgedDocument:
-    ordered = tuple(sorted(judged, key=lambda one: one.span))
-    return JudgedDocument(document.file, document.kind, system, ordered, document.notes)
+def _unused(hints: Hints | None, formulas: Sequence[DocumentFormula]) -> Iterator[str]:
+    """Notes on letters of hints that no formula has."""
+    words = {word for formula in formulas for word in formula.words}
+    for letter in hints.names if hints else ():
+        if not words & {letter + ending for ending in RATES}:
+            known = sorted({stem(word) for word in words})
+            yield f"names.{letter}: no formula has this letter{did_you_mean(letter, known)}"
