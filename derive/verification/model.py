@@ -90,6 +90,14 @@ class Model:
         accelerations = dict(zip(system.qddot, derivation.accelerations, strict=True))
         return replace(context, substitutions=(self.momenta, accelerations))
 
+    def agreement(self, difference: sp.Expr) -> str | None:
+        """A note if a difference is zero at all states or along motions, otherwise None."""
+        for context in (self.context, self.motions):
+            note = context.agreement(difference)
+            if note is not None:
+                return note
+        return None
+
     def _state(self, index: int) -> State:
         """One of several states at which nothing vanishes, with the momenta of its velocities."""
         system = self.derivation.system

@@ -1,0 +1,105 @@
+"""Verdicts on two sides of a formula, from their values."""
+
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.formulas.expression import Value
+from derive.verification.documents.linear import Linear
+from derive.verification.documents.roles import Roles
+from derive.verification.documents.scope import DocumentScope
+from derive.verification.documents.side_verdict import CORRECT, SideVerdict, plain
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.text import Text
+from derive.verification.model import depends_on
+from derive.verification.verdict import Correction
+
+#: The largest denominator of a factor that is looked for.
+MAX_DENOMINATOR = 100
+
+
+class Comparison:
+    """Compares sides: as numbers, as matrices, for small motions, and in units of a system."""
+
+    def __init__(self, scope: DocumentScope, linear: Linear, roles: Roles) -> None:
+        self._scope, self._model, self._linear, self._roles = scope, scope.model, linear, roles
+
+    def approximated(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
+        """The verdict on an approximation, which is never wrong: others can be meant."""
+        if self._linear.agrees(left - right, self._model):
+            return plain("verified", formula, "it holds to first order at the origin")
+        return plain("context", formula, "it is an approximation")
+
+    def compared(
+        self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
+    ) -> SideVerdict:
+        """The verdict on a side by its value and that of the first side."""
+        is_product = getattr(right, "shape", ()) == (1, 1)
+        left, right = _number(left), _number(right)
+        if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
+            return self._matrices(formula, first, side, left, right)
+        note = self._model.agreement(left - right)
+        if note is not None:
+            return plain("verified", formula, note)
+        small = "it holds for small motions about the origin"
+        if is_product:
+            return self._scaled(formula, side, left, right)
+        result = self._roles.judged(first, side, left, right)
+        if result.verdict.verdict in CORRECT:
+            return result
+        if self._linear.holds(left - right, self._model):
+            return plain("verified", formula, small)
+        if side.text.startswith("sqrt(") and self._model.agreement(left**2 - right**2) is not None:
+            return plain("verified", formula, "it holds for one sign of the root")
+        values = self._special_values(left, right)
+        difference = (left - right).xreplace(self._model.momenta).xreplace(values)
+        if values and self._model.agreement(difference) is not None:
+            text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
+            return plain("equivalent", formula, f"it holds for {text}")
+        return result
+
+    def _scaled(
+        self, formula: DocumentFormula, side: Text, left: sp.Expr, right: sp.Expr
+    ) -> SideVerdict:
+        """The verdict on a wrong scalar product of columns, perhaps but for a factor."""
+        context = self._model.context
+        result = plain("wrong", formula, "", context.witness(right, left))
+        ratio = sp.nsimplify(context.value(left) / context.value(right), rational=True)
+        if ratio.q < MAX_DENOMINATOR and self._model.agreement(left - ratio * right) is not None:
+            correction = Correction(side.text, f"{ratio}*{side.text}")
+            verdict = replace(result.verdict, corrections=(correction,))
+            return SideVerdict(verdict, ((0, side),), "value")
+        return result
+
+    def _special_values(self, left: Value, right: Value) -> dict[sp.Symbol, sp.Expr]:
+        """Values of parameters that the document states; units, if one side has no parameters."""
+        parameters = left.free_symbols & {*self._scope.derivation.system.params}
+        # one parameter that is lacking is a mistake
+        if len(parameters) > 1 and not right.free_symbols & parameters:
+            return dict.fromkeys(sorted(parameters, key=str), sp.S.One)
+        return self._scope.special_values
+
+    def _matrices(
+        self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
+    ) -> SideVerdict:
+        """The verdict on the first entries that differ, or on the whole."""
+        shapes = [getattr(one, "shape", None) for one in (left, right)]
+        if shapes[0] != shapes[1]:
+            return plain("context", formula, "it compares quantities of different shapes")
+        for index, (a, b) in enumerate(zip(left, right, strict=True)):
+            if self._model.agreement(a - b) is not None or self._linear.holds(a - b, self._model):
+                continue
+            mine, other = (one.entries[index] if one.entries else None for one in (first, side))
+            if mine and other and depends_on(a - b, self._scope.derivation.system.qddot):
+                return self._roles.equation(mine, other)
+            if other:
+                return self._roles.value(other, "entry", a)
+            if mine:
+                return self._roles.value(mine, "entry", b)
+            return plain("wrong", formula, "", self._model.context.witness(b, a))
+        return plain("verified", formula, "")
+
+
+def _number(value: Value) -> Value:
+    """The entry of a matrix that has one, such as a scalar product."""
+    return value[0] if getattr(value, "shape", ()) == (1, 1) else value
