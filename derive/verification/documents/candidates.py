@@ -59,6 +59,11 @@ class Candidate:
         is_same = all(self.signs[i][j] == (i == j) for i in n for j in n)
         return is_same and not any(isinstance(one, int) and one for one in self.offsets)
 
+    @property
+    def lacking(self) -> int:
+        """How many parameters of the system have neither a letter nor a number."""
+        return len(self.system.parameters) - len({*self.parameters, *self.numbers})
+
     def offset(self, index: int, values: Mapping[str, float]) -> float:
         """The offset of a coordinate in numbers."""
         offset = self.offsets[index]

@@ -53,7 +53,14 @@ def judge_file(
         inside = judge_program(program, hints)
         formulas = (*judged.formulas, *(_in_cell(one, cell.number) for one in inside.formulas))
         systems = dict.fromkeys(filter(None, (judged.system, inside.system)))
-        judged = replace(judged, formulas=formulas, system="; ".join(systems))
+        conventions = dict.fromkeys(filter(None, (judged.convention, inside.convention)))
+        judged = replace(
+            judged,
+            formulas=formulas,
+            system="; ".join(systems),
+            convention="; ".join(conventions),
+            alternatives=(*judged.alternatives, *inside.alternatives),
+        )
     return judged, document
 
 

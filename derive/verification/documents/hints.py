@@ -8,11 +8,11 @@ from pathlib import Path
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, ExpressionError, parse
-from derive.system.catalogue import load
 from derive.system.system import System
 from derive.system.tables import Table, read
 from derive.verification.documents.candidates import Candidate, candidates, kind_of
 from derive.verification.documents.letters import Letters
+from derive.verification.documents.templates import named
 from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import InputError
 
@@ -53,7 +53,8 @@ class Hints:
         if letter not in candidate.coordinates:
             return False
         own = [sp.Symbol(name, real=True) for name in candidate.coordinates]
-        meanings = {}
+        letters = candidate.parameters
+        meanings = {p: sp.Symbol(letters[p.name]) for p in self.system.params if p.name in letters}
         rows = zip(self.system.q, candidate.signs, candidate.offsets, strict=True)
         for q, signs, offset in rows:
             shift = sp.Symbol(offset) if isinstance(offset, str) else offset * sp.pi / 2
@@ -79,11 +80,11 @@ def hints(system: str | None, names: Path | None) -> Hints | None:
         and none is given.
     """
     if names is None:
-        return Hints(load(system), {}) if system else None
+        return Hints(named(system), {}) if system else None
     table = Table(str(names), read(names), ("system", "names"))
     name = system or table.text("system")
     path = names.parent / name if name.endswith(".toml") and not system else name
-    return Hints(load(path), _texts(table.entries("names").items()))
+    return Hints(named(path), _texts(table.entries("names").items()))
 
 
 def _texts(items: Iterable[tuple[str, object]]) -> dict[str, str]:

@@ -5,10 +5,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from derive.verification.documents.candidates import Candidate, candidates
+from derive.verification.documents.convention import is_crossed
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.letter_search import letters_of
 from derive.verification.documents.letters import Letters
-from derive.verification.documents.matching import Match, best_match, trivial_comparisons
+from derive.verification.documents.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.meaning import meaning
 from derive.verification.documents.positions import stated_candidates, stated_systems
 from derive.verification.documents.resolution import resolved
@@ -20,6 +21,8 @@ from derive.verification.documents.verdicts import Judge
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
 #: so many hold.
 LEAST, ENOUGH = 0.3, 3
+#: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
+MAX_SLIPS = 2
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,8 @@ class Interpretation:
 
     letters: Letters
     match: Match | None
+    #: Other candidates that can be meant as well, the likeliest first.
+    rivals: tuple[Match, ...] = ()
 
 
 def interpretation(statements: Translated, hints: Hints | None = None) -> Interpretation:
@@ -38,13 +43,14 @@ def interpretation(statements: Translated, hints: Hints | None = None) -> Interp
     """
     letters = letters_of(statements.formulas, statements.derivatives)
     if hints:
-        return Interpretation(letters, _best(letters, statements, hints.candidates(letters), 0))
+        return _best(letters, statements, hints.candidates(letters), 0)
     found = _best(letters, statements, _candidates(letters, statements))
-    if found is None or found.holding < 1:
+    if found.match is None or found.match.holding < 1:
         numbers = {"gravity": _gravity(statements)}
         other = _best(letters, statements, _of_templates(letters, numbers))
-        found = max(filter(None, (found, other)), key=lambda match: match.score, default=None)
-    return Interpretation(letters, found)
+        if other.match and (found.match is None or other.match.score > found.match.score):
+            return other
+    return found
 
 
 def _best(
@@ -52,16 +58,47 @@ def _best(
     statements: Translated,
     groups: Iterable[Sequence[Candidate]],
     least: float = LEAST,
-) -> Match | None:
-    """The candidate that most formulas support, if a part of them does."""
+) -> Interpretation:
+    """The candidate that most formulas support, if a part of them does, and its rivals."""
     formulas, derivatives = statements.formulas, statements.derivatives
     trivial = trivial_comparisons(letters, formulas, derivatives)
-    matches = (best_match(tried, letters, formulas, derivatives, trivial) for tried in groups)
-    supported = [match for match in matches if match and (match.holding or not least)]
-    best = max(supported, key=lambda match: match.score, default=None)  # the first of several
+    matches = [
+        match
+        for tried in groups
+        for match in best_matches(tried, letters, formulas, derivatives, trivial)
+        if match.holding or not least
+    ]
+    best = max(matches, key=lambda match: match.score, default=None)  # the first of several
     if best is None or best.holding < min(ENOUGH, least * best.compared):
-        return None
-    return best
+        return Interpretation(letters, None)
+    return Interpretation(letters, best, tuple(_rivals(best, matches)))
+
+
+def _rivals(best: Match, matches: Iterable[Match]) -> Iterator[Match]:
+    """Matches of other motions with the support of the best; the usual one but for few slips."""
+    known, has_usual = {best.signature}, best.candidate.is_usual
+    for match in sorted(matches, key=lambda one: -one.score):
+        is_slip = not has_usual and _is_slip(match, best)
+        has_support = match.support >= best.support
+        if match.signature in known or not (is_slip or has_support):
+            continue
+        if _is_plausible(match.candidate, best.candidate):
+            known.add(match.signature)
+            has_usual |= is_slip
+            yield match
+
+
+def _is_slip(match: Match, best: Match) -> bool:
+    """Whether few slips would explain a document with the usual meaning of its letters."""
+    is_usual = match.candidate.system is best.candidate.system and match.candidate.is_usual
+    return is_usual and match.is_nearly and len(match.failed) <= MAX_SLIPS
+
+
+def _is_plausible(rival: Candidate, best: Candidate) -> bool:
+    """Whether a rival lacks no more parameters, has no crossed indices and no further loads."""
+    loads, own = ({*one.forces, *one.friction} for one in (rival, best))
+    is_simple = rival.lacking <= best.lacking and not own < loads
+    return is_simple and (is_crossed(best) or not is_crossed(rival))
 
 
 def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[Candidate]]:

@@ -1,5 +1,6 @@
 """Verdicts on the formulas of a document, with the places where they stand."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from derive.reading.document import Kind
@@ -8,6 +9,8 @@ from derive.verification.verdict import VerdictName
 
 #: Characters of the longest formula that is shown whole.
 MAX_LATEX = 2000
+#: The remark below meanings of letters that are possible as well.
+WAY_OUT = "The options --system and --names state the system and the meanings of letters."
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,60 @@ class JudgedFormula:
 
 
 @dataclass(frozen=True)
+class Difference:
+    """A formula with another verdict or another correction if letters have another meaning.
+
+    `instead_of` is its verdict in the document.
+    """
+
+    line: int
+    display: int
+    latex: str
+    verdict: VerdictName
+    instead_of: VerdictName
+    correction: str
+    cell: int = 0
+
+    @property
+    def text(self) -> str:
+        """The difference in words."""
+        place = f"cell {self.cell}, " * bool(self.cell) + f"line {self.line}"
+        place += f" (display {self.display})" * bool(self.display)
+        if self.verdict == self.instead_of:
+            return f"{place} has another correction"
+        return f"{place} is {self.verdict} instead of {self.instead_of}"
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another meaning of the letters of a document with which as many formulas hold.
+
+    Attributes
+    ----------
+    system, name
+        The title of the system, and its name as the option ``--system`` takes it.
+    names
+        The letters in the names of the system, as files of the option ``--names`` have them.
+    convention
+        The meanings that differ from those that are taken, in words; empty for another system.
+    differences
+        Formulas with another verdict or another correction.
+    """
+
+    system: str
+    name: str
+    names: Mapping[str, str]
+    convention: str
+    differences: tuple[Difference, ...]
+
+    @property
+    def text(self) -> str:
+        """The alternative in words."""
+        meaning = self.convention or self.system
+        return f"with {meaning}: {'; '.join(one.text for one in self.differences)}"
+
+
+@dataclass(frozen=True)
 class JudgedDocument:
     """The verdicts on the formulas of a document, in the order of the document."""
 
@@ -61,6 +118,16 @@ class JudgedDocument:
     system: str  # the system that the formulas describe, "" if none was found
     formulas: tuple[JudgedFormula, ...]
     notes: tuple[str, ...] = ()
+    #: Unusual meanings of letters, in words, and other meanings that are possible.
+    convention: str = ""
+    alternatives: tuple[Alternative, ...] = ()
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """The notes, the meanings of letters that are not the usual ones, and alternatives."""
+        convention = (f"Letters: {self.convention}",) if self.convention else ()
+        others = tuple(f"Ambiguous: {one.text}" for one in self.alternatives)
+        return (*self.notes, *convention, *others, *(WAY_OUT,) * bool(self.alternatives))
 
 
 def one_line(latex: str) -> str:

@@ -7,10 +7,12 @@ from derive.reading.document import Display, Document
 from derive.reading.latex.reader import formulas, macros_of
 from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
 from derive.reading.latex.walking import nodes
+from derive.verification.documents.alternatives import alternatives
+from derive.verification.documents.convention import convention
 from derive.verification.documents.corrections import corrected
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import interpretation, judge_of
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.judged import Alternative, JudgedDocument, JudgedFormula
 from derive.verification.documents.rates import RATES, stem
 from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
@@ -36,7 +38,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
     occurrences, judged = _read(document)
     statements = translated(occurrences)
     judged += [_plain(place, "context", note) for place, note in statements.failures]
-    titles: list[str] = []
+    written = _written(occurrences)
+    titles, conventions, others = list[str](), list[str](), list[Alternative]()
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     remaining = statements.formulas
     while remaining and len(titles) < (1 if hints else MAX_SYSTEMS):
@@ -47,6 +50,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
         judge = judge_of(part, found.letters, found.match.candidate)
         titles.append(found.match.candidate.system.title)
         verdicts = judge.verdicts(remaining)
+        conventions.append(convention(found.match.candidate))
+        others += alternatives(part, found, verdicts, written)
         for formula, result in verdicts:
             before = results.get(formula.occurrence)
             if before is None or _is_graver(result, before[1]):
@@ -55,11 +60,13 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
     note = "no system was found for which its formulas hold"
     places = {formula.occurrence for formula in statements.formulas} - results.keys()
     judged += [_plain(place, "context", note) for place in places]
-    written = _written(occurrences)
     judged += [_judged(*pair, written) for pair in results.values()]
     notes = (*document.notes, *_unused(hints, statements.formulas))
     system, ordered = "; ".join(dict.fromkeys(titles)), sorted(judged, key=lambda one: one.span)
-    return JudgedDocument(document.file, document.kind, system, tuple(ordered), notes)
+    letters = "; ".join(filter(None, dict.fromkeys(conventions)))
+    return JudgedDocument(
+        document.file, document.kind, system, tuple(ordered), notes, letters, tuple(others)
+    )
 
 
 def _read(document: Document) -> tuple[list[Occurrence], list[JudgedFormula]]:

@@ -111,7 +111,7 @@ def _summary(judged: JudgedDocument) -> str:
     counts = Counter(one.verdict for one in judged.formulas)
     numbers = ", ".join(f"{counts[one]} {one}" for one in get_args(VerdictName) if counts[one])
     system = [f"System: {escaped(judged.system)}."] if judged.system else []
-    lines = [*system, f"Formulas: {numbers or 'none'}.", *map(escaped, judged.notes)]
+    lines = [*system, f"Formulas: {numbers or 'none'}.", *map(escaped, judged.remarks)]
     return "".join(f"\n\\par\\noindent {line}" for line in lines)
 
 

@@ -18,8 +18,8 @@ from derive.verification.documents.near import is_near
 from derive.verification.documents.rates import RATES, order, stem
 from derive.verification.documents.statements import DocumentFormula, definitions
 
-#: The largest difference of values of order 1 that counts as none.
-CLOSE = 1e-7
+#: The largest difference of values of order 1 that counts as none, and digits that show one.
+CLOSE, DIGITS = 1e-7, 6
 
 #: Quantities with an arbitrary constant.
 UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian", "lagrangian")
@@ -39,6 +39,8 @@ UNUSUAL = 0.25
 FAILING = 0.5
 #: Comparisons of a document in which such formulas are considered.
 FEW = 12
+#: Most candidates of a system that are considered beside the best.
+MAX_RIVALS = 6
 
 #: A comparison: its formula's number, and the text of a side.
 Comparison = tuple[int, str]
@@ -51,12 +53,21 @@ class Match:
     candidate: Candidate
     holding: float
     compared: int
+    #: Numbers of formulas that do not hold, and whether each holds but for one term.
+    failed: frozenset[int] = frozenset()
+    is_nearly: bool = True
+    #: Alike for candidates of the same motions and energies.
+    signature: bytes = b""
+
+    @property
+    def support(self) -> float:
+        """Formulas that hold, less some of those that do not."""
+        return self.holding - FAILING * (self.compared - self.holding)
 
     @property
     def score(self) -> float:
-        """What speaks for the candidate: formulas that hold, less some of those that do not."""
-        unusual = UNUSUAL * (not self.candidate.is_usual)
-        return self.holding - FAILING * (self.compared - self.holding) - unusual
+        """The support, less for a convention that is not the usual one."""
+        return self.support - UNUSUAL * (not self.candidate.is_usual)
 
 
 def trivial_comparisons(
@@ -73,16 +84,20 @@ def trivial_comparisons(
     )
 
 
-def best_match(
+def best_matches(
     tried: Sequence[Candidate],
     letters: Letters,
     formulas: Sequence[DocumentFormula],
     derivatives: Derivatives,
     trivial: frozenset[Comparison],
-) -> Match | None:
-    """The candidate of one system for which most formulas hold; None if none can be compared."""
+) -> list[Match]:
+    """The candidates of one system that can be meant, the best first.
+
+    These are the one for which most formulas hold, others with the same support, and usual ones
+    for which a few formulas fail by one term each; of those of the same motions the first.
+    """
     if not tried:
-        return None
+        return []
     numbers = Numbers(Motions(tried, letters), letters, derivatives)
     numbers.define(formulas)
     votes = [
@@ -92,16 +107,30 @@ def best_match(
         if (index, side) not in trivial
     ]
     if not votes:
-        return None
-    holding = np.array([vote for *_, vote in votes]).sum(axis=0).astype(float)
+        return []
+    agreeing = np.array([vote for *_, vote in votes])
+    near = np.zeros_like(agreeing)
     if len(votes) <= FEW:
-        for index, side, vote in votes:
-            near = numbers.is_near(formulas[index].sides[0].text, side)
-            if near is not None:
-                holding += NEARLY * (near & ~vote)
-    unusual = np.array([not one.is_usual for one in tried])
-    best = int(np.argmax(holding - UNUSUAL * unusual))  # the first of several: the likeliest
-    return Match(tried[best], float(holding[best]), len(votes))
+        for row, (index, side, vote) in enumerate(votes):
+            hits = numbers.is_near(formulas[index].sides[0].text, side)
+            if hits is not None:
+                near[row] = hits & ~vote
+    holding = agreeing.sum(axis=0) + NEARLY * near.sum(axis=0)
+    usual = np.array([one.is_usual for one in tried])
+    score = holding - UNUSUAL * ~usual
+    best = int(np.argmax(score))  # the first of several: the likeliest
+    is_nearly = np.all(agreeing | near, axis=0)
+    is_rival = (holding >= holding[best]) | (usual & is_nearly)
+    signatures = numbers.signatures()
+    chosen: dict[bytes, int] = {signatures[best]: best}
+    for k in sorted(map(int, np.flatnonzero(is_rival)), key=lambda k: -score[k]):
+        chosen.setdefault(signatures[k], k)
+    rows = np.array([index for index, *_ in votes])
+    return [
+        Match(tried[k], float(holding[k]), len(votes), frozenset(map(int, rows[~agreeing[:, k]])),
+              bool(is_nearly[k]), signature)
+        for signature, k in [*chosen.items()][:MAX_RIVALS]
+    ]  # fmt: skip
 
 
 class Numbers:
@@ -181,6 +210,15 @@ class Numbers:
         near = is_near(sides, self._value, speeds)
         return None if near is None else np.broadcast_to(near, self._motions.shape[:1]) > 0
 
+    def signatures(self) -> list[bytes]:
+        """For each candidate, numbers that are the same for those of the same motions."""
+        motions = self._motions
+        potential = motions.energies["potential_energy"]
+        tables = [*motions.accelerations.values(), motions.energies["kinetic_energy"],
+                  potential - potential[:, :1]]  # fmt: skip
+        table = np.concatenate([np.broadcast_to(one, motions.shape) for one in tables], axis=1)
+        return [row.tobytes() for row in np.round(table, DIGITS) + 0.0]  # no negative zeros
+
     def _value(self, text: str) -> Value | None:
         try:
             return evaluated(text, self.values)
@@ -189,9 +227,10 @@ class Numbers:
 
     def _vanishes(self, value: Array, up_to_a_constant: bool) -> Votes:
         value = np.broadcast_to(value, self._motions.shape)
-        if up_to_a_constant:
-            value = value - value[:, :1]
-        return np.asarray(np.all(np.abs(value) <= CLOSE, axis=1))
+        with np.errstate(invalid="ignore"):  # infinities
+            if up_to_a_constant:
+                value = value - value[:, :1]
+            return np.asarray(np.all(np.abs(value) <= CLOSE, axis=1))
 
     def _position(self, value: Array) -> Iterator[Votes]:
         """Whether a quantity is a component of a position, up to its sign."""

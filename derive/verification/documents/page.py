@@ -80,7 +80,7 @@ def _hidden(verdict: VerdictName) -> str:
 def _section(judged: JudgedDocument, document: Document, title: str) -> str:
     is_program = document.kind == "program"
     macros = None if is_program else macros_of("\n".join(document.definitions))
-    remarks = [f"System: {judged.system}" if judged.system else "", *judged.notes]
+    remarks = [f"System: {judged.system}" if judged.system else "", *judged.remarks]
     remarks += [] if judged.formulas else ["It has no formulas."]
     notes = "".join(f"<p>{escape(one)}</p>" for one in remarks if one)
     items = "\n".join(_item(one, macros) for one in judged.formulas)

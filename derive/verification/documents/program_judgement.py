@@ -4,10 +4,12 @@ from collections.abc import Iterator
 
 from derive.reading.latex.tree import Letter, Statement
 from derive.reading.programs.program import Equation, Finding, Program
+from derive.verification.documents.alternatives import alternatives
+from derive.verification.documents.convention import convention
 from derive.verification.documents.corrections import inserted, places
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import interpretation, judge_of
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.judged import Alternative, JudgedDocument, JudgedFormula
 from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.documents.text import Text
@@ -19,22 +21,29 @@ NO_SYSTEM = "no system was found for which its equations hold"
 
 def judge_program(program: Program, hints: Hints | None = None) -> JudgedDocument:
     """Judge the equations of every function of a program, and its method of integration."""
-    titles: list[str] = []
+    titles, conventions, others = list[str](), list[str](), list[Alternative]()
     judged: list[JudgedFormula] = []
     for function in program.functions:
         formulas = [_formula(equation) for equation in function.equations]
-        found = interpretation(Translated(tuple(formulas), (), {}), hints)
+        statements = Translated(tuple(formulas), (), {})
+        found = interpretation(statements, hints)
         if found.match is None:
             judged += [_plain(equation, NO_SYSTEM) for equation in function.equations]
             continue
         titles.append(found.match.candidate.system.title)
-        judge = judge_of(Translated(tuple(formulas), (), {}), found.letters, found.match.candidate)
-        for equation, formula in zip(function.equations, formulas, strict=True):
-            judged.append(_judged(equation, judge.verdict(formula)))
+        conventions.append(convention(found.match.candidate))
+        judge = judge_of(statements, found.letters, found.match.candidate)
+        results = [(formula, judge.verdict(formula)) for formula in formulas]
+        for equation, (_, result) in zip(function.equations, results, strict=True):
+            judged.append(_judged(equation, result))
+        others += alternatives(statements, found, results, {})
     judged += [_finding(one) for one in program.findings]
     judged.sort(key=lambda one: one.line)
-    title = "; ".join(dict.fromkeys(titles))
-    return JudgedDocument(program.file, "program", title, tuple(judged), tuple(_notes(program)))
+    title, letters = ("; ".join(filter(None, dict.fromkeys(one))) for one in (titles, conventions))
+    notes = tuple(_notes(program))
+    return JudgedDocument(
+        program.file, "program", title, tuple(judged), notes, letters, tuple(others)
+    )
 
 
 def _formula(equation: Equation) -> DocumentFormula:

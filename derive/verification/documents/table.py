@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula, one_line
@@ -11,7 +12,7 @@ from derive.verification.verdict import table_row, wrapped
 def document_lines(judged: JudgedDocument, width: int) -> Iterator[str]:
     """Yield the lines of a table: each formula with its line; only correct ones are abbreviated."""
     yield wrapped(": ".join(filter(None, (judged.file, judged.system))), width, 0)
-    yield from (wrapped(note, width, 0) for note in judged.notes)
+    yield from (wrapped(note, width, 0) for note in judged.remarks)
     if not judged.formulas:
         yield "no formulas"
     labels = [_label(one) for one in judged.formulas]
@@ -47,6 +48,8 @@ def document_record(judged: JudgedDocument) -> dict[str, Any]:
         "file": judged.file,
         "system": judged.system,
         "notes": judged.notes,
+        "convention": judged.convention,
+        "alternatives": [asdict(one) for one in judged.alternatives],
         "formulas": [_record(one) for one in judged.formulas],
     }
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from functools import cache
+from pathlib import Path
 
 import sympy as sp
 from sympy import cos, sin, symbols
@@ -23,6 +24,11 @@ def templates(count: int) -> Iterator[System]:
     for system in _all():
         if len(system.coordinates) == count:
             yield system
+
+
+def named(name: str | Path) -> System:
+    """The system of a name, also one that does not ship, or of a path."""
+    return next((one for one in _others() if one.name == name), None) or load(name)
 
 
 @cache
