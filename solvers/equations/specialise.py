@@ -13,8 +13,8 @@ Generator = Callable[[str, Mapping[str, float], Sequence[str]], Mapping[str, str
 def required_functions(method: str, form: str) -> tuple[str, ...]:
     """Names of the functions that a method requires; implicit methods require a Jacobian."""
     conversions = ("hamiltonian_state", "lagrangian_state") if form == "hamiltonian" else ()
-    is_implicit = method not in SCIPY and not load(method).is_explicit
-    jacobian = (named("jacobian", form),) if is_implicit else ()
+    needs_jacobian = method not in SCIPY and load(method).needs_jacobian
+    jacobian = (named("jacobian", form),) if needs_jacobian else ()
     return (named("rhs", form), *conversions, *jacobian)
 
 

@@ -25,7 +25,7 @@ def obstacle(problem: Problem) -> str:
     if not isinstance(problem.method, Tableau):
         return "the method is SciPy's"
     unknowns = problem.method.stages * len(problem.form.state)
-    if not problem.method.is_explicit and unknowns > MOST_UNKNOWNS:
+    if problem.method.needs_jacobian and unknowns > MOST_UNKNOWNS:
         return f"its stages have {unknowns} unknowns, more than {MOST_UNKNOWNS}"
     if problem.atol.ndim:
         return "atol differs by component"
@@ -56,7 +56,7 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
         warn(f"integrating one motion after another in Python: {reason}", stacklevel=3)
     if reason:
         return problem, None
-    is_free = problem.options.form is None and load(problem.options.method).is_explicit
+    is_free = problem.options.form is None and not load(problem.options.method).needs_jacobian
     compilable = problem.with_form(fastest_form(problem.form.module)) if is_free else problem
     try:
         return compilable, loop(compilable, lanes=lanes)

@@ -52,7 +52,7 @@ def problem(
     rtol, atol, h = step_control(options, tableau, span, len(start))
     if atol.ndim and name != "lagrangian":
         raise ValueError("atol can be an array in form 'lagrangian' only")
-    if tableau is not None and not tableau.is_explicit and not form.has_jacobian:
+    if tableau is not None and tableau.needs_jacobian and not form.has_jacobian:
         raise ValueError(f"method {method!r} needs a Jacobian, which form {name!r} does not have")
     check_times(options.t_eval, len(start))
     samples = None if options.t_eval is None else times(options.t_eval, span)
@@ -158,7 +158,7 @@ def step_control(
     method = options.method
     if options.h is None:
         rtol, atol = tolerances(options.rtol, options.atol, size)
-        if tableau is not None and not tableau.b_hat:
+        if tableau is not None and not tableau.estimates_error:
             raise ValueError(f"method {method!r} does not estimate its error: give a fixed step h")
         return rtol, atol, None
     if tableau is None:

@@ -16,6 +16,8 @@ from solvers.runge_kutta.sturm import nonnegative_interval
 from solvers.runge_kutta.surd import Surd
 from solvers.runge_kutta.tableau import Tableau
 
+#: A decimal is taken for a fraction with a smaller denominator to which it is closer.
+LARGEST_DENOMINATOR, CLOSE = 10**15, Fraction(1, 10**60)
 Polynomial = tuple[Fraction, ...]  # coefficients of z⁰, z¹, …
 
 
@@ -45,11 +47,11 @@ class StabilityFunction:
     def of(cls, tableau: Tableau) -> "StabilityFunction":
         """The stability function of a method; the denominator of explicit methods is 1.
 
-        Where coefficients are published as rounded decimals, those of R up to the
-        method's order are 1/k! nevertheless, since its order is proved.
+        Where coefficients of an explicit method are published as rounded decimals, those of R up
+        to the method's order are 1/k! nevertheless, since its order is proved.
         """
         numerator, denominator = (list(map(_fraction, p)) for p in tableau.stability_function)
-        if isinstance(tableau.b[0], Decimal):
+        if isinstance(tableau.b[0], Decimal) and tableau.is_explicit:
             for k in range(tableau.order + 1):
                 numerator[k] = Fraction(1, factorial(k))
         return cls(tuple(numerator), tuple(denominator))
@@ -78,6 +80,9 @@ def _fraction(number: Fraction | Surd | Decimal) -> Fraction:
         assert number.b == 0  # conjugate stages: R has rational coefficients
         return number.a
     if isinstance(number, Decimal):
+        simple = Fraction(number).limit_denominator(LARGEST_DENOMINATOR)
+        if abs(simple - Fraction(number)) < CLOSE:
+            return simple
         # rounded at its publication: only 30 digits are significant
         return Fraction(round(Fraction(number) * 10**30), 10**30)
     return Fraction(number)

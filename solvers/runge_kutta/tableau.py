@@ -9,6 +9,7 @@ from operator import sub
 
 import numpy as np
 
+from solvers.runge_kutta.collocation import is_collocation, quadrature_order
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS, Number, order
 
 #: A decimal with more digits is a rounded one, a shorter one is exact.
@@ -39,6 +40,8 @@ class Tableau:
     b: tuple[Number, ...]
     b_hat: tuple[Number, ...] = ()  # weights of an embedded solution
     b_low: tuple[Number, ...] = ()  # of another one, of lower order, for a combined error estimate
+    #: how implicit stages are solved: "newton", or "fixed-point" for equations that are not stiff
+    iteration: str = "newton"
 
     @classmethod
     def explicit(
@@ -57,8 +60,8 @@ class Tableau:
         rounded = any(len(number) > LONG and "/" not in number for number in numbers)
         read = _decimal if rounded else Fraction
         A = [[read(n) for n in line] + [read("0")] * (len(lines) - len(line)) for line in lines]
-        weights = (tuple(map(read, text.split())) for text in (b, b_hat, b_low))
-        return cls(title, tuple(map(tuple, A)), *weights)
+        weights, hat, low = (tuple(map(read, text.split())) for text in (b, b_hat, b_low))
+        return cls(title, tuple(map(tuple, A)), weights, hat, low)
 
     @property
     def stages(self) -> int:
@@ -74,6 +77,8 @@ class Tableau:
     @cached_property
     def order(self) -> int:
         """Order of the solution, by its order conditions."""
+        if self.is_collocation:
+            return quadrature_order(self.b, self.c)
         return order(self.A, self.b)
 
     @cached_property
@@ -100,6 +105,27 @@ class Tableau:
         """Whether each stage needs earlier ones only."""
         return all(a == 0 for i, row in enumerate(self.A) for a in row[i:])
 
+    @cached_property
+    def is_collocation(self) -> bool:
+        """Whether this is a collocation method, with nodes in decimals."""
+        decimals = isinstance(self.b[0], Decimal)
+        return decimals and not self.is_explicit and is_collocation(self.A, self.c)
+
+    @property
+    def is_parallel(self) -> bool:
+        """Whether all stages are evaluated at once, by a fixed-point iteration."""
+        return self.iteration == "fixed-point"
+
+    @property
+    def needs_jacobian(self) -> bool:
+        """Whether the stages are solved by Newton's method."""
+        return not self.is_explicit and not self.is_parallel
+
+    @property
+    def estimates_error(self) -> bool:
+        """Whether steps can be controlled."""
+        return bool(self.b_hat) or self.is_parallel
+
     @property
     def is_fsal(self) -> bool:
         """Whether the last stage is the first of the next step: its row is b, and b ends in 0."""
@@ -113,8 +139,8 @@ class Tableau:
         with z = hλ (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
         proposition IV.3.2).
         """
-        shifted = [[*map(sub, row, self.b)] for row in self.A]
         with localcontext(prec=WORKING_DIGITS):
+            shifted = [[*map(sub, row, self.b)] for row in self.A]
             numerator, denominator = map(_determinant_of_identity_minus, (shifted, self.A))
         # a stage with zero weight adds no power of z
         degree = max((k for k, x in enumerate(numerator) if abs(float(x)) > ROUNDING), default=0)

@@ -40,7 +40,7 @@ def check_method(
         return
     if not isinstance(method, str):
         raise ValueError(f"method = {str(method)[:50]} must be text in quotes")
-    if not load(method).is_explicit and form == "rational":
+    if load(method).needs_jacobian and form == "rational":
         raise ValueError(f"method = {method!r} needs a Jacobian: not form = 'rational'")
 
 

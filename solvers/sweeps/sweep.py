@@ -86,8 +86,8 @@ class Sweep:
         check_type("axes", self.axes, Axes, "a Grid, Random or Table")
         check_type("maps", self.maps, Mapping, "a mapping of names to maps")
         check_type("values", self.values, Mapping, "a mapping of names to numbers")
-        if not load(str(self.method)).b_hat:
-            able = ", ".join(name for name in names() if load(name).b_hat)
+        if not load(str(self.method)).estimates_error:
+            able = ", ".join(name for name in names() if load(name).estimates_error)
             raise ValueError(
                 f"method = {self.method!r} does not estimate its error: use one of {able}"
             )

@@ -95,7 +95,7 @@ class Evidence:
     def calls(self, method: str, error: float) -> int:
         """Evaluations of the right-hand side until the final state is within `error`."""
         scene = self.prose
-        controlled = bool(load(method).b_hat)
+        controlled = load(method).estimates_error
         for k in range(MAX_ATTEMPTS):
             tolerance, h = 10.0**-k, scene.duration / (10 * 2**k)
             setting = {"rtol": tolerance, "atol": tolerance} if controlled else {"h": h}

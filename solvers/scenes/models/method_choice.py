@@ -39,13 +39,14 @@ class MethodChoice:
     def is_fixed(self) -> bool:
         """Whether the step size is fixed."""
         is_ours = not self.is_series and self.method not in SCIPY
-        return self.step is not None or (is_ours and not load(self.method).b_hat)
+        return self.step is not None or (is_ours and not load(self.method).estimates_error)
 
 
 def usual_form(module: GeneratedModule, method: str) -> str:
     """The fastest form; Lagrange's for SciPy's methods and those that need a Jacobian."""
-    is_explicit = method == SERIES or (method in names() and load(method).is_explicit)
-    return fastest_form(module) if is_explicit else "lagrangian"
+    needs_jacobian = method in names() and load(method).needs_jacobian
+    is_ours = method == SERIES or method in names()
+    return fastest_form(module) if is_ours and not needs_jacobian else "lagrangian"
 
 
 @cache

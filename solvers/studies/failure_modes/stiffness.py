@@ -108,7 +108,9 @@ class StiffScene:
 
     def cheapest(self, method: str, reference: float) -> tuple[int, int, float, float] | None:
         """Steps, work and error of the cheapest run of sufficient accuracy."""
-        key, values = ("rtol", TOLERANCES) if load_method(method).b_hat else ("h", DURATION / STEPS)
+        key, values = (
+            ("rtol", TOLERANCES) if load_method(method).estimates_error else ("h", DURATION / STEPS)
+        )
         for value in values:
             run = self.prepared(method, **{key: value})
             error = abs(self.slow_angle(run) - reference)

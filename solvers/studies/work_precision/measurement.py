@@ -37,7 +37,7 @@ def combinations(module: GeneratedModule) -> Iterator[Combination]:
     forms = [form for form in FORMS if form in module.FORMS]
     with_jacobian = [f for f in forms if Form(module, f, module.DEFAULTS).has_jacobian]
     for method in names():
-        possible = forms if load(method).is_explicit else with_jacobian
+        possible = with_jacobian if load(method).needs_jacobian else forms
         yield from product([method], possible, ("compiled", "python"))
     yield from product(SCIPY, forms, ["scipy"])
 
@@ -88,7 +88,7 @@ def _points(scene: Scene, reference: Reference, combination: Combination) -> Ite
 
 def _settings(method: str, backend: str, duration: float) -> list[dict[str, float]]:
     """Tolerances for methods with step control, else steps in s, by rising cost."""
-    if method in SCIPY or load(method).b_hat:
+    if method in SCIPY or load(method).estimates_error:
         finest = FINEST_OF_SCIPY if backend == "scipy" else 0.0
         return [{"rtol": float(tol)} for tol in TOLERANCES if tol >= finest]
     return [{"h": float(duration / n)} for n in STEPS]
