@@ -1,5 +1,6 @@
 """Hostile programs are read or refused within seconds, and nothing of them is executed."""
 
+import os
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -8,6 +9,7 @@ import pytest
 
 from derive.reading.programs.program import ProgramError
 from derive.reading.programs.reader import LANGUAGES, read_program
+from solvers.io.toml_input import InputError
 
 #: Text that can be slow in a grammar, and in what follows.
 HOSTILE = {
@@ -66,8 +68,14 @@ def test_files_are_refused_with_the_way_out(
     with pytest.raises(ProgramError, match="null characters"):
         read_program(path)
     path.write_text("x" * 10_000_000)
-    with pytest.raises(ProgramError, match="at most 100000 characters"):
+    with pytest.raises(InputError, match=r"program\.py has more than 400000 bytes"):
         read_program(path)
+    path.write_text("x" * 200_000)
+    with pytest.raises(ProgramError, match="at most 100000 allowed"):
+        read_program(path)
+    os.mkfifo(tmp_path / "pipe.py")  # nobody writes to it
+    with pytest.raises(InputError, match=r"pipe\.py is no file"):
+        read_program(tmp_path / "pipe.py")
     with pytest.raises(ProgramError, match=r"unknown suffix '.txt'; known are: .py"):
         read_program(_text(tmp_path))
     with pytest.raises(ProgramError, match="did you mean 'Python'"):

@@ -11,6 +11,7 @@ from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.regions import prepare, regions
 from derive.reading.programs.statements import Translator
 from solvers.io.suggestion import did_you_mean
+from solvers.io.toml_input import read_bytes
 
 LANGUAGES: tuple[Language, ...] = (
     python.language,
@@ -22,8 +23,8 @@ LANGUAGES: tuple[Language, ...] = (
     fortran.fixed_form,
     julia.language,
 )
-#: Characters of the longest program.
-MAX_LENGTH = 100_000
+#: Characters of the longest program, and bytes of its file.
+MAX_LENGTH, MAX_BYTES = 100_000, 400_000
 #: Characters of the longest line; only generated programs have longer ones.
 MAX_LINE = 5_000
 #: The end of a line that is continued in the next one.
@@ -41,14 +42,14 @@ def read_program(source: Path | str, language: str | None = None) -> Program:
     ProgramError
         If the language is unknown, if the text is binary or too long, or if tree-sitter is not
         installed.
+    InputError
+        If the path is that of no file, or of one that is too large.
     OSError
         If the file cannot be read.
     """
     if language is None or isinstance(source, Path):
         path = Path(source)
-        if path.stat().st_size > 4 * MAX_LENGTH:
-            raise ProgramError(f"{path}: a program has at most {MAX_LENGTH} characters")
-        text, file = path.read_bytes().decode("utf-8", "replace"), str(path)
+        text, file = read_bytes(path, MAX_BYTES).decode("utf-8", "replace"), str(path)
         chosen = by_name(language) if language else by_suffix(path)
     else:
         text, file, chosen = source, "", by_name(language)
