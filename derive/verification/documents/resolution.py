@@ -6,8 +6,8 @@ from itertools import product
 from derive.verification.documents.candidates import Candidate
 from derive.verification.documents.jets import UnknownNameError, evaluated
 from derive.verification.documents.letters import OPERATORS, Letters
-from derive.verification.documents.matching import Numbers
 from derive.verification.documents.motions import Motions
+from derive.verification.documents.numbers import Numbers
 from derive.verification.documents.rates import RATES
 from derive.verification.documents.statements import WORD, DocumentFormula
 
