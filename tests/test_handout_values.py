@@ -184,9 +184,9 @@ def read(latex: str) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["driven_pendulum", "elastic_pendulum", "double_bar_pendulum"])
+@pytest.mark.parametrize("name", ["driven_pendulum", "elastic_pendulum", "cart_1"])
 def test_a_document_is_verified_from_its_own_latex(tmp_path: Path, name: str) -> None:
     (path,) = write_document(derivation(name), tmp_path / "document.tex")
     verdicts = [one.verdict for one in judge_document(read_document(path)).formulas]
-    assert {*verdicts} <= {"verified", "definition", "context"}
+    assert {*verdicts} <= {"verified", "definition"}
     assert verdicts.count("verified") > len(verdicts) / 2

@@ -83,11 +83,17 @@ class Comparison:
         self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
     ) -> SideVerdict:
         """The verdict on the first entries that differ, or on the whole."""
+        if _is_state(first, side):
+            return plain("definition", formula, f"{first.text} denotes a state here")
+        left, right = self._with_shape(left, right), self._with_shape(right, left)
         shapes = [getattr(one, "shape", None) for one in (left, right)]
         if shapes[0] != shapes[1]:
             return plain("context", formula, "it compares quantities of different shapes")
+        is_displaced = any(name in self._scope.displacements for name in formula.words)
         for index, (a, b) in enumerate(zip(left, right, strict=True)):
-            if self._model.agreement(a - b) is not None or self._linear.holds(a - b, self._model):
+            if self._model.agreement(a - b) is not None or self._linear.holds(
+                a - b, self._model, is_displaced=is_displaced
+            ):
                 continue
             mine, other = (one.entries[index] if one.entries else None for one in (first, side))
             if mine and other and depends_on(a - b, self._scope.derivation.system.qddot):
@@ -99,7 +105,20 @@ class Comparison:
             return plain("wrong", formula, "", self._model.context.witness(b, a))
         return plain("verified", formula, "")
 
+    def _with_shape(self, value: Value, other: Value) -> Value:
+        """Zeros in place of zero on one side of a set of equations of motion."""
+        is_zero = not isinstance(value, sp.MatrixBase) and value == 0
+        is_equation = depends_on(other, self._scope.derivation.system.qddot)
+        return sp.zeros(*other.shape) if is_zero and is_equation else value
+
 
 def _number(value: Value) -> Value:
     """The entry of a matrix that has one, such as a scalar product."""
     return value[0] if getattr(value, "shape", ()) == (1, 1) else value
+
+
+def _is_state(first: Text, side: Text) -> bool:
+    """Whether a side is a state, such as (x, x_dot, theta, theta_dot), and the first its name."""
+    names = [entry.text for entry in side.entries]
+    is_name = first.text.isidentifier() and all(map(str.isidentifier, names))
+    return is_name and bool({first.text, f"{first.text}_dot"} & {*names})

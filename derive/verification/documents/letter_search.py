@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
+from derive.verification.documents.entries import matrices_by_entries
 from derive.verification.documents.letters import (
     ABBREVIATION,
     COLUMN,
@@ -42,6 +43,8 @@ def letters_of(
         if (kind := combined.get(one) or _quantity(one))
         and (one in subjects or one in operands or one in combined)
     }
+    written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
+    quantities = {name: kind for name, kind in quantities.items() if name not in written_out}
     quantities |= _matrices(formulas)
     defined = _defined(formulas, orders)
     varied = {stem(v) for _, variables in derivatives.values() for v in variables}
@@ -74,7 +77,8 @@ def letters_of(
         if one not in known and not GENERIC.match(one) and not one.endswith("_column")
     ]
     abbreviations = _abbreviations(stems, coordinates)
-    parameters = [one for one in parameters if one not in abbreviations]
+    others = {*abbreviations, *matrices_by_entries(stems)}
+    parameters = [one for one in parameters if one not in others]
     return Letters(
         tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
         _ordered(formulas, coordinates, stems),

@@ -1,5 +1,6 @@
-"""Formulas that hold for small motions about the origin of the coordinates."""
+"""Formulas that hold for small motions about an equilibrium."""
 
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 import sympy as sp
@@ -8,6 +9,8 @@ from derive.formulas.expression import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.verification.model import Model
 
+#: Coordinates of the largest systems whose accelerations are solved for.
+MAX_INVERSE = 3
 EPSILON = sp.Symbol("epsilon", positive=True)
 
 
@@ -26,45 +29,113 @@ class Linear:
         except (ExpressionError, NotImplementedError):
             return False
 
-    def holds(self, difference: sp.Expr, model: Model) -> bool:
-        """Whether a difference that is linear in the state vanishes along small motions."""
+    def holds(self, difference: sp.Expr, model: Model, *, is_displaced: bool = False) -> bool:
+        """Whether a difference that is linear in the state vanishes along small motions.
+
+        With `is_displaced`, coordinates in it are displacements from the equilibrium.
+        """
         system = self._derivation.system
         state = (*system.q, *system.qdot, *system.qddot)
-        if not difference.free_symbols & {*state} or self._accelerations is None:
+        has_place = self.is_origin or (is_displaced and self.place is not None)
+        if not difference.free_symbols & {*state} or not has_place:
             return False
-        scaled = self._scaled(difference)
+        scaled, is_zero = self._scaled(difference), model.context.is_zero
         try:
-            if not model.context.is_zero(scaled.subs(EPSILON, 0)):
+            if not is_zero(scaled.subs(EPSILON, 0)) or not is_zero(scaled.diff(EPSILON, 2)):
                 return False
             linear = scaled.diff(EPSILON).subs(EPSILON, 0)
-            if not model.context.is_zero(scaled.diff(EPSILON, 2)):
-                return False
-            return model.context.is_zero(linear.xreplace(self._accelerations))
+            if self._accelerations is not None:
+                return is_zero(linear.xreplace(self._accelerations))
+            return any(is_zero(one) for one in self._combinations(linear))
         except (ExpressionError, NotImplementedError):
             return False
 
     def acceleration(self, symbol: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
         """The acceleration of small motions if `value` seems to be one: without functions."""
         full = self._derivation.euler_lagrange
+        if not self.is_origin:
+            return None
         if value.atoms(sp.Function) or not sp.Tuple(*full).atoms(sp.Function):
             return None
         return (self._accelerations or {}).get(symbol)
 
     @cached_property
+    def place(self) -> dict[sp.Symbol, sp.Expr] | None:
+        """An equilibrium: the origin, or where springs at angles of 0 are at rest."""
+        system, d = self._derivation.system, self._derivation
+        place = dict.fromkeys(system.q, sp.S.Zero)
+        still = dict.fromkeys((*system.qdot, *system.qddot, *self._forces), sp.S.Zero)
+        forces = [one.xreplace(still) for one in d.euler_lagrange]
+        for q, force in zip(system.q, forces, strict=True):
+            others = {one: value for one, value in place.items() if one != q}
+            rest = force.xreplace(others)
+            slope = rest.diff(q)
+            if rest.subs(q, 0) != 0 and slope != 0 and q not in slope.free_symbols:
+                place[q] = sp.expand(-rest.subs(q, 0) / slope)
+        at_rest = [one.xreplace(place) for one in forces]
+        return place if all(sp.simplify(one) == 0 for one in at_rest) else None
+
+    @property
+    def is_origin(self) -> bool:
+        """Whether there is an equilibrium at the origin."""
+        return self.place is not None and not any(self.place.values())
+
+    @cached_property
+    def matrices(self) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, Mapping[sp.Symbol, sp.Matrix]]:
+        """M, D, K and the columns of forces F of M q̈ + D q̇ + K q = F about the equilibrium."""
+        system, equations = self._derivation.system, self._equations
+
+        def column(symbol: sp.Symbol) -> sp.Matrix:
+            return sp.Matrix([one.diff(symbol) for one in equations])
+
+        M, D, K = (
+            sp.Matrix.hstack(*map(column, symbols))
+            for symbols in (system.qddot, system.qdot, system.q)
+        )
+        return M, D, K, {one: -column(one) for one in sorted(self._forces, key=str)}
+
+    @cached_property
+    def _equations(self) -> list[sp.Expr]:
+        """The linear equations of motion."""
+        assert self.place is not None
+        shifts = {q: value + EPSILON * q for q, value in self.place.items()}
+        system = self._derivation.system
+        shifts |= {s: EPSILON * s for s in (*system.qdot, *system.qddot, *self._forces)}
+        shifted = (one.xreplace(shifts) for one in self._derivation.euler_lagrange)
+        return [one.diff(EPSILON).subs(EPSILON, 0) for one in shifted]
+
+    def _combinations(self, linear: sp.Expr) -> Iterator[sp.Expr]:
+        """What vanishes if an equation is one of those of small motions, times a factor."""
+        for equation in self._equations:
+            for symbol in self._derivation.system.qddot:
+                if (factor := equation.diff(symbol)) != 0:
+                    yield linear * factor - equation * linear.diff(symbol)
+                    break
+
+    @cached_property
     def _accelerations(self) -> dict[sp.Symbol, sp.Expr] | None:
-        """The accelerations of small motions; None if there is no equilibrium at the origin."""
-        d, system = self._derivation, self._derivation.system
-        if len(system.q) > 3:
+        """The accelerations of small motions; None if there is no equilibrium, or for many."""
+        system = self._derivation.system
+        if len(system.q) > MAX_INVERSE or self.place is None:
             return None
-        equations = [self._scaled(one) for one in d.euler_lagrange]
-        if any(sp.simplify(one.subs(EPSILON, 0)) != 0 for one in equations):
+        M, D, K, forces = self.matrices
+        if M.det() == 0:
             return None
-        linear = [one.diff(EPSILON).subs(EPSILON, 0) for one in equations]
-        matrix = sp.Matrix([[one.diff(a) for a in system.qddot] for one in linear])
-        rest = -sp.Matrix([one.xreplace(dict.fromkeys(system.qddot, sp.S.Zero)) for one in linear])
-        if matrix.det() == 0:
+        rest = -D * sp.Matrix(system.qdot) - K * sp.Matrix(system.q)
+        rest += sum((one * column for one, column in forces.items()), sp.zeros(*rest.shape))
+        return dict(zip(system.qddot, M.LUsolve(rest), strict=True))
+
+    def state_matrices(self) -> tuple[sp.Matrix, sp.Matrix] | None:
+        """A and B of ẋ = A x + B F for x = (q, q̇); None if they are not derived."""
+        if self._accelerations is None:
             return None
-        return dict(zip(system.qddot, matrix.LUsolve(rest), strict=True))
+        system, n = self._derivation.system, len(self._derivation.system.q)
+        state = (*system.q, *system.qdot)
+        rates = sp.Matrix([*system.qdot, *(self._accelerations[a] for a in system.qddot)])
+        forces = sorted(self._forces, key=str)
+        A = rates.jacobian(state).applyfunc(sp.factor)
+        B = rates.jacobian(forces) if forces else sp.zeros(2 * n, 0)
+        return A, B.applyfunc(sp.factor)
 
     def _scaled(self, expression: sp.Expr) -> sp.Expr:
         system = self._derivation.system

@@ -9,9 +9,10 @@ import sympy as sp
 from derive.formulas.expression import ExpressionError, Value, parse
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME, acceleration, velocity
+from derive.verification.documents.entries import composed
 from derive.verification.documents.letters import Letters
 from derive.verification.documents.meaning import Meaning
-from derive.verification.documents.rates import RATES
+from derive.verification.documents.rates import RATES, stem
 from derive.verification.documents.statements import DocumentFormula, definitions
 from derive.verification.model import Model, depends_on, own_names, time_derivative
 
@@ -43,12 +44,16 @@ class DocumentScope:
         self._add_usual_names()
         for name, text in meanings.items():
             self._add(name, self.value(text))
+        #: Names of matrices and columns whose entries are defined one by one, and of columns of
+        #: small displacements.
+        self.composed, self.displacements = set[str](), set[str]()
         #: Formulas that define a name, with the text that does.
         self.defining: dict[str, tuple[DocumentFormula, str]] = {}
         for _ in range(ROUNDS):
             known = len(self.names)
             for formula in formulas:
                 self._define(formula)
+            self._add_columns(formulas)
             self._add_derivatives()
             if len(self.names) == known:
                 break
@@ -64,6 +69,11 @@ class DocumentScope:
     def value(self, text: str) -> Value:
         """The value of a formula; an `ExpressionError` if it has none."""
         return parse(text, self.all_names)
+
+    def correct(self, values: Mapping[str, Value]) -> None:
+        """Give names the values that they must have, whatever the document defines them to be."""
+        self.names |= values
+        self.model = Model(self.derivation, self.names)
 
     def _special_values(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, sp.Expr]:
         """Parameters in statements such as m = l = 1."""
@@ -103,6 +113,19 @@ class DocumentScope:
                 coordinate = self.names.get(match[1])
                 if coordinate in system.q:
                     self.names[name] = system.applied[system.q.index(coordinate)]
+
+    def _add_columns(self, formulas: Sequence[DocumentFormula]) -> None:
+        """Matrices and columns by their entries, and columns of small displacements."""
+        words = dict.fromkeys(word for formula in formulas for word in formula.words)
+        order = [one for q in self.letters.ordered if (one := self.names.get(q)) in self._system.q]
+        for name, value in composed(words, self.all_names, len(order)):
+            self.composed.add(name)
+            self._add(name, value)
+        for name in words:
+            one = stem(name)
+            if one.endswith("_column") and name == f"{one}_ddot" and one not in self.names:
+                self.displacements.add(one)
+                self._add(one, sp.ImmutableDenseMatrix(order))
 
     def _add_energies(self) -> None:
         d = self.derivation

@@ -10,6 +10,7 @@ from derive.formulas.expression import ExpressionError, parse
 from derive.formulas.zero import vanishes
 from derive.verification.documents.comparison import Comparison
 from derive.verification.documents.consequences import Consequences
+from derive.verification.documents.derived_matrices import DerivedMatrices
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.manipulator import Manipulator
 from derive.verification.documents.partial_energies import PartialEnergies
@@ -25,8 +26,9 @@ class Judge:
     """Verdicts on formulas in the scope of a document."""
 
     def __init__(self, scope: DocumentScope) -> None:
-        self._scope, self._model = scope, scope.model
         linear = Linear(scope.derivation)
+        self._matrices = DerivedMatrices(scope, linear)
+        self._scope, self._model = scope, scope.model
         self._roles = Roles(scope, linear)
         self._comparison = Comparison(scope, linear, self._roles)
         self._energies, self._manipulator = PartialEnergies(scope), Manipulator(scope)
@@ -113,7 +115,7 @@ class Judge:
             required = self._energies.required(formula)
             if required is not None:
                 return self._roles.value(side, formula.subject, required)
-            return self._manipulator_matrix(formula, side)
+            return self._definition(formula, side)
         last = self._scope.defining.get(side.text)
         if last and last[0] is formula:
             return plain("definition", formula, "")
@@ -127,17 +129,18 @@ class Judge:
         except (ExpressionError, NotImplementedError) as error:
             return plain("context", formula, f"not judged: {error}")
 
-    def _manipulator_matrix(self, formula: DocumentFormula, side: Text) -> SideVerdict:
-        """The verdict on a definition, which can be that of a matrix of M q̈ + C q̇ = G."""
-        required = self._manipulator.required(formula.subject)
+    def _definition(self, formula: DocumentFormula, side: Text) -> SideVerdict:
+        """The verdict on a definition, which can be that of a matrix of the system."""
+        name, entries = formula.subject, side.entries
+        required = self._manipulator.required(name) or self._matrices.required(name)
+        if required is None:
+            required, entries = self._matrices.entry(name), (side,)
         if required is None:
             return plain("definition", formula, "")
         wrong = [k for k, value in enumerate(required) if value is not None]
         if not wrong:
             return plain("verified", formula, "")
-        results = [
-            self._roles.value(side.entries[k], "entry", required[k]) for k in wrong if side.entries
-        ]
+        results = [self._roles.value(entries[k], "entry", required[k]) for k in wrong if entries]
         found = [one for one in results if one.verdict.corrections]
         shortest = min(found, key=lambda one: len(one.verdict.corrections[0].correct), default=None)
         return shortest or plain("wrong", formula, "it has not the forces of this system")
