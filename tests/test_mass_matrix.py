@@ -87,6 +87,33 @@ def test_nearly_singular_mass_matrices_of_many_motions_are_reported(where: str) 
         calls(1e-16)[where]()
 
 
+def test_all_corners_of_a_grid_are_examined() -> None:
+    axes = Grid({"m1": [1.0, 1.0, 1e-7], "m2": [1e6, 1.0, 1.0]})  # both are extreme at one corner
+    with pytest.warns(MassMatrixWarning, match=r"motion 6 \(m1 = 1e-07, m2 = 1e\+06\)"):
+        Sweep(dp, axes, MAPS, 1e-6, REST)
+
+
+def test_a_condition_of_1e15_is_refused_and_one_of_1e12_is_reported() -> None:
+    def check(coupling: float) -> None:
+        rows = (1.0, 1 - coupling), (1 - coupling, 1.0)  # of condition 2/coupling - 1
+        module = handwritten(
+            "coupled",
+            ("x", "y", "x_dot", "y_dot"),
+            COORDINATES=("x", "y"),
+            OPERATIONS={"rhs": (0, 0), "mass_matrix": (0, 0)},
+            mass_matrix=lambda t, y, params: rows,
+        )
+        check_condition(module, [("", (1.0,), (0.0,) * 4)])
+
+    check(4e-12)
+    with pytest.warns(MassMatrixWarning, match=r"condition 2e\+12: .*; about 12 digits are lost"):
+        check(1e-12)
+    with pytest.warns(MassMatrixWarning):
+        check(4e-15)
+    with pytest.raises(ValueError, match=r"condition 2e\+15"):
+        check(1e-15)
+
+
 def test_chunks_of_a_sweep_do_not_repeat_the_warning(tmp_path: Path) -> None:
     with pytest.warns(MassMatrixWarning) as given:
         results = sweep(Sweep(dp, AXES, MAPS, 1e-6, {"m1": 1e-13}), tmp_path)
