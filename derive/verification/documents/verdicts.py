@@ -38,7 +38,7 @@ class Judge:
     ) -> list[tuple[DocumentFormula, SideVerdict]]:
         """The verdicts on formulas in their order, with what follows from wrong ones."""
         judged = [(formula, self.verdict(formula)) for formula in formulas]
-        return Consequences(self._scope).marked(judged)
+        return Consequences(self._scope, self._energies).marked(judged)
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""

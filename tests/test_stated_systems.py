@@ -1,0 +1,108 @@
+"""Verdicts on documents whose system is stated: energies by parts, and what follows from them."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.documents import read_document
+from derive.system.catalogue import load
+from derive.verification.documents.hints import Hints
+from derive.verification.documents.judged import JudgedFormula
+from derive.verification.documents.judgement import judge_document
+
+
+def judged(folder: Path, text: str, system: str, **names: str) -> tuple[JudgedFormula, ...]:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return judge_document(read_document(folder / "a.md"), Hints(load(system), names)).formulas
+
+
+PARTS = r"""
+$$T_1 = \frac12 m_1 l_1^2\dot\theta_1^2$$
+$$T_2 = \frac12 m_2\left(l_1^2\dot\theta_1^2 + l_2^2\dot\theta_2^2
+        + 2 l_1 l_2\dot\theta_1\dot\theta_2\cos(\theta_1-\theta_2)\right)$$
+$$V_1 = -m_1 g l_1\cos\theta_1$$
+$$V_2 = -m_2 g (l_1\cos\theta_1 + l_2\cos\theta_2)
+      = -m_2 g l_1\cos\theta_1 - m_2 g l_2\cos\theta_2$$
+$$T = T_1 + T_2, \quad V = V_1 + V_2$$
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "name"),
+    [
+        (r"T_1 = \frac12 m_1", r"T_1 = m_1", "T_1"),
+        (r"2 l_1 l_2", r"l_1 l_2", "T_2"),
+        (r"-m_1 g l_1", r"-m_1 g l_2", "V_1"),
+        (r"l_1\cos\theta_1 + l_2\cos", r"l_1\cos\theta_1 + 2 l_2\cos", "V_2"),
+    ],
+)
+def test_the_partial_energy_that_is_wrong_is_found_and_its_sum_is_right(
+    old: str, new: str, name: str, tmp_path: Path
+) -> None:
+    formulas = judged(tmp_path, PARTS.replace(old, new), "double_pendulum")
+    (wrong,) = (one for one in formulas if one.verdict == "wrong")
+    assert wrong.latex.startswith(f"{name} = ")
+    (total,) = (one for one in formulas if one.note == f"it holds with the correct {name}")
+    assert total.latex.startswith(f"{name[0]} = ")
+    text = PARTS.replace(old, new).replace(wrong.latex, wrong.correction)
+    assert {one.verdict for one in judged(tmp_path, text, "double_pendulum")} == {
+        "definition",
+        "verified",
+    }
+
+
+def test_of_two_wrong_partial_energies_none_is_guessed(tmp_path: Path) -> None:
+    text = PARTS.replace(r"T_1 = \frac12", r"T_1 = ").replace("2 l_1 l_2", "l_1 l_2")
+    formulas = judged(tmp_path, text, "double_pendulum")
+    assert [one.latex for one in formulas if one.verdict == "wrong"] == ["T = T_1 + T_2"]
+
+
+def test_the_energy_of_all_bodies_is_no_energy_of_one(tmp_path: Path) -> None:
+    text = PARTS + r"$$T_{12} = T_1 + T_2$$"
+    assert "wrong" not in {one.verdict for one in judged(tmp_path, text, "double_pendulum")}
+
+
+PENDULUM = r"""
+$$T = \frac12 m l^2\dot\theta^2, \quad V = -m g l\cos\theta$$
+$$\ddot\theta = -\frac gl\sin\theta$$
+"""
+CART = r"""
+$$T = \frac12(M+m)\dot x^2 + \frac12 m l^2\dot\theta^2 + m l\dot x\dot\theta\cos\theta$$
+$$(M+m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+"""
+
+
+@pytest.mark.parametrize(
+    ("system", "right", "wrong", "following"),
+    [
+        (
+            "single_pendulum",
+            PENDULUM,
+            r"L = \frac12 m l^2\dot\theta^2 - m g l\cos\theta",
+            r"m l^2\ddot\theta - m g l\sin\theta = 0",
+        ),
+        ("single_pendulum", PENDULUM, r"T = m l^2\dot\theta^2", r"p_\theta = 2 m l^2\dot\theta"),
+        (
+            "single_pendulum",
+            PENDULUM,
+            r"T = m l^2\dot\theta^2",
+            r"E = m l^2\dot\theta^2 - m g l\cos\theta",
+        ),
+        (
+            "cart_1",
+            CART,
+            r"T = \frac12(M+m)\dot x^2 + \frac12 m l^2\dot\theta^2 + 2ml\dot x\dot\theta\cos\theta",
+            r"(M+m)\ddot x + 2 m l\ddot\theta\cos\theta - 2 m l\dot\theta^2\sin\theta = F",
+        ),
+    ],
+)
+def test_what_follows_from_a_wrong_energy_names_its_line(
+    system: str, right: str, wrong: str, following: str, tmp_path: Path
+) -> None:
+    line = right.count("\n") + 1
+    text = f"{right}$${wrong}$$\n$${following}$$\n"
+    *_, source, last = judged(tmp_path, text, system)
+    assert (source.line, source.verdict, source.note) == (line, "wrong", "")
+    assert (last.verdict, last.note) == ("wrong", f"it follows from line {line}")
+    *_, other = judged(tmp_path, text.replace(following, f"{following} + 1"), system)
+    assert (other.verdict, other.note) == ("wrong", "")
