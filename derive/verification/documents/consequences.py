@@ -1,15 +1,14 @@
 """Wrong formulas that follow correctly from a wrong one before them."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, parse
-from derive.verification.documents.partial_energies import PartialEnergies
+from derive.formulas.expression import ExpressionError
 from derive.verification.documents.scope import DocumentScope
-from derive.verification.documents.side_verdict import SideVerdict, plain
+from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.engine import joined
 from derive.verification.model import time_derivative
@@ -31,23 +30,16 @@ class _Source:
 class Consequences:
     """The formulas of a document that follow from its own wrong energies."""
 
-    def __init__(self, scope: DocumentScope, energies: PartialEnergies) -> None:
-        self._scope, self._context, self._energies = scope, scope.model.context, energies
+    def __init__(self, scope: DocumentScope) -> None:
+        self._scope, self._context = scope, scope.model.context
 
     def marked(self, judged: Sequence[Judged]) -> list[Judged]:
-        """The verdicts, with a note on wrong formulas that follow from a wrong one before them.
-
-        A sum of partial energies of which one is wrong elsewhere is verified.
-        """
+        """The verdicts, with a note on wrong formulas that follow from a wrong one before them."""
         values = {kind: getattr(self._scope.derivation, kind) for kind in ENERGIES}
-        corrected = dict(self._corrected(judged))
         source: _Source | None = None
         result: list[Judged] = []
         for formula, verdict in judged:
-            if verdict.verdict.verdict == "wrong" and self._holds(formula, corrected):
-                names = ", ".join(name for name in formula.words if name in corrected)
-                verdict = plain("verified", formula, f"it holds with the correct {names}")
-            elif verdict.verdict.verdict == "wrong" and source and self._follows(formula, source):
+            if verdict.verdict.verdict == "wrong" and source and self._follows(formula, source):
                 note = joined(verdict.verdict.note, f"it follows from line {source.line}")
                 verdict = replace(verdict, verdict=replace(verdict.verdict, note=note))
             elif verdict.verdict.verdict == "wrong" and verdict.kind in ENERGIES:
@@ -59,25 +51,6 @@ class Consequences:
                     source = _Source(formula.occurrence.line, own)
             result.append((formula, verdict))
         return result
-
-    def _corrected(self, judged: Sequence[Judged]) -> Iterator[tuple[str, sp.Expr]]:
-        """Partial energies that the document defines wrongly, with their correct values."""
-        for formula, verdict in judged:
-            if verdict.verdict.verdict == "wrong" and formula.subject in self._scope.defining:
-                value = self._energies.required(formula)
-                if value is not None:
-                    yield formula.subject, value
-
-    def _holds(self, formula: DocumentFormula, corrected: Mapping[str, sp.Expr]) -> bool:
-        """Whether a formula holds with other values of some of its names."""
-        if formula.subject in corrected or not {*formula.words} & {*corrected}:
-            return False
-        names = {**self._scope.all_names, **corrected}
-        with suppress(ExpressionError, NotImplementedError):
-            first, *others = (parse(side.text, names) for side in formula.sides)
-            differences = (one - first for one in others)
-            return all(self._scope.model.agreement(one) is not None for one in differences)
-        return False
 
     def _written(self, formula: DocumentFormula) -> sp.Expr | None:
         """The value of the last side of a formula."""

@@ -16,16 +16,27 @@ SUMMED = ("kinetic_energy", "potential_energy")
 
 
 class PartialEnergies:
-    """The values that definitions of partial energies must have for their sum to be correct."""
+    """The values that definitions of partial energies must have for their sum to be correct.
+
+    In other formulas, these energies have their correct values.
+    """
 
     def __init__(self, scope: DocumentScope) -> None:
         self._scope, self._model = scope, scope.model
+        self._wrong = {
+            name: value
+            for name, (formula, _) in scope.defining.items()
+            if formula.subject == name and (value := self._correct(formula)) is not None
+        }
+        if self._wrong:
+            scope.correct(self._wrong)
 
-    def required(self, formula: DocumentFormula) -> sp.Expr | None:
-        """The value that a name must have; None if it is not known to have another.
+    def required(self, name: str) -> sp.Expr | None:
+        """The value that a name must have; None if it is not known to have another."""
+        return self._wrong.get(name)
 
-        It is that of another side that is a part of the energy, or what the sum requires.
-        """
+    def _correct(self, formula: DocumentFormula) -> sp.Expr | None:
+        """The value of another side that is a part of the energy, or what the sum requires."""
         name = formula.subject
         kind = _kind(name)
         own = self._scope.names[name]

@@ -27,18 +27,19 @@ class Judge:
 
     def __init__(self, scope: DocumentScope) -> None:
         linear = Linear(scope.derivation)
-        self._matrices = DerivedMatrices(scope, linear)
+        # these give names their correct values, and the scope another model
+        self._matrices, self._energies = DerivedMatrices(scope, linear), PartialEnergies(scope)
         self._scope, self._model = scope, scope.model
         self._roles = Roles(scope, linear)
         self._comparison = Comparison(scope, linear, self._roles)
-        self._energies, self._manipulator = PartialEnergies(scope), Manipulator(scope)
+        self._manipulator = Manipulator(scope)
 
     def verdicts(
         self, formulas: Sequence[DocumentFormula]
     ) -> list[tuple[DocumentFormula, SideVerdict]]:
         """The verdicts on formulas in their order, with what follows from wrong ones."""
         judged = [(formula, self.verdict(formula)) for formula in formulas]
-        return Consequences(self._scope, self._energies).marked(judged)
+        return Consequences(self._scope).marked(judged)
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
@@ -112,7 +113,7 @@ class Judge:
         first, side = formula.sides[0], formula.sides[k]
         defined = self._scope.defining.get(formula.subject)
         if defined and defined[0] is formula and defined[1] == side.text:
-            required = self._energies.required(formula)
+            required = self._energies.required(formula.subject)
             if required is not None:
                 return self._roles.value(side, formula.subject, required)
             return self._definition(formula, side)
