@@ -1,6 +1,7 @@
 """Documents of derivations: right formulas, in three formats, with exercises and their keys."""
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -15,10 +16,11 @@ import sympy as sp
 
 from derive import Derivation, Parameter, load, names
 from derive.commands.derive import main
+from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.numeric import Evaluator
 from derive.formulas.sampling import STATES, sample
 from derive.handout.characters import declarations
-from derive.handout.document import Code, Document, Equation
+from derive.handout.document import Code, Document, Equation, Paragraph
 from derive.handout.exercises import with_exercises
 from derive.handout.mistakes import planted
 from derive.handout.notation import Notation
@@ -236,7 +238,7 @@ def test_blank_exercises_show_no_derived_formula(documents, name: str) -> None:
     blank = {equation.number for equation in exercises.equations if equation.is_blank}
     assert blank == {equation.number for equation in key.equations}
     for equation in exercises.equations:
-        assert equation.is_blank or equation.is_given or equation.value is None
+        assert equation.is_blank != (equation.is_given or equation.value is None)
     solutions = {equation.number: equation for equation in documents(name).equations}
     assert all(solutions[equation.number] == equation for equation in key.equations)
     for writer in WRITERS.values():
@@ -255,6 +257,8 @@ def test_every_planted_mistake_is_wrong_and_its_key_right(documents, name, seed:
         if equation.number in answers:
             assert answers[equation.number] == solution
             assert differs(solution, equation)
+            assert is_similar(solution, equation)
+            assert not solution.is_given
         else:
             assert equation == solution
             assert f"({equation.number})" in exercises.sections[0].blocks[0].text  # type: ignore[union-attr]
@@ -274,6 +278,27 @@ def differs(right: Equation, wrong: Equation) -> bool:
         if not all(values(entry).is_zero for entry in difference):
             return True
     return False
+
+
+def is_similar(right: Equation, wrong: Equation) -> bool:
+    """Whether no entry is much longer or shorter than the right one."""
+    pairs = zip(sp.Matrix([right.value]), sp.Matrix([wrong.value]), strict=True)
+    return all(abs(a.count_ops() - b.count_ops()) <= 2 for a, b in pairs)
+
+
+def test_the_key_names_the_part_that_is_wrong_and_the_right_one(documents) -> None:
+    exercises, key = with_exercises(documents("double_pendulum"), "mistakes", 0)
+    right, wrong = ({e.number: e for e in one.equations} for one in (key, exercises))
+    blocks = key.sections[0].blocks
+    texts = [block.text for block in blocks if isinstance(block, Paragraph)]
+    assert len(texts) == len(right)
+    for text in texts:
+        number, *parts = re.findall(r"\((\d+)\).*`(.*)` instead of `(.*)`\.", text)[0]
+        solution, exercise = right[int(number)], wrong[int(number)]
+        scope = FUNCTIONS | {symbol.name: symbol for symbol in solution.order.kinds}
+        bad, good = (parse(part, scope) for part in parts)
+        assert exercise.value.has(bad)
+        assert solution.value.has(good)
 
 
 def test_all_kinds_of_mistakes_are_planted(documents) -> None:
