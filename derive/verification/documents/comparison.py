@@ -1,11 +1,13 @@
 """Verdicts on two sides of a formula, from their values."""
 
+import ast
 from dataclasses import replace
 
 import sympy as sp
 
-from derive.formulas.expression import Value
+from derive.formulas.expression import Value, syntax_tree
 from derive.verification.documents.linear import Linear
+from derive.verification.documents.matrix_terms import MatrixTerms
 from derive.verification.documents.roles import Roles
 from derive.verification.documents.scope import DocumentScope
 from derive.verification.documents.side_verdict import CORRECT, SideVerdict, plain
@@ -23,6 +25,7 @@ class Comparison:
 
     def __init__(self, scope: DocumentScope, linear: Linear, roles: Roles) -> None:
         self._scope, self._model, self._linear, self._roles = scope, scope.model, linear, roles
+        self._terms = MatrixTerms(scope, linear, roles)
 
     def approximated(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
         """The verdict on an approximation, which is never wrong: others can be meant."""
@@ -49,8 +52,11 @@ class Comparison:
             return result
         if self._linear.holds(left - right, self._model):
             return plain("verified", formula, small)
-        if side.text.startswith("sqrt(") and self._model.agreement(left**2 - right**2) is not None:
-            return plain("verified", formula, "it holds for one sign of the root")
+        if isinstance(syntax_tree(side.text), ast.Call) and side.text.startswith("sqrt("):
+            inside = self._roles.value(side.part(5, len(side.text) - 1), "square", left**2)
+            if inside.verdict.verdict in CORRECT:
+                return plain("verified", formula, "it holds for one sign of the root")
+            result = inside if inside.verdict.corrections else result
         values = self._special_values(left, right)
         difference = (left - right).xreplace(self._model.momenta).xreplace(values)
         if values and self._model.agreement(difference) is not None:
@@ -96,13 +102,16 @@ class Comparison:
             ):
                 continue
             mine, other = (one.entries[index] if one.entries else None for one in (first, side))
+            witness = self._model.context.witness(b, a)
+            if other is None and (result := self._terms.verdict(first, side, witness)):
+                return result
             if mine and other and depends_on(a - b, self._scope.derivation.system.qddot):
                 return self._roles.equation(mine, other)
             if other:
                 return self._roles.value(other, "entry", a)
             if mine:
                 return self._roles.value(mine, "entry", b)
-            return plain("wrong", formula, "", self._model.context.witness(b, a))
+            return plain("wrong", formula, "", witness)
         return plain("verified", formula, "")
 
     def _with_shape(self, value: Value, other: Value) -> Value:

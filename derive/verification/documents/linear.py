@@ -44,8 +44,8 @@ class Linear:
             if not is_zero(scaled.subs(EPSILON, 0)) or not is_zero(scaled.diff(EPSILON, 2)):
                 return False
             linear = scaled.diff(EPSILON).subs(EPSILON, 0)
-            if self._accelerations is not None:
-                return is_zero(linear.xreplace(self._accelerations))
+            if self.accelerations is not None:
+                return is_zero(linear.xreplace(self.accelerations))
             return any(is_zero(one) for one in self._combinations(linear))
         except (ExpressionError, NotImplementedError):
             return False
@@ -57,7 +57,7 @@ class Linear:
             return None
         if value.atoms(sp.Function) or not sp.Tuple(*full).atoms(sp.Function):
             return None
-        return (self._accelerations or {}).get(symbol)
+        return (self.accelerations or {}).get(symbol)
 
     @cached_property
     def place(self) -> dict[sp.Symbol, sp.Expr] | None:
@@ -113,7 +113,7 @@ class Linear:
                     break
 
     @cached_property
-    def _accelerations(self) -> dict[sp.Symbol, sp.Expr] | None:
+    def accelerations(self) -> dict[sp.Symbol, sp.Expr] | None:
         """The accelerations of small motions; None if there is no equilibrium, or for many."""
         system = self._derivation.system
         if len(system.q) > MAX_INVERSE or self.place is None:
@@ -127,11 +127,11 @@ class Linear:
 
     def state_matrices(self) -> tuple[sp.Matrix, sp.Matrix] | None:
         """A and B of ẋ = A x + B F for x = (q, q̇); None if they are not derived."""
-        if self._accelerations is None:
+        if self.accelerations is None:
             return None
         system, n = self._derivation.system, len(self._derivation.system.q)
         state = (*system.q, *system.qdot)
-        rates = sp.Matrix([*system.qdot, *(self._accelerations[a] for a in system.qddot)])
+        rates = sp.Matrix([*system.qdot, *(self.accelerations[a] for a in system.qddot)])
         forces = sorted(self._forces, key=str)
         A = rates.jacobian(state).applyfunc(sp.factor)
         B = rates.jacobian(forces) if forces else sp.zeros(2 * n, 0)

@@ -1,0 +1,57 @@
+"""Wrong terms in products of matrices, in roots and in terms that vanish."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.verification.documents.files import judge_file
+from solvers.runge_kutta.order_conditions import order
+
+CART = r"""
+$$(M+m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+$$l\ddot\theta + \ddot x\cos\theta - g\sin\theta = 0$$
+$$\begin{pmatrix}\ddot x\\ \ddot\theta\end{pmatrix} =
+  \begin{pmatrix} 0 & -\frac{m g}{M} \\ 0 & \frac{(M+m) g}{M l}\end{pmatrix}
+  \begin{pmatrix} x \\ \theta \end{pmatrix} +
+  \begin{pmatrix}\frac1M \\ -\frac{1}{M l}\end{pmatrix} F$$
+"""
+FIELD = r"""
+$$L = \frac m2 (\dot r^2 + r^2\dot\theta^2) + \frac{k}{r}, \qquad \ell = m r^2\dot\theta$$
+$$E = \frac m2\dot r^2 + \frac{\ell^2}{2 m r^2} - \frac kr$$
+$$\dot r = \sqrt{\frac{2}{m}\left(E + \frac kr - \frac{\ell^2}{2 m r^2}\right)}$$
+"""
+
+
+def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
+    """The wrong terms of wrong formulas, and their corrections."""
+    path = folder / "document.md"
+    path.write_text(text)
+    formulas = judge_file(str(path), order)[0].formulas
+    assert {one.verdict for one in formulas} <= {"verified", "definition", "wrong"}
+    return [(one.wrong_term, one.correction) for one in formulas if one.verdict == "wrong"]
+
+
+@pytest.mark.parametrize("text", [CART, FIELD])
+def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
+    assert wrong(tmp_path, text) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "term", "correct"),
+    [
+        (CART, r"-\frac{m g}{M}", r"\frac{m g}{M}", r"\frac{m g}{M}", r"-\frac{"),
+        (CART, r"-\frac{1}{M l}\end", r"\frac{1}{M l}\end", r"\frac{1}{M l}", r"-\frac{1}{M l}"),
+        (CART, r"\frac1M", r"\frac2M", r"\frac2M", r"\frac{1}{M}"),
+        (CART, r"\end{pmatrix} +", r"\end{pmatrix} -", r"\begin{pmatrix}\frac1M", "+"),
+        (FIELD, r"\frac{2}{m}", r"\frac{3}{m}", r"\frac{3}{m}", r"\frac{2}{m}"),
+        (FIELD, r"2 m r^2}\right", r"2 m r^3}\right", r"\frac{\ell^2}{2 m r^3}", "r^2"),
+        (FIELD, r"(E + \frac kr", r"(E - \frac kr", r"- \frac kr", r"\frac{k}{r}"),
+    ],
+)
+def test_the_wrong_part_is_found(
+    text: str, old: str, new: str, term: str, correct: str, tmp_path: Path
+) -> None:
+    assert text.count(old) == 1
+    ((found, correction),) = wrong(tmp_path, text.replace(old, new))
+    assert term in found
+    assert correct in correction
