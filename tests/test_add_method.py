@@ -42,7 +42,7 @@ def test_the_catalogue_finds_it_and_its_properties_follow(throwaway: str) -> Non
     method = load(throwaway)
     assert (method.order, method.embedded_order, method.stages) == (2, 1, 2)
     assert StabilityFunction.of(method).real_stability_interval == 2
-    end, error, _ = Stepper(method, lambda t, y: y).step(0.0, [1.0], 0.1, [1.0])
+    end, error, *_ = Stepper(method, lambda t, y: y).step(0.0, [1.0], 0.1, [1.0])
     assert abs(end[0] - exp(0.1)) < 2e-4 < abs(error[0, 0])
 
 

@@ -13,8 +13,10 @@ from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.parallel_stages import symplectic_ratios
 
 EXPLICIT = [name for name in names() if load(name).is_explicit]
+PARALLEL = [name for name in names() if load(name).is_parallel]
 
 #: A right-hand side that records its arguments and returns unit vectors.
 PROBE = """
@@ -99,8 +101,45 @@ static inline void probe_jacobian(
 }}
 """
 
+PARALLEL_PROBE = """
+double probe_states[64][64], probe_times[64];
 
-@pytest.mark.parametrize("name", sorted({*names()} - {*EXPLICIT}))
+static inline void probe_rhs(
+    stage_vector t, const stage_vector *state, const stage_vector *params, stage_vector *result)
+{{
+    for (int n = 0; n < {stages}; n++) {{
+        for (int i = 0; i < {stages}; i++) {{
+            result[n][i] = n == i;
+            probe_states[i][n] = state[n][i];
+            probe_times[i] = t[i];
+        }}
+    }}
+    (void)params;
+}}
+"""
+
+
+@pytest.mark.parametrize("name", PARALLEL)
+def test_coefficients_of_parallel_stages_are_read_back_from_the_running_loop(
+    name: str, tmp_path: Path
+) -> None:
+    # as above, in lanes: the ratios to the weights are rounded, such that the method is symplectic
+    method = load(name)
+    module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
+    (tmp_path / "probe.h").write_text(PARALLEL_PROBE.format(stages=method.stages))
+    kernel = Kernel(module, "lagrangian", name, lanes=False, compensated=False, reproducible=False)
+    library = ctypes.CDLL(str(kernel.library.path))
+    solution = integrate(module, (0, 1), rest, (1.0,), method=name, h=1.0, backend="compiled")
+    states = np.array((ctypes.c_double * 64 * 64).in_dll(library, "probe_states"))
+    times = np.array((ctypes.c_double * 64).in_dll(library, "probe_times"))
+    stages, weights = slice(0, method.stages), np.array(method.b, float)
+    assert np.array_equal(states[stages, stages], symplectic_ratios(method) * weights)
+    assert np.abs(states[stages, stages] - np.array(method.A, float)).max() < 1e-16
+    assert np.array_equal(times[stages], np.array(method.c, float))
+    assert np.array_equal(solution.y[:, -1], weights)
+
+
+@pytest.mark.parametrize("name", sorted({*names()} - {*EXPLICIT, *PARALLEL}))
 def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
     name: str, tmp_path: Path
 ) -> None:

@@ -97,7 +97,7 @@ def error_over_estimate(tableau: Tableau) -> float:
         return np.maximum(t - PLACES, 0.0)
 
     stepper, start = Stepper(tableau, rhs), np.zeros(len(PLACES))
-    end, estimates, _ = stepper.step(0.0, start, 1.0, rhs(0.0, start))
+    end, estimates, *_ = stepper.step(0.0, start, 1.0, rhs(0.0, start))
     control = Controller(order=tableau.error_order, rtol=0.0, atol=1.0)
     ones = np.ones(1)
     estimate = [control.norm(column[:, None], ones, ones) for column in estimates.T]

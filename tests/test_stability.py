@@ -42,7 +42,7 @@ def test_a_step_of_the_linear_test_equation_multiplies_by_the_stability_function
         matrix = np.array([[z.real, -z.imag], [z.imag, z.real]])
         stepper = Stepper(load(method), lambda _, y, A=matrix: A @ y, lambda _, y, A=matrix: A)
         start = np.array([1.0, 0.0])
-        end, _, _ = stepper.step(0.0, start, 1.0, stepper.derivative(0.0, start))
+        end, *_ = stepper.step(0.0, start, 1.0, stepper.derivative(0.0, start))
         assert complex(*end) == pytest.approx(complex(function(z)), rel=1e-12)
 
 

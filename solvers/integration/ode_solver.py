@@ -50,7 +50,7 @@ def ode_solver(method: str) -> type[OdeSolver]:
     """
     warn_if_flushed()
     tableau = load(str(method))
-    if not tableau.b_hat or not tableau.is_explicit:
+    if not tableau.estimates_error or not tableau.is_explicit:
         raise ValueError(f"method {method!r} is implicit, or does not estimate its error")
     return type(method, (_Method,), {"name": method, "tableau": tableau})
 
@@ -82,7 +82,7 @@ class _Method(OdeSolver):
         if first_step is not None and first_step > duration:
             raise ValueError(f"first_step = {first_step} must be at most {duration}, all of t_span")
         limits = tolerances(options["rtol"], options["atol"], self.n)
-        self._controller = Controller(self.tableau.error_order, *limits)
+        self._controller = Controller.of(self.tableau, *limits)
         stepper = Stepper(self.tableau, self.fun)
         self._attempts = Attempts(stepper, self._controller)
         self._point = Point(self.t, self.y, stepper.derivative(self.t, self.y))

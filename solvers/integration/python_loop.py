@@ -10,8 +10,9 @@ from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
 from solvers.integration.stop_flag import StopFlag
+from solvers.runge_kutta.parallel_stages import Polynomial
 from solvers.runge_kutta.step_control import Controller
-from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
+from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Step, Stepper
 from solvers.runge_kutta.tableau import Tableau
 
 #: Most successive failures of a step, each of which divides its size by four.
@@ -27,6 +28,7 @@ class Point:
     t: float
     y: Array
     derivative: Array
+    last: Polynomial | None = None  # of the step that ends here
 
 
 @dataclass(frozen=True)
@@ -37,14 +39,23 @@ class Accepted:
     start: Point
     end: Point
     norm: float
+    step: Step
 
     def state(self, t: float) -> Array:
         """The state at a time within the step, by a shorter step from its start."""
         if t == self.end.t:
             return self.end.y
-        start = self.start
-        y = self.attempts.stepper.step(start.t, start.y, t - start.t, start.derivative)[0]
+        start, polynomial = self.start, self.step.polynomial
+        guess = polynomial and polynomial.from_start()
+        step = self.attempts.stepper.step
+        y = step(start.t, start.y, t - start.t, start.derivative, guess).y
         return self.attempts.normalise(y)
+
+    @property
+    def rough(self) -> Callable[[float], Array] | None:
+        """States within the step, with a lower order and without evaluations, if it has them."""
+        start, polynomial = self.start, self.step.polynomial
+        return (lambda t: start.y + polynomial.change(t - start.t)) if polynomial else None
 
     def states(self, times: Array) -> Array:
         """The states at several times, in columns."""
@@ -71,19 +82,19 @@ class Attempts:
         """Try the step from `start` to `t`, of size `h`; the last step needs no derivative."""
         controller = self.controller
         try:
-            step = self.stepper.step(start.t, start.y, t - start.t, start.derivative)
-            y, error, derivative = step
-            norm = controller.norm(error, start.y, y) if controller else 0.0
-            y = self.normalise(y)
+            step = self.stepper.step(start.t, start.y, t - start.t, start.derivative, start.last)
+            norm = controller.norm(step.error, start.y, step.y) if controller else 0.0
+            y, derivative = self.normalise(step.y), step.derivative
             if not np.isfinite(y).all() or not np.isfinite(norm):
                 raise NotFiniteError(f"the state at t = {t} or its error is not finite")
             if controller and norm > 1:
-                return Rejected(h * controller.factor(norm))
-            if derivative is None:
-                derivative = start.derivative if is_last else self.stepper.derivative(t, y)
+                return Rejected(h * controller.factor(norm, h, step.contraction))
+            if derivative is None:  # after the last step and a polynomial it is not needed
+                needed = not is_last and step.polynomial is None
+                derivative = self.stepper.derivative(t, y) if needed else start.derivative
         except FAILURES as failure:
             return Rejected(h / 4, failure)
-        return Accepted(self, start, Point(t, y, derivative), norm)
+        return Accepted(self, start, Point(t, y, derivative, step.polynomial), norm, step)
 
     def first_step_size(self, start: Point, end: float, shortest: float) -> float:
         """The first step size of steps that are controlled."""
@@ -102,10 +113,9 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> Non
     if not isinstance(problem.method, Tableau):
         scipy_loop.run(problem, outcome, stop)
         return
-    stepper = Stepper(problem.method, problem.form.rhs, problem.form.jacobian)
-    controller = None
-    if problem.h is None:
-        controller = Controller(problem.method.error_order, problem.rtol, problem.atol)
+    tolerances = problem.rtol, problem.atol
+    stepper = Stepper(problem.method, problem.form.rhs, problem.form.jacobian, *tolerances)
+    controller = Controller.of(problem.method, *tolerances) if problem.h is None else None
     attempts = Attempts(stepper, controller, problem.form.normalised)
     try:
         outcome.end_with(_run(problem, outcome, attempts, stop), problem)
@@ -145,7 +155,7 @@ def _run(problem: Problem, outcome: Outcome, attempts: Attempts, stop: StopFlag)
             return Status.EVENT
         point = trial.end
         if attempts.controller:
-            h *= attempts.controller.factor(trial.norm)
+            h *= attempts.controller.factor(trial.norm, h, trial.step.contraction)
     return Status.FINISHED
 
 
@@ -156,7 +166,9 @@ def _step(
     h = abs(t - start.t)
     trial = attempts.attempt(start, t, h, is_last=is_last)
     try:
-        return trial, isinstance(trial, Accepted) and recorder.advance(t, trial.state, trial.states)
+        if isinstance(trial, Rejected):
+            return trial, False
+        return trial, recorder.advance(t, trial.state, trial.states, trial.rough)
     except FAILURES as failure:
         return Rejected(h / 4, failure), False
 

@@ -1,15 +1,21 @@
-"""Step size control: proportional-integral control of the local error."""
+"""Step size control: proportional-integral or predictive control of the local error."""
 
 from dataclasses import dataclass
 from math import hypot
 
 import numpy as np
 
+from solvers.runge_kutta.parallel_stages import error_power
 from solvers.runge_kutta.stepper import Array, Rhs
+from solvers.runge_kutta.tableau import Tableau
 
 #: Fraction of the ideal step that is attempted, and limits to its change (E. Hairer,
 #: S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4).
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+#: The same for parallel stages, whose error decreases with a high power of the step size; and the
+#: slowest contraction of their iteration that is efficient.
+SAFETY_PARALLEL, GROW_PARALLEL, CONTRACTION = 0.85, 1.5, 0.4
+TINY = np.finfo(float).tiny
 
 
 @dataclass
@@ -21,6 +27,13 @@ class Controller:
     atol: float | Array
     _previous: float = 1.0
 
+    @classmethod
+    def of(cls, tableau: Tableau, rtol: float, atol: float | Array) -> "Controller":
+        """The controller of a method."""
+        if tableau.is_parallel:
+            return ParallelController(tableau.order, rtol, atol)
+        return cls(tableau.error_order, rtol, atol)
+
     def norm(self, error: Array, y: Array, end: Array) -> float:
         """Root mean square of the error relative to the tolerances; at most 1 is accepted.
 
@@ -31,7 +44,7 @@ class Controller:
         a, *others = (_rms(estimate, allowed) for estimate in np.atleast_2d(error))
         return a * a / hypot(a, others[0] / 10) if others and a else a
 
-    def factor(self, norm: float) -> float:
+    def factor(self, norm: float, h: float = 0.0, contraction: float = 0.0) -> float:
         """The factor of the step size after a step with this error norm, from `SHRINK` to `GROW`.
 
         PI control (K. Gustafsson, ACM Transactions on Mathematical Software 17 (1991) 533-554)
@@ -64,6 +77,41 @@ class Controller:
         d2 = max(d1, _rms(change, allowed) / h0)
         h1 = (0.01 / max(d2, 1e-15)) ** (1 / (self.order + 1))
         return min(100 * h0, h1, abs(duration))
+
+
+@dataclass
+class ParallelController(Controller):
+    """Step sizes of methods with parallel stages, whose error shows in their polynomial."""
+
+    _last_h: float = 0.0
+
+    def norm(self, error: Array, y: Array, end: Array) -> float:
+        """Root mean square of the top coefficients, times a power of their ratio to the lowest.
+
+        The power makes it decrease as the local error does, see `error_power`; `error` holds the
+        top coefficients and the lengths of the lowest three.
+        """
+        top, lowest = error
+        relative = top / (self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end)))
+        total = float(np.sum(relative**2))
+        weighted = np.sum(relative**2 * top**2 / (lowest**2 + TINY))
+        decrease = float(np.sqrt(weighted / (total + TINY)))
+        return float(np.sqrt(total / len(y))) * decrease ** error_power(self.order // 2)
+
+    def factor(self, norm: float, h: float = 0.0, contraction: float = 0.0) -> float:
+        """The factor of the step size h, from `SHRINK` to `GROW_PARALLEL`.
+
+        Predictive control (K. Gustafsson, ACM Transactions on Mathematical Software 20 (1994)
+        496-517) after an accepted step, the plain rule after a rejected one. The iteration should
+        contract by `CONTRACTION`, too.
+        """
+        k, floor = self.order + 1, max(norm, 1e-37)
+        factor, self._last_h = floor ** (-1 / k), self._last_h or h
+        if norm <= 1:
+            factor *= min(h / self._last_h * (self._previous / floor) ** (1 / k), 1.0)
+            self._previous, self._last_h = floor, h
+        factor = min(SAFETY_PARALLEL * factor, CONTRACTION / (contraction + TINY))
+        return min(GROW_PARALLEL, max(SHRINK, factor))
 
 
 def _rms(values: Array, allowed: Array) -> float:

@@ -5,11 +5,13 @@ order and need no further coefficients.
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.io.suggestion import shortened
+from solvers.runge_kutta.parallel_stages import NoFixedPointError, ParallelStages, Polynomial
 from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
@@ -27,6 +29,20 @@ class NotFiniteError(ArithmeticError):
 
 class NoConvergenceError(ArithmeticError):
     """The stage equations of an implicit method were not solved."""
+
+
+class Step(NamedTuple):
+    """A step: the state at its end, and what its stages tell.
+
+    Estimates of the local error are of shape (estimates, state): one row of zeros for a method
+    without any. The derivative at the end is known if the last stage is the first of the next step.
+    """
+
+    y: Array
+    error: Array
+    derivative: Array | None = None
+    polynomial: Polynomial | None = None  # of a method with parallel stages
+    contraction: float = 0.0  # of its iteration
 
 
 def evaluated(what: str, function: Rhs, t: float, y: Array, shape: tuple[int, ...]) -> Array:
@@ -47,14 +63,25 @@ def evaluated(what: str, function: Rhs, t: float, y: Array, shape: tuple[int, ..
 class Stepper:
     """Steps of one method for one right-hand side; `nfev` and `njev` count the evaluations.
 
-    Implicit methods need ``jacobian(t, y)``, state × state.
+    Newton's method needs ``jacobian(t, y)``, state × state; a fixed-point iteration ends at the
+    tolerances of the step, by default at rounding errors.
     """
 
-    def __init__(self, tableau: Tableau, rhs: Rhs, jacobian: Rhs | None = None) -> None:
+    def __init__(
+        self,
+        tableau: Tableau,
+        rhs: Rhs,
+        jacobian: Rhs | None = None,
+        rtol: float = 0.0,
+        atol: float | Array = 0.0,
+    ) -> None:
         self._A = np.array(tableau.A, dtype=float)
         self._b, self._c = np.array(tableau.b, dtype=float), np.array(tableau.c, dtype=float)
         self._error_weights = np.array(tableau.error_weights, dtype=float)
         self._tableau, self._rhs, self._jacobian = tableau, rhs, jacobian
+        self._parallel_stages = None
+        if tableau.is_parallel:
+            self._parallel_stages = ParallelStages(tableau, rtol, atol)
         self.nfev = self.njev = 0
 
     def derivative(self, t: float, y: Array) -> Array:
@@ -70,19 +97,46 @@ class Stepper:
             raise NotFiniteError(f"the right-hand side at t = {t}, y = {y} is {value}")
         return value
 
-    def step(self, t: float, y: Array, h: float, first: Array) -> tuple[Array, Array, Array | None]:
-        """The state after `h`, estimates of its local error, and the derivative there if known.
+    def step(
+        self, t: float, y: Array, h: float, first: Array, last: Polynomial | None = None
+    ) -> Step:
+        """The step of size `h` from the state `y`.
 
-        `first` is the derivative at the start; that at the end is known if the last stage is the
-        first of the next step. Estimates are of shape (estimates, state): one row of zeros for a
-        method without any. An explicit stage raises `NotFiniteError`, implicit ones
-        `NoConvergenceError`.
+        `first` is the derivative at the start, `last` the polynomial of the last step if there was
+        one, or of a longer step from the same start. An explicit stage raises `NotFiniteError`,
+        implicit ones `NoConvergenceError`.
         """
+        if self._parallel_stages:
+            return self._parallel(self._parallel_stages, t, y, h, first, last)
         stages = self._explicit if self._tableau.is_explicit else self._implicit
         k = stages(t, y, h, first)
         end = y + h * (self._b @ k)
         error = h * (self._error_weights @ k) if self._tableau.b_hat else np.zeros((1, len(y)))
-        return end, error, k[-1] if self._tableau.is_fsal else None
+        return Step(end, error, k[-1] if self._tableau.is_fsal else None)
+
+    def _parallel(
+        self,
+        stages: ParallelStages,
+        t: float,
+        y: Array,
+        h: float,
+        first: Array,
+        last: Polynomial | None,
+    ) -> Step:
+        times = (t + stages.c * h).tolist()
+
+        def derivatives(states: Array) -> Array:
+            return np.array(list(map(self.derivative, times, states)))
+
+        last = last or Polynomial.constant(h, first, len(stages.c))
+        try:
+            solved = stages.solve(derivatives, y, h, last)
+        except (NotFiniteError, NoFixedPointError) as error:
+            raise NoConvergenceError(f"stages at t = {t}, h = {h}: {error}") from error
+        coefficients = stages.legendre @ solved.increments
+        end = y + coefficients[0]
+        estimate = np.array([coefficients[-1], np.sqrt((coefficients[:3] ** 2).sum(axis=0))])
+        return Step(end, estimate, None, Polynomial(h, coefficients), solved.contraction)
 
     def _explicit(self, t: float, y: Array, h: float, first: Array) -> Array:
         k = np.empty((len(self._b), len(y)))

@@ -89,6 +89,8 @@ class Tableau:
     @cached_property
     def error_order(self) -> int:
         """Order of the error estimate, 0 without one; of two combined, see `Controller.norm`."""
+        if self.is_parallel:
+            return self.order
         if self.b_low:
             return 2 * self.embedded_order - order(self.A, self.b_low)
         return min(self.order, self.embedded_order)

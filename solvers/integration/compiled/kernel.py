@@ -55,7 +55,7 @@ class Kernel:
         self.fuses_products = bool(library.fuses_products())
         self.trajectory, self.row = record("Trajectory", sizes), record("Row", sizes)
         self.evaluations_per_step = tableau.stages - tableau.is_fsal
-        self.is_explicit = tableau.is_explicit
+        self.needs_jacobian = tableau.needs_jacobian
 
 
 #: Kernels that this process has loaded.
@@ -153,7 +153,7 @@ class Batch:
     @property
     def njev(self) -> NDArray[np.int64]:
         """Evaluations of the Jacobian: one for every step of an implicit method."""
-        return self.motions["attempts"].astype(np.int64) * (not self._kernel.is_explicit)
+        return self.motions["attempts"].astype(np.int64) * self._kernel.needs_jacobian
 
 
 def _event(form: Form, event: Event, pauses: bool) -> tuple[float | int, ...]:

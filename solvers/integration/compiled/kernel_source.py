@@ -10,23 +10,23 @@ from dataclasses import dataclass
 from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
 from solvers.integration.problem import SHORTEST
 from solvers.runge_kutta.order_conditions import Number
+from solvers.runge_kutta.parallel_stages import error_power, legendre_matrix, symplectic_ratios
 from solvers.runge_kutta.tableau import Tableau
 
 PROGRAM = """\
+#include <float.h>
 #include <stddef.h>
 #include <string.h>
 #include <time.h>
 {lanes}
 {lanes_h}
-#define HOLONOMIC_REAL real
-{header}
-#define RHS {rhs}
-#define JACOBIAN {jacobian}
+{constants}
+{equations}
 {layout}
 static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 #define COMPENSATED {compensated}
-{method}
 {step_h}
+{method}
 {motion_h}
 {within_step_h}
 {integrator_c}
@@ -53,14 +53,90 @@ static void to_ordinary(
 {single_h}
 """
 
-METHOD = """\
+EQUATIONS = """\
+#define HOLONOMIC_REAL real
+{header}
+#define RHS {rhs}
+#define JACOBIAN {jacobian}
+"""
+
+CONSTANTS = """\
 /* {title} */
 enum {{ STAGES = {stages}, IS_FSAL = {is_fsal}, IS_EXPLICIT = {is_explicit} }};
 enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
+"""
 
+METHOD = """\
 {solution}
 
-{sums}"""
+{sums}
+
+{sequential_h}"""
+
+#: Equations of one motion, whose stages are evaluated in the lanes of a vector.
+STAGE_VECTORS = """\
+typedef double stage_vector __attribute__((vector_size(8*STAGES)));
+typedef int64_t stage_mask __attribute__((vector_size(8*STAGES)));
+#define HOLONOMIC_REAL {real}
+{header}
+{rhs_h}
+"""
+
+VECTOR_RHS = """\
+static inline void stage_derivatives(
+    stage_vector t, const stage_vector *z, const stage_vector *params, stage_vector *k)
+{{
+    {rhs}(t, z, params, k);
+}}
+
+static void RHS(double t, const double *z, const double *params, double *derivative)
+{{
+    stage_vector all_params[{parameters} + 1], all_z[{state}], k[{state}];
+    for (int p = 0; p < {parameters}; p++) {{
+        all_params[p] = (stage_vector){{0}} + params[p];
+    }}
+    for (int n = 0; n < {state}; n++) {{
+        all_z[n] = (stage_vector){{0}} + z[n];
+    }}
+    {rhs}((stage_vector){{0}} + t, all_z, all_params, k);
+    for (int n = 0; n < {state}; n++) {{
+        derivative[n] = k[n][0];
+    }}
+}}
+"""
+
+#: The right-hand side calls functions of the mathematical library.
+SCALAR_RHS = """\
+#define RHS {rhs}
+static void stage_derivatives(
+    stage_vector t, const stage_vector *z, const stage_vector *params, stage_vector *k)
+{{
+    double numbers[{parameters} + 1], state[{state}], derivative[{state}];
+    for (int p = 0; p < {parameters}; p++) {{
+        numbers[p] = params[p][0];
+    }}
+    for (int i = 0; i < STAGES; i++) {{
+        for (int n = 0; n < {state}; n++) {{
+            state[n] = z[n][i];
+        }}
+        RHS(t[i], state, numbers, derivative);
+        for (int n = 0; n < {state}; n++) {{
+            k[n][i] = derivative[n];
+        }}
+    }}
+}}
+"""
+
+PARALLEL = """\
+static const stage_vector RATIOS[STAGES] = {{
+{ratios}
+}}, LEGENDRE[STAGES] = {{
+{legendre}
+}};
+static const stage_vector NODES = {{{nodes}}}, WEIGHTS = {{{weights}}};
+static const double ERROR_POWER = {error_power};
+{parallel_h}
+"""
 
 WEIGHTED_SUM = """\
 static inline real {name}(real h, real (*k)[DIM], int n)
@@ -117,6 +193,8 @@ class Equations:
             "FSAL_DIM": tableau.is_fsal * self.state,
             "ANGLES": len(self.angles),
             "PARAMETERS": self.parameters,
+            "POLYNOMIAL_DIM": tableau.is_parallel * tableau.stages * self.state,
+            "LENGTHS": int(tableau.is_parallel),
             "VARIATIONS": variations,
             "SCALES": int(variations > 0),
             "MAX_EVENTS": MAX_EVENTS,
@@ -144,9 +222,8 @@ def program(
     files = ("lanes.h", "step.h", "motion.h", "within_step.h", "integrator.c", "probe.h")
     return PROGRAM.format(
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
-        header=equations.header,
-        rhs=equations.rhs,
-        jacobian=equations.jacobian,
+        constants=_constants(tableau),
+        equations=_equations(equations, tableau),
         layout=declarations(sizes),
         sine=", ".join(map(str, sines)),
         rate=", ".join(map(str, rates)),
@@ -159,6 +236,50 @@ def program(
 
 def _source(name: str) -> str:
     return (SOURCES / name).read_text(encoding="utf-8")
+
+
+def _constants(tableau: Tableau) -> str:
+    return CONSTANTS.format(
+        title=tableau.title,
+        stages=tableau.stages,
+        is_fsal=int(tableau.is_fsal),
+        is_explicit=int(tableau.is_explicit),
+        estimates=len(tableau.error_weights),
+        error_order=tableau.error_order,
+    )
+
+
+def _equations(equations: Equations, tableau: Tableau) -> str:
+    names = {"header": equations.header, "rhs": equations.rhs}
+    if not tableau.is_parallel:
+        return EQUATIONS.format(jacobian=equations.jacobian, **names)
+    # functions that convert states of a single motion take numbers, not vectors
+    converts = any("_state(" in line for line in equations.from_ordinary)
+    vectors = equations.vectorises and not converts
+    text = VECTOR_RHS if vectors else SCALAR_RHS
+    real = "stage_vector\n#define HOLONOMIC_VECTOR" if vectors else "double"
+    sizes = {"state": equations.state, "parameters": equations.parameters}
+    return STAGE_VECTORS.format(
+        real=real,
+        header=equations.header,
+        rhs_h=text.format(rhs=equations.rhs, **sizes),
+    )
+
+
+def _parallel(tableau: Tableau) -> str:
+    """Matrices by their columns."""
+    rows = {"ratios": symplectic_ratios(tableau), "legendre": legendre_matrix(tableau)}
+    columns = {
+        name: ",\n".join(f"    {{{', '.join(map(_real, column))}}}" for column in matrix.T)
+        for name, matrix in rows.items()
+    }
+    return PARALLEL.format(
+        nodes=", ".join(map(_real, tableau.c)),
+        weights=", ".join(map(_real, tableau.b)),
+        error_power=_real(error_power(tableau.stages)),
+        parallel_h=_source("parallel.h"),
+        **columns,
+    )
 
 
 def _explicit(tableau: Tableau) -> str:
@@ -179,15 +300,12 @@ def _implicit(tableau: Tableau) -> str:
 
 
 def _method(tableau: Tableau) -> str:
+    if tableau.is_parallel:
+        return _parallel(tableau)
     first, second, *_ = *tableau.error_weights, (), ()
     sums = {"increment": tableau.b, "estimate": first, "second_estimate": second}
     return METHOD.format(
-        title=tableau.title,
-        stages=tableau.stages,
-        is_fsal=int(tableau.is_fsal),
-        error_order=tableau.error_order,
-        estimates=len(tableau.error_weights),
-        is_explicit=int(tableau.is_explicit),
+        sequential_h=_source("sequential.h"),
         solution=_explicit(tableau) if tableau.is_explicit else _implicit(tableau),
         sums="\n".join(WEIGHTED_SUM.format(name=name, sum=_sum(w)) for name, w in sums.items()),
     )

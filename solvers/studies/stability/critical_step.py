@@ -129,7 +129,7 @@ def _linear(method: str, modes: Modes) -> Growth:
             try:
                 for _ in range(2):
                     for _ in range(STEPS // 2):
-                        y, _, _ = stepper.step(0.0, y, h, stepper.derivative(0.0, y))
+                        y = stepper.step(0.0, y, h, stepper.derivative(0.0, y)).y
                     sizes.append(modes.size(y))
             except (NotFiniteError, NoConvergenceError):
                 return inf

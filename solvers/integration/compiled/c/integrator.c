@@ -4,6 +4,20 @@
    either to advance the motion, or within an accepted step. A lane whose motion ends loads the next
    one. The result of a motion depends on no other motion. */
 
+/* An angle changes by its mean velocity times h, approximately; the rest is whole turns. Returns 0, or NaN
+   where they cannot be counted. */
+static inline real count_turns(const State *start, real h, State *end)
+{
+    real check = splat(0.0);
+    for (int a = 0; a < ANGLES; a++) {
+        const real change = h*mean_rate(start, h, end, RATE[a]);
+        const real excess = approximate_angle(start, a) + change - approximate_angle(end, a);
+        end->turns[a] = start->turns[a] + lane_round(excess*(0.5/PI));
+        check += excess - excess;
+    }
+    return check;
+}
+
 enum { MAX_REDUCTIONS = 25, STEPS_BETWEEN_CHECKS = 64 };
 
 typedef struct {
@@ -79,6 +93,11 @@ static void start_motions(Lanes *lanes)
         h = lane_fmax(h, 2.0*motion->min_h);
     }
     motion->h = select(lanes->starting, lane_copysign(h, duration), motion->h);
+#if HAS_POLYNOMIAL
+    if (any(lanes->starting)) {
+        start_polynomial(state, motion->h, derivative);
+    }
+#endif
     for (int lane = 0; lane < LANES; lane++) {
         WithinStep *within = &lanes->within[lane];
         const int is_sample = task->samples < 0
@@ -98,6 +117,40 @@ static void start_motions(Lanes *lanes)
     motion->reductions = select(not_finite, splat(MAX_REDUCTIONS + 1), motion->reductions);
 }
 
+/* Shorten the step of a lane after a failure of the step, of size h, or within it. */
+static void fail_step(Motion *motion, WithinStep *within, int lane, double h)
+{
+    if (within->mode != ADVANCE) {
+        discard_step(within);
+    }
+    LANE(motion->h, lane) = (within->mode == ADVANCE ? h : within->full_h)/4;
+    LANE(motion->reductions, lane) += 1;
+    within->mode = ADVANCE;
+}
+
+#if HAS_POLYNOMIAL
+/* Use the state after a part h of the step of the only lane; returns whether it is finite. */
+static int substep(Lanes *lanes, WithinStep *within, double h)
+{
+    const Task *task = lanes->task;
+    Motion *motion = &lanes->motion;
+    const State *start = &motion->state, *full = (const State *)within->full_end;
+    State state = *start;
+    double numbers[STATE_SIZE], check = 0;
+    motion->iterations += step_within(task, start, full, h, motion->params, &state);
+    for (int n = 0; n < DIM; n++) {
+        check += state.z[n] - state.z[n];
+    }
+    normalise_angles(&state);
+    rescale_variation(start, &state);
+    check += count_turns(start, h, &state);
+    read_lane(&state, STATE_SIZE, 0, numbers);
+    const int e = within->event;
+    use_substep(task, within, h, numbers, e < 0 ? 0 : event_value(&task->events[e], &state));
+    return check == 0;
+}
+#endif
+
 /* Evaluate a lane's step; return whether its motion moves to the end of the step. */
 static int process_step(Lanes *lanes, int lane, int accepted, int failed)
 {
@@ -111,12 +164,7 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
     read_lane(&lanes->end, STATE_SIZE, lane, end);
     const double h = LANE(lanes->h, lane);
     if (failed) {
-        if (within->mode != ADVANCE) {
-            discard_step(within);
-        }
-        LANE(motion->h, lane) = (within->mode == ADVANCE ? h : within->full_h)/4;
-        LANE(motion->reductions, lane) += 1;
-        within->mode = ADVANCE;
+        fail_step(motion, within, lane, h);
         return 0;
     }
     if (within->mode == ADVANCE) {
@@ -135,11 +183,18 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
         const int e = within->event;
         use_substep(task, within, h, end, e < 0 ? 0 : LANE(lanes->after[e], lane));
     }
-    const double next = next_h(task, within, LANE(motion->state.t, lane),
-                               LANE(motion->state.t_low, lane));
-    if (next != 0) {
+    double next;
+    while ((next = next_h(task, within, LANE(motion->state.t, lane),
+                          LANE(motion->state.t_low, lane))) != 0) {
+#if HAS_POLYNOMIAL
+        if (!substep(lanes, within, next)) {
+            fail_step(motion, within, lane, h);
+            return 0;
+        }
+#else
         LANE(lanes->h, lane) = next;
         return 0;
+#endif
     }
     within->mode = ADVANCE;
     write_lane(&lanes->end, STATE_SIZE, lane, within->end);
@@ -213,8 +268,9 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     const real left = (motion->t_end - state->t) - state->t_low;
     const mask last = advancing & ~less_than(lane_fabs(motion->h)*(1 + 1e-9), lane_fabs(left));
     lanes->h = select(advancing, select(last, left, motion->h), lanes->h);
-    real error[2][DIM];
-    motion->iterations += step(state, lanes->h, motion->params, !task->fixed_h, end, error);
+    StepResult result;
+    step(task, state, lanes->h, motion->params, end, &result);
+    motion->iterations += result.iterations;
     end->t = select(last, motion->t_end, end->t);
     end->t_low = select(last, splat(0.0), end->t_low);
     real check = splat(0.0);
@@ -224,10 +280,10 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     *failed = ~less_than(lane_fabs(check), splat(1.0));
     *accepted = advancing & ~*failed;
     if (!task->fixed_h) {
-        const real square = squared_error_norm(error, state->z, end->z, task->rtol, task->atol);
-        *failed |= advancing & ~less_than(square, splat(INFINITY));
-        *accepted &= ~less_than(splat(1.0), square) & ~*failed;
-        const real factor = step_factor(square, *accepted, &motion->previous_error);
+        *failed |= advancing & ~less_than(result.squared_error, splat(INFINITY));
+        *accepted &= ~less_than(splat(1.0), result.squared_error) & ~*failed;
+        const real factor =
+            step_factor(&result, *accepted, lanes->h, state, &motion->previous_error);
         const real h = select(*accepted, motion->h, lanes->h)*factor;
         motion->h = select(advancing & ~*failed, h, motion->h);
     }

@@ -9,6 +9,8 @@ typedef struct {
     real z_low[LOW_DIM];        /* rounding errors of z */
     real turns[ANGLES];         /* whole turns of angles known by sine and cosine */
     real derivative[FSAL_DIM];  /* dz/dt, from the last stage of the step before */
+    real polynomial[POLYNOMIAL_DIM];    /* of the last step, see parallel.h */
+    real length[LENGTHS];       /* h of that step */
     real scale[SCALES];         /* exponent of the power of two taken out of the variation */
 } State;
 

@@ -1,12 +1,9 @@
-/* One step in every lane, and the length of the next one.
+/* States at the ends of steps, and the length of the first step.
 
    Defined before this file: the right-hand side RHS; the structures in layout.h; the
    number of components at the end of the state that are a variation (VARIATIONS); the index of each
-   angle's sine, which its cosine follows, and of its velocity (SINE, RATE); and the method: STAGES,
-   IS_FSAL, IS_EXPLICIT, ERROR_ORDER, ESTIMATES, stages(), increment(), estimate(), and
-   second_estimate() where there are two. */
+   angle's sine, which its cosine follows, and of its velocity (SINE, RATE). */
 
-static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
 static const double PI = 3.14159265358979324;
 
 /* x + y; `low` receives the rounding error of the sum (D. E. Knuth, The Art of Computer
@@ -68,6 +65,9 @@ static inline void rescale_variation(const State *start, State *end)
         for (int n = DIM - VARIATIONS; n < DIM && IS_FSAL; n++) {
             end->derivative[n] *= factor;
         }
+        for (int j = POLYNOMIAL_DIM/DIM*(DIM - VARIATIONS); j < POLYNOMIAL_DIM; j++) {
+            end->polynomial[j] *= factor;
+        }
         end->scale[k] = start->scale[k] + select(is_large, splat(64.0), splat(0.0));
     }
 }
@@ -80,56 +80,12 @@ static inline real approximate_angle(const State *state, int a)
     return select(less_than(c, splat(0.0)), lane_copysign(splat(PI), s) - acute, acute);
 }
 
-/* An angle changes by about its mean velocity times h; the rest is whole turns. Returns 0, or NaN
-   where they cannot be counted. */
-static inline real count_turns(const State *start, real h, State *end)
-{
-    real check = splat(0.0);
-    for (int a = 0; a < ANGLES; a++) {
-        const real change = h*(start->z[RATE[a]] + end->z[RATE[a]])*0.5;
-        const real excess = approximate_angle(start, a) + change - approximate_angle(end, a);
-        end->turns[a] = start->turns[a] + lane_round(excess*(0.5/PI));
-        check += excess - excess;
-    }
-    return check;
-}
-
-/* The state after h, and estimates of the local error. Returns how often all stages were
-   evaluated: once, unless the method is implicit. */
-static __attribute__((noinline)) real step(
-    const State *restrict start, real h, const real *restrict params, int estimates,
-    State *restrict end, real (*restrict error)[DIM])
-{
-    real k[STAGES][DIM];
-    for (int n = 0; n < DIM && IS_FSAL; n++) {
-        k[0][n] = start->derivative[n];
-    }
-    if (!IS_FSAL) {
-        RHS(start->t, start->z, params, k[0]);
-    }
-    for (int i = 1; i < STAGES && !IS_EXPLICIT; i++) {
-        memcpy(k[i], k[0], sizeof k[0]);
-    }
-    const real iterations = stages(start->t, start->z, h, k, params);
-    for (int n = 0; n < DIM; n++) {
-        end->z[n] = start->z[n];
-#if COMPENSATED
-        end->z_low[n] = start->z_low[n];
-#endif
-        add_to_component(end, n, increment(h, k, n));
-    }
-    for (int n = 0; n < DIM && IS_FSAL; n++) {
-        end->derivative[n] = k[STAGES - 1][n];
-    }
-    for (int n = 0; n < DIM && estimates; n++) {
-        error[0][n] = estimate(h, k, n);
-        if (ESTIMATES > 1) {
-            error[1][n] = second_estimate(h, k, n);
-        }
-    }
-    end->t = two_sum(start->t, h + start->t_low, &end->t_low);
-    return iterations;
-}
+/* Results of a step besides the state at its end. */
+typedef struct {
+    real squared_error;     /* squared norm of the estimated error, relative to the tolerances */
+    real iterations;        /* evaluations of all stages: one, unless the method is implicit */
+    real contraction;       /* of a fixed-point iteration, by each of its evaluations */
+} StepResult;
 
 /* Mean square of `values`, relative to the tolerances at states x and y. */
 static inline real mean_square(
@@ -151,32 +107,6 @@ static inline real mean_square(
         total += part*part;
     }
     return total*(1.0/DIM);
-}
-
-/* Squared norm of the error; of two estimates combined (E. Hairer, S. P. Norsett, G. Wanner,
-   Solving Ordinary Differential Equations I, section II.10). */
-static inline real squared_error_norm(
-    real (*error)[DIM], const real *x, const real *y, double rtol, double atol)
-{
-    const real first = mean_square(error[0], x, y, rtol, atol);
-    if (ESTIMATES < 2) {
-        return first;
-    }
-    const real second = mean_square(error[1], x, y, rtol, atol);
-    return first*first/(first + 0.01*second + 1e-300);
-}
-
-/* Factor of h after an error of this squared norm: PI control after an accepted step, the plain
-   rule after a rejected one. */
-static inline real step_factor(real squared_norm, mask accepted, real *previous_error)
-{
-    const double share = 1.0/(ERROR_ORDER + 1);
-    const real error = 0.5*lane_log2(squared_norm + 1e-20);
-    const real exponent =
-        select(accepted, share*(0.4**previous_error - 0.7*error), -share*error);
-    const real least = splat(log2(SHRINK/SAFETY)), most = splat(log2(GROW/SAFETY));
-    *previous_error = select(accepted, error, *previous_error);
-    return SAFETY*lane_exp2(lane_fmin(lane_fmax(exponent, least), most));
 }
 
 /* Length of the first step in some lanes, from the change of the derivative over a very short step

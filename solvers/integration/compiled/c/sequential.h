@@ -1,0 +1,84 @@
+/* One step in every lane, whose stages are evaluated one after the other, or solved together by
+   Newton's method.
+
+   Defined before this file, beside that of step.h: the method, by STAGES, IS_FSAL, IS_EXPLICIT,
+   ERROR_ORDER, ESTIMATES, stages(), increment(), estimate(), and second_estimate() where there are
+   two. */
+
+#define HAS_POLYNOMIAL 0
+
+static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
+
+/* Squared norm of the error; of two estimates combined (E. Hairer, S. P. Norsett, G. Wanner,
+   Solving Ordinary Differential Equations I, section II.10). */
+static inline real squared_error_norm(
+    real (*error)[DIM], const real *x, const real *y, double rtol, double atol)
+{
+    const real first = mean_square(error[0], x, y, rtol, atol);
+    if (ESTIMATES < 2) {
+        return first;
+    }
+    const real second = mean_square(error[1], x, y, rtol, atol);
+    return first*first/(first + 0.01*second + 1e-300);
+}
+
+/* The state after h; with step control also the norm of the estimated error. */
+static __attribute__((noinline)) void step(
+    const Task *task, const State *restrict start, real h, const real *restrict params,
+    State *restrict end, StepResult *restrict result)
+{
+    real k[STAGES][DIM], error[2][DIM];
+    for (int n = 0; n < DIM && IS_FSAL; n++) {
+        k[0][n] = start->derivative[n];
+    }
+    if (!IS_FSAL) {
+        RHS(start->t, start->z, params, k[0]);
+    }
+    for (int i = 1; i < STAGES && !IS_EXPLICIT; i++) {
+        memcpy(k[i], k[0], sizeof k[0]);
+    }
+    result->iterations = stages(start->t, start->z, h, k, params);
+    for (int n = 0; n < DIM; n++) {
+        end->z[n] = start->z[n];
+#if COMPENSATED
+        end->z_low[n] = start->z_low[n];
+#endif
+        add_to_component(end, n, increment(h, k, n));
+    }
+    for (int n = 0; n < DIM && IS_FSAL; n++) {
+        end->derivative[n] = k[STAGES - 1][n];
+    }
+    end->t = two_sum(start->t, h + start->t_low, &end->t_low);
+    for (int n = 0; n < DIM && !task->fixed_h; n++) {
+        error[0][n] = estimate(h, k, n);
+        if (ESTIMATES > 1) {
+            error[1][n] = second_estimate(h, k, n);
+        }
+    }
+    if (!task->fixed_h) {
+        result->squared_error =
+            squared_error_norm(error, start->z, end->z, task->rtol, task->atol);
+    }
+}
+
+/* Factor of h after an error of this squared norm: PI control after an accepted step, the plain
+   rule after a rejected one. */
+static inline real step_factor(
+    const StepResult *result, mask accepted, real h, const State *start, real *previous_error)
+{
+    const double share = 1.0/(ERROR_ORDER + 1);
+    const real error = 0.5*lane_log2(result->squared_error + 1e-20);
+    const real exponent =
+        select(accepted, share*(0.4**previous_error - 0.7*error), -share*error);
+    const real least = splat(log2(SHRINK/SAFETY)), most = splat(log2(GROW/SAFETY));
+    *previous_error = select(accepted, error, *previous_error);
+    (void)h; (void)start;
+    return SAFETY*lane_exp2(lane_fmin(lane_fmax(exponent, least), most));
+}
+
+/* Mean velocity, component n, of a step. */
+static inline real mean_rate(const State *start, real h, const State *end, int n)
+{
+    (void)h;
+    return (start->z[n] + end->z[n])*0.5;
+}

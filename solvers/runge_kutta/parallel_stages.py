@@ -1,0 +1,143 @@
+"""Stages of a Gauss method, evaluated all at once and iterated to a fixed point.
+
+The derivatives at the stages are those of a polynomial of degree s - 1, from which the next step
+starts (P. J. van der Houwen, B. P. Sommeijer, Journal of Computational and Applied Mathematics 29
+(1990) 111-127). Increments L = h b k take the place of the derivatives k, since the ratios
+m = a_ij / b_j can be rounded such that m_ij + m_ji = 1 exactly, as a symplectic method requires
+(M. Antoñana, J. Makazaga, A. Murua, arXiv 2511.03655).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from decimal import localcontext
+from fractions import Fraction
+
+import numpy as np
+from numpy.polynomial.legendre import legint, legval
+from numpy.typing import NDArray
+
+from solvers.runge_kutta.order_conditions import WORKING_DIGITS
+from solvers.runge_kutta.tableau import Tableau
+
+Array = NDArray[np.float64]
+#: The iteration ends when the next change would be below this part of the tolerance.
+CLOSE = 0.02
+#: Relative rounding errors of numbers, and of derivatives, at which an iteration may stagnate.
+#: A number that counts as 0, but whose reciprocal has a square.
+SMALLEST = 1e-100
+EPSILON, ROUNDING, MAX_ITERATIONS = np.finfo(float).eps, 32 * np.finfo(float).eps, 50
+
+
+def symplectic_ratios(tableau: Tableau) -> Array:
+    """a_ij / b_j, rounded such that each and its transpose add up to 1 exactly."""
+    with localcontext(prec=WORKING_DIGITS):
+        ratios = np.array(
+            [[float(a / b) for a, b in zip(row, tableau.b, strict=True)] for row in tableau.A]
+        )
+    for i in range(tableau.stages):
+        ratios[i, i] = 0.5
+        for j in range(i):
+            ratios[j, i] = 1 - ratios[i, j]
+            ratios[i, j] = 1 - ratios[j, i]  # both have the spacing of the larger one
+            assert Fraction(ratios[i, j]) + Fraction(ratios[j, i]) == 1
+    return ratios
+
+
+def legendre_matrix(tableau: Tableau) -> Array:
+    """Increments to the Legendre coefficients on [0, 1] of the polynomial h dy/dt."""
+    nodes = 2 * np.array(tableau.c, float) - 1
+    degrees = np.arange(tableau.stages)
+    return np.asarray((2.0 * degrees[:, np.newaxis] + 1) * legval(nodes, np.eye(tableau.stages)))
+
+
+def error_power(stages: int) -> float:
+    """The power of a ratio in the error norm, such that it has the order of the local error.
+
+    The top coefficient decreases with the power s of h, its ratio to the lowest ones with s - 1,
+    and the local error with 2s + 1.
+    """
+    return (stages + 1) / (stages - 1)
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """h dy/dt of a step of size `h`, signed, by Legendre coefficients on [0, 1].
+
+    It predicts the stages of a step that starts at `origin`, a part of h: where the step ends, or
+    at its start for a shorter step.
+    """
+
+    h: float
+    coefficients: Array  # of shape (stages, state)
+    origin: float = 1.0
+
+    @classmethod
+    def constant(cls, h: float, derivative: Array, stages: int) -> "Polynomial":
+        """That of a constant derivative."""
+        rows = np.zeros((stages, len(derivative)))
+        rows[0] = h * derivative
+        return cls(h, rows)
+
+    def from_start(self) -> "Polynomial":
+        """The same polynomial for shorter steps from the start."""
+        return replace(self, origin=0.0)
+
+    def derivatives(self, h: float, c: Array) -> Array:
+        """Value of h dy/dt at the nodes of a step of size `h`, in rows."""
+        ratio = h / self.h
+        x = 2 * (self.origin + ratio * c) - 1
+        return ratio * np.asarray(legval(x, self.coefficients), float).T
+
+    def change(self, h: float) -> Array:
+        """The change of y over the first part of the step, of size `h`, with a lower order."""
+        integral = legint(self.coefficients, lbnd=-1, scl=0.5)
+        return np.asarray(legval(2 * h / self.h - 1, integral), float)
+
+
+@dataclass(frozen=True)
+class Stages:
+    """Solved stages: their increments, and the contraction of the iteration."""
+
+    increments: Array
+    contraction: float
+
+
+class NoFixedPointError(ArithmeticError):
+    """The iteration does not converge."""
+
+
+class ParallelStages:
+    """The iteration of one method to tolerances, or to rounding errors if these are 0."""
+
+    def __init__(self, tableau: Tableau, rtol: float, atol: float | Array) -> None:
+        self.ratios, self.legendre = symplectic_ratios(tableau), legendre_matrix(tableau)
+        self.c, self.b = np.array(tableau.c, float), np.array(tableau.b, float)
+        self._rtol, self._atol = rtol, atol
+        self._limit = CLOSE**2 if rtol or np.any(atol) else 0.0
+
+    def solve(
+        self, derivatives: Callable[[Array], Array], y: Array, h: float, last: Polynomial
+    ) -> Stages:
+        """Solve the stages of a step of size `h` from `y`.
+
+        `derivatives` evaluates all stages, whose states are rows; `last` predicts them.
+        `NoFixedPointError` where the iteration does not converge.
+        """
+        increments = self.b[:, np.newaxis] * last.derivatives(h, self.c)
+        previous, square, allowed, floor = np.inf, 0.0, y, 0.0
+        for iteration in range(1, MAX_ITERATIONS + 1):
+            changed = h * self.b[:, np.newaxis] * derivatives(y + self.ratios @ increments)
+            if iteration == 1:
+                size = np.abs(y) + np.abs(changed).sum(axis=0) + SMALLEST
+                allowed = np.maximum(self._atol + self._rtol * np.abs(y), EPSILON * size)
+                floor = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
+            change = float(np.sum(((changed - increments) / allowed) ** 2))
+            increments = changed
+            if iteration > 1:
+                square = max(change / previous if previous else 0.0, square / 4)
+                if change * square <= self._limit or previous <= change < floor:
+                    return Stages(increments, float(np.sqrt(square)))
+            if not change < 16 * previous:
+                break
+            previous = change
+        raise NoFixedPointError(f"the stages still change by {np.sqrt(change):.1e} tolerances")

@@ -1,0 +1,185 @@
+"""Gauss methods whose stages are evaluated at once: steps, accuracy, order, symplecticity."""
+
+from fractions import Fraction
+from math import pi
+
+import numpy as np
+import pytest
+from mpmath import cos as mpcos
+from mpmath import exp as mpexp
+from mpmath import log as mplog
+from mpmath import matrix, mpf, workdps
+from mpmath import sin as mpsin
+
+import generated.double_pendulum as dp
+import generated.elastic_pendulum as ep
+import generated.single_pendulum as sp
+from solvers.integration.ensemble import ensemble
+from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
+from solvers.integration.prepare import prepare
+from solvers.integration.solution import Status
+from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.parallel_stages import Polynomial, symplectic_ratios
+
+PARALLEL = ["gauss4", "gauss8"]
+FORMS = ["rational", "lagrangian", "hamiltonian"]
+REPORT = (pi / 2, pi, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("method", PARALLEL)
+def test_python_and_c_take_the_same_steps(method: str, form: str) -> None:
+    options = {"method": method, "form": form, "rtol": 1e-7, "atol": 1e-7}
+    python, compiled = (
+        integrate(dp, (0, 2), REPORT, dp.DEFAULTS, backend=backend, **options)
+        for backend in ("python", "compiled")
+    )
+    # rounding decides whether some iterations are the last
+    assert abs(python.steps - compiled.steps) <= 1
+    assert abs(python.rejected - compiled.rejected) <= 1
+    assert python.nfev == pytest.approx(compiled.nfev, rel=0.05)
+    n = min(python.steps, compiled.steps) // 2
+    assert python.t[:n] == pytest.approx(compiled.t[:n], rel=1e-5)
+    assert python.y[:, -1] == pytest.approx(compiled.y[:, -1], abs=1e-6)
+
+
+@pytest.mark.parametrize("method", PARALLEL)
+@ignore_predictability()
+def test_fixed_steps_agree_to_rounding(method: str) -> None:
+    options = {"method": method, "h": 0.05, "form": "rational"}
+    python, compiled = (
+        integrate(dp, (0, 2), REPORT, dp.DEFAULTS, backend=backend, **options)
+        for backend in ("python", "compiled")
+    )
+    assert np.abs(python.y - compiled.y).max() < 1e-12
+
+
+@pytest.mark.parametrize(("method", "steps"), [("gauss4", 8), ("gauss8", 4)])
+def test_the_proved_order_is_observed(method: str, steps: int) -> None:
+    # y' = y cos t has y = exp(sin t); the stages solve a linear system
+    tableau = load(method)
+    stages = range(tableau.stages)
+
+    def error(steps: int) -> mpf:
+        y, h = mpf(1), mpf(2) / steps
+        A = [[mpf(str(a)) for a in row] for row in tableau.A]
+        for n in range(steps):
+            slopes = [mpcos((n + mpf(str(c))) * h) for c in tableau.c]
+            system = matrix([[(i == j) - h * slopes[i] * A[i][j] for j in stages] for i in stages])
+            k = system**-1 * matrix([slope * y for slope in slopes])
+            y += h * sum(mpf(str(b)) * k[i] for i, b in enumerate(tableau.b))
+        return abs(y - mpexp(mpsin(2)))
+
+    with workdps(60):
+        observed = mplog(error(steps) / error(2 * steps), 2)
+    assert float(observed) == pytest.approx(tableau.order, abs=0.2)
+
+
+@pytest.mark.parametrize("method", PARALLEL)
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-11])
+@ignore_predictability()
+def test_errors_are_proportional_to_the_tolerance(method: str, tolerance: float) -> None:
+    starts = np.zeros((4, 30))
+    starts[:2] = np.random.default_rng(5).uniform(-2, 2, (2, 30))
+    exact = ensemble(dp, (0, 3), starts, dp.DEFAULTS, method="verner98", rtol=1e-14, atol=1e-14)
+    options = {"method": method, "rtol": tolerance, "atol": tolerance}
+    ends = ensemble(dp, (0, 3), starts, dp.DEFAULTS, **options)
+    errors = np.abs(ends.y - exact.y).max(axis=0) / tolerance
+    assert ends.success.all()
+    assert 0.01 < np.median(errors) < 30
+    assert errors.max() < 1000  # some of these motions amplify errors a hundred times
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+@pytest.mark.parametrize("method", PARALLEL)
+def test_states_within_steps_are_as_accurate_as_their_ends(method: str, backend: str) -> None:
+    times = np.linspace(0, 2, 301)
+    options = {"method": method, "backend": backend, "rtol": 1e-9, "atol": 1e-9}
+    found = integrate(dp, (0, 2), REPORT, dp.DEFAULTS, t_eval=times, **options)
+    exact = integrate(dp, (0, 2), REPORT, dp.DEFAULTS, t_eval=times, rtol=1e-13, atol=1e-13)
+    plain = integrate(dp, (0, 2), REPORT, dp.DEFAULTS, **options)
+    assert np.abs(found.y - exact.y).max() < 1e-8
+    if backend == "compiled":  # the polynomial of the step predicts the stages of shorter ones
+        iterations = (found.nfev - plain.nfev) / load(method).stages
+        assert iterations / (301 - plain.steps) < 3.5
+
+
+def test_a_polynomial_predicts_longer_and_shorter_steps() -> None:
+    # h dy/dt = P_0 - 2 P_1 + P_2/2 at x = 2 t/h - 1, with h = 0.5
+    polynomial, c = Polynomial(0.5, np.array([[1.0], [-2.0], [0.5]])), np.array([0.0, 0.3, 1.0])
+
+    def slope(t: np.ndarray) -> np.ndarray:
+        x = 4 * t - 1
+        return (1 - 2 * x + (3 * x**2 - 1) / 4) / 0.5
+
+    for predicted, t in (
+        (polynomial.derivatives(0.2, c), 0.5 + 0.2 * c),
+        (polynomial.from_start().derivatives(0.2, c), 0.2 * c),
+    ):
+        assert predicted[:, 0] == pytest.approx(0.2 * slope(t), abs=1e-15)
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+def test_turns_are_counted_in_long_steps(backend: str) -> None:
+    # the velocity of a wheel changes by twenty turns a second in every step
+    found = integrate(
+        sp, (0, 10), (0.0, 40.0), (1.0, 1.0, 9.81), method="gauss8", backend=backend,
+        form="rational", rtol=1e-3, atol=1e-3,
+    )  # fmt: skip
+    exact = integrate(sp, (0, 10), (0.0, 40.0), (1.0, 1.0, 9.81))
+    assert found.y[0, -1] == pytest.approx(exact.y[0, -1], abs=0.1)
+
+
+@pytest.mark.parametrize("method", PARALLEL)
+def test_ratios_are_exactly_symplectic(method: str) -> None:
+    ratios, tableau = symplectic_ratios(load(method)), load(method)
+    for i in range(tableau.stages):
+        for j in range(tableau.stages):
+            assert Fraction(ratios[i, j]) + Fraction(ratios[j, i]) == 1
+            exact = Fraction(tableau.A[i][j]) / Fraction(tableau.b[j])
+            assert abs(float(Fraction(ratios[i, j]) - exact)) < 3e-16
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+def test_a_diverging_iteration_shortens_the_step(backend: str) -> None:
+    # a spring a hundred times as fast as the swing limits the steps
+    stiff = (1.0, 1e4, 1.0, 9.81)
+    start = (*ep.equilibrium(stiff), 0.0, 0.5)
+    options = {"rtol": 1e-6, "atol": 1e-6}
+    found = integrate(ep, (0, 1), start, stiff, method="gauss8", backend=backend, **options)
+    exact = integrate(ep, (0, 1), start, stiff, rtol=1e-12, atol=1e-12)
+    assert found.status is Status.FINISHED
+    assert np.abs(found.y[:, -1] - exact.y[:, -1]).max() < 1e-4
+    assert found.steps + found.rejected < 120
+    fixed = integrate(ep, (0, 1), start, stiff, method="gauss8", h=0.5, backend=backend)
+    assert fixed.status is Status.NO_CONVERGENCE
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+def test_a_motion_at_rest_stays_there(backend: str) -> None:
+    found = integrate(dp, (0, 1), (0.0, 0.0, 0.0, 0.0), dp.DEFAULTS, method="gauss8", h=0.1)
+    assert np.array_equal(found.y[:, -1], np.zeros(4))
+
+
+@pytest.mark.parametrize("compensated", [False, True])
+def test_energy_has_no_drift_over_many_periods(compensated: bool) -> None:
+    # 10^4 periods of a pendulum, iterated to rounding: only rounding errors remain
+    period = 2 * pi * 1.18034 / np.sqrt(9.81)
+    options = {"method": "gauss8", "h": period / 16, "form": "hamiltonian"}
+    times = np.linspace(0, 1e4 * period, 201)
+    motion = integrate(
+        sp, (0, times[-1]), (pi / 2, 0.0), (1.0, 1.0, 9.81), t_eval=times, energy=True,
+        compensated=compensated, **options,
+    )  # fmt: skip
+    assert motion.energy is not None
+    change = motion.energy - motion.energy[0]
+    assert np.abs(change).max() < 1e-12
+    assert abs(np.polyfit(times, change, 1)[0]) * times[-1] < 1e-12
+
+
+def test_prepared_calls_start_anew() -> None:
+    run = prepare(dp, dp.DEFAULTS, method="gauss8")
+    first = run((0, 3), REPORT)
+    run((0, 1), (0.3, -0.2, 1.0, 0.5))
+    assert run((0, 3), REPORT) == first
