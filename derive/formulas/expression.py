@@ -50,7 +50,8 @@ def parse(text: str, scope: Scope, budget: Budget | None = None) -> Value:
     """Parse the formula `text`; its names and functions are those of `scope`, its value is finite.
 
     Numbers are exact (``1/2`` is one half, ``9.81`` is 981/100), ``(a, b)`` is a
-    column and ``[[a, b], [c, d]]`` a matrix. `budget` is that of all formulas of a file.
+    column, also of columns below each other, and ``[[a, b], [c, d]]`` a matrix. `budget` is
+    that of all formulas of a file.
     """
     text, budget = text.strip(), budget or Budget()
     try:
@@ -158,6 +159,9 @@ class _Evaluator:
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 return self._call(name, [*map(self.value, arguments)])
             case ast.Tuple(elts=[_, *_] as items):
+                values = [*map(self.value, items)]
+                if all(getattr(one, "shape", (0, 0))[1] == 1 for one in values):
+                    return sp.ImmutableDenseMatrix(sp.Matrix.vstack(*values))
                 return sp.ImmutableDenseMatrix(list(map(self._entry, items)))
             case ast.List(elts=[ast.List(elts=[_, *_]), *_] as lists):
                 rows = [row.elts for row in lists if isinstance(row, ast.List)]

@@ -101,9 +101,12 @@ class Comparison:
                 a - b, self._model, is_displaced=is_displaced
             ):
                 continue
-            mine, other = (one.entries[index] if one.entries else None for one in (first, side))
+            mine, other = (
+                one.entries[index] if len(one.entries) == len(left) else None
+                for one in (first, side)
+            )
             witness = self._model.context.witness(b, a)
-            if other is None and (result := self._terms.verdict(first, side, witness)):
+            if other is None and (result := self._terms.verdict(first, side, left, right, witness)):
                 return result
             if mine and other and depends_on(a - b, self._scope.derivation.system.qddot):
                 return self._roles.equation(mine, other)

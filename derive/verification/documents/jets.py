@@ -156,8 +156,11 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
         case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
             return _value(argument, values).function(FUNCTIONS[name])
         case ast.Tuple(elts=items):
+            entries = [_value(item, values) for item in items]
+            if all(isinstance(one, np.ndarray) for one in entries):
+                return np.vstack(entries)
             column = np.empty((len(items), 1), dtype=object)
-            column[:, 0] = [_value(item, values) for item in items]
+            column[:, 0] = entries
             return column
         case ast.List(elts=rows):
             lists = [row.elts for row in rows if isinstance(row, ast.List)]

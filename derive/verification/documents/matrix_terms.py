@@ -33,19 +33,20 @@ class MatrixTerms:
     def __init__(self, scope: DocumentScope, linear: Linear, roles: Roles) -> None:
         self._scope, self._linear, self._roles = scope, linear, roles
 
-    def verdict(self, first: Text, side: Text, witness: str) -> SideVerdict | None:
+    def verdict(
+        self, first: Text, side: Text, left: sp.MatrixBase, right: sp.MatrixBase, witness: str
+    ) -> SideVerdict | None:
         """The verdict with the correction of a part; None if no part alone is wrong."""
-        for one, other in ((side, first), (first, side)):
-            with suppress(ExpressionError):
-                value = self._scope.value(other.text)
-                for start, end, is_whole in _parts(one.text):
-                    result = self._of_part(one, start, end, is_whole, value, witness)
+        for one, other in ((side, left), (first, right)):
+            for start, end, is_whole in _parts(one.text):
+                with suppress(ExpressionError, TypeError, ValueError):  # other shapes
+                    result = self._of_part(one, start, end, is_whole, other, witness)
                     if result is not None:
                         return result
         return None
 
     def _of_part(
-        self, one: Text, start: int, end: int, is_whole: bool, other: sp.Expr, witness: str
+        self, one: Text, start: int, end: int, is_whole: bool, other: sp.MatrixBase, witness: str
     ) -> SideVerdict | None:
         part, unknown = one.part(start, end), sp.Symbol(PART)
         own = self._scope.value(part.text)

@@ -8,6 +8,7 @@ import sympy as sp
 
 from derive.formulas.expression import ExpressionError, parse
 from derive.formulas.zero import vanishes
+from derive.verification.documents.applied_forces import without_unknown_terms
 from derive.verification.documents.comparison import Comparison
 from derive.verification.documents.consequences import Consequences
 from derive.verification.documents.derived_matrices import DerivedMatrices
@@ -20,6 +21,7 @@ from derive.verification.documents.side_verdict import CORRECT, SideVerdict, not
 from derive.verification.documents.statements import INDICES, WORD, DocumentFormula
 from derive.verification.documents.text import Text
 from derive.verification.engine import joined
+from derive.verification.model import depends_on
 
 
 class Judge:
@@ -52,6 +54,8 @@ class Judge:
         unknown = self._unknown(formula.sides)
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
+        if unknown and self._is_equation_without(formula, unknown):
+            return plain("verified", formula, f"with {', '.join(unknown)} as applied forces")
         if self._unknown(formula.sides[:1]):
             return not_understood(formula, unknown)
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
@@ -74,6 +78,20 @@ class Judge:
             differences = [one - first for one in others]
             numbers = all(not isinstance(one, sp.MatrixBase) for one in differences)
             return bool(others) and numbers and all(map(vanishes, differences))
+        return False
+
+    def _is_equation_without(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
+        """Whether a formula is an equation of motion but for terms with unknown letters."""
+        system = self._scope.derivation.system
+        known = without_unknown_terms(formula, unknown)
+        if known is None or len(known.sides) != 2 or len(known.words) == len(formula.words):
+            return False
+        with suppress(ExpressionError, NotImplementedError, ValueError):
+            left, right = (self._scope.value(one.text) for one in known.sides)
+            if not depends_on(sp.Tuple(left, right), system.qddot):
+                return False
+            result = self._comparison.compared(known, *known.sides, left, right)
+            return result.verdict.verdict == "verified"
         return False
 
     def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
