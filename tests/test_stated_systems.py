@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from derivations import DERIVATIONS
 
 from derive.reading.documents import read_document
 from derive.system.catalogue import load
@@ -104,3 +105,66 @@ def test_what_follows_from_a_wrong_energy_names_its_line(
     assert (last.verdict, last.note) == ("wrong", f"it follows from line {line}")
     *_, other = judged(tmp_path, text.replace(following, f"{following} + 1"), system)
     assert (other.verdict, other.note) == ("wrong", "")
+
+
+ROBOT = DERIVATIONS["robot"]
+CORIOLIS = ROBOT[ROBOT.index("$$C") : ROBOT.index("$$G")]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (r"s_2 \dot q_1 & 0", r"c_2 \dot q_1 & 0"),
+        (r"(\dot q_1 + \dot q_2)", r"(\dot q_1 - \dot q_2)"),
+        (r"\\ m_2 g l_2 s_{12}", r"\\ m_2 g l_1 s_{12}"),
+    ],
+)
+def test_the_wrong_entry_of_a_matrix_is_corrected(old: str, new: str, tmp_path: Path) -> None:
+    text = ROBOT.replace(old, new)
+    (wrong,) = (o for o in judged(tmp_path, text, "double_pendulum") if o.verdict == "wrong")
+    text = text.replace(wrong.latex, wrong.correction)
+    assert {one.verdict for one in judged(tmp_path, text, "double_pendulum")} == {"verified"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "verdict"),
+    [
+        # another matrix with the same C q̇
+        (
+            CORIOLIS,
+            r"$$C = \begin{bmatrix} -2 m_2 l_1 l_2 s_2 \dot q_2 & -m_2 l_1 l_2 s_2 \dot q_2 \\"
+            r" m_2 l_1 l_2 s_2\dot q_1 & 0 \end{bmatrix}$$",
+            "verified",
+        ),
+        # a matrix without velocities is not that of the forces of inertia
+        (CORIOLIS, r"$$C = \begin{bmatrix} c_1 & 0 \\ 0 & c_2 \end{bmatrix}$$", "definition"),
+    ],
+)
+def test_matrices_of_manipulators_are_not_unique(
+    old: str, new: str, verdict: str, tmp_path: Path
+) -> None:
+    formulas = judged(tmp_path, ROBOT.replace(old, new), "double_pendulum")
+    assert {one.verdict for one in formulas} - {"verified"} == {verdict} - {"verified"}
+
+
+def test_the_gravity_of_a_manipulator_can_stand_on_either_side(tmp_path: Path) -> None:
+    start = ROBOT.index("$$G")
+    column = ROBOT[start : ROBOT.index("$$", start + 2)]
+    negative = column.replace("(m_1", "-(m_1").replace("+ m_2 g l_2", "- m_2 g l_2")
+    negative = negative.replace(r"\\ m_2", r"\\ -m_2")
+    formulas = judged(tmp_path, ROBOT.replace(column, negative), "double_pendulum")
+    assert {one.verdict for one in formulas} == {"verified"}
+
+
+MATRICES = r"""
+$$M = \begin{pmatrix} m_c + m & m l\cos\theta \\ m l\cos\theta & m l^2 \end{pmatrix}, \quad
+  C = \begin{pmatrix} 0 & -m l\dot\theta\sin\theta \\ 0 & 0 \end{pmatrix}$$
+$$(m_c+m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+"""
+
+
+def test_the_rows_of_matrices_have_the_order_with_which_they_hold(tmp_path: Path) -> None:
+    formulas = judged(tmp_path, MATRICES, "cart_1")
+    assert [one.verdict for one in formulas] == ["verified"] * 3
+    (wrong, *_) = judged(tmp_path, MATRICES.replace("& m l^2", "& m l"), "cart_1")
+    assert (wrong.verdict, wrong.wrong_term) == ("wrong", "m l")

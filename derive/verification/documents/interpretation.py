@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from derive.verification.documents.candidates import Candidate, candidates
 from derive.verification.documents.convention import is_crossed
@@ -125,6 +125,21 @@ def _gravity(statements: Translated) -> str:
 
 def judge_of(statements: Translated, letters: Letters, candidate: Candidate) -> Judge:
     """The judge of a document's formulas with the meanings of a candidate."""
+    letters = _with_order(statements, letters, candidate)
     meanings = resolved(candidate, letters, statements.formulas, statements.derivatives)
     system, formulas = meaning(candidate), statements.formulas
     return Judge(DocumentScope(system, letters, formulas, statements.derivatives, meanings))
+
+
+def _with_order(statements: Translated, letters: Letters, candidate: Candidate) -> Letters:
+    """The letters in the order of the rows of M with which most formulas hold."""
+    if "mass_matrix" not in letters.quantities.values():
+        return letters
+    formulas, derivatives = statements.formulas, statements.derivatives
+
+    def holding(one: Letters) -> float:
+        matches = best_matches([candidate], one, formulas, derivatives, frozenset())
+        return matches[0].holding if matches else 0
+
+    orders = (letters.ordered, *letters.other_orders)
+    return max((replace(letters, ordered=one) for one in orders), key=holding)

@@ -2,7 +2,8 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice, permutations
 
 from derive.verification.documents.entries import matrices_by_entries
 from derive.verification.documents.letters import (
@@ -20,6 +21,9 @@ from derive.verification.documents.letters import (
 )
 from derive.verification.documents.rates import order, stem
 from derive.verification.documents.statements import DocumentFormula
+
+#: Orders of the rows of a matrix that are tried.
+MAX_ORDERS = 6
 
 
 def letters_of(
@@ -77,26 +81,30 @@ def letters_of(
         if one not in known and not GENERIC.match(one) and not one.endswith("_column")
     ]
     abbreviations = _abbreviations(stems, coordinates)
-    others = {*abbreviations, *matrices_by_entries(stems)}
-    parameters = [one for one in parameters if one not in others]
+    used = {*abbreviations, *matrices_by_entries(stems)}
+    parameters = [one for one in parameters if one not in used]
+    ordered, *others = _orders(formulas, coordinates, stems)
     return Letters(
         tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
-        _ordered(formulas, coordinates, stems),
+        ordered, tuple(others),
     )  # fmt: skip
 
 
-def _ordered(
+def _orders(
     formulas: Iterable[DocumentFormula], coordinates: Sequence[str], stems: Sequence[str]
-) -> tuple[str, ...]:
-    """Coordinates in the order of a column of them, of their indices, or of their first use."""
+) -> Iterator[tuple[str, ...]]:
+    """Orders of coordinates: of a column of them, of their indices, or any, from the first use."""
     for formula in formulas:
         for column in COLUMN.findall(formula.text):
             names = [stem(name) for name in column.split(", ")]
             if set(names) <= set(coordinates) and len(set(names)) == len(names):
-                return (*names, *(q for q in coordinates if q not in names))
+                yield (*names, *(q for q in coordinates if q not in names))
+                return
     if len({q.partition("_")[0] for q in coordinates}) == 1:
-        return tuple(sorted(coordinates))
-    return tuple(sorted(coordinates, key=lambda q: stems.index(q) if q in stems else 0))
+        yield tuple(sorted(coordinates))
+        return
+    used = sorted(coordinates, key=lambda q: stems.index(q) if q in stems else 0)
+    yield from islice(permutations(used), MAX_ORDERS)
 
 
 def _abbreviations(

@@ -73,6 +73,7 @@ class Letters:
     accelerated: tuple[str, ...]  # coordinates whose accelerations occur, and no definition
     abbreviations: Mapping[str, tuple[str, tuple[str, ...]]]  # such as s_12: sine of q_1 and q_2
     ordered: tuple[str, ...]  # coordinates in the order of columns and matrices
+    other_orders: tuple[tuple[str, ...], ...] = ()  # if the document does not state it
     kinds: Mapping[str, str] = field(default_factory=dict)  # of parameters, if they are given
 
     def hinted(self, kinds: Mapping[str, str]) -> Self:
