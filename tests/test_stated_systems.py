@@ -168,3 +168,14 @@ def test_the_rows_of_matrices_have_the_order_with_which_they_hold(tmp_path: Path
     assert [one.verdict for one in formulas] == ["verified"] * 3
     (wrong, *_) = judged(tmp_path, MATRICES.replace("& m l^2", "& m l"), "cart_1")
     assert (wrong.verdict, wrong.wrong_term) == ("wrong", "m l")
+
+
+@pytest.mark.parametrize("term", ["l", r"\dot\theta^2", "m g l"])
+def test_a_wrong_term_that_is_also_a_factor_is_corrected_as_a_term(
+    term: str, tmp_path: Path
+) -> None:
+    text = rf"{PENDULUM}$$L = \frac12 m l^2\dot\theta^2 + {term}$$"
+    *_, wrong = judged(tmp_path, text, "single_pendulum")
+    assert (wrong.verdict, wrong.wrong_term) == ("wrong", term)
+    formulas = judged(tmp_path, text.replace(wrong.latex, wrong.correction), "single_pendulum")
+    assert formulas[-1].verdict == "verified"

@@ -1,7 +1,7 @@
 """Wrong terms of formulas as the document writes them, and the formulas with correct ones."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from derive.formulas.expression import is_sum, syntax_tree
@@ -68,14 +68,19 @@ def _place(formula: DocumentFormula, result: SideVerdict, one: Correction) -> Sp
     return None
 
 
-def places(text: str, term: str) -> Iterator[tuple[int, int]]:
-    """Where a term stands in a formula of our syntax, whatever its spaces."""
+def places(text: str, term: str) -> list[tuple[int, int]]:
+    """Where a term stands in a formula of our syntax, whatever its spaces: as a factor last."""
     tokens = re.findall(r"\w+|\*\*|\S", term)
+    terms, factors = list[tuple[int, int]](), list[tuple[int, int]]()
     for match in re.finditer(r"\s*".join(map(re.escape, tokens)), text):
-        before, after = text[: match.start()].rstrip()[-1:], text[match.end() :].lstrip()[:1]
-        begins = before in "(+-=,*/[" or text[match.start()] == "-"
-        if begins and after in ")+-=,*/]":
-            yield match.span()
+        before, after = text[: match.start()].rstrip(), text[match.end() :].lstrip()
+        if before.endswith("**") or after.startswith("**"):
+            continue
+        begins = before[-1:] in "(+-=,*/[" or text[match.start()] == "-"
+        if begins and after[:1] in ")+-=,*/]":
+            is_factor = before[-1:] in ("*", "/") or after[:1] in ("*", "/")
+            (factors if is_factor else terms).append(match.span())
+    return terms + factors
 
 
 def _with_sign(latex: str, span: Span) -> Span:

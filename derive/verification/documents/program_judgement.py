@@ -59,7 +59,7 @@ def _judged(equation: Equation, result: SideVerdict) -> JudgedFormula:
     verdict, text = result.verdict, equation.text
     terms, line = list[str](), equation.line
     for one in verdict.corrections:
-        start, end = next(places(text, one.wrong), (0, 0)) if one.wrong else (0, 0)
+        start, end = next(iter(places(text, one.wrong)), (0, 0)) if one.wrong else (0, 0)
         if start < end:
             line = _line(equation, start, end)
             terms.append(one.wrong)

@@ -1,0 +1,74 @@
+"""Formulas that hold but for one term, and corrections in the text of formulas."""
+
+import numpy as np
+import pytest
+
+from derive.verification.documents.corrections import inserted, places
+from derive.verification.documents.jets import Jet, evaluated
+from derive.verification.documents.near import is_near
+
+SPEED = np.linspace(0.3, 1.7, 8)[None]
+NAMES = {
+    "a": Jet.of(np.array([[1.3]])),
+    "b": Jet.of(np.array([[0.7]])),
+    "x": Jet.of(np.linspace(0.4, 1.1, 8)[None] ** 2),
+    "v": Jet.of(SPEED),
+}
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "near"),
+    [
+        ("a*x + b*v", "a*x - b*v", True),  # a sign
+        ("a*x", "2*b*x", True),  # a factor
+        ("a*sin(x) + v", "a*cos(x) + v", True),
+        ("a*v**2 + x", "a*v + x", True),
+        ("a*v + x", "a*v**2 + x", True),
+        ("a*(x + b*v)", "a*x - a*b*v", True),  # in brackets
+        ("(x + b*v)/a", "x/a - b*v/a", True),
+        ("x + v", "x - 2*v", True),
+        ("a*x + b*v", "2*a*x + 3*b*v", False),
+        ("a*sin(x) + v", "a*cos(x) + 2*v", False),
+        ("a*sin(x)", "x", False),
+    ],
+)
+def test_one_changed_term_is_recognised(left: str, right: str, near: bool) -> None:
+    found = is_near((left, right), lambda text: evaluated(text, NAMES), [SPEED])
+    assert found is not None
+    assert found.tolist() == [near]
+
+
+@pytest.mark.parametrize(
+    ("before", "old", "new", "after", "result"),
+    [
+        ("x = a + ", "b", "-c", " + d", "x = a - c + d"),
+        ("x = a - ", "b", "-c", " + d", "x = a + c + d"),
+        ("x = a ", "- b", "c", " + d", "x = a + c + d"),
+        ("x = a ", "-b", "-c", "", "x = a - c"),
+        ("x = ", "- b", "c", "", "x = c"),
+        ("x = (", "a", "-c", ")", "x = (-c)"),
+        ("x = a", "", "-c", "", "x = a - c"),
+        ("x = a", "", "c", "", "x = a + c"),
+    ],
+)
+def test_a_term_is_put_in_with_its_sign(
+    before: str, old: str, new: str, after: str, result: str
+) -> None:
+    assert inserted(before, old, new, after) == result
+
+
+@pytest.mark.parametrize(
+    ("text", "term", "before"),
+    [
+        ("a + b*c - c", "c", ["a + b*c - ", "a + b*"]),
+        ("2*m*l + m*l", "m*l", ["2*m*l + ", "2*"]),
+        ("am*l + m*l", "m*l", ["am*l + "]),
+        ("x - m *l", "-m*l", ["x "]),
+        ("b*sin(a)", "sin(a)", ["b*"]),
+        ("a**2/a + b**a - a", "a", ["a**2/a + b**a - ", "a**2/"]),
+    ],
+)
+def test_places_of_a_term_come_before_those_of_a_factor(
+    text: str, term: str, before: list[str]
+) -> None:
+    assert [text[:start] for start, _ in places(text, term)] == before
