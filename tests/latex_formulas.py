@@ -169,6 +169,15 @@ BRACKETS = r"""
 |a + |b||  ⟶  |(a + |b|)|
 \|\vec r\|^3  ⟶  |bold r|^3
 \lvert x\rvert  ⟶  |x|
+\left.x\right|_{t=0}  ⟶  at(x)
+m \left.\frac{\partial V}{\partial x}\right|_{x_0} u  ⟶  m at(∂(V; x)) u
+T = m v^2, (1.23)  ⟶  T = m v^2
+T = m v^2. (1.24)  ⟶  T = m v^2
+\omega = \sqrt{g\over l}  ⟶  omega = root2([g / l])
+A = \pmatrix{a & b \cr c & d}  ⟶  A = [a, b; c, d]
+q = \left[\array{x \\ \theta}\right]  ⟶  q = [x; theta]
+K.E. = \frac{m v^2}{2}  ⟶  KE = [m v^2 / 2]
+T = \sum_{kl} M_{kl} u_k u_l  ⟶  T = sum(sum(M_kl u_k u_l; l = ..); k = ..)
 (x, y)  ⟶  <x, y>
 [x, \dot x]^T  ⟶  <x, x.>^T
 x(t)  ⟶  x@(t)
@@ -414,7 +423,6 @@ a - -b  ⟶  unreadable: '-' cannot stand here
 (a+b)'  ⟶  unreadable: a prime behind an expression that is no letter
 x^{(2)}  ⟶  unreadable: a number in brackets in the place of an exponent
 A^{-T}  ⟶  unreadable: the transpose of an inverse
-\left.x\right|_{t=0}  ⟶  unreadable: a bracket is closed but never opened
 (x  ⟶  unreadable: a bracket is never closed
 x)  ⟶  unreadable: a bracket is closed but never opened
 [x)  ⟶  unreadable: a bracket is never closed

@@ -2,6 +2,7 @@
 
 from derive.reading.latex.tree import (
     Application,
+    AtPlace,
     Call,
     Derivative,
     Dotted,
@@ -61,6 +62,8 @@ def show(node: Node | Statement | Unreadable) -> str:
             return f"{tight(node.operand)}^T"
         case Norm():
             return f"|{show(node.operand)}|"
+        case AtPlace():
+            return f"at({show(node.operand)})"
         case Summation():
             parts = (node.index, node.lower, node.upper)
             index, lower, upper = ("" if part is None else show(part) for part in parts)

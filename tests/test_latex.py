@@ -102,6 +102,7 @@ def nodes(value: Any, around: tuple[int, int] = (-1, -1)) -> Iterator[Node]:
 
 #: Formulas of which a part has no text of its own: ``1, 2`` of ``i = 1, 2``, and ``t`` of ``dt``.
 WITHOUT_TEXT = (
+    r"\sqrt{g\over l}",
     r"\text{friction of",
     "multline",
     r"\dot\theta^2_1",

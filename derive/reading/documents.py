@@ -7,6 +7,7 @@ from itertools import accumulate
 from pathlib import Path
 from types import ModuleType
 
+from derive.reading.continuation import joined
 from derive.reading.document import CodeCell, Display, Document, Kind, Place
 from derive.reading.formats import html, markdown, notebook, restructuredtext, tex
 from derive.reading.scanning import Excerpt, Unread
@@ -123,7 +124,7 @@ def _scanned(
     )
     return replace(
         document,
-        displays=tuple(numbered),
+        displays=tuple(joined(numbered, document.text)),
         definitions=definitions,
         notes=(*notes, *(_note(reason, places) for reason, places in unread.items())),
     )

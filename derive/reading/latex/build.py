@@ -19,6 +19,7 @@ from derive.reading.latex.products import divided
 from derive.reading.latex.tokens import Unread
 from derive.reading.latex.tree import (
     Application,
+    AtPlace,
     Call,
     Dotted,
     Letter,
@@ -74,7 +75,9 @@ class Build:
 
     def argument(self, children: list[Part]) -> Written:
         """The content of the braces of an argument."""
-        return Written(node(children[1]), around(children), "argument")
+        first, content, last = children
+        inner = content[0] if isinstance(content, list) else content
+        return Written(node(inner), around((first, last)), "argument")
 
     def application(self, children: list[Part]) -> Node:
         """A letter before brackets."""
@@ -111,6 +114,10 @@ class Build:
         """An expression between bars; of a matrix, its determinant."""
         operand, span = node(children[1]), around((children[0], children[-1]))
         return Call("det", operand, span) if isinstance(operand, Matrix) else Norm(operand, span)
+
+    def at_place(self, children: list[Part]) -> Node:
+        """An expression at a place."""
+        return AtPlace(node(children[1]), around((children[0], children[-1])))
 
     def over(self, children: list[Part]) -> list[Part]:
         r"""A fraction written with ``\over``."""
@@ -160,7 +167,8 @@ class Build:
     def lower(self, children: list[Part]) -> "Bound":
         """The indices of a sum and their first value."""
         _, _, items, *first, _ = children
-        indices = tuple(node(item) for item in items)
+        written = [node(item) for item in items]
+        indices = tuple(f for one in written for f in getattr(one, "factors", (one,)))
         if first and first[0].value != "=":
             raise Unread("a sum over a condition")
         letters = tuple(index for index in indices if isinstance(index, Letter))

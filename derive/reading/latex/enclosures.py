@@ -10,6 +10,7 @@ from derive.reading.latex.parts import Symbol
 from derive.reading.latex.tokens import Token, Unread
 
 SHAPES = {"(": "ROUND", "[": "SQUARE", "{": "CURLY", "|": "NORM", "<": "ANGLE", "floor": "FLOOR"}
+SHAPES["place"] = "PLACE"
 SIGNS = {"+": ("SIGN", 1), "-": ("SIGN", -1), "*": ("TIMES", "*"), "/": ("SLASH", "/")}
 REASONS = {
     "_": "an index behind an expression that is no letter",

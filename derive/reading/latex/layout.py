@@ -15,6 +15,7 @@ from derive.reading.latex.symbols import (
     FRAMES,
     GAPS,
     LAYOUT,
+    MATRICES,
     RELATIONS,
     SEPARATORS,
     SPACES,
@@ -28,12 +29,17 @@ from derive.reading.latex.words import words_of
 WIDE = {"cm": 0.5, "mm": 5, "em": 1, "ex": 2, "pt": 10, "in": 0.2, "mu": 18}
 
 
+#: Abbreviations of energies.
+ENERGY = re.compile(r"[KPTkp]\.[Ee]\.")
+
+
 class Layout(Cursor):
     """A reader of the tokens of a display."""
 
     def __init__(self, tokens: list[Token]) -> None:
         super().__init__(tokens)
         self.result: list[Token] = []
+        self._opened: list[int] = []  # places of \left in the result
 
     def tokens_without_layout(self) -> list[Token]:
         """The tokens that carry a meaning."""
@@ -51,6 +57,10 @@ class Layout(Cursor):
         if token.kind in BRACKETS:
             kind, shape = BRACKETS[token.kind]
             self.result.append(Token(kind, shape, token.span))
+        elif ENERGY.fullmatch(abbreviation := "".join(t.text for t in self.tokens[at : at + 4])):
+            span = token.span[0], self.tokens[at + 3].span[1]
+            self.result.append(Token("word", abbreviation.replace(".", ""), span))
+            return at + 4
         elif token.kind == "~":
             self.result.append(Token("space", "~", token.span))
         else:
@@ -91,6 +101,8 @@ class Layout(Cursor):
             return self._space(token, at)
         elif name in ("begin", "end"):
             return self._environment(token, at)
+        elif name in MATRICES and self._opens_group(at):
+            return self._plain_matrix(token, at)
         elif name in TEXT or name in ("intertext", "shortintertext") or name in UPRIGHT:
             return self._text(token, at)
         elif name in ("underbrace", "overbrace"):
@@ -124,6 +136,7 @@ class Layout(Cursor):
         name = "\\" + bracket.text if bracket.kind == "command" else bracket.kind
         span = token.span[0], bracket.span[1]
         if name == "." and token.text in ("left", "right"):
+            self._pair(token)
             self.result.append(Token("null", token.text, span))
             return at + 1
         if name not in BRACKETS:
@@ -131,6 +144,11 @@ class Layout(Cursor):
                 raise Unread(rf"\{token.text} has no bracket")
             return at
         kind, shape = BRACKETS[name]
+        start = self._pair(token)
+        if kind == "bar" and start is not None and self.result[start].kind == "null":
+            self.result[start] = replace(self.result[start], kind="open", text="place")
+            self.result.append(Token("close", "place", span))
+            return self._behind_scripts(at + 1)
         side = {"l": "open", "r": "close"}.get(token.text[-1], "")
         if token.text in ("left", "right"):
             side = "open" if token.text == "left" else "close"
@@ -140,6 +158,21 @@ class Layout(Cursor):
             kind = "middle"
         self.result.append(Token(kind, shape, span))
         return at + 1
+
+    def _pair(self, token: Token) -> int | None:
+        r"""The place in the result of the \left of a \right."""
+        if token.text == "left":
+            self._opened.append(len(self.result))
+        is_end = token.text == "right" and self._opened
+        return self._opened.pop() if is_end else None
+
+    def _behind_scripts(self, at: int) -> int:
+        """The token behind an index and an exponent."""
+        after = self.skip(at)
+        while after < len(self.tokens) and self.tokens[after].kind in "_^":
+            at = self.end_of_argument(after + 1)
+            after = self.skip(at)
+        return at
 
     def _space(self, token: Token, at: int) -> int:
         start = self.star(at)
@@ -162,6 +195,19 @@ class Layout(Cursor):
             end = self.end_of_argument(end)
         last = self.tokens[end - 1].span[1]
         self.result.append(Token(token.text, name, (token.span[0], last)))
+        return end
+
+    def _opens_group(self, at: int) -> bool:
+        at = self.skip(at)
+        return at < len(self.tokens) and self.tokens[at].kind == "{"
+
+    def _plain_matrix(self, token: Token, at: int) -> int:
+        r"""The matrix ``\pmatrix{a & b \cr c & d}`` of plain TeX as an environment."""
+        start, end = self.skip(at), self.end_of_argument(at)
+        last = self.tokens[end - 1].span
+        self.result.append(Token("begin", token.text, token.span))
+        self.result += Layout(self.tokens[start + 1 : end - 1]).tokens_without_layout()
+        self.result.append(Token("end", token.text, last))
         return end
 
     def _text(self, token: Token, at: int) -> int:

@@ -30,6 +30,9 @@ def pairs(tokens: list[Token]) -> dict[int, int]:
         elif token.kind in ("}", "close", "end"):
             while stack and tokens[stack[-1]].kind == "bar":
                 stack.pop()
+            if token.kind == "end" and any(_fits(tokens[one], token) for one in stack):
+                while tokens[stack[-1]].kind == "open":  # never closed, in one of the rows
+                    stack.pop()
             if stack and _fits(tokens[stack[-1]], token):
                 _join(partner, stack.pop(), at)
         if len(stack) > MAX_DEPTH:

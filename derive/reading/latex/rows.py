@@ -11,10 +11,12 @@ ends of rows. A part continues the statement before it
 - if its row starts with ``&`` and has no relation, and the first row of the statement does not.
 
 A number behind a comma is a further value, as in ``i = 1, 2``.
-An integer in brackets after a wide space at the end of a row is the number of the equation.
+A number in brackets at the end of a row, after a wide space or a mark of punctuation, is the number
+of the equation.
 """
 
 from dataclasses import dataclass, field
+from itertools import takewhile
 
 from derive.reading.latex.pairs import inside, is_operator, pairs
 from derive.reading.latex.symbols import ELLIPSES, MATRICES, ROWS
@@ -22,6 +24,8 @@ from derive.reading.latex.tokens import Token, Unread
 
 HARD = frozenset({",", ";", "prose", "."})
 SEPARATORS = HARD | {"gap", "row", "&"}
+#: What can stand between an equation and its number.
+BEFORE_NUMBERS = frozenset({"gap", "&", ",", ";", "."})
 
 
 @dataclass
@@ -149,8 +153,12 @@ def parts(tokens: list[Token]) -> list[Part]:
 
 
 def _ends_sentence(tokens: list[Token], at: int) -> bool:
-    after = next((t for t in tokens[at + 1 : at + 9] if t.kind != "space"), None)
-    return after is None or after.kind in ("row", "gap", "prose", "&", "begin", "end", ".")
+    row = takewhile(lambda token: token.kind != "row", tokens[at + 1 :])
+    behind = [token for token in row if token.kind != "space"]
+    after = behind[0] if behind else None
+    if after is None or after.kind in ("gap", "prose", "&", "begin", "end", "."):
+        return True
+    return _is_number(behind)
 
 
 def statements(tokens: list[Token]) -> list[list[Token]]:
@@ -184,7 +192,7 @@ def _without_brackets(tokens: list[Token]) -> list[Token]:
 
 def _is_number_of_equation(part: Part) -> bool:
     tokens = [token for token in part.tokens if token.kind != "space"]
-    return bool(part.boundaries & {"gap", "&"}) and part.ends_row and _is_number(tokens)
+    return bool(part.boundaries & BEFORE_NUMBERS) and part.ends_row and _is_number(tokens)
 
 
 def _is_number(tokens: list[Token]) -> bool:

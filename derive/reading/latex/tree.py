@@ -149,6 +149,14 @@ class Norm:
 
 
 @dataclass(frozen=True)
+class AtPlace:
+    r"""An expression before a bar with a place, which is not read: ``\left. f \right|_{x_0}``."""
+
+    operand: "Node"
+    span: Span
+
+
+@dataclass(frozen=True)
 class Summation:
     r"""``\sum`` with its index and bounds, if they are written."""
 
@@ -175,6 +183,7 @@ Node: TypeAlias = (
     | Tuple
     | Transpose
     | Norm
+    | AtPlace
     | Summation
 )
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, permutations, product
 from math import pi
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 from derive.system.parts import Parameter
 from derive.system.system import System
@@ -16,6 +16,10 @@ MAX_CANDIDATES = 3000
 MAX_CHOICES = 200
 #: Letters of forces and of friction that are tried.
 MAX_FORCES = 2
+
+#: What a letter of friction damps: the rate of one coordinate or of all, the velocity of each mass
+#: (with Rayleigh's function b (v_1**2 + v_2**2)/2), or the motion as a whole (Q = -b M q_dot).
+Damped: TypeAlias = int | Literal["coordinates", "masses", "motion"]
 
 #: An angle of the system: sign times the document's angle, plus a number of right angles. From
 #: hanging, from upright, mirrored, and from the horizontal.
@@ -48,7 +52,7 @@ class Candidate:
     offsets: tuple[int | str, ...]
     parameters: Mapping[str, str]  # of the system, and the document's letters
     forces: tuple[tuple[str, int], ...] = ()  # letters of forces on coordinates of the document
-    friction: tuple[tuple[str, int], ...] = ()
+    friction: tuple[tuple[str, Damped], ...] = ()
     #: Numbers in place of parameters that have no letter.
     numbers: Mapping[str, str] = field(default_factory=dict)
 
@@ -88,7 +92,7 @@ def candidates(
         [*letters.orders([one.unit == "rad" for one in system.coordinates])],
         [*islice(_parameters(system, letters), MAX_CHOICES)],
         loads(letters, "force", n),
-        loads(letters, "damping", n),
+        frictions(letters, n),
     )
     for (signs, offsets), order, mapping, forces, friction in islice(choices, MAX_CANDIDATES):
         own = _numbers(system, mapping, numbers or {})
@@ -186,3 +190,11 @@ def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ..
         tuple((name, index) for name, index in zip(usual, choice, strict=True) if index is not None)
         for choice in choices
     ]
+
+
+def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
+    """What letters of friction damp: one coordinate each, or one of them everything."""
+    one_each: list[tuple[tuple[str, Damped], ...]] = [*loads(letters, "damping", n)]
+    names = letters.of_kind("damping")[:MAX_FORCES]
+    everything: tuple[Damped, ...] = ("coordinates", "masses", "motion")
+    return [*one_each, *(((name, damped),) for name in names for damped in everything)]

@@ -67,5 +67,13 @@ def _angles(candidate: Candidate) -> str:
 def _loads(candidate: Candidate) -> list[str]:
     """Forces and friction in words."""
     forces = [f"{name} acts on {candidate.coordinates[i]}" for name, i in candidate.forces]
-    friction = [f"{name} damps {candidate.coordinates[i]}" for name, i in candidate.friction]
+    damped = {
+        "coordinates": "all coordinates",
+        "masses": "the velocity of each mass",
+        "motion": "the motion by its masses",
+    }
+    friction = [
+        f"{name} damps {candidate.coordinates[one] if isinstance(one, int) else damped[one]}"
+        for name, one in candidate.friction
+    ]
     return forces + friction

@@ -21,6 +21,10 @@ from derive.verification.documents.verdicts import Judge
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
 #: so many hold.
 LEAST, ENOUGH = 0.3, 3
+#: Numbers in the moments of inertia of rods.
+THIRD = re.compile(r"\b(?:3|6|12|24)\b")
+#: The least part if the meaning of letters is not the usual one.
+UNUSUAL = 0.4
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
 
@@ -47,7 +51,7 @@ def interpretation(statements: Translated, hints: Hints | None = None) -> Interp
     found = _best(letters, statements, _candidates(letters, statements))
     if found.match is None or found.match.holding < 1:
         numbers = {"gravity": _gravity(statements)}
-        other = _best(letters, statements, _of_templates(letters, numbers))
+        other = _best(letters, statements, _of_templates(letters, statements, numbers))
         if other.match and (found.match is None or other.match.score > found.match.score):
             return other
     return found
@@ -69,9 +73,16 @@ def _best(
         if match.holding or not least
     ]
     best = max(matches, key=lambda match: match.score, default=None)  # the first of several
-    if best is None or best.holding < min(ENOUGH, least * best.compared):
+    if best is None or (least and not _is_supported(best, least)):
         return Interpretation(letters, None)
     return Interpretation(letters, best, tuple(_rivals(best, matches)))
+
+
+def _is_supported(best: Match, least: float) -> bool:
+    """Whether enough comparisons hold: with unusual meanings of letters, half of them."""
+    if best.candidate.is_usual:
+        return best.holding >= max(1, min(ENOUGH, least * best.compared))
+    return best.holding >= max(1, UNUSUAL * best.compared)
 
 
 def _rivals(best: Match, matches: Iterable[Match]) -> Iterator[Match]:
@@ -105,14 +116,15 @@ def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[C
     """Candidates of one system after another: of those that the document states first."""
     for system in stated_systems(letters, statements.formulas):
         yield [*stated_candidates(system, letters)]
-    yield from _of_templates(letters)
+    yield from _of_templates(letters, statements)
 
 
 def _of_templates(
-    letters: Letters, numbers: Mapping[str, str] | None = None
+    letters: Letters, statements: Translated, numbers: Mapping[str, str] | None = None
 ) -> Iterator[Sequence[Candidate]]:
+    has_rods = any(THIRD.search(formula.text) for formula in statements.formulas)
     for count in range(len(letters.coordinates), 0, -1):
-        for system in templates(count):
+        for system in templates(count, has_rods):
             yield [*candidates(system, letters, numbers)]
 
 

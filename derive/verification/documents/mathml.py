@@ -9,6 +9,7 @@ from itertools import groupby, pairwise
 from derive.formulas.typesetting import APPLY, MINUS, TIMES
 from derive.reading.latex.tree import (
     Application,
+    AtPlace,
     Call,
     Derivative,
     Dotted,
@@ -182,6 +183,8 @@ class _Typesetter:
                 return f"<msup>{_row(self.operand(operand, ATOM))}<mi>T</mi></msup>", POWER
             case Norm(operand=operand):
                 return _brackets(self._markup(operand)[0], "|", "|"), ATOM
+            case AtPlace(operand=operand):
+                return _brackets(self._markup(operand)[0], "", "|"), ATOM
             case Summation():
                 return self._summation(node), PRODUCT
 

@@ -2,14 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import sympy as sp
 
+from derive.mechanics.derivation import Derivation
 from derive.system.naming import check_name
 from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
 from derive.system.symbols import velocity
 from derive.system.system import System
-from derive.verification.documents.candidates import Candidate
+from derive.verification.documents.candidates import Candidate, Damped
 
 #: Endings of parameters that a document does not name, and of letters that are no valid names.
 UNNAMED, INVALID = "_unnamed", "_letter"
@@ -50,10 +52,14 @@ def meaning(candidate: Candidate) -> Meaning:
         values[symbol] = sp.Add(*(s * one for s, one in zip(signs, q, strict=True)), shift)
         values[rate] = sp.Add(*(s * one for s, one in zip(signs, qdot, strict=True)))
     forces = _forces(template, candidate, values)
-    for name, i in (*candidate.forces, *candidate.friction):
+    for name, _ in (*candidate.forces, *candidate.friction):
         symbols[name] = sp.Symbol(valid_name(name), real=True)
         units.setdefault(symbols[name].name, "N")
-        forces[i] += symbols[name] * (1 if (name, i) in candidate.forces else -qdot[i])
+    for name, damped in candidate.friction:
+        row = _damping(candidate, damped).xreplace(values) * sp.Matrix(qdot)
+        forces = [force - symbols[name] * one for force, one in zip(forces, row, strict=True)]
+    for name, i in candidate.forces:
+        forces[i] += symbols[name]
     parameters = {s.name: s for s in symbols.values() if s not in q}
     parameters |= {v.name: v for p in template.params if isinstance(v := values[p], sp.Symbol)}
     kinds = {one.symbol.name: one.unit for one in template.coordinates}
@@ -72,6 +78,37 @@ def meaning(candidate: Candidate) -> Meaning:
         forces=forces,
     )
     return Meaning(system, symbols)
+
+
+def _damping(candidate: Candidate, damped: Damped) -> sp.Matrix:
+    """The matrix D of friction Q = -b D q' on the document's coordinates, in template symbols."""
+    n = len(candidate.coordinates)
+    if isinstance(damped, int):
+        return sp.diag(*(int(i == damped) for i in range(n)))
+    if damped == "coordinates":
+        return sp.eye(n)
+    signs = sp.Matrix(candidate.signs)
+    matrix = mass_matrix(candidate.system) if damped == "motion" else drag(candidate.system)
+    return sp.Matrix(signs.T * matrix * signs)
+
+
+def mass_matrix(template: System) -> sp.Matrix:
+    """The mass matrix of a system."""
+    return sp.Matrix(derivation(template).mass_matrix)
+
+
+def drag(template: System) -> sp.Matrix:
+    """The mass matrix with 1 for every mass, and without inertia."""
+    masses = {p.symbol for p in template.parameters if p.unit == "kg"}
+    inertia = {p.symbol: 0 for p in template.parameters if p.unit == "kg m^2"}
+    matrix = mass_matrix(template).xreplace(inertia)
+    return sum((matrix.diff(mass) for mass in masses), sp.zeros(*matrix.shape))
+
+
+@cache
+def derivation(template: System) -> Derivation:
+    """The derivation of a system, which is kept."""
+    return Derivation(template)
 
 
 def _forces(

@@ -5,24 +5,18 @@ coordinates q' of q = A q' + c: M' = Aᵀ M A and f' = Aᵀ f.
 """
 
 from collections.abc import Mapping, Sequence
-from functools import cache, cached_property
+from functools import cached_property
 
 import numpy as np
 import sympy as sp
 
-from derive.mechanics.derivation import Derivation
-from derive.system.system import System
 from derive.verification.documents.candidates import Candidate
 from derive.verification.documents.jets import Array, Jet, Value, evaluated
 from derive.verification.documents.letters import Letters
+from derive.verification.documents.meaning import derivation, drag, mass_matrix
 
 #: Number of states.
 STATES = 3
-
-
-@cache
-def _derivation(system: System) -> Derivation:
-    return Derivation(system)
 
 
 class ArbitraryMotion:
@@ -66,7 +60,7 @@ class Motions:
 
     def __init__(self, tried: Sequence[Candidate], letters: Letters) -> None:
         self._system, self._tried = tried[0].system, tried
-        self._derivation = _derivation(self._system)
+        self._derivation = derivation(self._system)
         self.shape = (len(tried), STATES)
         random = np.random.default_rng(0)
         names = sorted({*letters.coordinates} | {q for one in tried for q in one.coordinates})
@@ -89,7 +83,7 @@ class Motions:
         """The accelerations of each coordinate of the document; NaN where it is none."""
         M, f = self._mass_matrix, np.array([*map(self._numbers, self._derivation.forcing)])
         f = np.einsum("bji,jbk->bki", self._signs, f)
-        f += np.stack([self._loads(one) for one in self._tried])
+        f += self._loads
         with np.errstate(all="ignore"):
             try:
                 solution = np.linalg.solve(M, f[..., None])[..., 0]
@@ -100,8 +94,16 @@ class Motions:
     @cached_property
     def _mass_matrix(self) -> Array:
         """M' of all candidates: candidates, states, rows, columns."""
-        d, n = self._derivation, range(len(self._system.q))
-        M = np.array([[self._numbers(d.mass_matrix[i, j]) for j in n] for i in n])
+        return self._transformed(mass_matrix(self._system))
+
+    @cached_property
+    def _drag(self) -> Array:
+        return self._transformed(drag(self._system))
+
+    def _transformed(self, matrix: sp.Matrix) -> Array:
+        """Aᵀ M A of all candidates."""
+        n = range(len(self._system.q))
+        M = np.array([[self._numbers(matrix[i, j]) for j in n] for i in n])
         return np.asarray(np.einsum("bji,jlbk,blm->bkim", self._signs, M, self._signs))
 
     def mass_matrix(self, order: Sequence[str]) -> Value:
@@ -164,14 +166,26 @@ class Motions:
     @cached_property
     def _forces(self) -> Mapping[str, Array]:
         """Forces of the document on its coordinates."""
-        return self._by_coordinate(np.stack([self._loads(one) for one in self._tried]))
+        return self._by_coordinate(self._loads)
 
-    def _loads(self, candidate: Candidate) -> Array:
+    @cached_property
+    def _loads(self) -> Array:
+        return np.stack([self._load(b, one) for b, one in enumerate(self._tried)])
+
+    def _load(self, number: int, candidate: Candidate) -> Array:
         loads = np.zeros((STATES, len(candidate.coordinates)))
         for name, i in candidate.forces:
             loads[:, i] += self.parameters[name]
-        for name, i in candidate.friction:
-            loads[:, i] -= self.parameters[name] * self.speeds[candidate.coordinates[i]]
+        speeds = np.stack([self.speeds[q] for q in candidate.coordinates], axis=-1)
+        for name, damped in candidate.friction:
+            if isinstance(damped, int):
+                rates = speeds * (np.arange(speeds.shape[-1]) == damped)
+            elif damped == "coordinates":
+                rates = speeds
+            else:
+                matrix = self._mass_matrix if damped == "motion" else self._drag
+                rates = np.einsum("kij,kj->ki", matrix[number], speeds)
+            loads -= self.parameters[name] * rates
         return loads
 
     def _by_coordinate(self, table: Array) -> Mapping[str, Array]:

@@ -41,7 +41,8 @@ def is_near(
             for other in _variants(text, own, value, velocities):
                 ratio = (own - total) / other
                 middle = np.abs(ratio).mean(axis=-1)
-                hit = np.ptp(ratio, axis=-1) <= CONSTANT * middle
+                spread = np.where(np.isfinite(middle), np.ptp(ratio, axis=-1), np.inf)
+                hit = (spread <= CONSTANT * middle) & np.isfinite(spread)
                 result = hit if result is None else result | hit
     return result
 

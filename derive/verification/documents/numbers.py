@@ -76,10 +76,13 @@ class Numbers:
 
     def comparisons(self, formula: DocumentFormula) -> Iterator[tuple[str, Votes]]:
         """Yield the sides of a formula, and whether each agrees with the first with a value."""
+        if formula.is_update:
+            return
         kind = self._letters.quantities.get(formula.subject)
-        values = [self._value(side.text) for side in formula.sides]
+        exact = formula.relations.index("~") + 1 if "~" in formula.relations else None
+        values = [self._value(side.text) for side in formula.sides[:exact]]
         start = 0 if values[0] is not None else 1
-        for side, right in zip(formula.sides[start + 1 :], values[start + 1 :], strict=True):
+        for side, right in zip(formula.sides[start + 1 : exact], values[start + 1 :], strict=True):
             left = values[start]
             if left is None or right is None:
                 continue

@@ -9,7 +9,7 @@ from derive.formulas.expression import FUNCTIONS, ExpressionError, parse
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME
 from derive.system.system import System
-from derive.verification.documents.candidates import UNITS, Candidate, loads
+from derive.verification.documents.candidates import UNITS, Candidate, frictions, loads
 from derive.verification.documents.letters import KINDS, Letters
 from derive.verification.documents.meaning import valid_name
 from derive.verification.documents.statements import DocumentFormula, definitions
@@ -65,7 +65,7 @@ def stated_candidates(system: System, letters: Letters) -> Iterator[Candidate]:
     parameters = {p.name: name for name in letters.parameters for p in system.params
                   if p.name == valid_name(name)}  # fmt: skip
     for forces in loads(letters, "force", n):
-        for friction in loads(letters, "damping", n):
+        for friction in frictions(letters, n):
             yield Candidate(system, order, signs, (0,) * n, parameters, forces, friction)
 
 

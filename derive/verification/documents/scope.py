@@ -7,13 +7,14 @@ from typing import Any
 import sympy as sp
 
 from derive.formulas.expression import ExpressionError, Value, parse
+from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.verification.documents.entries import composed
 from derive.verification.documents.letters import Letters
 from derive.verification.documents.meaning import Meaning
 from derive.verification.documents.rates import RATES, stem
-from derive.verification.documents.statements import DocumentFormula, definitions
+from derive.verification.documents.statements import WORD, DocumentFormula, definitions
 from derive.verification.model import Model, depends_on, own_names, time_derivative
 
 #: Generalized forces, such as Q_theta.
@@ -38,6 +39,8 @@ class DocumentScope:
         self._system = meaning.system
         #: Names with their values.
         self.names: dict[str, Any] = dict(_functions(self._system, self.derivation))
+        #: Formulas that define a name, with the text that does.
+        self.defining: dict[str, tuple[DocumentFormula, str]] = {}
         self._add_letters(meaning)
         self._add_energies()
         self._add_derivatives()
@@ -47,8 +50,6 @@ class DocumentScope:
         #: Names of matrices and columns whose entries are defined one by one, and of columns of
         #: small displacements.
         self.composed, self.displacements = set[str](), set[str]()
-        #: Formulas that define a name, with the text that does.
-        self.defining: dict[str, tuple[DocumentFormula, str]] = {}
         for _ in range(ROUNDS):
             known = len(self.names)
             for formula in formulas:
@@ -159,7 +160,7 @@ class DocumentScope:
         scope = self.all_names
         if operand not in scope or any(one not in scope for one in variables):
             return None
-        value = scope[operand]
+        value, constants = self._operand(operand)
         kind = self.letters.quantities.get(operand)
         for one in variables:
             variable = scope[one]
@@ -175,7 +176,33 @@ class DocumentScope:
                 value = value.diff(variable)
             else:
                 return None
-        return value
+        return value.xreplace(constants)
+
+    def _operand(self, name: str) -> tuple[Value, dict[sp.Dummy, sp.Expr]]:
+        """The value of a name with dummies for conserved momenta in its definition, and these.
+
+        In an effective potential they are constants: its derivative is not that of T + V.
+        """
+        _, text = self.defining.get(name, (None, ""))
+        words = {word for word in WORD.findall(text) if word in self.defining}
+        words = {word for word in words if self._is_conserved(word)}
+        if not words:
+            return self.all_names[name], {}
+        dummies = {word: sp.Dummy(word) for word in words}
+        value = parse(text, {**self.all_names, **dummies})
+        return value, {dummy: self.names[word] for word, dummy in dummies.items()}
+
+    def _is_conserved(self, name: str) -> bool:
+        """Whether a name stands for the momentum of a coordinate that L does not depend on."""
+        value, d = self.names.get(name), self.derivation
+        if not isinstance(value, sp.Expr) or not depends_on(value, self._system.qdot):
+            return False
+        return any(
+            not d.lagrangian.diff(q) and not force and vanishes(value - momentum)
+            for q, momentum, force in zip(
+                self._system.q, d.momenta, self._system.applied, strict=True
+            )
+        )
 
     def _define(self, formula: DocumentFormula) -> None:
         for name, text in definitions(formula):

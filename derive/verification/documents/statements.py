@@ -17,6 +17,7 @@ from derive.reading.latex.tree import (
     Unreadable,
 )
 from derive.reading.latex.walking import has_index, indexed, letters, nodes
+from derive.verification.documents.rates import stem
 from derive.verification.documents.text import Text
 from derive.verification.documents.translation import Notation, Translator, UntranslatableError
 
@@ -85,6 +86,13 @@ class DocumentFormula:
         return " ".join(pieces)
 
     @property
+    def is_update(self) -> bool:
+        """Whether it is a step in time, such as x = x + h*x_dot, and no equation."""
+        first, last = self.sides[0].text, self.sides[-1].text
+        is_next = first.isidentifier() and stem(first).endswith("_plus_1")
+        return is_next or (first.isidentifier() and last.startswith((f"{first} + ", f"{first} - ")))
+
+    @property
     def subject(self) -> str:
         """The name on the left of an equation, or "" if there is a formula."""
         first = self.sides[0].text
@@ -139,6 +147,14 @@ def notation(occurrences: Iterable[Occurrence]) -> Notation:
         for node in nodes(tree)
         if isinstance(node, Application) and _are_arguments(node.arguments, dotted)
     }
+    of_letters = {
+        plain.name(node.head)
+        for tree in trees
+        for node in nodes(tree)
+        if isinstance(node, Application)
+        and not _is_time(node.arguments)
+        and all(isinstance(one, Letter) for one in node.arguments)
+    }
     matrices: set[str] = set()
     for _ in range(3):
         for occurrence in occurrences:
@@ -146,7 +162,17 @@ def notation(occurrences: Iterable[Occurrence]) -> Notation:
             if isinstance(first, Letter) and any(_is_matrix(side, matrices) for side in others):
                 matrices.add(plain.name(first))
     count = max(indices, default=1)
-    return Notation(frozenset(functions), frozenset(matrices), min(count, 9), primed and not dotted)
+    return Notation(
+        frozenset(functions),
+        frozenset(functions - of_letters),
+        frozenset(matrices),
+        min(count, 9),
+        primed and not dotted,
+    )
+
+
+def _is_time(arguments: Sequence[Node]) -> bool:
+    return [getattr(one, "identifier", "") for one in arguments] == ["t"]
 
 
 def _are_arguments(arguments: Sequence[Node], moving: set[str]) -> bool:

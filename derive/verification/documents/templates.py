@@ -18,11 +18,16 @@ SHIPPED = (
     "henon_heiles foucault_pendulum"
 ).split()
 
+#: Systems of uniform rods, whose moments of inertia have no letter.
+RODS = frozenset(
+    "uniform_rod half_rod pushed_rod cart_and_half_rod cart_and_uniform_rod two_half_rods".split()
+)
 
-def templates(count: int) -> Iterator[System]:
-    """Yield the systems with so many coordinates."""
+
+def templates(count: int, has_rods: bool = True) -> Iterator[System]:
+    """Yield the systems with so many coordinates, with uniform rods or without."""
     for system in _all():
-        if len(system.coordinates) == count:
+        if len(system.coordinates) == count and (has_rods or system.name not in RODS):
             yield system
 
 
@@ -50,8 +55,8 @@ def _parameters(**units: str) -> list[Parameter]:
 
 def _others() -> Iterator[System]:
     x, theta, theta1, theta2, x1, x2 = symbols("x theta theta1 theta2 x1 x2", real=True)
-    m, l, k, M, r, G, I, l1 = symbols("m l k M r G I l1", positive=True)
-    m1, m2, r1, r2, I1, I2 = symbols("m1 m2 r1 r2 I1 I2", positive=True)
+    m, l, k, M, r, G, I = symbols("m l k M r G I", positive=True)
+    m1, m2, l1, l2, r1, r2, I1, I2 = symbols("m1 m2 l1 l2 r1 r2 I1 I2", positive=True)
     yield System(
         "oscillator",
         "Mass on a spring",
@@ -90,6 +95,59 @@ def _others() -> Iterator[System]:
         _parameters(M="kg", m="kg", l="m", I="kg m^2", g="m/s^2"),
         [PointMass(M, (x, 0)), RigidBody(m, (x + l * sin(theta), -l * cos(theta)), I, theta)],
     )
+    for name, title, part in (
+        ("uniform_rod", "Uniform rod on a hinge", 2),
+        ("half_rod", "Uniform rod on a hinge, twice as long as its letter", 1),
+    ):
+        yield System(
+            name, title,
+            _coordinates((theta, "rad")),
+            _parameters(m="kg", l="m", g="m/s^2"),
+            [RigidBody(m, (l * sin(theta) / part, -l * cos(theta) / part),
+                       m * (2 * l / part)**2 / 12, theta)],
+        )  # fmt: skip
+    g, a = sp.Symbol("g", real=True), sp.Symbol("a", real=True)
+    yield System(
+        "pushed_rod", "Uniform rod on a hinge with a given acceleration",
+        _coordinates((theta, "rad")),
+        [*_parameters(m="kg", l="m", g="m/s^2"), Parameter(a, "N/kg", 1.0, "")],
+        [RigidBody(m, (l * sin(theta) / 2, -l * cos(theta) / 2), m * l**2 / 12, theta)],
+        potential=m * l * (a * sin(theta) - g * cos(theta)) / 2,
+    )  # fmt: skip
+    for name, title, part in (
+        ("cart_and_half_rod", "Cart with a uniform rod, twice as long as its letter", 1),
+        ("cart_and_uniform_rod", "Cart with a uniform rod", 2),
+    ):
+        yield System(
+            name, title,
+            _coordinates((x, "m"), (theta, "rad")),
+            _parameters(M="kg", m="kg", l="m", g="m/s^2"),
+            [PointMass(M, (x, 0)),
+             RigidBody(m, (x + l * sin(theta) / part, -l * cos(theta) / part),
+                       m * (2 * l / part)**2 / 12, theta)],
+        )  # fmt: skip
+    yield System(
+        "two_half_rods", "Two hinged uniform rods, twice as long as their letters",
+        _coordinates((theta1, "rad"), (theta2, "rad")),
+        _parameters(m1="kg", m2="kg", l1="m", l2="m", g="m/s^2"),
+        [RigidBody(m1, (l1 * sin(theta1), -l1 * cos(theta1)), m1 * l1**2 / 3, theta1),
+         RigidBody(m2, (2 * l1 * sin(theta1) + l2 * sin(theta2),
+                        -2 * l1 * cos(theta1) - l2 * cos(theta2)), m2 * l2**2 / 3, theta2)],
+    )  # fmt: skip
+    heights = [l * cos(theta1), l * cos(theta2)]
+    for name, title, stretch in (
+        ("sideways_coupled_pendulums", "Two pendulums coupled by a spring that stays horizontal",
+         l * sin(theta2) - l * sin(theta1)),
+        ("twist_coupled_pendulums", "Two pendulums coupled by a torsion spring", theta2 - theta1),
+    ):  # fmt: skip
+        yield System(
+            name, title,
+            _coordinates((theta1, "rad"), (theta2, "rad")),
+            _parameters(m="kg", l="m", k="N/m", g="m/s^2"),
+            [PointMass(m, (l * sin(theta1), -heights[0])),
+             PointMass(m, (l * sin(theta2), -heights[1]))],
+            potential=k * stretch**2 / 2 - m * g * sum(heights),
+        )  # fmt: skip
     yield System(
         "two_links", "Two hinged links with moments of inertia about their centres of mass",
         _coordinates((theta1, "rad"), (theta2, "rad")),
@@ -107,7 +165,6 @@ def _others() -> Iterator[System]:
                         -l1 * cos(theta1) - r2 * cos(theta2)), I2 - m2 * r2**2, theta2)],
     )  # fmt: skip
     Ir, gr = symbols("Ir gr", positive=True)
-    g = sp.Symbol("g", real=True)
     yield System(
         "two_links_with_motors", "Two hinged links with moments of inertia and motors",
         _coordinates((theta1, "rad"), (theta2, "rad")),

@@ -7,6 +7,7 @@ from typing import assert_never
 
 from derive.reading.latex.tree import (
     Application,
+    AtPlace,
     Call,
     Derivative,
     Dotted,
@@ -24,7 +25,7 @@ from derive.reading.latex.tree import (
     Transpose,
     Tuple,
 )
-from derive.reading.latex.walking import indexed
+from derive.reading.latex.walking import indexed, letters, nodes
 from derive.verification.documents.rates import RATES, order, stem
 from derive.verification.documents.text import ATOM, POWER, PRODUCT, SUM, Text, joined_text
 
@@ -44,6 +45,7 @@ class Notation:
     """What the letters of a document are, as far as a translation depends on it."""
 
     functions: frozenset[str] = frozenset()  # identifiers before brackets that hold arguments
+    times: frozenset[str] = frozenset()  # those of them that time alone is the argument of
     matrices: frozenset[str] = frozenset()  # identifiers of matrices and columns
     count: int = 1  # values of an index without bounds
     primes_are_rates: bool = False
@@ -115,6 +117,8 @@ class Translator:
                 return joined_text(ATOM, "norm(", self.text(operand), ")")
             case Summation():
                 return self._summation(node)
+            case AtPlace():
+                raise UntranslatableError("a value at a place")
         assert_never(node)
 
     def _sum(self, terms: Sequence[tuple[int, Node]]) -> Text:
@@ -135,11 +139,20 @@ class Translator:
 
     def _factors(self, factors: Sequence[Node]) -> Iterator[Node]:
         """The factors, also those of letters before brackets that are products."""
-        for factor in factors:
+        for number, factor in enumerate(factors):
+            before = factors[number - 1] if number else None
+            if isinstance(before, Power) and self._holds_time(before, factor):
+                continue  # the power of a function: f^2(t)
             if isinstance(factor, Application) and not self._is_function(factor):
                 yield from (factor.head, _in_brackets(factor))
             else:
                 yield factor
+
+    def _holds_time(self, before: Power, factor: Node) -> bool:
+        """Whether a factor is (t) behind the power of a function of time."""
+        base, length = before.base, factor.span[1] - factor.span[0]
+        is_time = isinstance(factor, Letter) and factor.identifier == "t" and length > 1
+        return is_time and isinstance(base, Letter) and self.name(base) in self.notation.times
 
     def _power(self, base: Node, exponent: Node) -> Text:
         if isinstance(base, Application) and not self._is_function(base):
@@ -177,6 +190,8 @@ class Translator:
 
     def _is_function(self, node: Application) -> bool:
         name = self.name(node.head)
+        if name in self.notation.times and not any(map(_is_of_time, node.arguments)):
+            return False
         if name in self.notation.functions | self.notation.calls:
             return True
         return len(node.arguments) > 1 and name not in self.notation.factors
@@ -234,6 +249,14 @@ def identifier(letter: Letter) -> str:
     name = letter.identifier.replace("+", "_plus_").replace("-", "_minus_")
     name = re.sub(r"\W", "_", name)
     return name if name[:1].isalpha() else f"letter_{name}"
+
+
+def _is_of_time(argument: Node) -> bool:
+    """Whether an argument is a time: a letter, a number, or t with others such as t + h."""
+    if isinstance(argument, Letter | Number):
+        return True
+    names = [one.identifier for one in letters(argument)]
+    return "t" in names and not any(isinstance(one, Call) for one in nodes(argument))
 
 
 def _in_brackets(node: Application) -> Node:

@@ -49,6 +49,8 @@ class Judge:
             return plain("context", formula, "it is no statement")
         if any(one not in ("=", ":=", "~") for one in formula.relations):
             return plain("context", formula, "it is no equation")
+        if formula.is_update:
+            return plain("context", formula, "it is a step in time")
         if formula.subject in INDICES or self._is_special(formula):
             return plain("context", formula, "it states a value")
         unknown = self._unknown(formula.sides)
