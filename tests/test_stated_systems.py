@@ -7,7 +7,7 @@ from derivations import DERIVATIONS
 
 from derive.reading.documents import read_document
 from derive.system.catalogue import load
-from derive.verification.documents.hints import Hints
+from derive.verification.documents.hints import Hints, hints
 from derive.verification.documents.judged import JudgedFormula
 from derive.verification.documents.judgement import judge_document
 
@@ -179,3 +179,56 @@ def test_a_wrong_term_that_is_also_a_factor_is_corrected_as_a_term(
     assert (wrong.verdict, wrong.wrong_term) == ("wrong", term)
     formulas = judged(tmp_path, text.replace(wrong.latex, wrong.correction), "single_pendulum")
     assert formulas[-1].verdict == "verified"
+
+
+def test_a_stated_letter_is_no_other_parameter(tmp_path: Path) -> None:
+    text = r"$$\ddot\theta = -\frac gl\sin\theta$$ $$b\ddot\theta = -b\sin\theta$$"
+    assert judged(tmp_path, text, "single_pendulum", l="l")[0].verdict == "verified"
+    assert judged(tmp_path, text, "single_pendulum", b="l")[0].verdict == "context"
+
+
+def test_the_system_of_a_file_of_names_is_found_beside_it(tmp_path: Path) -> None:
+    folder = tmp_path / "names"
+    folder.mkdir()
+    (folder / "own.toml").write_text(
+        'title = "Own"\n[coordinates]\nx = { unit = "m" }\n[parameters]\nm = { value = 1, unit = "kg" }\n'
+        '[[masses]]\nmass = "m"\nposition = ["x", "0"]\n'
+    )
+    (folder / "names.toml").write_text('system = "own.toml"\n[names]\ns = "x"\n')
+    found = hints(None, folder / "names.toml")
+    assert found is not None
+    assert found.system.title == "Own"
+
+
+ENERGIES = r"""
+$$T = \frac12(m_1+m_2) l_1^2\dot\theta_1^2 + \frac12 m_2 l_2^2\dot\theta_2^2
+  + m_2 l_1 l_2\dot\theta_1\dot\theta_2\cos(\theta_1-\theta_2)$$
+$$V = -(m_1+m_2) g l_1\cos\theta_1 - m_2 g l_2\cos\theta_2$$
+"""
+OTHER = ENERGIES.replace("theta", "phi")
+
+
+@pytest.mark.parametrize(
+    ("text", "verdict"),
+    [(OTHER, "verified"), (r"$$\dot\phi_1 = 2\dot\phi_2$$", "context")],
+)
+def test_other_letters_of_coordinates_have_a_meaning_if_formulas_hold_with_them(
+    text: str, verdict: str, tmp_path: Path
+) -> None:
+    *_, last = judged(tmp_path, ENERGIES + text, "double_pendulum")
+    assert last.verdict == verdict
+
+
+def test_names_of_rates_follow_from_that_of_their_coordinate(tmp_path: Path) -> None:
+    text = r"""
+$$x = l\sin\theta, \quad y = -l\cos\theta, \quad \ddot\theta = -\frac gl\sin\theta$$
+$$\dot x = l\dot\theta\cos t1, \quad \dot y = l\dot\theta\sin t1$$
+$$\ddot x = -l\,td1^2\sin t1 + l\,tdd1\cos t1$$
+"""
+    assert judged(tmp_path, text, "single_pendulum")[-1].verdict == "verified"
+
+
+def test_a_letter_can_be_the_sum_of_relative_angles(tmp_path: Path) -> None:
+    text = ROBOT.replace("(l_1 c_1 + l_2 c_{12})", r"(l_1 c_1 + l_2\cos\psi)")
+    formulas = judged(tmp_path, text, "double_pendulum")
+    assert {one.verdict for one in formulas} == {"verified"}
