@@ -187,13 +187,23 @@ def test_a_stated_letter_is_no_other_parameter(tmp_path: Path) -> None:
     assert judged(tmp_path, text, "single_pendulum", b="l")[0].verdict == "context"
 
 
+OWN = """
+title = "Own"
+potential = "0"
+[coordinates]
+x = { unit = "m" }
+[parameters]
+m = { value = 1, unit = "kg" }
+[[masses]]
+mass = "m"
+position = ["x", "0"]
+"""
+
+
 def test_the_system_of_a_file_of_names_is_found_beside_it(tmp_path: Path) -> None:
     folder = tmp_path / "names"
     folder.mkdir()
-    (folder / "own.toml").write_text(
-        'title = "Own"\n[coordinates]\nx = { unit = "m" }\n[parameters]\nm = { value = 1, unit = "kg" }\n'
-        '[[masses]]\nmass = "m"\nposition = ["x", "0"]\n'
-    )
+    (folder / "own.toml").write_text(OWN)
     (folder / "names.toml").write_text('system = "own.toml"\n[names]\ns = "x"\n')
     found = hints(None, folder / "names.toml")
     assert found is not None
