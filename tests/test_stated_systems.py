@@ -50,6 +50,15 @@ def test_the_partial_energy_that_is_wrong_is_found_and_its_sum_is_right(
     }
 
 
+def test_of_two_sides_that_differ_the_one_that_is_a_part_of_the_energy_is_right(
+    tmp_path: Path,
+) -> None:
+    text = PARTS.replace(r"$$V_1 = -m_1 g l_1\cos\theta_1$$", "").replace("V = V_1 + V_2", "x = 1")
+    text = text.replace(r"l_1\cos\theta_1 + l_2\cos", r"l_1\cos\theta_1 + 2 l_2\cos")
+    (wrong,) = (o for o in judged(tmp_path, text, "double_pendulum") if o.verdict == "wrong")
+    assert wrong.wrong_term == r"2 l_2\cos\theta_2"
+
+
 def test_of_two_wrong_partial_energies_none_is_guessed(tmp_path: Path) -> None:
     text = PARTS.replace(r"T_1 = \frac12", r"T_1 = ").replace("2 l_1 l_2", "l_1 l_2")
     formulas = judged(tmp_path, text, "double_pendulum")
