@@ -47,6 +47,10 @@ class Equilibrium(ClosedForm):
         defect = np.array(motion.module.rhs(0.0, motion.y0, motion.params))
         # terms that cancel in the right-hand side are known to rounding only
         defect += np.copysign(EPS * np.abs(jacobian) @ np.abs(motion.y0), defect)
+        # the end alone shows most motions that leave the initial state
+        end = _propagated(jacobian, defect, motion.sample_times[-1:])
+        if not np.abs(end).max() < LARGE:
+            raise OutsideDomainError("the motion leaves the initial state")
         error = _propagated(jacobian, defect, motion.sample_times)
         largest = np.abs(error).max(axis=0)
         if not largest.max() < LARGE:
