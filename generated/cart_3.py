@@ -133,7 +133,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "25dde9d86a2f1429"
+DIGEST = "8c0ed5805667513b"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x",

@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "9f05132102e6f9ac"
+DIGEST = "7c34d04961bd009b"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

@@ -90,7 +90,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "2b960f885cc37622"
+DIGEST = "6a96297b07182c40"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

@@ -85,7 +85,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_bar_pendulum"
-DIGEST = "8184866f81030c2a"
+DIGEST = "0544938710da98f6"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

@@ -85,7 +85,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_pendulum"
-DIGEST = "36816783a6d37dfe"
+DIGEST = "844c142ae1c6f257"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

@@ -68,7 +68,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "4c2b3727e7a39e91"
+DIGEST = "4225940cb54cecb0"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

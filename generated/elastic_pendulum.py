@@ -76,7 +76,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "elastic_pendulum"
-DIGEST = "c4b01bd81690b5fb"
+DIGEST = "e648ac1ac658b01f"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

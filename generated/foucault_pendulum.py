@@ -97,7 +97,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "8d39e2ed29389f36"
+DIGEST = "049b8d08bef920e9"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")

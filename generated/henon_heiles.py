@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "henon_heiles"
-DIGEST = "2ff75a2048dc793e"
+DIGEST = "8692b127bbe18e63"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")

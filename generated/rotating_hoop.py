@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "3566154fab96b7b8"
+DIGEST = "ca4c999a5a387a61"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

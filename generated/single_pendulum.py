@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "single_pendulum"
-DIGEST = "cc4a307c836be34c"
+DIGEST = "4d56d5d89280264d"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

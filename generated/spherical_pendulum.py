@@ -77,7 +77,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "e7a8dcb0693a3eb1"
+DIGEST = "c91ec9666104f7bb"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

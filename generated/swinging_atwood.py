@@ -76,7 +76,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "swinging_atwood"
-DIGEST = "9f0813bd6ae25ab1"
+DIGEST = "7a1f2f4fe1565fc1"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")

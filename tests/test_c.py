@@ -162,8 +162,15 @@ def aligned(array: np.ndarray) -> np.ndarray:
     return copy
 
 
+#: Literals and functions of a type that is not in C99.
+QUADRUPLE = """
+    #define HOLONOMIC_LITERAL(x) x##Q
+    #define HOLONOMIC_CALL(name) name##f128
+    __float128 cosf128(__float128), sinf128(__float128), sqrtf128(__float128);
+"""
 OTHER_TYPE = """
     #define HOLONOMIC_REAL {real}
+    {more}
     #include "rod.h"
     void energy(const double *y, const double *p, double *r);
     void energy(const double *y, const double *p, double *r)
@@ -174,11 +181,12 @@ OTHER_TYPE = """
         rod_energy(({real})0, state, params, &result);
         r[0] = (double)result;
         r[1] = (double)(result - ({real})r[0]);
+        r[2] = (double)(result - ({real})r[0] - ({real})r[1]);
     }}
 """
 
 
-@pytest.mark.parametrize("real", ["float", "double", "long double"])
+@pytest.mark.parametrize("real", ["float", "double", "long double", "__float128"])
 def test_another_number_type_is_used_throughout(real: str, tmp_path: Path) -> None:
     # literals with fractions and pi, and functions: in double they would have errors of 1e-17
     theta, g = sp.symbols("theta g", real=True)
@@ -192,16 +200,19 @@ def test_another_number_type_is_used_throughout(real: str, tmp_path: Path) -> No
         potential=-m * g * length * sp.cos(theta) + sp.sqrt(2 + theta) * sp.pi / 7 + theta / 3,
     )
     write(rod, tmp_path)
-    library = ctypes.CDLL(str(compiled(OTHER_TYPE.format(real=real), tmp_path, f"-I{tmp_path}")))
+    source = OTHER_TYPE.format(real=real, more=QUADRUPLE if real == "__float128" else "")
+    options = [f"-I{tmp_path}", *(["-Wno-pedantic"] if real == "__float128" else [])]
+    library = ctypes.CDLL(str(compiled(source, tmp_path, *options)))
     # exact in every type
-    y, params, result = np.array([0.625, 0.75]), np.array([1.5, 1.25, 9.75]), np.empty(2)
+    y, params, result = np.array([0.625, 0.75]), np.array([1.5, 1.25, 9.75]), np.empty(3)
     library.energy(*(ctypes.c_void_p(a.ctypes.data) for a in (y, params, result)))
-    with workdps(30):
+    with workdps(50):
         symbols = (*rod.q, *rod.qdot, *rod.params)
         exact = sp.lambdify(symbols, Derivation(rod).energy, "mpmath")(*map(mpf, [*y, *params]))
-        eps = {"float": 2**-23, "double": 2**-52, "long double": np.finfo(np.longdouble).eps}[real]
-        error = abs(mpf(result[0]) + mpf(result[1]) - exact)
-        assert 0 < error < 4 * float(eps) * abs(exact)
+        eps = {"float": 2**-23, "double": 2**-52, "long double": np.finfo(np.longdouble).eps}
+        eps["__float128"] = 2**-112
+        error = abs(sum(map(mpf, result)) - exact)
+        assert 0 < error < 4 * float(eps[real]) * abs(exact)
 
 
 SINGLE = """

@@ -36,7 +36,8 @@ HEADER = """\
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
    Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
-   omits functions that call the mathematical library. */
+   omits functions that call the mathematical library. For a longer type also define its literals
+   and functions, such as HOLONOMIC_LITERAL(x) as x##Q and HOLONOMIC_CALL(name) as name##q. */
 
 #ifndef HOLONOMIC_{guard}_H
 #define HOLONOMIC_{guard}_H
@@ -65,7 +66,9 @@ enum {{
 #: suffix: a double would be rounded twice.
 NUMBERS = """
 /* Literals of this type. */
-#ifdef HOLONOMIC_VECTOR
+#ifdef HOLONOMIC_LITERAL
+#define {guard}_NUMBER(x) HOLONOMIC_LITERAL(x)
+#elif defined HOLONOMIC_VECTOR
 typedef __typeof__((*({system}_real *)0)[0]) {system}_number;
 static inline {system}_real {system}_splat({system}_number x)
 {{
@@ -91,9 +94,13 @@ CALLS = """
 CALL = """\
 static inline {system}_real {system}_{name}({system}_real x)
 {{
+#ifdef HOLONOMIC_CALL
+    return HOLONOMIC_CALL({name})(x);
+#else
     return sizeof(x) > sizeof(double) ? ({system}_real){name}l((long double)x)
         : sizeof(x) > sizeof(float) ? ({system}_real){name}((double)x)
         : ({system}_real){name}f((float)x);
+#endif
 }}"""
 
 FUNCTION = """\
