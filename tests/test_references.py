@@ -16,10 +16,11 @@ import generated.driven_pendulum as driven
 import generated.foucault_pendulum as foucault
 import generated.single_pendulum as sp
 from holonomic import Coordinate, Parameter, PointMass, System, build
+from solvers.equations.decimal_state import sine_and_cosine
 from solvers.references.elliptic import jacobi, pendulum
 from solvers.references.extrapolation import extrapolated
 from solvers.references.series import Series
-from solvers.references.series_functions import series_functions, sine_and_cosine
+from solvers.references.series_functions import series_functions
 from solvers.references.taylor import taylor
 
 REPORT = (pi / 2, pi, 0.0, 0.0)

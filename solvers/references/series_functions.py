@@ -1,14 +1,14 @@
-"""Elementary functions of power series, and of decimal numbers.
+"""Elementary functions of power series.
 
 Each coefficient follows from the lower ones (A. Griewank, A. Walther, Evaluating Derivatives,
 table 13.2).
 """
 
 from collections.abc import Callable
-from decimal import Decimal, localcontext
-from functools import cache
+from decimal import Decimal
 from operator import mul
 
+from solvers.equations.decimal_state import sine_and_cosine
 from solvers.references.series import ZERO, Series, Tape
 
 #: A function of a series or a number.
@@ -113,32 +113,3 @@ def _recorded(series: Series, next_coefficient: Callable[[int], Decimal]) -> Ser
     series.next_coefficient = next_coefficient
     series.tape.append(series)
     return series
-
-
-def sine_and_cosine(x: Decimal) -> tuple[Decimal, Decimal]:
-    """Sine and cosine to the digits of the current context, by the exponential series."""
-    with localcontext() as context:
-        # digits that the reduction takes, and that terms up to exp π take
-        context.prec += max(x.adjusted(), 0) + 5
-        turn = 2 * _pi(context.prec)
-        x = x - turn * (x / turn).to_integral_value()
-        smallest = Decimal(10) ** -context.prec
-        sums, term, k = [Decimal(0), Decimal(0)], Decimal(1), 0
-        while abs(term) > smallest or k < abs(x):
-            sums[k % 2] += term if k % 4 < 2 else -term
-            k += 1
-            term *= x / k
-    cosine, sine = sums
-    return +sine, +cosine
-
-
-@cache
-def _pi(digits: int) -> Decimal:
-    """π by the arithmetic-geometric mean (R. P. Brent, E. Salamin, 1976)."""
-    with localcontext(prec=digits + 5):
-        a, b, t, power = Decimal(1), Decimal("0.5").sqrt(), Decimal("0.25"), 1
-        while a - b > Decimal(10) ** -digits:
-            mean = (a + b) / 2
-            b, t, power = (a * b).sqrt(), t - power * (a - mean) ** 2, 2 * power
-            a = mean
-        return (a + b) ** 2 / (4 * t)

@@ -13,10 +13,11 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, with_functions
 from solvers.references.series import Series
-from solvers.references.series_functions import series_functions, sine_and_cosine
+from solvers.references.series_functions import series_functions
 
 Array = NDArray[np.float64]
 
@@ -120,18 +121,12 @@ class _Motion:
         rates = function(self._time, self._state, constants)
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
         columns = dict(form.shared_columns)
-        ordinary = [Decimal(float(y)) for y in y0]
-        state = [Decimal(0)] * len(form.state)
-        for k, i in form.shared_columns:
-            state[i] = ordinary[k]
-        for k, i in form.angle_columns:
-            state[i], state[i + 1] = sine_and_cosine(ordinary[k])
-            columns[k] = len(state)
-            state.append(ordinary[k])
+        for k, _ in form.angle_columns:
+            columns[k] = len(self._state)
             self._rates.append(self._state[columns[half + k]])
             self._state.append(Series(self._tape, []))
         self._columns = [columns[k] for k in range(2 * half)]
-        self.restart(start, state)
+        self.restart(start, decimal_state(form, y0))
 
     def restart(self, t: Decimal, state: Sequence[Decimal]) -> None:
         """Discard all coefficients and continue from this time and state."""

@@ -15,12 +15,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from solvers.equations.decimal_state import sine_and_cosine
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.timing import timed_run
 from solvers.io.figures import COLOURS, panels
 from solvers.io.text_table import text_table
 from solvers.references.series import Series
-from solvers.references.series_functions import sine_and_cosine
 from solvers.references.taylor import taylor
 from solvers.studies.failure_modes.study import Load, Study
 
