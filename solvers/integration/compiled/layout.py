@@ -50,9 +50,14 @@ def members(structure: str) -> tuple[Member, ...]:
 
 def declarations(sizes: Mapping[str, int]) -> str:
     """The C text of sizes, statuses and structures."""
+    return f"{sizes_and_statuses(sizes)}\n{_text()}"
+
+
+def sizes_and_statuses(sizes: Mapping[str, int]) -> str:
+    """Their C text."""
     names = [*UNFINISHED, *(status.name for status in STATUSES if status)]
     numbers = ", ".join(f"{name} = {size}" for name, size in sizes.items())
-    return f"enum {{ {numbers} }};\nenum Status {{ {', '.join(names)} }};\n{_text()}"
+    return f"enum {{ {numbers} }};\nenum Status {{ {', '.join(names)} }};"
 
 
 def _text() -> str:

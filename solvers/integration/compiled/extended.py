@@ -1,0 +1,194 @@
+"""Single motions in numbers longer than doubles, by a compiled loop."""
+
+import ctypes
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from functools import cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from solvers.equations.decimal_state import decimal_state
+from solvers.equations.forms import Form, fastest_form
+from solvers.equations.module import GeneratedModule, header
+from solvers.integration.compiled.compiler import NoCompilerError, build
+from solvers.integration.compiled.extended_source import (
+    DIGITS,
+    DOUBLE,
+    LONG_DOUBLE,
+    PARTS,
+    QUADRUPLE,
+    NumberType,
+    program,
+)
+from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.native import equations
+from solvers.integration.problem import shortest_step
+from solvers.integration.solution import Status
+
+Array = NDArray[np.float64]
+
+#: Seconds of C between checks for an interruption by the user, and bytes to which C aligns numbers.
+TIME_LIMIT, ALIGNMENT = 0.05, 64
+#: Perturbations in units of the spacing of numbers above 1.
+CHANGE = 0.5
+
+
+@dataclass(frozen=True)
+class Precision:
+    """A number type longer than double, a shorter one for first approximations, and a method."""
+
+    real: NumberType
+    lower: NumberType
+    stages: int  # of Gauss collocation, whose order is twice as high
+
+
+PRECISIONS = {
+    "long double": Precision(LONG_DOUBLE, DOUBLE, 8),
+    "quadruple": Precision(QUADRUPLE, LONG_DOUBLE, 12),
+}
+
+
+class ExtendedError(ArithmeticError):
+    """A motion ends before its last sample; the message states the time and the reason."""
+
+    def __init__(self, status: Status, message: str) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+class ExtendedKernel:
+    """The compiled program for a module's fastest form in one of `PRECISIONS`.
+
+    `NoCompilerError` where no compiler has its number type, or that is no longer than double.
+    """
+
+    def __init__(self, module: GeneratedModule, name: str) -> None:
+        precision, form = PRECISIONS[name], Form(module, fastest_form(module), module.DEFAULTS)
+        self.form = form
+        if header(module) is None:
+            raise NoCompilerError(f"there is no C header beside {module.SYSTEM}")
+        source = equations(module, form.name)
+        text = program(source, form, precision.real, precision.lower, precision.stages)
+        try:
+            self.library = build(text)
+        except NoCompilerError as error:
+            raise NoCompilerError(f"no {name} numbers: {error}") from error
+        functions = self.library.functions
+        names = "start", "advance", "progress", "size", "epsilon"
+        self.start, self.advance, self.progress, size, epsilon = (
+            getattr(functions, f"extended_{name}") for name in names
+        )
+        number, whole, pointer = ctypes.c_double, ctypes.c_int64, ctypes.c_void_p
+        self.start.argtypes = [pointer, number, number, pointer, pointer, pointer]
+        arrays = [pointer, pointer, whole, pointer]
+        self.advance.argtypes = [*arrays, number, number, whole, number]
+        self.progress.argtypes = [pointer, pointer]
+        self.start.restype = self.progress.restype = None
+        self.advance.restype = size.restype = whole
+        epsilon.restype = number
+        self.size, self.epsilon = int(size()), float(epsilon())
+        if self.epsilon >= np.finfo(float).eps:
+            raise NoCompilerError(f"no {name} numbers: they have no more digits than doubles here")
+
+
+kernel = cache(ExtendedKernel)
+
+
+def _parts(form: Form, y0: Sequence[float]) -> Array:
+    """The decimal state, each component as a sum of doubles, shape (size, parts)."""
+    with localcontext(prec=DIGITS):
+        rest, parts = decimal_state(form, y0), list[list[float]]()
+        for _ in range(PARTS):
+            parts.append([float(x) for x in rest])
+            rest = [x - Decimal(part) for x, part in zip(rest, parts[-1], strict=True)]
+    return np.ascontiguousarray(np.transpose(parts))
+
+
+def integrate_extended(
+    module: GeneratedModule,
+    params: Sequence[float],
+    y0: Sequence[float],
+    times: ArrayLike,
+    precision: str,
+    rtol: float,
+    max_steps: int = 10**6,
+    progress: Callable[[float], None] = lambda t: None,
+    perturbation: int = 0,
+) -> Array:
+    """States (q, q̇) at `times` in numbers longer than doubles; the first one is `y0`.
+
+    Parameters
+    ----------
+    module : module
+        A generated module, whose header stands beside it.
+    params, y0 : sequence of float
+        In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact.
+    times : array_like of shape (n,)
+        Increasing or decreasing, in s.
+    precision : {"long double", "quadruple"}
+        The number type: that of C, or IEEE 754 binary128.
+    rtol : float
+        Relative tolerance of the error of a step, for components above 1e-3 in magnitude.
+    max_steps : int, optional
+        Most steps.
+    progress : callable, optional
+        Called with the time in s several times a second; an exception that it raises ends the
+        integration.
+    perturbation : int, optional
+        The seed of random changes, which differ from rounding errors of the start, of parameters
+        and of constants by a few units only; 0 for none. Runs with the same parameters have the
+        latter in common.
+
+    Returns
+    -------
+    ndarray of shape (n, state)
+        The states, rounded to floats at the end.
+
+    Raises
+    ------
+    ExtendedError
+        When the last of the times is not reached: at a singularity, or after `max_steps`.
+    solvers.integration.compiled.compiler.NoCompilerError
+        When no compiler has numbers of this type.
+
+    Notes
+    -----
+    Gauss collocation with step control by the last Legendre coefficients of the derivative. Stages
+    are solved by fixed-point iterations in a shorter type and refined in the longer one, and sums
+    are compensated.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> start = (1.5, 3.0, 0.0, 0.0)
+    >>> integrate_extended(dp, dp.DEFAULTS, start, [0, 5], "quadruple", 1e-24).shape
+    (2, 4)
+    """
+    loop, samples = kernel(module, precision), np.ascontiguousarray(times, dtype=float)
+    begin, end = float(samples[0]), float(samples[-1])
+    rows, numbers = np.empty((len(samples), len(module.STATE))), np.zeros(4)
+    start, values = _parts(loop.form, y0), np.array(params, dtype=float)
+    signs = np.random.default_rng(perturbation).choice([-CHANGE, CHANGE], len(start) + len(values))
+    changes = signs * bool(perturbation)
+    memory = np.zeros(loop.size + ALIGNMENT, np.uint8)
+    motion = -(-memory.ctypes.data // ALIGNMENT) * ALIGNMENT
+    arrays = (array.ctypes.data for array in (start, values, changes))
+    loop.start(motion, begin, end - begin, *arrays)
+    status = None
+    while status is None:
+        code = loop.advance(
+            *(motion, samples.ctypes.data, len(samples), rows.ctypes.data),
+            *(rtol, shortest_step(begin, end), max_steps, TIME_LIMIT),
+        )
+        status = STATUSES[code]
+        loop.progress(motion, numbers.ctypes.data)
+        progress(float(numbers[0]))
+    if status is not Status.FINISHED:
+        reason = {
+            Status.STEP_LIMIT: f"it takes more than {max_steps} steps",
+            Status.STEP_TOO_SMALL: "a step is below the resolution of time, as at a singularity",
+        }[status]
+        raise ExtendedError(status, f"{reason} (t = {numbers[0]:.10g}, {precision})")
+    return rows
