@@ -12,7 +12,7 @@ import generated.henon_heiles as hh
 import generated.swinging_atwood as atwood
 from solvers.app.modules import load as load_module
 from solvers.references.taylor import taylor
-from solvers.scenes.models import double_precision, integration_run
+from solvers.scenes.models import double_precision, integration_run, longer_numbers
 from solvers.scenes.models.double_precision import sufficient
 from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError
 from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
@@ -104,6 +104,7 @@ def test_without_a_compiler_sums_are_not_compensated(monkeypatch: pytest.MonkeyP
 def test_series_report_progress_and_stop_at_their_budget(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, lines = replace(LONG, duration=12.0, accuracy=1e-13), list[str]()
     monkeypatch.setattr(integration_run, "MAX_PRODUCTS", 1e6)
+    monkeypatch.setattr(longer_numbers, "PRECISIONS", {})
     with pytest.raises(NotAccurateError, match=r"double precision reaches .* 1e\+06 products"):
         selected(scene, lines.append)
     assert lines[-1].startswith("Taylor series of 24 digits at ")

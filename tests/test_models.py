@@ -18,7 +18,13 @@ from solvers.equations.normal_modes import mode_spread
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
 from solvers.references.taylor import taylor
-from solvers.scenes.models import equilibrium, full_equations, normal_modes, quadrature
+from solvers.scenes.models import (
+    equilibrium,
+    full_equations,
+    longer_numbers,
+    normal_modes,
+    quadrature,
+)
 from solvers.scenes.models.catalogue import closed_forms, load
 from solvers.scenes.models.double_precision import check_times
 from solvers.scenes.models.equilibrium import Equilibrium
@@ -371,7 +377,10 @@ def test_the_full_equations_are_checked_by_another_method() -> None:
 
 
 @pytest.mark.slow
-def test_where_double_precision_is_insufficient_series_have_more_digits() -> None:
+def test_where_no_compiled_numbers_are_sufficient_series_have_more_digits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(longer_numbers, "PRECISIONS", {})
     scene = find("long", load_module)
     selection = selected(scene)
     assert selection.model.run.method_choice.method == "taylor"

@@ -36,6 +36,8 @@ def _integration(result: SceneResult) -> str:
     if not run:
         return ""
     text = f" by {result.method}, {result.form} form, {run.setting_name} = {run.setting:.3g}"
+    if run.method_choice.is_extended:
+        text += f", {run.method_choice.precision} numbers"
     if run.is_compensated:
         text += ", compensated sums"
     if not result.specialised_module:
@@ -81,6 +83,7 @@ def figures(result: SceneResult) -> dict[str, Any]:
         "method": result.method,
         "form": result.form,
         "setting": {run.setting_name: run.setting} if run else None,
+        "precision": run.method_choice.precision if run else None,
         "code": "specialised" if result.specialised_module else "general",
         "operations": _operations(run.motion.module, run.method_choice.form) if run else None,
         "final_state": result.final_state,

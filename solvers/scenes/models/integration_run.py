@@ -8,6 +8,7 @@ import numpy as np
 
 from solvers.equations.mass_matrix import checked_before
 from solvers.integration.compiled.compiler import NoCompilerError
+from solvers.integration.compiled.extended import ExtendedError, integrate_extended
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import no_compiler, prepare
@@ -73,14 +74,31 @@ class IntegrationRun:
     def states(self, t: Array, progress: Callable[[float], None] = lambda t: None) -> Array:
         """Coordinates and velocities at increasing times, shape (n, state).
 
-        A series calls `progress` with the time in s after every step.
+        A series calls `progress` with the time in s after every step, longer numbers several times
+        a second.
         """
+        if self.method_choice.is_extended:
+            return self.extended_states(t, progress)
         if self.method_choice.is_series:
             motion, times = self.motion, t if t[0] == 0 else [0.0, *t]  # which include the start
             arguments = motion.module, motion.params, motion.y0, times, int(self.setting)
             states = taylor(*arguments, max_products=MAX_PRODUCTS, progress=progress)
             return states[-len(t) :]
         return self.integrate(t)[1]
+
+    def extended_states(
+        self, t: Array, progress: Callable[[float], None], perturbation: int = 0
+    ) -> Array:
+        """As `states`, of a run in longer numbers with a `perturbation`."""
+        motion, times = self.motion, t if t[0] == 0 else np.array([0.0, *t])
+        arguments = motion.module, motion.params, motion.y0, times, self.method_choice.precision
+        options = self.setting, self.max_steps, progress, perturbation
+        try:
+            states = integrate_extended(*arguments, *options)
+        except ExtendedError as error:
+            is_long = error.status is Status.STEP_LIMIT
+            raise (TooLongError if is_long else NotAccurateError)(str(error)) from error
+        return states[-len(t) :]
 
     def integrate(self, t: Array | None) -> tuple[Array, Array]:
         """Times and states: at `t`, or at the end of every step."""
@@ -100,7 +118,8 @@ class IntegrationRun:
     def step_times(self) -> Array:
         """Times between which the motion is smooth: at most `MOST_INTERVALS` ends of steps."""
         run = self
-        if self.method_choice.is_series:  # its steps are as long as those of another method
+        choice = self.method_choice
+        if choice.is_series or choice.is_extended:  # steps as long as those of another method
             run = replace(self, method_choice=MethodChoice(*SMOOTH, ""), setting=FINE)
         times, _ = run.integrate(None)
         return times[:: -(-len(times) // MOST_INTERVALS)]

@@ -29,6 +29,7 @@ class MethodChoice:
     step: float | None = None  # a fixed step size in s
     compensated: bool = False  # sums, where the loop is compiled
     is_named: bool = False  # in the scene
+    precision: str = "double"  # else one of `solvers.integration.compiled.extended.PRECISIONS`
 
     @property
     def is_series(self) -> bool:
@@ -36,9 +37,14 @@ class MethodChoice:
         return self.method == SERIES
 
     @property
+    def is_extended(self) -> bool:
+        """Whether its numbers are compiled ones that are longer than doubles."""
+        return self.precision != "double"
+
+    @property
     def is_fixed(self) -> bool:
         """Whether the step size is fixed."""
-        is_ours = not self.is_series and self.method not in SCIPY
+        is_ours = not self.is_series and not self.is_extended and self.method not in SCIPY
         return self.step is not None or (is_ours and not load(self.method).estimates_error)
 
 

@@ -5,11 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from solvers.integration.compiled.extended import PRECISIONS
 from solvers.references.taylor import SeriesError
 from solvers.scenes.models.catalogue import closed_forms
 from solvers.scenes.models.extended_precision import by_series
 from solvers.scenes.models.full_equations import integrated
 from solvers.scenes.models.integration_run import NotAccurateError
+from solvers.scenes.models.longer_numbers import by_longer_numbers
 from solvers.scenes.models.method_choice import SERIES, MethodChoice, cheapest, usual_form
 from solvers.scenes.models.model import ClosedForm, Model
 from solvers.scenes.models.motion import Motion, OutsideDomainError
@@ -69,15 +71,16 @@ def select_model(
         if choice.is_named:
             raise
         declined["double precision"] = str(error)
+    if longer := by_longer_numbers(motion, scene.accuracy, scene.times, declined, report):
+        return ModelSelection(longer, declined)
     report("full equations by Taylor series")
-    why = "the motion loses more digits than double precision has"
+    why = "the motion loses more digits than double precision has, and than compiled numbers have"
     choice = MethodChoice(SERIES, usual_form(scene.module, SERIES), why)
     try:
         series = by_series(motion, choice, scene.accuracy, scene.times, report)
     except SeriesError as error:
-        raise NotAccurateError(
-            f"{declined['double precision']}; by Taylor series {error}"
-        ) from error
+        reasons = [declined[name] for name in ("double precision", *PRECISIONS) if name in declined]
+        raise NotAccurateError(f"{'; '.join(reasons)}; by Taylor series {error}") from error
     return ModelSelection(series, declined)
 
 

@@ -1,0 +1,106 @@
+"""The full equations in compiled numbers longer than doubles, before Taylor series in decimals."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import exp, log
+from time import perf_counter
+
+import numpy as np
+
+from solvers.equations.forms import fastest_form
+from solvers.equations.module import named, operations_on_state
+from solvers.integration.compiled.compiler import NoCompilerError
+from solvers.integration.compiled.extended import PRECISIONS, kernel
+from solvers.scenes.models.double_precision import MARGIN
+from solvers.scenes.models.full_equations import FullEquations, check_length
+from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
+from solvers.scenes.models.method_choice import MethodChoice
+from solvers.scenes.models.motion import Array, Motion
+
+#: Most turns, and most products of a run, which take up to a minute.
+MOST_TURNS, MOST_PRODUCTS = 20_000.0, 2e8
+#: The tolerances of runs that check a run, as multiples of its own; the coarsest of its own;
+#: attempts in one precision, the share of the requested accuracy to aim at, and the largest factor
+#: between the tolerances of attempts.
+MULTIPLES, COARSEST, TRIES, RESERVE, LEAST_CHANGE = (2.0, 5.0, 10.0), 1e-18, 4, 0.1, 0.01
+#: Difference of two runs below which it grows as small changes do, and the largest exponent.
+SMALL, MOST_EXPONENT = 1e-3, 700.0
+WHY = "the motion loses more digits than double precision has"
+
+
+def by_longer_numbers(
+    motion: Motion,
+    accuracy: float,
+    times: Array,
+    declined: dict[str, str],
+    report: Callable[[str], None],
+) -> FullEquations | None:
+    """The full equations in the shortest numbers that are sufficient; None if none are.
+
+    The reasons against insufficient ones are added to `declined`.
+    """
+    check_length(motion, MOST_TURNS)
+    finest = 0.0
+    for precision in PRECISIONS:
+        try:
+            limit = kernel(motion.module, precision).epsilon
+        except NoCompilerError as failure:
+            declined[precision], finest = str(failure), COARSEST
+            continue
+        for _ in range(TRIES):
+            finest = min(max(finest, limit), COARSEST)
+            try:
+                model, growth = _checked(motion, precision, finest, times, report)
+            except (NotAccurateError, TooLongError) as failure:
+                declined[precision], growth = str(failure), 1.0
+                break
+            error = model.error_estimate
+            if error <= accuracy:
+                declined.pop(precision, None)
+                return model
+            declined[precision] = f"{precision} numbers reach {error:.1g}"
+            if finest == limit:
+                break
+            finest *= min(RESERVE * accuracy / error, LEAST_CHANGE)
+        # errors are `growth` times as large as tolerances
+        finest = RESERVE * accuracy / (MARGIN * MULTIPLES[-1] * growth)
+    return None
+
+
+def _checked(
+    motion: Motion, precision: str, finest: float, times: Array, report: Callable[[str], None]
+) -> tuple[FullEquations, float]:
+    """The run with the finest tolerance, checked by others; and the growth of its errors.
+
+    The others are perturbed by a few rounding errors: those of constants are the same in all runs.
+    """
+    stages, form = PRECISIONS[precision].stages, fastest_form(motion.module)
+    choice = MethodChoice(f"gauss{stages}", form, WHY, precision=precision)
+    operations = operations_on_state(motion.module, named("rhs", form))
+    most = int(MOST_PRODUCTS / (stages * (operations + 2 * stages * len(motion.y0))))
+
+    def progress(t: float) -> None:
+        report(f"{choice.method}, {precision}, at {t:.3g} of {motion.duration:g} s")
+
+    run, before = IntegrationRun(motion, choice, finest, most), perf_counter()
+    fine = run.states(times, progress)
+    seconds, distances = perf_counter() - before, list[Array]()
+    for k, multiple in enumerate(MULTIPLES, 1):
+        other = replace(run, setting=multiple * finest).extended_states(times, progress, k)
+        distances.append(np.abs(fine - other)[:, list(motion.requested)].max(axis=1))
+    error = MARGIN * float(np.max(distances)) + float(np.spacing(np.abs(fine).max()))
+    model = replace(FullEquations.of(run, error), computed=(times, fine), computing_seconds=seconds)
+    return model, _growth(times, distances[-1], MULTIPLES[-1] * finest)
+
+
+def _growth(times: Array, errors: Array, tolerance: float) -> float:
+    """The ratio of errors and tolerance at the end; extrapolated where errors are not small.
+
+    It is 1 where nothing is known of it.
+    """
+    large = np.flatnonzero(errors > SMALL)
+    k = int(large[0]) - 1 if large.size else len(times) - 1
+    if k < 1:
+        return 1.0
+    exponent = log(max(float(errors[k]) / tolerance, 1.0)) * float(times[-1] / times[k])
+    return exp(min(exponent, MOST_EXPONENT))
