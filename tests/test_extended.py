@@ -128,6 +128,18 @@ def test_constants_have_all_digits(precision: str, error: float, tmp_path: Path)
         assert abs(change) > 10 * error * abs(exact)
 
 
+def test_functions_have_all_digits(tmp_path: Path) -> None:
+    # another hill, on top of which the particle nearly stops: cos x is no coordinate's cosine alone
+    text = UNSTABLE.replace("-m*(pi/3 + 9.81 + 1/7)*x**2/2", "-m*(5*x**2 + cos(x))")
+    (tmp_path / "wavy.toml").write_text(text)
+    wavy = load_module(str(tmp_path / "wavy.toml"))
+    start, times = (1.0, -float(mp.sqrt(8 + 2 * mp.cos(1)))), [0.0, 9.0]
+    exact = taylor(wavy, (1.0,), start, times, 36)[1]
+    for precision, least, most in (("long double", 1e-9, 1e-2), ("quadruple", 0.0, 1e-15)):
+        end = integrate_extended(wavy, (1.0,), start, times, precision, FINE[precision] / 1e6)[1]
+        assert least <= np.abs(end / exact - 1).max() < most
+
+
 def test_parameters_and_start_are_taken_as_exact() -> None:
     # as by Taylor series: 9.81 is the nearest double, and sines are those of double angles
     start, times = (3.0, 3.1, 0.0, 0.0), [0.0, 6.0]
