@@ -1,12 +1,19 @@
 """Record the samples and events of the steps of an integration."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebfit, chebpts1, chebroots, chebtrim
 from scipy.optimize import brentq
 
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array
+
+#: Degree of the polynomial of an event in a long step, and its relative rounding errors.
+DEGREE, EPSILON = 24, 1e-13
+#: Roots, in [-1, 1], whose distance or imaginary part is smaller count as a real double root.
+CLOSE = 1e-6
 
 
 class Recorder:
@@ -45,7 +52,7 @@ class Recorder:
         """
         t = self.t
 
-        def ordinary(time: float) -> Array:
+        def ordinary(time: float, state: Callable[[float], Array] = state) -> Array:
             if time == t:
                 return self.y.copy()
             before, start = self.y, t
@@ -55,7 +62,11 @@ class Recorder:
             return self.form.to_ordinary(time, state(time), before, time - start)
 
         values = [event(end, ordinary(end)) for event in self.events]
-        roots = self._roots(t, end, values, ordinary)
+        parts = [[end]] * len(values)
+        if rough:
+            curve = partial(ordinary, state=rough)
+            parts = [[*_parts(event, t, end, curve), end] for event in self.events]
+        roots = self._roots(t, parts, values, ordinary)
         stops = bool(roots) and _is_terminal(self.events[roots[-1][0]])
         until = roots[-1][1] if stops else end
         y, occurrences = ordinary(until), [(k, root, ordinary(root)) for k, root in roots]
@@ -82,19 +93,51 @@ class Recorder:
         return self.samples[self._sampled : due]
 
     def _roots(
-        self, t: float, end: float, values: list[float], ordinary: Callable[[float], Array]
+        self,
+        t: float,
+        parts: list[list[float]],
+        values: list[float],
+        ordinary: Callable[[float], Array],
     ) -> list[tuple[int, float]]:
-        """The events of a step and their times, in order, up to the first that is terminal."""
+        """The events of a step and their times, in order, up to the first that is terminal.
+
+        Each event occurs at most once between successive times of its `parts`, the last of which is
+        the end of the step.
+        """
         crossings = []
-        for k, (before, after) in enumerate(zip(self._values, values, strict=True)):
-            crossed = before != 0 and np.sign(before) != np.sign(after)
-            direction = getattr(self.events[k], "direction", 0)
-            if crossed and np.sign(after - before) * direction >= 0:
-                root = _root(self.events[k], ordinary, t, end)
-                crossings.append((abs(root - t), k, root))
+        for k, (before, last) in enumerate(zip(self._values, values, strict=True)):
+            event, begin = self.events[k], t
+            for end in parts[k]:
+                after = last if end == parts[k][-1] else event(end, ordinary(end))
+                crossed = before != 0 and np.sign(before) != np.sign(after)
+                if crossed and np.sign(after - before) * getattr(event, "direction", 0) >= 0:
+                    root = _root(event, ordinary, begin, end)
+                    crossings.append((abs(root - t), k, root))
+                before, begin = after, end
         crossings.sort()
         terminal = [n for n, (_, k, _) in enumerate(crossings, 1) if _is_terminal(self.events[k])]
         return [(k, root) for _, k, root in crossings[: terminal[0] if terminal else None]]
+
+
+def _parts(
+    event: EventFunction, t: float, end: float, state: Callable[[float], Array]
+) -> list[float]:
+    """Times between the roots of an event in a step, by interpolation along states of the step.
+
+    After an event at the start, also one before the first root.
+    """
+    nodes = chebpts1(DEGREE + 1)
+    times = t + (nodes + 1) / 2 * (end - t)
+    values = np.array([event(float(time), state(float(time))) for time in times])
+    if np.isfinite(values).all():
+        roots = chebroots(chebtrim(chebfit(nodes, values, DEGREE), EPSILON * np.abs(values).max()))
+        real = np.sort(roots[np.abs(roots.imag) < CLOSE].real)
+        real = real[(real > -1 + CLOSE) & (real < 1 - CLOSE)]
+        starts_at_event = event(t, state(t)) == 0
+        ends = np.concatenate([[-1.0], real]) if starts_at_event else real
+        between = (ends[1:] + ends[:-1]) / 2
+        return [float(t + (x + 1) / 2 * (end - t)) for x in between]
+    return []
 
 
 def _is_terminal(event: EventFunction) -> bool:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from decimal import localcontext
 from fractions import Fraction
+from math import comb
 
 import numpy as np
 from numpy.polynomial.legendre import legint, legval
@@ -48,6 +49,18 @@ def legendre_matrix(tableau: Tableau) -> Array:
     nodes = 2 * np.array(tableau.c, float) - 1
     degrees = np.arange(tableau.stages)
     return np.asarray((2.0 * degrees[:, np.newaxis] + 1) * legval(nodes, np.eye(tableau.stages)))
+
+
+def bernstein_matrix(stages: int) -> Array:
+    """Legendre coefficients of h dy/dt to Bernstein coefficients of the change of y on [0, 1]."""
+    rows = [[Fraction(0)] * stages for _ in range(stages + 1)]
+    for m in range(stages):
+        legendre = [(-1) ** (m - i) * comb(m, i) * comb(m + i, i) for i in range(m + 1)]
+        integral = [Fraction(0), *(Fraction(a, i) for i, a in enumerate(legendre, 1))]
+        for k in range(stages + 1):
+            terms = enumerate(integral[: k + 1])
+            rows[k][m] = sum((comb(k, i) * a / comb(stages, i) for i, a in terms), Fraction(0))
+    return np.array(rows, float)
 
 
 def error_power(stages: int) -> float:

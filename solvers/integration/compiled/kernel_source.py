@@ -10,7 +10,12 @@ from dataclasses import dataclass
 from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
 from solvers.integration.problem import SHORTEST
 from solvers.runge_kutta.order_conditions import Number
-from solvers.runge_kutta.parallel_stages import error_power, legendre_matrix, symplectic_ratios
+from solvers.runge_kutta.parallel_stages import (
+    bernstein_matrix,
+    error_power,
+    legendre_matrix,
+    symplectic_ratios,
+)
 from solvers.runge_kutta.tableau import Tableau
 
 PROGRAM = """\
@@ -135,7 +140,11 @@ static const stage_vector RATIOS[STAGES] = {{
 }};
 static const stage_vector NODES = {{{nodes}}}, WEIGHTS = {{{weights}}};
 static const double ERROR_POWER = {error_power};
+static const double BERNSTEIN[STAGES][STAGES + 1] = {{
+{bernstein}
+}};
 {parallel_h}
+{roots_h}
 """
 
 WEIGHTED_SUM = """\
@@ -268,16 +277,21 @@ def _equations(equations: Equations, tableau: Tableau) -> str:
 
 def _parallel(tableau: Tableau) -> str:
     """Matrices by their columns."""
-    rows = {"ratios": symplectic_ratios(tableau), "legendre": legendre_matrix(tableau)}
+    matrices = {
+        "ratios": symplectic_ratios(tableau),
+        "legendre": legendre_matrix(tableau),
+        "bernstein": bernstein_matrix(tableau.stages),
+    }
     columns = {
         name: ",\n".join(f"    {{{', '.join(map(_real, column))}}}" for column in matrix.T)
-        for name, matrix in rows.items()
+        for name, matrix in matrices.items()
     }
     return PARALLEL.format(
         nodes=", ".join(map(_real, tableau.c)),
         weights=", ".join(map(_real, tableau.b)),
         error_power=_real(error_power(tableau.stages)),
         parallel_h=_source("parallel.h"),
+        roots_h=_source("roots.h"),
         **columns,
     )
 

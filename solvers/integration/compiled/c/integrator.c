@@ -129,25 +129,72 @@ static void fail_step(Motion *motion, WithinStep *within, int lane, double h)
 }
 
 #if HAS_POLYNOMIAL
-/* Use the state after a part h of the step of the only lane; returns whether it is finite. */
+/* The state after a part h of the step of the only lane; returns whether it is finite. */
+static int state_within(Lanes *lanes, WithinStep *within, double h, State *state)
+{
+    Motion *motion = &lanes->motion;
+    const State *start = &motion->state, *full = (const State *)within->full_end;
+    double check = 0;
+    *state = *start;
+    motion->iterations += step_within(lanes->task, start, full, h, motion->params, state);
+    for (int n = 0; n < DIM; n++) {
+        check += state->z[n] - state->z[n];
+    }
+    normalise_angles(state);
+    rescale_variation(start, state);
+    return check + count_turns(start, h, state) == 0;
+}
+
 static int substep(Lanes *lanes, WithinStep *within, double h)
 {
     const Task *task = lanes->task;
-    Motion *motion = &lanes->motion;
-    const State *start = &motion->state, *full = (const State *)within->full_end;
-    State state = *start;
-    double numbers[STATE_SIZE], check = 0;
-    motion->iterations += step_within(task, start, full, h, motion->params, &state);
-    for (int n = 0; n < DIM; n++) {
-        check += state.z[n] - state.z[n];
-    }
-    normalise_angles(&state);
-    rescale_variation(start, &state);
-    check += count_turns(start, h, &state);
+    State state;
+    double numbers[STATE_SIZE], value = 0;
+    const int is_finite = state_within(lanes, within, h, &state);
     read_lane(&state, STATE_SIZE, 0, numbers);
-    const int e = within->event;
-    use_substep(task, within, h, numbers, e < 0 ? 0 : event_value(&task->events[e], &state));
-    return check == 0;
+    if (within->mode == LOCATE) {
+        value = event_value(&task->events[within->bracket->event], &state);
+    }
+    use_substep(task, within, h, numbers, value);
+    return is_finite;
+}
+
+/* Bracket all crossings of an event within the step of the only lane; returns whether all states are
+   finite. */
+static int bracket_crossings(Lanes *lanes, WithinStep *within, int e, double before, double after)
+{
+    const Event *event = &lanes->task->events[e];
+    double coefficients[STAGES + 1], parts[MAX_PARTS + 1];
+    event_polynomial(event, &lanes->motion.state, &lanes->end, before, coefficients);
+    const int count = separate_roots(coefficients, parts);
+    const double h = within->full_h;
+    Bracket bracket = {.event = e, .near_value = before};
+    if (before == 0 && count >= 0) {    /* the event at the start is not in this step, others are */
+        bracket.near_value = copysign(DBL_MIN, first_sign(coefficients));
+    }
+    for (int k = 0; k <= count || k == 0; k++) {
+        State state;
+        bracket.far = k < count ? parts[k]*h : h;
+        if (k < count) {
+            if (!state_within(lanes, within, bracket.far, &state)) {
+                return 0;
+            }
+            bracket.far_value = event_value(event, &state);
+            read_lane(&state, STATE_SIZE, 0, bracket.far_state);
+        } else {
+            bracket.far_value = after;
+            memcpy(bracket.far_state, within->full_end, sizeof bracket.far_state);
+        }
+        if (k < count && bracket.far_value == 0) {
+            continue;       /* which side it is on is decided by the next part */
+        }
+        if (has_crossed(event, bracket.near_value, bracket.far_value)) {
+            add_bracket(within, &bracket);
+        }
+        bracket.near = bracket.far;
+        bracket.near_value = bracket.far_value;
+    }
+    return 1;
 }
 #endif
 
@@ -171,17 +218,27 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
         if (!accepted) {
             return 0;
         }
-        int pending = 0;
+        begin_within_step(within, h, end);
         for (int e = 0; e < task->event_count; e++) {
+            const double before = LANE(lanes->before[e], lane);
+            const double after = within->after[e] = LANE(lanes->after[e], lane);
+#if HAS_POLYNOMIAL
+            if (!bracket_crossings(lanes, within, e, before, after)) {
+                fail_step(motion, within, lane, h);
+                return 0;
+            }
+#else
             const mask crossed = has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
-            pending |= (int)(MASK_LANE(crossed, lane) & 1) << e;
-            within->before[e] = LANE(lanes->before[e], lane);
-            within->after[e] = LANE(lanes->after[e], lane);
+            if (MASK_LANE(crossed, lane)) {
+                Bracket bracket = {e, 0, before, h, after, {0}};
+                memcpy(bracket.far_state, within->full_end, sizeof bracket.far_state);
+                add_bracket(within, &bracket);
+            }
+#endif
         }
-        begin_within_step(within, h, end, pending);
     } else {
-        const int e = within->event;
-        use_substep(task, within, h, end, e < 0 ? 0 : LANE(lanes->after[e], lane));
+        const Bracket *bracket = within->bracket;
+        use_substep(task, within, h, end, bracket ? LANE(lanes->after[bracket->event], lane) : 0);
     }
     double next;
     while ((next = next_h(task, within, LANE(motion->state.t, lane),
@@ -300,6 +357,12 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     for (int e = 0; e < task->event_count; e++) {
         lanes->after[e] = event_value(&task->events[e], end);
         attention |= *accepted & has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
+#if HAS_POLYNOMIAL
+        double coefficients[STAGES + 1];
+        event_polynomial(&task->events[e], state, end, lanes->before[e], coefficients);
+        const int roots = sign_changes(coefficients);
+        attention |= -(mask)(roots > 1 || (roots == 1 && lanes->before[e] == 0));
+#endif
     }
     attention |= less_than(splat((double)task->max_steps), motion->steps + 2.0);
     if (task->samples < 0) {

@@ -2,9 +2,16 @@
    states at sample times. Each substep is a step of the same method from the same state, with a
    shorter h. */
 
-enum { MAX_SUBSTEPS = 100 };
+enum { MAX_SUBSTEPS = 100, MAX_BRACKETS = HAS_POLYNOMIAL ? 8*MAX_EVENTS : MAX_EVENTS };
 
 typedef enum { IDLE, ADVANCE, LOCATE, SAMPLE } Mode;
+
+/* A crossing of an event between two parts of a step: its value has different signs there. */
+typedef struct {
+    int event;
+    double near, near_value;                /* an h before the event */
+    double far, far_value, far_state[STATE_SIZE];   /* and one not before it */
+} Bracket;
 
 typedef struct {
     Mode mode;
@@ -12,12 +19,13 @@ typedef struct {
     int64_t rows, occurred[MAX_EVENTS];     /* before the step */
     double full_h, full_end[STATE_SIZE];    /* length of the step, and the state at its end */
     double h, end[STATE_SIZE];              /* the same up to a terminal event */
-    double before[MAX_EVENTS], after[MAX_EVENTS];   /* event values at both ends */
-    int pending;                            /* events to be located, one bit each */
+    double after[MAX_EVENTS];               /* event values at its end */
     int terminal;                           /* the event that ends the motion, or -1 */
-    int event, substeps, side;              /* the event being located */
-    double near, near_value;                /* bracket: an h before the event */
-    double far, far_value, far_state[STATE_SIZE];   /* and one not before it */
+    Bracket brackets[MAX_BRACKETS];         /* of each event in ascending order */
+    int bracket_count;
+    uint64_t pending;                       /* brackets to be reduced, one bit each */
+    Bracket *bracket;                       /* the one being reduced, or NULL */
+    int substeps, side;
     double resolution;                      /* difference below which times are equal */
 } WithinStep;
 
@@ -26,8 +34,9 @@ typedef struct {
    never so close to an end that the times are equal. */
 static double next_event_h(const WithinStep *within)
 {
-    const double x = within->near, y = within->far;
-    const double u = within->near_value, v = within->far_value;
+    const Bracket *bracket = within->bracket;
+    const double x = bracket->near, y = bracket->far;
+    const double u = bracket->near_value, v = bracket->far_value;
     const double aim = within->substeps < MAX_SUBSTEPS/2 ? (x*v - y*u)/(v - u) : (x + y)/2;
     const double margin = copysign(within->resolution, y - x);
     return margin > 0 ? fmin(fmax(aim, x + margin), y - margin)
@@ -54,43 +63,47 @@ static double next_sample_h(const Task *task, WithinStep *within, double t, doub
     return 0;
 }
 
-/* Select a pending event, terminal ones first; 0 if there is none. */
-static int select_event(const Task *task, WithinStep *within)
+static void add_bracket(WithinStep *within, const Bracket *bracket)
 {
-    within->event = -1;
-    for (int e = 0; e < task->event_count; e++) {
-        if (within->pending >> e & 1 && (within->event < 0
-                || task->events[e].terminal > task->events[within->event].terminal)) {
-            within->event = e;
+    if (within->bracket_count < MAX_BRACKETS) {
+        within->pending |= (uint64_t)1 << within->bracket_count;
+        memcpy(&within->brackets[within->bracket_count++], bracket, sizeof *bracket);
+    }
+}
+
+/* Select a pending bracket, those of terminal events first; 0 if there is none. */
+static int select_bracket(const Task *task, WithinStep *within)
+{
+    int selected = -1;
+    for (int k = 0; k < within->bracket_count; k++) {
+        if (within->pending >> k & 1 && (selected < 0
+                || task->events[within->brackets[k].event].terminal
+                    > task->events[within->brackets[selected].event].terminal)) {
+            selected = k;
         }
     }
-    if (within->event < 0) {
-        return 0;
-    }
-    within->pending &= ~(1 << within->event);
+    within->bracket = selected < 0 ? NULL : &within->brackets[selected];
+    within->pending &= selected < 0 ? 0 : ~((uint64_t)1 << selected);
     within->substeps = within->side = 0;
-    within->near = 0;
-    within->near_value = within->before[within->event];
-    within->far = within->full_h;
-    within->far_value = within->after[within->event];
-    memcpy(within->far_state, within->full_end, sizeof within->far_state);
-    return 1;
+    return selected >= 0;
 }
 
 /* Use a located event: it ends the motion or is recorded, unless the motion ends before it. */
 static void use_event(const Task *task, WithinStep *within)
 {
+    const Bracket *bracket = within->bracket;
+    const int event = bracket->event;
     /* of simultaneous events those before the terminal one in the list count */
-    const double later = fabs(within->far) - fabs(within->h);
-    if (later > 0 || (later == 0 && within->terminal >= 0 && within->event > within->terminal)) {
+    const double later = fabs(bracket->far) - fabs(within->h);
+    if (later > 0 || (later == 0 && within->terminal >= 0 && event > within->terminal)) {
         return;
     }
-    if (task->events[within->event].terminal) {
-        within->terminal = within->event;
-        within->h = within->far;
-        memcpy(within->end, within->far_state, sizeof within->end);
+    if (task->events[event].terminal) {
+        within->terminal = event;
+        within->h = bracket->far;
+        memcpy(within->end, bracket->far_state, sizeof within->end);
     } else {
-        record_event(task, within->trajectory, within->event, within->far_state);
+        record_event(task, within->trajectory, event, bracket->far_state);
     }
 }
 
@@ -99,13 +112,13 @@ static double next_h(const Task *task, WithinStep *within, double t, double t_lo
 {
     for (;;) {
         if (within->mode == LOCATE) {
-            if (fabs(within->far - within->near) > 2*within->resolution
+            if (fabs(within->bracket->far - within->bracket->near) > 2*within->resolution
                     && within->substeps < MAX_SUBSTEPS) {
                 return next_event_h(within);
             }
             use_event(task, within);
         }
-        if (within->mode == SAMPLE || !select_event(task, within)) {
+        if (within->mode == SAMPLE || !select_bracket(task, within)) {
             break;
         }
         within->mode = LOCATE;
@@ -117,15 +130,17 @@ static double next_h(const Task *task, WithinStep *within, double t, double t_lo
     return next_sample_h(task, within, t, t_low);
 }
 
-/* Start the work within an accepted step of length h that crosses the events in `pending`. */
-static void begin_within_step(WithinStep *within, double h, const double *end, int pending)
+/* Start the work within an accepted step of length h. */
+static void begin_within_step(WithinStep *within, double h, const double *end)
 {
     within->rows = within->trajectory->rows;
     memcpy(within->occurred, within->trajectory->occurred, sizeof within->occurred);
     within->full_h = within->h = h;
     memcpy(within->full_end, end, sizeof within->full_end);
     memcpy(within->end, end, sizeof within->end);
-    within->pending = pending;
+    within->pending = 0;
+    within->bracket_count = 0;
+    within->bracket = NULL;
     within->terminal = -1;
 }
 
@@ -137,17 +152,18 @@ static void use_substep(
         append_row(task, within->trajectory, state);
         return;
     }
+    Bracket *bracket = within->bracket;
     within->substeps++;
-    if ((value < 0) == (within->near_value < 0) && value != 0) {
-        within->near = h;
-        within->near_value = value;
-        within->far_value *= within->side < 0 ? 0.5 : 1;
+    if ((value < 0) == (bracket->near_value < 0) && value != 0) {
+        bracket->near = h;
+        bracket->near_value = value;
+        bracket->far_value *= within->side < 0 ? 0.5 : 1;
         within->side = -1;
     } else {
-        within->far = h;
-        within->far_value = value;
-        memcpy(within->far_state, state, sizeof within->far_state);
-        within->near_value *= within->side > 0 ? 0.5 : 1;
+        bracket->far = h;
+        bracket->far_value = value;
+        memcpy(bracket->far_state, state, sizeof bracket->far_state);
+        bracket->near_value *= within->side > 0 ? 0.5 : 1;
         within->side = 1;
     }
 }
