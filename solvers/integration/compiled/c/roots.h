@@ -10,7 +10,7 @@
 
 /* Roots that are closer to each other count as a double one. */
 static const double CLOSE_ROOTS = 0x1p-24;
-enum { MAX_DEPTH = 25, MAX_PARTS = 2*STAGES };
+enum { MAX_DEPTH = 25, MAX_ROOTS = 2*STAGES, SAMPLES = 8 };
 
 /* Bernstein coefficients of the value of an event over the step from `start`, where it is `before`,
    to `end`; of an angle, of the sine of its difference from the event. */
@@ -66,45 +66,84 @@ static void subdivide(double part, double *coefficients, double *left)
     }
 }
 
-/* Parts of the interval between its roots, ascending, at which the sign of a value decides on which
-   side of a root it is. Returns their number, or -1 if there is no root. */
-static int separate_roots(const double *coefficients, double *parts)
+static double value_at(const double *coefficients, double x)
+{
+    double copy[STAGES + 1], left[STAGES + 1];
+    memcpy(copy, coefficients, sizeof copy);
+    subdivide(x, copy, left);
+    return copy[0];
+}
+
+/* The only root between two parts of the interval. */
+static double root_between(const double *coefficients, double begin, double end)
+{
+    double rightmost = value_at(coefficients, end);
+    while (end - begin > CLOSE_ROOTS) {
+        const double middle = 0.5*(begin + end), value = value_at(coefficients, middle);
+        if ((value < 0) == (rightmost < 0) && value != 0) {
+            end = middle;
+            rightmost = value;
+        } else {
+            begin = middle;
+        }
+    }
+    return 0.5*(begin + end);
+}
+
+/* Roots in ascending order, a nearly double one twice. Returns their number. */
+static int isolate_roots(const double *coefficients, double *roots)
 {
     double stack[MAX_DEPTH + 1][STAGES + 1], begin[MAX_DEPTH + 1], end[MAX_DEPTH + 1];
-    int top = 0, count = -1;
+    int top = 0, count = 0;
     memcpy(stack[0], coefficients, sizeof stack[0]);
     begin[0] = 0;
     end[0] = 1;
-    while (top >= 0 && count < MAX_PARTS - 2) {
+    while (top >= 0 && count < MAX_ROOTS - 1) {
         const int changes = sign_changes(stack[top]);
-        const double middle = 0.5*(begin[top] + end[top]);
         if (changes > 1 && end[top] - begin[top] > CLOSE_ROOTS) {
             /* the left part is on top; a root at the middle would be in none of them */
-            double part = 0.5, value[STAGES + 1], left[STAGES + 1];
-            do {
-                memcpy(value, stack[top], sizeof value);
-                subdivide(part, value, left);
+            double part = 0.5, right[STAGES + 1];
+            memcpy(right, stack[top], sizeof right);
+            subdivide(part, right, stack[top + 1]);
+            while (right[0] == 0 && part > 0.25) {
                 part -= 0.03125;
-            } while (value[0] == 0 && part > 0.25);
-            part += 0.03125;
-            memcpy(stack[top], value, sizeof value);
-            memcpy(stack[top + 1], left, sizeof left);
+                memcpy(right, stack[top], sizeof right);
+                subdivide(part, right, stack[top + 1]);
+            }
+            memcpy(stack[top], right, sizeof right);
             begin[top + 1] = begin[top];
             begin[top] += part*(end[top] - begin[top]);
             end[top + 1] = begin[top];
             top++;
             continue;
         }
-        if (changes > 0) {
-            if (count >= 0) {
-                parts[count] = begin[top];
-            }
-            count++;
-        }
-        if (changes > 1) {      /* a double root, nearly: its middle decides */
-            parts[count++] = middle;
+        if (changes == 1) {
+            roots[count++] = root_between(coefficients, begin[top], end[top]);
+        } else if (changes > 1) {
+            roots[count++] = begin[top];
+            roots[count++] = end[top];
         }
         top--;
+    }
+    return count;
+}
+
+/* A part of the interval between every two roots, where the value is largest of some: its sign
+   decides whether there are roots on both sides. Returns the number of roots. */
+static int separate_roots(const double *coefficients, double *parts)
+{
+    double roots[MAX_ROOTS];
+    const int count = isolate_roots(coefficients, roots);
+    for (int k = 0; k + 1 < count; k++) {
+        double largest = -1;
+        for (int i = 1; i < SAMPLES; i++) {
+            const double x = roots[k] + (roots[k + 1] - roots[k])*i/SAMPLES;
+            const double value = fabs(value_at(coefficients, x));
+            if (value > largest) {
+                largest = value;
+                parts[k] = x;
+            }
+        }
     }
     return count;
 }
