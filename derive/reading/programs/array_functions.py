@@ -9,8 +9,8 @@ from derive.reading.programs.trees import Array, Call, Number, Opaque, Operation
 
 #: Functions that place arrays one behind the other.
 STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "vstack"}
-#: Methods that return the array, perhaps in another shape.
-RESHAPED = {"copy", "flatten", "ravel", "tolist", "transpose"}
+#: Methods that return the array, perhaps in another shape or type.
+RESHAPED = {"copy", "flatten", "ravel", "tolist", "transpose", "astype", "item"}
 
 
 def of_arrays(call: Call, path: str, base: Tree | None, language: Language) -> Tree | None:

@@ -83,6 +83,8 @@ class Calls(Values):
             last = Item(call.line, call.function.base, (Number(call.line, "-1"),))
             self.assign(call.line, last, arguments[0])
             return made
+        if not path and isinstance(call.function, Member):
+            path = call.function.name  # the method of a value without a name
         value = of_arrays(made, path, self._base(call), self.context.language)
         return made if value is None else value
 

@@ -91,7 +91,7 @@ class Follower(Calls):
         elif self._is_constant(target, value):
             return  # it stays a letter
         elif path := self.place(target):
-            if _is_input(value):
+            if self._is_input(value):
                 value = Name(line, path)
             if isinstance(target, Item) and whole(path[:-1].rpartition("[")[2]) is not None:
                 self._open_array(target)
@@ -169,7 +169,7 @@ class Follower(Calls):
         for path in before | after:
             values = [one.get(path, Name(line, path)) for one in (before, after)]
             value = values[0] if values[0] == values[1] else Choice(line, *values)
-            merged[path] = Name(line, path) if _is_input(value) else value
+            merged[path] = Name(line, path) if self._is_input(value) else value
         self.variables = merged
 
     def _loop(self, one: Loop) -> None:
@@ -186,7 +186,14 @@ class Follower(Calls):
                 del self.variables[key]
             self.variables[path] = Opaque(line, reason)
 
+    def _is_input(self, tree: Tree) -> bool:
+        """Whether a value is one of two constants, such as a force to the left or to the right."""
+        return isinstance(tree, Choice) and all(map(self._is_number, tree.parts))
 
-def _is_input(tree: Tree) -> bool:
-    """Whether a value is one of two numbers, such as a force to the left or to the right."""
-    return isinstance(tree, Choice) and all(number(part) is not None for part in tree.parts)
+    def _is_number(self, tree: Tree) -> bool:
+        match tree:
+            case Operation(operator="-", operands=(operand,)):
+                return self._is_number(operand)
+            case Name(path=path):
+                return path in self.context.constants
+        return number(tree) is not None

@@ -59,6 +59,8 @@ def applied(line: int, path: str, arguments: tuple[Tree, ...]) -> Tree | None:
             return Operation(line, "*", (x, _ratio(line, "180", "pi")))
         case "pow" | "power" | "powf" | "float_power", (x, exponent):
             return Operation(line, "**", (x, exponent))
+        case "clip" | "constrain" | "clamp", (x, _, _):
+            return x  # equations hold within the limits
         case "square" | "sq" | "abs2", (x,):
             return Operation(line, "**", (x, Number(line, "2")))
         case "sign" | "abs" | "fabs" | "atan2" | "asin" | "acos" | "atan", _:

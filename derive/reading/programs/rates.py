@@ -8,7 +8,7 @@ from derive.reading.programs.arrays import entries, flat
 from derive.reading.programs.code import Definition
 from derive.reading.programs.following import Follower
 from derive.reading.programs.sums import inner, terms
-from derive.reading.programs.trees import Name, Record, Tree
+from derive.reading.programs.trees import Call, Name, Record, Tree
 from derive.reading.programs.values import whole
 
 
@@ -37,8 +37,23 @@ def rates(definition: Definition, follower: Follower) -> Rates | None:
         if len(outputs) >= 2 and (keys := _state(definition, follower, outputs)) is not None:
             found = dict(zip(keys, outputs.values(), strict=True))
             result = Rates(found, dict(zip(keys, lines, strict=True)))
+            if _is_observation(result):
+                continue
             return replace(result, is_step=not result.velocities and _is_step(found))
     return None
+
+
+def _is_observation(rates: Rates) -> bool:
+    """Whether values are measurements of a state, such as (x, x_dot, cos(theta), sin(theta))."""
+    values = {variable: inner(value) for variable, value in rates.values.items()}
+    kept = sum(value == Name(0, variable) for variable, value in values.items())
+    is_direction = any(
+        isinstance(one, Call)
+        and one.function in (Name(0, "sin"), Name(0, "cos"))
+        and isinstance(inner(one.arguments[0]), Name)
+        for one in values.values()
+    )
+    return is_direction or kept > len(rates.velocities)
 
 
 def _is_step(values: Mapping[str, Tree]) -> bool:

@@ -5,9 +5,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from derive.reading.programs.arithmetic import number
-from derive.reading.programs.code import Assignment, Definition, Evaluation, Loop, Statement
+from derive.reading.programs.code import (
+    Assignment,
+    Definition,
+    Evaluation,
+    Lambda,
+    Loop,
+    Statement,
+)
 from derive.reading.programs.context import Context, assigned, statements, static_path, targets
 from derive.reading.programs.following import Follower
+from derive.reading.programs.runge_kutta import called
 from derive.reading.programs.trees import Array, Call, Member, Name, Opaque, Tree, replaced
 from derive.reading.programs.values import root
 
@@ -80,14 +88,17 @@ def regions(context: Context, body: tuple[Statement, ...]) -> list[Region]:
 
 
 def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
-    """Names with one formula; numbers that they have at the beginning aside."""
+    """Names with one formula, even repeated; numbers that they have at the beginning aside."""
     counts: Counter[str] = Counter()
-    for one in statements(body, inner=True):
+    formulas: dict[str, Tree] = {}
+    for one in _everything(body):
         if isinstance(one, Assignment):
             for target in targets(one.target):
+                path = static_path(target)
                 is_whole = isinstance(target, Name | Member) and not one.operator
-                is_number = number(one.value) is not None
-                counts[static_path(target)] += (not is_number) if is_whole else 2
+                is_known = number(one.value) is not None or formulas.get(path) == one.value
+                formulas.setdefault(path, one.value)
+                counts[path] += (not is_known) if is_whole else 2
         elif isinstance(one, Evaluation) and isinstance(one.value, Call):
             # a function can change its arguments, and a method its object
             changed = [*one.value.parts]
@@ -95,6 +106,15 @@ def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
                 changed.append(one.value.function.base)
             counts.update({static_path(part): 2 for part in changed})
     return {path for path, count in counts.items() if count == 1}
+
+
+def _everything(body: tuple[Statement, ...]) -> Iterator[Statement]:
+    """All statements, also those of functions without a name."""
+    for one in statements(body, inner=True):
+        yield one
+        if isinstance(one, Evaluation | Assignment):
+            for callback in _callbacks(one.value):
+                yield from _everything(callback.body)
 
 
 def _elsewhere(tree: Tree, parameters: set[str], function: str) -> Tree:
@@ -108,7 +128,12 @@ def _elsewhere(tree: Tree, parameters: set[str], function: str) -> Tree:
 
 
 def _is_formula(value: Tree) -> bool:
-    return number(value) is None and not isinstance(value, Opaque)
+    """Whether a value is a formula: no number, and no value of a function that is not known."""
+    return number(value) is None and not isinstance(value, Opaque) and not _has_call(value)
+
+
+def _has_call(tree: Tree) -> bool:
+    return called(tree) is not None or any(map(_has_call, tree.parts))
 
 
 def _contains(tree: Tree, path: str) -> bool:
@@ -122,6 +147,19 @@ def _regions(context: Context, body: tuple[Statement, ...]) -> Iterator[Region]:
     for one in statements(body, inner=True):
         if isinstance(one, Definition):
             yield from _followed(context, one, {}, one.body)
+        elif isinstance(one, Evaluation | Assignment):
+            for callback in _callbacks(one.value):
+                yield from _followed(context, callback, {}, callback.body)
+
+
+def _callbacks(tree: Tree) -> Iterator[Definition]:
+    """Functions without a name that a call takes and that assign something, such as a frame's."""
+    if isinstance(tree, Call):
+        for one in tree.arguments:
+            if isinstance(one, Lambda) and assigned(one.function.body):
+                yield one.function
+    for part in tree.parts:
+        yield from _callbacks(part)
 
 
 def _followed(

@@ -156,6 +156,8 @@ class Values:
                 return items[place]
         if path and isinstance(base, Name):
             return self.variable(tree.line, path)
+        if isinstance(base, Name) and index:
+            return self.variable(tree.line, f"{base.path}[{index}]")
         if isinstance(base, Opaque):
             return base
         if is_zeros(base):

@@ -41,12 +41,21 @@ TOTAL = ("", "tot", "total")
 KINDS: dict[str, tuple[str, ...]] = {
     "mass": ("m", "M", "mu", "mass"),
     "length": ("l", "L", "ell", "r", "R", "a", "b", "d", "h", "s", "rho", "length", "A"),
-    "gravity": ("g",),
+    "gravity": ("g", "G"),
     "stiffness": ("k", "K", "kappa", "c"),
     "inertia": ("I", "J", "Theta"),
     "frequency": ("omega", "Omega", "w", "nu"),
     "damping": ("b", "c", "d", "gamma", "beta", "mu", "nu", "delta", "B", "eta"),
     "force": ("F", "u", "f", "tau", "Q"),
+}
+
+#: Parts of longer names, as programs have them.
+PARTS: dict[str, tuple[str, ...]] = {
+    "mass": ("mass",),
+    "length": ("length",),
+    "gravity": ("grav",),
+    "damping": ("damp", "fric"),
+    "force": ("force", "torque", "action"),
 }
 
 OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
@@ -102,4 +111,7 @@ class Letters:
         given = [name for name, own in self.kinds.items() if own == kind]
         stems = {p: p.partition("_")[0].rstrip("0123456789") for p in self.parameters}
         named = [p for p in self.parameters if stems[p] in usual and p not in self.kinds]
-        return [*given, *sorted(named, key=lambda p: (usual.index(stems[p]), p))]
+        parts = PARTS.get(kind, ())
+        worded = [p for p in self.parameters if any(one in p.lower() for one in parts)]
+        worded = [p for p in worded if p not in (*named, *self.kinds)]
+        return [*given, *sorted(named, key=lambda p: (usual.index(stems[p]), p)), *worded]

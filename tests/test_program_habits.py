@@ -1,0 +1,92 @@
+"""Programs as people write them: measurements of a state, limits, inputs, callbacks of frames."""
+
+from derive.reading.programs.reader import read_program
+from derive.verification.documents.judged import JudgedDocument
+from derive.verification.documents.program_judgement import judge_program
+
+ROD = """
+import numpy as np
+
+class Rod:
+    def step(self, torque):
+        angle, rate = self.state
+        torque = np.clip(torque, -self.top, self.top).astype(float)[0]
+        rate = rate + (3 * g / (2 * l) * np.sin(angle) + 3 / (m * l**2) * torque) * dt
+        rate = np.clip(rate, -8, 8)
+        angle = angle + rate * dt
+        self.state = np.array([angle, rate])
+
+    def seen(self):
+        angle, rate = self.state
+        return np.array([np.cos(angle), np.sin(angle), rate])
+"""
+FRAMES = """
+function start() {
+  var l = Number(box("l").value), a = Number(box("a").value), w = 0;
+  setInterval(function () {
+    acc = -g * Math.sin(a) / l;
+    w += acc * dt;
+    a += w * dt;
+    draw();
+  }, 20);
+}
+"""
+CART = """
+class Cart:
+    def __init__(self):
+        self.gravity, self.polemass, self.cartmass, self.length = 9.8, 0.1, 1.0, 0.5
+        self.total_mass = self.polemass + self.cartmass
+        self.strength = 10.0
+
+    def step(self, action):
+        x, x_dot, theta, theta_dot = self.state
+        force = self.strength if action else -self.strength
+        s, c = sin(theta), cos(theta)
+        part = (force + self.polemass * self.length * theta_dot**2 * s) / self.total_mass
+        turn = (self.gravity * s - c * part) / (
+            self.length * (4.0 / 3.0 - self.polemass * c**2 / self.total_mass))
+        push = part - self.polemass * self.length * turn * c / self.total_mass
+        x_dot = x_dot + dt * push
+        x = x + dt * x_dot
+        theta_dot = theta_dot + dt * turn
+        theta = theta + dt * theta_dot
+        self.state = (x, x_dot, theta, theta_dot)
+
+class Other:
+    def __init__(self):
+        self.total_mass = self.polemass + self.cartmass
+"""
+
+
+def judged(text: str, language: str = "Python") -> JudgedDocument:
+    return judge_program(read_program(text, language))
+
+
+def equations(document: JudgedDocument) -> list[str]:
+    formulas = document.formulas
+    return [one.verdict for one in formulas if one.latex != "method of integration"]
+
+
+def test_measurements_of_a_state_are_no_rates() -> None:
+    document = judged(ROD)
+    assert equations(document) == ["verified"]
+    assert all(one.verdict != "wrong" for one in document.formulas)
+    assert equations(judged(ROD.replace("3 * g", "5 * g"))) != ["verified"]
+
+
+def test_limits_and_types_change_no_equation() -> None:
+    (formula,) = (one for one in judged(ROD).formulas if "ddot" in one.latex)
+    assert "torque" in formula.latex
+    assert "clip" not in formula.latex
+
+
+def test_functions_without_a_name_that_a_timer_calls_are_followed() -> None:
+    assert equations(judged(FRAMES, "JavaScript")) == ["verified"]
+
+
+def test_one_of_two_constants_is_an_input_and_repeated_formulas_are_one() -> None:
+    (function,) = (one for one in read_program(CART, "Python").functions if one.equations)
+    for equation in function.equations:
+        assert "force" in equation.text
+        assert "polemass + cartmass" in equation.text
+        assert "total_mass" not in equation.text
