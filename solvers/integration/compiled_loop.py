@@ -14,8 +14,6 @@ from solvers.runge_kutta.tableau import Tableau
 
 #: Steps, and occurrences of an event, that C stores before Python collects them.
 ROW_CAPACITY, EVENT_CAPACITY = 4096, 64
-#: Most unknowns of an implicit step in C; more would not fit on a thread's stack.
-MOST_UNKNOWNS = 100
 #: Seconds of C between checks for an interruption by the user.
 TIME_LIMIT = 0.05
 
@@ -24,9 +22,6 @@ def obstacle(problem: Problem) -> str:
     """The reason why no compiled loop can solve the problem; empty if one can."""
     if not isinstance(problem.method, Tableau):
         return "the method is SciPy's"
-    unknowns = problem.method.stages * len(problem.form.state)
-    if problem.method.needs_jacobian and unknowns > MOST_UNKNOWNS:
-        return f"its stages have {unknowns} unknowns, more than {MOST_UNKNOWNS}"
     if problem.atol.ndim:
         return "atol differs by component"
     if len(problem.all_events) > MAX_EVENTS:

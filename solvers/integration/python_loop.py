@@ -10,6 +10,7 @@ from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
 from solvers.integration.stop_flag import StopFlag
+from solvers.runge_kutta.newton import Stages
 from solvers.runge_kutta.parallel_stages import Polynomial
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Step, Stepper
@@ -28,7 +29,7 @@ class Point:
     t: float
     y: Array
     derivative: Array
-    last: Polynomial | None = None  # of the step that ends here
+    last: Polynomial | Stages | None = None  # of the step that ends here
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class Accepted:
         if t == self.end.t:
             return self.end.y
         start, polynomial = self.start, self.step.polynomial
-        guess = polynomial and polynomial.from_start()
+        guess = polynomial.from_start() if polynomial else start.last
         step = self.attempts.stepper.step
         y = step(start.t, start.y, t - start.t, start.derivative, guess).y
         return self.attempts.normalise(y)
@@ -94,7 +95,7 @@ class Attempts:
                 derivative = self.stepper.derivative(t, y) if needed else start.derivative
         except FAILURES as failure:
             return Rejected(h / 4, failure)
-        return Accepted(self, start, Point(t, y, derivative, step.polynomial), norm, step)
+        return Accepted(self, start, Point(t, y, derivative, step.last), norm, step)
 
     def first_step_size(self, start: Point, end: float, shortest: float) -> float:
         """The first step size of steps that are controlled."""

@@ -33,7 +33,10 @@ class Status(Enum):
     STEP_TOO_SMALL = "the step size fell below the resolution of time, probably at a singularity"
     INTERRUPTED = "the integration was interrupted; resume from the last state"
     UNSTABLE = "the fixed step size is too large: small deviations grow exponentially"
-    NO_CONVERGENCE = "the stage equations of the next step could not be solved"
+    NO_CONVERGENCE = (
+        "the stage equations of the next step could not be solved: reduce h, or let method radau5 "
+        "control the steps, without h"
+    )
     OUTSIDE_DOMAIN = "a coordinate that must be positive fell to 0"
 
 

@@ -16,6 +16,20 @@ SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 #: slowest contraction of their iteration that is efficient.
 SAFETY_PARALLEL, GROW_PARALLEL, CONTRACTION = 0.85, 1.5, 0.4
 TINY = np.finfo(float).tiny
+#: The same for Radau methods: a step size that would grow by less stays, and errors below this part
+#: of the tolerance do not make the prediction more optimistic.
+LEAST_GROWTH, LEAST_ERROR = 1.2, 1e-2
+#: The tolerance of their error estimate is this, times the power of the tolerance.
+ESTIMATE_SHARE = 0.01
+
+
+def tolerance_power(stages: int) -> float:
+    """The power of the tolerance by which that of the error estimate of a Radau method is larger.
+
+    The estimate decreases with the power s + 1 of h, the error with 2s (E. Hairer, G. Wanner,
+    Journal of Computational and Applied Mathematics 111 (1999) 93-111, section 6).
+    """
+    return (stages + 1) / (2 * stages) - 1
 
 
 @dataclass
@@ -32,6 +46,8 @@ class Controller:
         """The controller of a method."""
         if tableau.is_parallel:
             return ParallelController(tableau.order, rtol, atol)
+        if tableau.is_radau:
+            return RadauController(tableau.stages, rtol, atol)
         return cls(tableau.error_order, rtol, atol)
 
     def norm(self, error: Array, y: Array, end: Array) -> float:
@@ -112,6 +128,34 @@ class ParallelController(Controller):
             self._previous, self._last_h = floor, h
         factor = min(SAFETY_PARALLEL * factor, CONTRACTION / (contraction + TINY))
         return min(GROW_PARALLEL, max(SHRINK, factor))
+
+
+@dataclass
+class RadauController(Controller):
+    """Step sizes of Radau methods, by an error estimate whose order is the number of stages."""
+
+    _last_h: float = 0.0
+
+    def norm(self, error: Array, y: Array, end: Array) -> float:
+        """Root mean square of the error relative to relaxed tolerances, see `tolerance_power`."""
+        largest = self.rtol if self.rtol > 0 else min(float(np.min(self.atol)), 1.0)
+        allowed = np.maximum(self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end)), 1e-75)
+        return _rms(error[0], ESTIMATE_SHARE * largest ** tolerance_power(self.order) * allowed)
+
+    def factor(self, norm: float, h: float = 0.0, contraction: float = 0.0) -> float:
+        """The factor of the step size, from `SHRINK` to `GROW`, 1 instead of a small growth.
+
+        Predictive control (K. Gustafsson, ACM Transactions on Mathematical Software 20 (1994)
+        496-517) after an accepted step, the plain rule after a rejected one.
+        """
+        k, floor = self.order + 1, max(norm, 1e-37)
+        factor = floor ** (-1 / k)
+        if norm <= 1:
+            if self._last_h:
+                factor *= min(h / self._last_h * (self._previous / floor) ** (1 / k), 1.0)
+            self._previous, self._last_h = max(norm, LEAST_ERROR), h
+        factor = min(GROW, max(SHRINK, SAFETY * factor))
+        return 1.0 if norm <= 1 < factor < LEAST_GROWTH else factor
 
 
 def _rms(values: Array, allowed: Array) -> float:

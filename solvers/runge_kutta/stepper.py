@@ -11,16 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.io.suggestion import shortened
+from solvers.runge_kutta.newton import Newton, Stages, Start, UnsolvedError, lagrange
 from solvers.runge_kutta.parallel_stages import NoFixedPointError, ParallelStages, Polynomial
 from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
 Rhs = Callable[[float, Array], Array]
-
-#: Newton's iteration ends at a relative change below the tolerance, or after so many iterations.
-TOLERANCE, MAX_ITERATIONS = 1e-14, 100
-#: Numbers that are not much larger have fewer digits than others.
-TINY = 1e-290
 
 
 class NotFiniteError(ArithmeticError):
@@ -43,6 +39,12 @@ class Step(NamedTuple):
     derivative: Array | None = None
     polynomial: Polynomial | None = None  # of a method with parallel stages
     contraction: float = 0.0  # of its iteration
+    stages: Stages | None = None  # of a method that solves them by Newton's iteration
+
+    @property
+    def last(self) -> Polynomial | Stages | None:
+        """The part that the next step starts from."""
+        return self.polynomial or self.stages
 
 
 def evaluated(what: str, function: Rhs, t: float, y: Array, shape: tuple[int, ...]) -> Array:
@@ -63,8 +65,8 @@ def evaluated(what: str, function: Rhs, t: float, y: Array, shape: tuple[int, ..
 class Stepper:
     """Steps of one method for one right-hand side; `nfev` and `njev` count the evaluations.
 
-    Newton's method needs ``jacobian(t, y)``, state × state; a fixed-point iteration ends at the
-    tolerances of the step, by default at rounding errors.
+    Newton's method needs ``jacobian(t, y)``, state × state; stages of implicit methods are solved
+    to the tolerances of the step, by default to rounding errors.
     """
 
     def __init__(
@@ -79,10 +81,23 @@ class Stepper:
         self._b, self._c = np.array(tableau.b, dtype=float), np.array(tableau.c, dtype=float)
         self._error_weights = np.array(tableau.error_weights, dtype=float)
         self._tableau, self._rhs, self._jacobian = tableau, rhs, jacobian
+        self._newton = None
+        if tableau.needs_jacobian:
+            self._newton = Newton(tableau, self.derivative, self._slopes, rtol, atol)
+            self._at_start = lagrange(self._c, np.zeros(1))[0]
         self._parallel_stages = None
         if tableau.is_parallel:
             self._parallel_stages = ParallelStages(tableau, rtol, atol)
-        self.nfev = self.njev = 0
+        self.nfev = 0
+
+    @property
+    def njev(self) -> int:
+        """Evaluations of the Jacobian."""
+        return self._newton.njev if self._newton else 0
+
+    def _slopes(self, t: float, y: Array) -> Array:
+        assert self._jacobian is not None
+        return evaluated("Jacobian", self._jacobian, t, y, (len(y), len(y)))
 
     def derivative(self, t: float, y: Array) -> Array:
         """The right-hand side, counted and checked to be finite."""
@@ -98,18 +113,21 @@ class Stepper:
         return value
 
     def step(
-        self, t: float, y: Array, h: float, first: Array, last: Polynomial | None = None
+        self, t: float, y: Array, h: float, first: Array, last: Polynomial | Stages | None = None
     ) -> Step:
         """The step of size `h` from the state `y`.
 
-        `first` is the derivative at the start, `last` the polynomial of the last step if there was
-        one, or of a longer step from the same start. An explicit stage raises `NotFiniteError`,
-        implicit ones `NoConvergenceError`.
+        `first` is the derivative at the start, `last` the polynomial or the stages of the last step
+        if there was one, or the polynomial of a longer step from the same start. An explicit stage
+        raises `NotFiniteError`, implicit ones `NoConvergenceError`.
         """
         if self._parallel_stages:
+            assert not isinstance(last, Stages)
             return self._parallel(self._parallel_stages, t, y, h, first, last)
-        stages = self._explicit if self._tableau.is_explicit else self._implicit
-        k = stages(t, y, h, first)
+        if self._newton:
+            assert not isinstance(last, Polynomial)
+            return self._implicit(self._newton, Start(t, y, h), first, last)
+        k = self._explicit(t, y, h, first)
         end = y + h * (self._b @ k)
         error = h * (self._error_weights @ k) if self._tableau.b_hat else np.zeros((1, len(y)))
         return Step(end, error, k[-1] if self._tableau.is_fsal else None)
@@ -145,29 +163,31 @@ class Stepper:
             k[i] = self.derivative(t + self._c[i] * h, y + h * (self._A[i, :i] @ k[:i]))
         return k
 
-    def _implicit(self, t: float, y: Array, h: float, first: Array) -> Array:
-        """Simplified Newton iteration on all stages at once, from the derivative at the start."""
-        assert self._jacobian is not None
-        stages, n = len(self._b), len(y)
-        self.njev += 1
-        J = evaluated("Jacobian", self._jacobian, t, y, (n, n))
-        matrix = np.eye(stages * n) - h * np.kron(self._A, J)
-        k = np.tile(first, (stages, 1))
-        times = [t + c * h for c in self._c]
-        # rounding errors, multiplied by a large Jacobian, may prevent closer agreement
-        rounding = TOLERANCE * (100 + np.abs(h * J).max())
-        previous = np.inf
-        for _ in range(MAX_ITERATIONS):
-            states = y + h * (self._A @ k)
-            try:
-                derivatives = np.array(list(map(self.derivative, times, states)))
-                change = np.linalg.solve(matrix, (derivatives - k).ravel()).reshape(stages, n)
-            except (NotFiniteError, np.linalg.LinAlgError) as error:
-                raise NoConvergenceError(f"stages at t = {t}, h = {h}: {error}") from error
-            k = k + change
-            scale = np.abs(y).max() + np.abs(h * k).max() + TINY
-            size = float(np.abs(h * change).max() / scale)
-            if size <= TOLERANCE or (size < rounding and size >= previous / 2):
-                return k
-            previous = size
-        raise NoConvergenceError(f"stages at t = {t}, h = {h} still change by {size:.1e}")
+    def _implicit(self, newton: Newton, start: Start, first: Array, last: Stages | None) -> Step:
+        last = last or Stages.constant(start.t, start.y, start.h, first, len(self._b))
+        try:
+            stages = newton.solve(start, first, last)
+        except UnsolvedError as failure:
+            raise NoConvergenceError(str(failure)) from failure
+        end = start.y + start.h * (self._b @ stages.k)
+        error = np.zeros((1, len(end)))
+        if self._tableau.is_radau and newton.is_controlled:
+            error[0] = self._defect(newton, start, first, stages)
+        return Step(end, error, stages=stages)
+
+    def _defect(self, newton: Newton, start: Start, first: Array, stages: Stages) -> Array:
+        """The error, by the difference of the polynomial's derivative at the start from `first`.
+
+        The embedded solution that uses `first`, too, differs by h g (first - p'(0)), where g is the
+        real eigenvalue of A. The filter (I - h g J)⁻¹ keeps it bounded for stiff equations, a
+        second one makes it small (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
+        section IV.8; Journal of Computational and Applied Mathematics 111 (1999) 93-111).
+        """
+        weight, at_start = start.h * newton.blocks.M[0, 0], self._at_start @ stages.k
+        filtered = newton.filter(stages)
+        error = filtered(weight * (first - at_start))
+        try:
+            derivative = self.derivative(start.t, start.y + error)
+        except NotFiniteError:
+            return error
+        return filtered(weight * (derivative - at_start))

@@ -84,6 +84,8 @@ class Tableau:
     @cached_property
     def embedded_order(self) -> int:
         """Order of the embedded solution; 0 without one."""
+        if self.is_radau:  # it uses the derivative at the start, too
+            return self.stages
         return order(self.A, self.b_hat) if self.b_hat else 0
 
     @cached_property
@@ -113,6 +115,21 @@ class Tableau:
         decimals = isinstance(self.b[0], Decimal)
         return decimals and not self.is_explicit and is_collocation(self.A, self.c)
 
+    @cached_property
+    def is_radau(self) -> bool:
+        """Whether this is a Radau IIA method with a real eigenvalue of A, which estimates errors.
+
+        It is a collocation method of order 2s - 1 with an odd number of stages s from 3 on, whose
+        last stage is the end of the step.
+        """
+        s = self.stages
+        if self.is_explicit or s < 3 or s % 2 == 0 or self.order != 2 * s - 1:
+            return False
+        A, c, k = np.array(self.A, float), np.array(self.c, float), np.arange(1, s + 1)
+        integrals = c[:, np.newaxis] ** k / k
+        exact = np.allclose(A @ c[:, np.newaxis] ** (k - 1), integrals, rtol=0, atol=1e-13)
+        return exact and c[-1] == 1
+
     @property
     def is_parallel(self) -> bool:
         """Whether all stages are evaluated at once, by a fixed-point iteration."""
@@ -126,7 +143,7 @@ class Tableau:
     @property
     def estimates_error(self) -> bool:
         """Whether steps can be controlled."""
-        return bool(self.b_hat) or self.is_parallel
+        return bool(self.b_hat) or self.is_parallel or self.is_radau
 
     @property
     def is_fsal(self) -> bool:

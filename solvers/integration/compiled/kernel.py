@@ -54,8 +54,6 @@ class Kernel:
         library.fuses_products.restype = ctypes.c_int64
         self.fuses_products = bool(library.fuses_products())
         self.trajectory, self.row = record("Trajectory", sizes), record("Row", sizes)
-        self.evaluations_per_step = tableau.stages - tableau.is_fsal
-        self.needs_jacobian = tableau.needs_jacobian
 
 
 #: Kernels that this process has loaded.
@@ -145,15 +143,14 @@ class Batch:
     @property
     def nfev(self) -> NDArray[np.int64]:
         """Evaluations of the right-hand side by each motion."""
-        iterations = self.motions["iterations"].astype(np.int64)
+        evaluations = self.motions["evaluations"].astype(np.int64)
         first = 1 if self.task.fixed_h else 2  # at the start, and to choose the first step
-        stages = iterations * self._kernel.evaluations_per_step
-        return stages + self.njev + first * (iterations > 0)
+        return evaluations + first * (evaluations > 0)
 
     @property
     def njev(self) -> NDArray[np.int64]:
-        """Evaluations of the Jacobian: one for every step of an implicit method."""
-        return self.motions["attempts"].astype(np.int64) * self._kernel.needs_jacobian
+        """Evaluations of the Jacobian."""
+        return self.motions["jacobians"].astype(np.int64)
 
 
 def _event(form: Form, event: Event, pauses: bool) -> tuple[float | int, ...]:

@@ -7,8 +7,11 @@ tableau, and the handwritten files in the folder ``c``.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
 from solvers.integration.problem import SHORTEST
+from solvers.runge_kutta.newton import Blocks, lagrange, lagrange_factors
 from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.parallel_stages import (
     bernstein_matrix,
@@ -16,6 +19,7 @@ from solvers.runge_kutta.parallel_stages import (
     legendre_matrix,
     symplectic_ratios,
 )
+from solvers.runge_kutta.step_control import tolerance_power
 from solvers.runge_kutta.tableau import Tableau
 
 PROGRAM = """\
@@ -155,21 +159,35 @@ static inline real {name}(real h, real (*k)[DIM], int n)
 """
 
 EXPLICIT = """\
-static inline real stages(
+static inline void stages(
     real t, const real *z, real h, real (*k)[DIM], const real *params)
 {{
     real stage[DIM];
 {rows}    (void)t; (void)z; (void)h; (void)stage; (void)k; (void)params;
-    return splat(1.0);
 }}"""
 
 IMPLICIT = """\
 static const double A[STAGES][STAGES] = {{
-{rows}
+{A}
+}};
+static const double T[STAGES][STAGES] = {{
+{T}
+}};
+static const double T_INVERSE[STAGES][STAGES] = {{
+{inverse}
+}};
+static const double M[STAGES][STAGES] = {{
+{M}
 }};
 static const double C[STAGES] = {{{nodes}}};
-
-{newton_h}"""
+static const double LAGRANGE[STAGES] = {{{lagrange}}}, AT_START[STAGES] = {{{at_start}}};
+static const double ERROR_POWER = {error_power};
+enum {{ BLOCKS = {blocks}, FACTORS = {squares}*DIM*DIM }};
+static const int BLOCK_SIZES[BLOCKS] = {{{sizes}}};
+{increment}
+{linear_h}
+{newton_h}
+{implicit_h}"""
 
 STAGE = """\
     for (int n = 0; n < DIM; n++) {{
@@ -202,8 +220,10 @@ class Equations:
             "FSAL_DIM": tableau.is_fsal * self.state,
             "ANGLES": len(self.angles),
             "PARAMETERS": self.parameters,
-            "POLYNOMIAL_DIM": tableau.is_parallel * tableau.stages * self.state,
-            "LENGTHS": int(tableau.is_parallel),
+            "POLYNOMIAL_DIM": (not tableau.is_explicit) * tableau.stages * self.state,
+            "LENGTHS": int(not tableau.is_explicit),
+            "JACOBIANS": int(tableau.needs_jacobian),
+            "JACOBIAN_DIM": tableau.needs_jacobian * self.state,
             "VARIATIONS": variations,
             "SCALES": int(variations > 0),
             "MAX_EVENTS": MAX_EVENTS,
@@ -306,21 +326,37 @@ def _explicit(tableau: Tableau) -> str:
 
 
 def _implicit(tableau: Tableau) -> str:
+    A, c = np.array(tableau.A, float), np.array(tableau.c, float)
+    blocks = Blocks.of(A)
+    matrices = {"A": A, "T": blocks.T, "inverse": blocks.inverse, "M": blocks.M}
+    rows = {
+        name: ",\n".join(f"    {{{', '.join(map(_real, row))}}}" for row in matrix)
+        for name, matrix in matrices.items()
+    }
     return IMPLICIT.format(
-        rows=",\n".join(f"    {{{', '.join(map(_real, row))}}}" for row in tableau.A),
         nodes=", ".join(map(_real, tableau.c)),
-        newton_h=_source("newton.h"),
+        lagrange=", ".join(map(_real, lagrange_factors(c))),
+        at_start=", ".join(map(_real, lagrange(c, np.zeros(1))[0])),
+        error_power=_real(tolerance_power(tableau.stages)),
+        blocks=len(blocks.sizes),
+        squares=sum(size**2 for size in blocks.sizes),
+        sizes=", ".join(map(str, blocks.sizes)),
+        increment=WEIGHTED_SUM.format(name="increment", sum=_sum(tableau.b)),
+        **{f"{name}_h": _source(f"{name}.h") for name in ("linear", "newton", "implicit")},
+        **rows,
     )
 
 
 def _method(tableau: Tableau) -> str:
     if tableau.is_parallel:
         return _parallel(tableau)
+    if not tableau.is_explicit:
+        return _implicit(tableau)
     first, second, *_ = *tableau.error_weights, (), ()
     sums = {"increment": tableau.b, "estimate": first, "second_estimate": second}
     return METHOD.format(
         sequential_h=_source("sequential.h"),
-        solution=_explicit(tableau) if tableau.is_explicit else _implicit(tableau),
+        solution=_explicit(tableau),
         sums="\n".join(WEIGHTED_SUM.format(name=name, sum=_sum(w)) for name, w in sums.items()),
     )
 

@@ -114,7 +114,7 @@ static void start_motions(Lanes *lanes)
     }
     /* a motion without a finite derivative cannot start */
     const mask not_finite = lanes->starting & ~less_than(lane_fabs(check), splat(1.0));
-    motion->reductions = select(not_finite, splat(MAX_REDUCTIONS + 1), motion->reductions);
+    motion->reductions = select(not_finite, splat(MAX_REDUCTIONS + 2), motion->reductions);
 }
 
 /* Shorten the step of a lane after a failure of the step, of size h, or within it. */
@@ -128,7 +128,7 @@ static void fail_step(Motion *motion, WithinStep *within, int lane, double h)
     within->mode = ADVANCE;
 }
 
-#if HAS_POLYNOMIAL
+#if INTERPOLATES
 /* The state after a part h of the step of the only lane; returns whether it is finite. */
 static int state_within(Lanes *lanes, WithinStep *within, double h, State *state)
 {
@@ -136,7 +136,7 @@ static int state_within(Lanes *lanes, WithinStep *within, double h, State *state
     const State *start = &motion->state, *full = (const State *)within->full_end;
     double check = 0;
     *state = *start;
-    motion->iterations += step_within(lanes->task, start, full, h, motion->params, state);
+    motion->evaluations += step_within(lanes->task, start, full, h, motion->params, state);
     for (int n = 0; n < DIM; n++) {
         check += state->z[n] - state->z[n];
     }
@@ -222,7 +222,7 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
         for (int e = 0; e < task->event_count; e++) {
             const double before = LANE(lanes->before[e], lane);
             const double after = within->after[e] = LANE(lanes->after[e], lane);
-#if HAS_POLYNOMIAL
+#if INTERPOLATES
             if (!bracket_crossings(lanes, within, e, before, after)) {
                 fail_step(motion, within, lane, h);
                 return 0;
@@ -243,7 +243,7 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
     double next;
     while ((next = next_h(task, within, LANE(motion->state.t, lane),
                           LANE(motion->state.t_low, lane))) != 0) {
-#if HAS_POLYNOMIAL
+#if INTERPOLATES
         if (!substep(lanes, within, next)) {
             fail_step(motion, within, lane, h);
             return 0;
@@ -277,7 +277,7 @@ static enum Status status(const Lanes *lanes, int lane)
     }
     const double reductions = LANE(motion->reductions, lane);
     if (reductions > (task->fixed_h ? 0 : MAX_REDUCTIONS)) {
-        return IS_EXPLICIT || reductions > MAX_REDUCTIONS ? NOT_FINITE : NO_CONVERGENCE;
+        return IS_EXPLICIT || reductions > MAX_REDUCTIONS + 1 ? NOT_FINITE : NO_CONVERGENCE;
     }
     if (LANE(motion->steps, lane) >= (double)task->max_steps) {
         return STEP_LIMIT;
@@ -327,7 +327,8 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     lanes->h = select(advancing, select(last, left, motion->h), lanes->h);
     StepResult result;
     step(task, state, lanes->h, motion->params, end, &result);
-    motion->iterations += result.iterations;
+    motion->evaluations += result.evaluations;
+    motion->jacobians += result.jacobians;
     end->t = select(last, motion->t_end, end->t);
     end->t_low = select(last, splat(0.0), end->t_low);
     real check = splat(0.0);
@@ -357,7 +358,7 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     for (int e = 0; e < task->event_count; e++) {
         lanes->after[e] = event_value(&task->events[e], end);
         attention |= *accepted & has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
-#if HAS_POLYNOMIAL
+#if INTERPOLATES
         double coefficients[STAGES + 1];
         event_polynomial(&task->events[e], state, end, lanes->before[e], coefficients);
         const int roots = sign_changes(coefficients);

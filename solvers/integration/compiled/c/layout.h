@@ -9,8 +9,11 @@ typedef struct {
     real z_low[LOW_DIM];        /* rounding errors of z */
     real turns[ANGLES];         /* whole turns of angles known by sine and cosine */
     real derivative[FSAL_DIM];  /* dz/dt, from the last stage of the step before */
-    real polynomial[POLYNOMIAL_DIM];    /* of the last step, see parallel.h */
+    real polynomial[POLYNOMIAL_DIM];    /* of the last step, see parallel.h and newton.h */
     real length[LENGTHS];       /* h of that step */
+    real jacobian_t[JACOBIANS]; /* point at which the Jacobian was evaluated */
+    real jacobian_z[JACOBIAN_DIM];
+    real rate[JACOBIANS];       /* part of the error that an iteration with it leaves */
     real scale[SCALES];         /* exponent of the power of two taken out of the variation */
 } State;
 
@@ -22,7 +25,8 @@ typedef struct {
     real steps;                 /* accepted steps */
     real rejected;              /* rejected steps */
     real attempts;              /* steps computed */
-    real iterations;            /* evaluations of all stages */
+    real evaluations;           /* of the right-hand side, by steps */
+    real jacobians;             /* evaluations of the Jacobian */
     real reductions;            /* consecutive failures, each of which shortens the step */
     real t_end;
     real min_h;                 /* shortest step */

@@ -9,6 +9,7 @@
    polynomial[n*STAGES + STAGES - 1], and h is length[0]. */
 
 #define HAS_POLYNOMIAL 1
+#define INTERPOLATES 1
 enum { TOP = STAGES - 1, MAX_ITERATIONS = 50 };
 
 /* The iteration ends when the next change would be below this part of the tolerance. */
@@ -138,7 +139,7 @@ static void solve_stages(
             squares += change*change;
         }
         const double change = sum_of(squares);
-        result->iterations = iteration;
+        result->evaluations = STAGES*iteration;
         if (iteration > 1) {
             square = lane_fmax(change/previous, square/4);      /* of the contraction */
             result->contraction = square;
@@ -199,13 +200,14 @@ static __attribute__((noinline)) void step(
     const Task *task, const State *restrict start, double h, const double *restrict params,
     State *restrict end, StepResult *restrict result)
 {
+    result->jacobians = 0;
     collocate(task, start, start->polynomial, start->length[0], 1, h, params, end, result);
     if (!task->fixed_h) {
         result->squared_error = squared_error_norm(task, start, end);
     }
 }
 
-/* The state after a part h of a step, which ends at `full`. Returns the number of iterations. */
+/* The state after a part h of a step, which ends at `full`. Returns the evaluations. */
 static __attribute__((noinline)) double step_within(
     const Task *task, const State *start, const State *full, double h, const double *params,
     State *end)
@@ -219,7 +221,7 @@ static __attribute__((noinline)) double step_within(
         polynomial[j] = full->polynomial[j]*(j < STAGES*(DIM - VARIATIONS) ? 1 : factor);
     }
     collocate(task, start, polynomial, full->length[0], 0, h, params, end, &result);
-    return result.iterations;
+    return result.evaluations;
 }
 
 /* Mean velocity, component n, of a step, by Simpson's rule. */

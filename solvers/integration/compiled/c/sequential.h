@@ -1,11 +1,10 @@
-/* One step in every lane, whose stages are evaluated one after the other, or solved together by
-   Newton's method.
+/* One step of an explicit method in every lane.
 
-   Defined before this file, beside that of step.h: the method, by STAGES, IS_FSAL, IS_EXPLICIT,
-   ERROR_ORDER, ESTIMATES, stages(), increment(), estimate(), and second_estimate() where there are
+   Defined before this file, beside that of step.h: the method, by STAGES, IS_FSAL, ERROR_ORDER, ESTIMATES, stages(), increment(), estimate(), and second_estimate() where there are
    two. */
 
 #define HAS_POLYNOMIAL 0
+#define INTERPOLATES 0
 
 static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
 
@@ -34,10 +33,9 @@ static __attribute__((noinline)) void step(
     if (!IS_FSAL) {
         RHS(start->t, start->z, params, k[0]);
     }
-    for (int i = 1; i < STAGES && !IS_EXPLICIT; i++) {
-        memcpy(k[i], k[0], sizeof k[0]);
-    }
-    result->iterations = stages(start->t, start->z, h, k, params);
+    stages(start->t, start->z, h, k, params);
+    result->evaluations = splat(STAGES - IS_FSAL);
+    result->jacobians = splat(0.0);
     for (int n = 0; n < DIM; n++) {
         end->z[n] = start->z[n];
 #if COMPENSATED

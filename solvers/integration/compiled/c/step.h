@@ -83,7 +83,8 @@ static inline real approximate_angle(const State *state, int a)
 /* Results of a step besides the state at its end. */
 typedef struct {
     real squared_error;     /* squared norm of the estimated error, relative to the tolerances */
-    real iterations;        /* evaluations of all stages: one, unless the method is implicit */
+    real evaluations;       /* of the right-hand side */
+    real jacobians;         /* evaluations of the Jacobian */
     real contraction;       /* of a fixed-point iteration, by each of its evaluations */
 } StepResult;
 

@@ -2,7 +2,7 @@
    states at sample times. Each substep is a step of the same method from the same state, with a
    shorter h. */
 
-enum { MAX_SUBSTEPS = 100, MAX_BRACKETS = HAS_POLYNOMIAL ? 8*MAX_EVENTS : MAX_EVENTS };
+enum { MAX_SUBSTEPS = 100, MAX_BRACKETS = INTERPOLATES ? 8*MAX_EVENTS : MAX_EVENTS };
 
 typedef enum { IDLE, ADVANCE, LOCATE, SAMPLE } Mode;
 

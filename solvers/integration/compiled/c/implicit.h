@@ -1,0 +1,106 @@
+/* One step of an implicit method, in one lane, and the length of the next one.
+
+   Defined before this file, beside that of newton.h: increment(), ERROR_ORDER, ERROR_POWER, and the
+   Lagrange polynomials at the start, AT_START. */
+
+#define HAS_POLYNOMIAL 1
+#define INTERPOLATES 0
+
+static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
+/* The tolerance of the error estimate is this, times the power of the tolerance. */
+static const double ESTIMATE_SHARE = 0.01;
+/* Step sizes that would grow by less stay, and so do the factors of the matrices. */
+static const double LEAST_GROWTH = 1.2;
+/* Errors below this part of the tolerance do not make the prediction more optimistic. */
+static const double LEAST_ERROR = 1e-2;
+
+/* Squared norm of the error.
+
+   The polynomial p' of the stages differs from the derivative f at the start; the embedded solution
+   that uses f, too, differs by h g (f - p'(0)), where g is the real eigenvalue of A. The filter
+   (I - h g J)^-1 keeps it bounded for stiff equations, a second one makes it small (E. Hairer,
+   G. Wanner, section IV.8; Journal of Computational and Applied Mathematics 111 (1999) 93-111). Its
+   order is STAGES, that of the method nearly twice as large: the tolerance of the estimate is
+   larger by a power accordingly, as there. */
+static double squared_error_norm(
+    const Task *task, const State *start, double h, const double *params,
+    const double *derivative, const double (*k)[DIM], const State *end, StepResult *result)
+{
+    double at_start[DIM], error[DIM], state[DIM], filtered[DIM], check = 0.0;
+    const double weight = h*M[0][0];
+    for (int n = 0; n < DIM; n++) {
+        at_start[n] = 0.0;
+        for (int j = 0; j < STAGES; j++) {
+            at_start[n] += AT_START[j]*k[j][n];
+        }
+        error[n] = weight*(derivative[n] - at_start[n]);
+    }
+    solve(DIM, linearisation.factors, linearisation.pivots, error);
+    for (int n = 0; n < DIM; n++) {
+        state[n] = start->z[n] + error[n];
+    }
+    RHS(start->t, state, params, filtered);
+    result->evaluations += 1;
+    for (int n = 0; n < DIM; n++) {
+        filtered[n] = weight*(filtered[n] - at_start[n]);
+    }
+    solve(DIM, linearisation.factors, linearisation.pivots, filtered);
+    for (int n = 0; n < DIM; n++) {
+        check += filtered[n] - filtered[n];
+    }
+    const double tolerance = task->rtol > 0 ? task->rtol : fmin(task->atol, 1.0);
+    const double relaxed = ESTIMATE_SHARE*pow(tolerance, ERROR_POWER);
+    return mean_square(check == 0 ? filtered : error, start->z, end->z, task->rtol*relaxed,
+                       task->atol*relaxed);
+}
+
+/* The state after h; with step control also the norm of the estimated error. */
+static __attribute__((noinline)) void step(
+    const Task *task, const State *restrict start, double h, const double *restrict params,
+    State *restrict end, StepResult *restrict result)
+{
+    double k[STAGES][DIM], derivative[DIM];
+    result->evaluations = 1;
+    result->jacobians = 0;
+    RHS(start->t, start->z, params, derivative);
+    solve_stages(task, start, h, params, derivative, k, end, result);
+    for (int n = 0; n < DIM; n++) {
+        end->z[n] = start->z[n];
+#if COMPENSATED
+        end->z_low[n] = start->z_low[n];
+#endif
+        add_to_component(end, n, increment(h, k, n));
+    }
+    memcpy(end->polynomial, k, sizeof k);
+    end->length[0] = h;
+    end->t = two_sum(start->t, h + start->t_low, &end->t_low);
+    if (!task->fixed_h) {
+        result->squared_error = squared_error_norm(
+            task, start, h, params, derivative, (const double (*)[DIM])k, end, result);
+    }
+}
+
+/* Factor of h after an error of this norm: predictive control after an accepted step
+   (K. Gustafsson, ACM Transactions on Mathematical Software 20 (1994) 496-517), the plain rule
+   after a rejected one. */
+static double step_factor(
+    const StepResult *result, mask accepted, double h, const State *start, double *previous_error)
+{
+    const double share = 1.0/(ERROR_ORDER + 1), error = 0.5*lane_log2(result->squared_error + 1e-75);
+    double exponent = -share*error;
+    if (accepted) {
+        const double trend = lane_log2(h/start->length[0]) + share*(*previous_error - error);
+        exponent += fmin(trend, 0);
+        *previous_error = fmax(error, log2(LEAST_ERROR));
+    }
+    exponent = fmin(fmax(exponent, log2(SHRINK/SAFETY)), log2(GROW/SAFETY));
+    const double factor = SAFETY*lane_exp2(exponent);
+    return accepted && factor > 1 && factor < LEAST_GROWTH ? 1 : factor;
+}
+
+/* Mean velocity, component n, of a step. */
+static inline double mean_rate(const State *start, double h, const State *end, int n)
+{
+    (void)h;
+    return (start->z[n] + end->z[n])*0.5;
+}

@@ -1,0 +1,10 @@
+"""Radau IIA: order 9, 5 stages, stiffly accurate, L-stable.
+
+E. Hairer, G. Wanner, Stiff differential equations solved by Radau methods, Journal of Computational
+and Applied Mathematics 111 (1999) 93-111.
+"""
+
+from solvers.runge_kutta.collocation import collocation, radau_nodes
+from solvers.runge_kutta.tableau import Tableau
+
+tableau = Tableau("Radau IIA, 5 stages", *collocation(radau_nodes(5)))
