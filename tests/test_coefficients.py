@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from handwritten import handwritten
 
-from solvers.integration.compiled import compiler
+from solvers.integration.compiled import compiler, kernel_source
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
@@ -141,9 +141,14 @@ def test_coefficients_of_parallel_stages_are_read_back_from_the_running_loop(
 
 @pytest.mark.parametrize("name", sorted({*names()} - {*EXPLICIT, *PARALLEL}))
 def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
-    name: str, tmp_path: Path
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # as above; the time identifies the stage, and the values of the last iteration are read
+    # as above; the time identifies the stage, and the values of the last iteration are read, when
+    # the derivatives no longer change: the first ones are rounded on the way to the blocks and back
+    source = kernel_source._source
+    exact = ("CLOSE = 1e-14", "CLOSE = 0.0")
+    assert exact[0] in source("newton.h")
+    monkeypatch.setattr(kernel_source, "_source", lambda file: source(file).replace(*exact))
     method = load(name)
     module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
     module.OPERATIONS["jacobian"] = (0, 0)
@@ -158,4 +163,4 @@ def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
     stages = slice(0, method.stages)
     assert np.array_equal(states[stages, stages], np.array(method.A, float))
     assert np.array_equal(solution.y[:, -1], np.array(method.b, float))
-    assert (solution.njev, solution.nfev) == (1, 2 + 2 * method.stages)
+    assert solution.success

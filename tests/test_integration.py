@@ -250,7 +250,9 @@ def test_the_rational_form_keeps_sine_and_cosine_together(backend: str) -> None:
     assert np.ptp(velocity[101:]) == pytest.approx(np.ptp(velocity[:101]), rel=0.1)
 
 
-@pytest.mark.parametrize("method", ["gauss1", "gauss2", "gauss3", "radau2", "radau3"])
+@pytest.mark.parametrize(
+    "method", ["gauss1", "gauss2", "gauss3", "radau2", "radau3", "radau5", "radau7"]
+)
 def test_implicit_methods_converge_where_fixed_point_iteration_does_not(method: str) -> None:
     # x' = -1e4 (x - cos t): steps a thousand times those of any explicit method
     module = handwritten(
@@ -263,7 +265,8 @@ def test_implicit_methods_converge_where_fixed_point_iteration_does_not(method: 
     )
     solution = integrate(module, (0, 2), (1.0, 0.0), (1.0,), method=method, h=0.1)
     assert solution.status is Status.FINISHED
-    assert solution.njev == solution.steps == 20
+    assert solution.steps == 20
+    assert solution.njev <= 2  # it is constant
     assert solution.y[0, -1] == pytest.approx(np.cos(2.0), abs=1e-2)
 
 

@@ -1,4 +1,4 @@
-"""Radau IIA: order 5, 3 stages, stiffly accurate, L-stable.
+"""Radau IIA: orders 5 and 3, 3 stages, stiffly accurate, L-stable.
 
 E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, table IV.5.6. Known as RADAU5;
 SciPy's Radau is the same method.
