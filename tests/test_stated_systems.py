@@ -251,3 +251,54 @@ def test_a_letter_can_be_the_sum_of_relative_angles(tmp_path: Path) -> None:
     text = ROBOT.replace("(l_1 c_1 + l_2 c_{12})", r"(l_1 c_1 + l_2\cos\psi)")
     formulas = judged(tmp_path, text, "double_pendulum")
     assert {one.verdict for one in formulas} == {"verified"}
+
+
+@pytest.mark.parametrize(
+    ("formula", "verdict"),
+    [
+        (r"\ddot\theta + g\sin\theta = 0", "equivalent"),
+        (r"m\ddot\theta + m g\sin\theta = 0", "equivalent"),
+        (r"\ddot\theta + g\cos\theta = 0", "wrong"),
+        (r"\ddot\theta + 2 g\sin\theta = 0", "wrong"),
+    ],
+)
+def test_formulas_hold_for_values_that_the_document_states(
+    formula: str, verdict: str, tmp_path: Path
+) -> None:
+    text = rf"{PENDULUM}$$m = l = 1$$ $${formula}$$"
+    last = judged(tmp_path, text, "single_pendulum")[-1]
+    assert last.verdict == verdict
+    other = judged(tmp_path, text.replace("m = l = 1", "x = 1"), "single_pendulum")[-1]
+    assert other.verdict == "wrong"
+
+
+def test_definitions_can_stand_after_their_use_and_have_norms(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac12 m v^2, \quad v^2 = w^2, \quad w = l\dot\theta, \quad T = m v^2$$
+$$\vec r = \begin{pmatrix} l\sin\theta\\ -l\cos\theta\end{pmatrix}$$
+$$T = \frac12 m |\dot{\vec r}|^2, \quad T = m |\dot{\vec r}|^2$$
+$$\ddot\theta = -\frac gl\sin\theta$$
+"""
+    formulas = judged(tmp_path, text, "single_pendulum")
+    verdicts = [one.verdict for one in formulas if one.latex.startswith("T")]
+    assert verdicts == ["verified", "wrong", "verified", "wrong"]
+
+
+def test_derivatives_of_the_hamiltonian_have_their_signs(tmp_path: Path) -> None:
+    text = r"""
+$$H = \frac{p_\theta^2}{2 m l^2} - m g l\cos\theta$$
+$$\frac{\partial H}{\partial\theta} = m g l\sin\theta, \quad
+  \frac{\partial H}{\partial\theta} = -m g l\sin\theta$$
+$$\frac{\partial H}{\partial p_\theta} = \frac{p_\theta}{m l^2}, \quad
+  \frac{\partial H}{\partial p_\theta} = -\frac{p_\theta}{m l^2}$$
+$$\dot p_\theta = -m g l\sin\theta, \quad \dot p_\theta = m g l\sin\theta$$
+"""
+    _, *others = judged(tmp_path, text, "single_pendulum")
+    assert [one.verdict for one in others] == ["verified", "wrong"] * 3
+
+
+def test_generalized_forces_are_those_on_their_coordinates(tmp_path: Path) -> None:
+    rate = r"\frac{d}{dt}\frac{\partial T}{\partial\dot x}"
+    text = rf"{CART}$${rate} - Q_x = 0, \quad {rate} + Q_x = 0$$"
+    *_, right, wrong = judged(tmp_path, text, "cart_1")
+    assert [right.verdict, wrong.verdict] == ["verified", "wrong"]

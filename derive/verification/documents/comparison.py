@@ -57,9 +57,7 @@ class Comparison:
             if inside.verdict.verdict in CORRECT:
                 return plain("verified", formula, "it holds for one sign of the root")
             result = inside if inside.verdict.corrections else result
-        values = self._special_values(left, right)
-        difference = (left - right).xreplace(self._model.momenta).xreplace(values)
-        if values and self._model.agreement(difference) is not None:
+        if values := self._special_values(left, right):
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return plain("equivalent", formula, f"it holds for {text}")
         return result
@@ -78,12 +76,23 @@ class Comparison:
         return result
 
     def _special_values(self, left: Value, right: Value) -> dict[sp.Symbol, sp.Expr]:
-        """Values of parameters that the document states; units, if one side has no parameters."""
+        """Values of parameters for which two sides are equal; empty if there are none.
+
+        They are those that the document states, or units, if the right side has no parameters.
+        """
+        difference = (left - right).xreplace(self._model.momenta)
+        if stated := self._scope.special_values:
+            moving = difference
+            for values in self._model.motions.substitutions:
+                moving = moving.xreplace(values)
+            if self._model.agreement(moving.xreplace(stated)) is not None:
+                return stated
         parameters = left.free_symbols & {*self._scope.derivation.system.params}
+        units = dict.fromkeys(sorted(parameters, key=str), sp.S.One)
         # one parameter that is lacking is a mistake
         if len(parameters) > 1 and not right.free_symbols & parameters:
-            return dict.fromkeys(sorted(parameters, key=str), sp.S.One)
-        return self._scope.special_values
+            return units if self._model.agreement(difference.xreplace(units)) is not None else {}
+        return {}
 
     def _matrices(
         self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
