@@ -1,0 +1,69 @@
+"""What speaks for a meaning of letters: the formulas that hold, and a usual convention."""
+
+from dataclasses import replace
+
+import pytest
+
+from derive.system.catalogue import load
+from derive.verification.documents.candidates import Candidate, candidates, loads
+from derive.verification.documents.letters import Letters
+from derive.verification.documents.matching import Match
+from derive.verification.documents.rates import order, stem
+
+USUAL = Candidate(load("single_pendulum"), ("phi",), ((1,),), (0,), {"m": "m", "l": "l", "g": "g"})
+UPRIGHT = replace(USUAL, offsets=(2,))
+MIRRORED = replace(USUAL, signs=((-1,),))
+LETTERS = Letters(("phi",), {}, {}, ("a", "g", "m", "F", "c"), ("phi",), {}, ("phi",))
+
+
+def test_a_usual_convention_decides_between_equal_support_only() -> None:
+    assert USUAL.is_usual
+    assert not UPRIGHT.is_usual
+    assert not MIRRORED.is_usual
+    assert Match(USUAL, 3, 4).score > Match(UPRIGHT, 3, 4).score
+    assert Match(USUAL, 3, 4).score > Match(MIRRORED, 3, 4).score
+    assert Match(UPRIGHT, 4, 4).score > Match(USUAL, 3, 4).score
+
+
+def test_formulas_that_do_not_hold_speak_against_a_meaning() -> None:
+    assert Match(USUAL, 3, 3).score > Match(USUAL, 3, 6).score
+    assert Match(USUAL, 6, 8).score > Match(USUAL, 3, 3).score
+
+
+def test_offsets_are_right_angles_or_lengths() -> None:
+    assert UPRIGHT.offset(0, {}) == pytest.approx(3.14159265)
+    assert replace(USUAL, offsets=("d",)).offset(0, {"d": 0.7}) == 0.7
+
+
+def test_candidates_begin_with_the_usual_convention_and_the_same_indices() -> None:
+    first = next(candidates(USUAL.system, LETTERS))
+    assert first.is_usual
+    assert first.parameters == {"m": "m", "l": "a", "g": "g"}
+    assert not first.forces
+    names = ("theta_1", "theta_2")
+    own = Letters(names, {}, {}, ("m_2", "m_1", "l_2", "l_1", "g"), names, {}, names)
+    first = next(candidates(load("double_pendulum"), own))
+    assert first.coordinates == names
+    assert first.parameters == {"m1": "m_1", "m2": "m_2", "l1": "l_1", "l2": "l_2", "g": "g"}
+
+
+def test_one_letter_can_stand_for_all_parameters_of_a_kind() -> None:
+    names = ("theta_1", "theta_2")
+    own = Letters(names, {}, {}, ("m", "M", "l", "g"), names, {}, names)
+    choices = [one.parameters for one in candidates(load("double_pendulum"), own)]
+    equal = {"m1": "m", "m2": "m", "l1": "l", "l2": "l", "g": "g"}
+    assert equal in choices
+    assert equal | {"m2": "M"} in choices
+
+
+def test_forces_act_on_one_coordinate_or_on_none() -> None:
+    assert loads(LETTERS, "force", 2) == [(), (("F", 0),), (("F", 1),)]
+    assert loads(LETTERS, "damping", 1) == [(), (("c", 0),)]
+
+
+@pytest.mark.parametrize(
+    ("name", "whole", "number"),
+    [("x", "x", 0), ("x_dot", "x", 1), ("x_1_ddot", "x_1", 2), ("x_dddot", "x", 3)],
+)
+def test_names_of_rates_have_a_stem_and_an_order(name: str, whole: str, number: int) -> None:
+    assert (stem(name), order(name)) == (whole, number)
