@@ -302,3 +302,19 @@ def test_generalized_forces_are_those_on_their_coordinates(tmp_path: Path) -> No
     text = rf"{CART}$${rate} - Q_x = 0, \quad {rate} + Q_x = 0$$"
     *_, right, wrong = judged(tmp_path, text, "cart_1")
     assert [right.verdict, wrong.verdict] == ["verified", "wrong"]
+
+
+def test_all_sides_can_differ_by_a_constant(tmp_path: Path) -> None:
+    text = rf"{PENDULUM}$$V = m g l(1 - \cos\theta) = m g l - m g l\cos\theta$$"
+    assert judged(tmp_path, text, "single_pendulum")[-1].verdict == "equivalent"
+
+
+def test_another_system_is_sought_for_formulas_that_are_left(tmp_path: Path) -> None:
+    text = PENDULUM + r"$$m\ddot s + k s = 0, \quad E = \frac12 m\dot s^2 + \frac12 k s^2$$"
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    document = judge_document(read_document(tmp_path / "a.md"))
+    assert {one.verdict for one in document.formulas} == {"verified"}
+    assert {one.partition(":")[0] for one in document.system.split("; ")} == {
+        "Single pendulum",
+        "Mass on a spring",
+    }
