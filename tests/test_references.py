@@ -2,6 +2,7 @@
 
 from decimal import Decimal, localcontext
 from math import pi, sqrt
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -16,8 +17,10 @@ import generated.driven_pendulum as driven
 import generated.foucault_pendulum as foucault
 import generated.single_pendulum as sp
 from holonomic import Coordinate, Parameter, PointMass, System, build
+from solvers.app.modules import load as load_module
 from solvers.equations.decimal_state import sine_and_cosine
 from solvers.references.elliptic import jacobi, pendulum
+from solvers.references.exact_literals import with_exact_literals
 from solvers.references.extrapolation import extrapolated
 from solvers.references.series import Series
 from solvers.references.series_functions import series_functions
@@ -188,3 +191,46 @@ def test_the_fall_from_next_to_the_upright_place_is_exact_all_the_way(distance: 
             for t in map(mp.mpf, times.tolist())
         ]
     assert np.abs(found[:, 0] - np.array(exact, dtype=float)).max() < 1e-13
+
+
+HILL = """
+title = "Particle on a hill"
+potential = "-m*(pi/3 + 9.81 + 1/7)*x**2/2"
+
+[coordinates]
+x = { unit = "m", meaning = "position" }
+
+[parameters]
+m = { value = 1, unit = "kg" }
+
+[[masses]]
+mass = "m"
+position = ["x", "0"]
+"""
+
+
+def test_series_have_all_digits_of_constants(tmp_path: Path) -> None:
+    # it nearly stops on top, where an error of 1e-17 in a constant would be larger than x
+    (tmp_path / "hill.toml").write_text(HILL)
+    hill = load_module(str(tmp_path / "hill.toml"))
+    with mp.workdps(50):
+        rate = mp.sqrt(mp.pi / 3 + mp.mpf("9.81") + mp.mpf(1) / 7)
+        speed = -float(rate)
+        exact = mp.cosh(9 * rate) + speed / rate * mp.sinh(9 * rate)
+        found = taylor(hill, (1.0,), (1.0, speed), [0, 9], 40)[1, 0]
+        assert abs(found - exact) < 1e-15 * abs(exact)
+
+
+def test_functions_without_text_keep_their_literals() -> None:
+    def inner(x: float) -> float:
+        return factor * x + 0.1
+
+    factor = 2.0
+    made = eval("lambda x: 0.1*x")
+    for function in (inner, made, max):  # a closure, without text, not in Python
+        assert with_exact_literals(function, str) is function
+    assert with_exact_literals(literal, Decimal)(None) == (Decimal("0.1"), Decimal("0.001"), 2)
+
+
+def literal(x: object) -> object:
+    return 0.1000, 1e-3, 2

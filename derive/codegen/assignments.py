@@ -7,6 +7,7 @@ other values use it.
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import count
 
@@ -19,6 +20,8 @@ from derive.formulas.budget import LARGEST, RANGE
 
 #: Longest expression that is written in place instead of named.
 IN_PLACE = 48
+#: Digits of irrational numbers, of which the longest types of C have 36, and series may have more.
+DIGITS = 40
 
 SUM, PRODUCT, ATOM = 1, 2, 3
 
@@ -44,8 +47,12 @@ class Notation:
         return f"({self.decimal(value.numerator)}/{self.decimal(value.denominator)})"
 
     def decimal(self, value: Number) -> str:
-        """A number as a decimal fraction, by default of double precision."""
-        return repr(float(value))
+        """A number as a decimal fraction, with `DIGITS` where no float is equal to it."""
+        digits = repr(abs(float(value)))
+        if Fraction(digits) != abs(value):
+            with localcontext(prec=DIGITS):
+                digits = f"{abs(Decimal(value.numerator)) / value.denominator:e}"
+        return f"{'-' * (value < 0)}{digits}"
 
     def call(self, function: str, argument: str) -> str:
         """A call of a mathematical function, by its name in C99."""

@@ -7,7 +7,7 @@ Runge–Kutta methods.
 
 from collections.abc import Callable, Sequence
 from decimal import Decimal, localcontext
-from functools import reduce
+from functools import partial, reduce
 from math import inf
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, with_functions
+from solvers.references.exact_literals import with_exact_literals
 from solvers.references.series import Series
 from solvers.references.series_functions import series_functions
 
@@ -47,7 +48,8 @@ def taylor(
     module : module
         A generated module.
     params, y0 : sequence of float
-        In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact.
+        In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact, as are the
+        digits of literals in the module.
     times : array_like of shape (n,)
         Increasing or decreasing, in s.
     digits : int
@@ -117,7 +119,8 @@ class _Motion:
         self._time = Series(self._tape, [])
         self._state = [Series(self._tape, []) for _ in form.state]
         constants = [Series.number(self._tape, p) for p in params]
-        function = with_functions(form.function, series_functions(self._tape))
+        exact = with_exact_literals(form.function, partial(Series.number, self._tape))
+        function = with_functions(exact, series_functions(self._tape))
         rates = function(self._time, self._state, constants)
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
         columns = dict(form.shared_columns)

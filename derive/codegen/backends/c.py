@@ -2,8 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from decimal import Decimal, localcontext
-from fractions import Fraction
 from textwrap import indent, wrap
 
 from derive.codegen.assignments import Factorisation, Notation, Solution, Statement, Value
@@ -13,9 +11,6 @@ from derive.codegen.node import Number
 from derive.codegen.summary import broken_sum, summary
 
 WIDTH = 92
-
-#: Digits of irrational numbers, of which long double has at most 36.
-DIGITS = 40
 
 HEADER = """\
 /* {system.title}.
@@ -195,11 +190,8 @@ class CNotation(Notation):
     system: str
 
     def decimal(self, value: Number) -> str:
-        digits = repr(abs(float(value)))
-        if Fraction(digits) != abs(value):
-            with localcontext(prec=DIGITS):
-                digits = f"{abs(Decimal(value.numerator)) / value.denominator:e}"
-        return f"{'-' * (value < 0)}{self.system.upper()}_NUMBER({digits})"
+        sign, digits = "-" * (value < 0), super().decimal(abs(value))
+        return f"{sign}{self.system.upper()}_NUMBER({digits})"
 
     def call(self, function: str, argument: str) -> str:
         return f"{self.system}_{function}({argument})"
