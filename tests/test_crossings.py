@@ -76,7 +76,9 @@ def true_crossings(coefficients: np.ndarray) -> tuple[list[float], bool]:
     return roots, min(values, default=np.inf) < 1e-12 * np.abs(coefficients).max()
 
 
-@pytest.mark.parametrize("motions", [200, pytest.param(10_000, marks=pytest.mark.campaign)])
+@pytest.mark.parametrize(
+    "motions", [200, pytest.param(10_000, marks=[pytest.mark.campaign, pytest.mark.timeout(1800)])]
+)
 @ignore_predictability()
 def test_no_crossing_of_random_polynomials_is_missed_or_invented(
     polynomial: ModuleType, motions: int

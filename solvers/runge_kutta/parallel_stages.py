@@ -137,13 +137,14 @@ class ParallelStages:
         `NoFixedPointError` where the iteration does not converge.
         """
         increments = self.b[:, np.newaxis] * last.derivatives(h, self.c)
-        previous, square, allowed, floor = np.inf, 0.0, y, 0.0
+        previous, square = np.inf, 0.0
+        allowed = self._atol + self._rtol * np.abs(y) + SMALLEST
         for iteration in range(1, MAX_ITERATIONS + 1):
             changed = h * self.b[:, np.newaxis] * derivatives(y + self.ratios @ increments)
-            if iteration == 1:
-                size = np.abs(y) + np.abs(changed).sum(axis=0) + SMALLEST
-                allowed = np.maximum(self._atol + self._rtol * np.abs(y), EPSILON * size)
-                floor = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
+            size = np.abs(y) + np.abs(changed).sum(axis=0) + SMALLEST
+            if iteration == 1 and not self._limit:
+                allowed = EPSILON * size
+            floor = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
             change = float(np.sum(((changed - increments) / allowed) ** 2))
             increments = changed
             if iteration > 1:

@@ -381,7 +381,10 @@ static void move(Lanes *lanes, mask accepted)
     }
     real *to = (real *)&lanes->motion.state;
     const real *from = (const real *)&lanes->end;
-    for (int k = 0; k < STATE_SIZE; k++) {
+    if (LANES == 1) {
+        memcpy(to, from, sizeof lanes->end);
+    }
+    for (int k = 0; k < STATE_SIZE && LANES > 1; k++) {
         to[k] = select(accepted, from[k], to[k]);
     }
     for (int e = 0; e < lanes->task->event_count; e++) {

@@ -60,17 +60,16 @@ static inline void multiply(
 }
 
 /* The sum of Legendre polynomials at x from -1 to 1, beyond it by extrapolation (C. W. Clenshaw,
-   Mathematics of Computation 9 (1955) 118-120). */
-static inline stage_vector legendre_sum(const double *coefficients, stage_vector x)
+   Mathematics of Computation 9 (1955) 118-120); x[k] is (2k + 1)/(k + 1) x. */
+static inline stage_vector legendre_sum(const double *coefficients, const stage_vector *x)
 {
-    stage_vector next = splat_stages(0), after = splat_stages(0);
-    for (int k = TOP; k > 0; k--) {
-        const stage_vector sum =
-            coefficients[k] + (x*next)*((2*k + 1)/(k + 1.0)) - after*((k + 1)/(k + 2.0));
+    stage_vector next = splat_stages(coefficients[TOP]), after = splat_stages(0);
+    for (int k = TOP - 1; k >= 0; k--) {
+        const stage_vector sum = (coefficients[k] - after*((k + 1)/(k + 2.0))) + x[k]*next;
         after = next;
         next = sum;
     }
-    return coefficients[0] + x*next - 0.5*after;
+    return next;
 }
 
 /* The polynomial of a motion that starts with a derivative and a first step. */
@@ -83,22 +82,23 @@ static void start_polynomial(State *state, double h, const double *derivative)
     state->length[0] = h;
 }
 
-/* For each component the reciprocal of the change that is allowed in an iteration: of the tolerance,
-   or of the spacing of numbers of this size. Returns the squared change, in these units, that
-   rounding errors of the derivatives may cause. */
-static double allow_changes(
-    const Task *task, const double *z, const StageVectors *increments, double *inverse)
+/* Sizes of the numbers that are added to a component in a step. */
+static inline double size_of(double z, stage_vector increment)
 {
-    double floor = 0;
+    const stage_vector magnitude = (stage_vector)((stage_mask)increment & INT64_MAX);
+    return fabs(z) + sum_of(magnitude) + SMALLEST;
+}
+
+/* Squared change of an iteration that rounding errors may cause, in units of the tolerances. */
+static double rounding_change(
+    const double *z, const StageVectors *increments, const double *inverse)
+{
+    double sum = 0;
     for (int n = 0; n < DIM; n++) {
-        const stage_vector increment = increments->vector[n];
-        const double change = sum_of((stage_vector)((stage_mask)increment & INT64_MAX));
-        const double size = fabs(z[n]) + change + SMALLEST;
-        const double allowed = task->atol + task->rtol*fabs(z[n]);
-        inverse[n] = 1/lane_fmax(allowed, DBL_EPSILON*size);
-        floor += (inverse[n]*size)*(inverse[n]*size);
+        const double size = inverse[n]*size_of(z[n], increments->vector[n]);
+        sum += size*size;
     }
-    return floor*(ROUNDING*ROUNDING*STAGES);
+    return sum*(ROUNDING*ROUNDING*STAGES);
 }
 
 /* Increments h b k of all stages by fixed-point iteration; NaN where it does not converge. The
@@ -116,12 +116,18 @@ static void solve_stages(
     for (int p = 0; p < PARAMETERS; p++) {
         parameters[p] = splat_stages(params[p]);
     }
+    stage_vector x[STAGES];
+    for (int k = 0; k < TOP; k++) {
+        x[k] = ((2*origin - 1) + (2*ratio)*NODES)*((2*k + 1)/(k + 1.0));
+    }
     for (int n = 0; n < DIM; n++) {
-        const stage_vector x = (2*origin - 1) + (2*ratio)*NODES;
         increments->vector[n] = (ratio*WEIGHTS)*legendre_sum(polynomial + n*STAGES, x);
     }
     const double limit = task->fixed_h ? 0 : CLOSE*CLOSE;
-    double inverse[DIM], floor = 0, previous = INFINITY, square = 0;
+    double inverse[DIM], previous = INFINITY, square = 0;   /* reciprocals of the tolerances */
+    for (int n = 0; n < DIM; n++) {
+        inverse[n] = 1/(task->atol + task->rtol*fabs(start->z[n]) + SMALLEST);
+    }
     for (int iteration = 1;; iteration++) {
         multiply(RATIOS, increments, start->z, z);
         stage_derivatives(t, z, parameters, k);
@@ -129,8 +135,8 @@ static void solve_stages(
             before.vector[n] = increments->vector[n];
             increments->vector[n] = weights*k[n];
         }
-        if (iteration == 1) {
-            floor = allow_changes(task, start->z, increments, inverse);
+        for (int n = 0; n < DIM && iteration == 1 && task->fixed_h; n++) {
+            inverse[n] = 1/(DBL_EPSILON*size_of(start->z[n], increments->vector[n]));
         }
         stage_vector squares = splat_stages(0);
         for (int n = 0; n < DIM; n++) {
@@ -143,7 +149,11 @@ static void solve_stages(
         if (iteration > 1) {
             square = lane_fmax(change/previous, square/4);      /* of the contraction */
             result->contraction = square;
-            if (change*square <= limit || (change >= previous && change < floor)) {
+            if (change*square <= limit) {
+                return;
+            }
+            if (change >= previous
+                    && change < rounding_change(start->z, increments, inverse)) {
                 return;
             }
         }
@@ -164,13 +174,13 @@ static double squared_error_norm(const Task *task, const State *start, const Sta
     for (int n = 0; n < DIM; n++) {
         const double *c = end->polynomial + n*STAGES;
         const double size = lane_fmax(fabs(start->z[n]), fabs(end->z[n]));
-        const double error = c[TOP]/lane_fmax(task->atol + task->rtol*size, 1e-75);
+        const double error = c[TOP]/lane_fmax(task->atol + task->rtol*size, SMALLEST);
         const double square = error*error;
         total += square;
         weighted += square*(c[TOP]*c[TOP]/(c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + DBL_MIN));
     }
-    const double decrease = weighted/(total + DBL_MIN);
-    return total*(1.0/DIM)*lane_exp2(ERROR_POWER*lane_log2(decrease + 1e-75));
+    const double decrease = lane_log2(weighted + DBL_MIN) - lane_log2(total + DBL_MIN);
+    return total*(1.0/DIM)*lane_exp2(ERROR_POWER*decrease);
 }
 
 /* The state after h, from a prediction as above. */
