@@ -190,8 +190,9 @@ class CNotation(Notation):
     system: str
 
     def decimal(self, value: Number) -> str:
-        sign, digits = "-" * (value < 0), super().decimal(abs(value))
-        return f"{sign}{self.system.upper()}_NUMBER({digits})"
+        digits = super().decimal(value)
+        sign = "-" * digits.startswith("-")
+        return f"{sign}{self.system.upper()}_NUMBER({digits.removeprefix('-')})"
 
     def call(self, function: str, argument: str) -> str:
         return f"{self.system}_{function}({argument})"
