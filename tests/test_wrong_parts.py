@@ -20,6 +20,14 @@ $$L = \frac m2 (\dot r^2 + r^2\dot\theta^2) + \frac{k}{r}, \qquad \ell = m r^2\d
 $$E = \frac m2\dot r^2 + \frac{\ell^2}{2 m r^2} - \frac kr$$
 $$\dot r = \sqrt{\frac{2}{m}\left(E + \frac kr - \frac{\ell^2}{2 m r^2}\right)}$$
 """
+POSITIONS = r"""
+$$x_1 = a\sin\alpha, \quad y_1 = -a\cos\alpha$$
+$$\vec r_2 = \begin{pmatrix} a\sin\alpha + b\sin\beta \\ -a\cos\alpha - b\cos\beta\end{pmatrix}$$
+$$\dot x_1 = a\dot\alpha\cos\alpha$$
+$$T = \tfrac12 (M + m) a^2 \dot\alpha^2 + \tfrac12 m b^2 \dot\beta^2
+     + m a b \dot\alpha \dot\beta \cos(\alpha - \beta)$$
+$$V = -(M + m) g a \cos\alpha - m g b \cos\beta$$
+"""
 
 
 def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
@@ -31,7 +39,7 @@ def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
     return [(one.wrong_term, one.correction) for one in formulas if one.verdict == "wrong"]
 
 
-@pytest.mark.parametrize("text", [CART, FIELD])
+@pytest.mark.parametrize("text", [CART, FIELD, POSITIONS])
 def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
     assert wrong(tmp_path, text) == []
 
@@ -45,6 +53,9 @@ def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
         (CART, r"\end{pmatrix} +", r"\end{pmatrix} -", r"\begin{pmatrix}\frac1M", "+"),
         (FIELD, r"\frac{2}{m}", r"\frac{3}{m}", r"\frac{3}{m}", r"\frac{2}{m}"),
         (FIELD, r"2 m r^2}\right", r"2 m r^3}\right", r"\frac{\ell^2}{2 m r^3}", "r^2"),
+        (POSITIONS, r"x_1 = a\sin", r"x_1 = a\cos", r"a\cos\alpha", r"a \sin"),
+        (POSITIONS, r"y_1 = -a", r"y_1 = -b", r"b", r"-a"),
+        (POSITIONS, r"- b\cos\beta\end", r"+ b\cos\beta\end", r"b\cos\beta", r"- b"),
         (FIELD, r"(E + \frac kr", r"(E - \frac kr", r"- \frac kr", r"\frac{k}{r}"),
     ],
 )

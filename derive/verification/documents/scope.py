@@ -73,7 +73,8 @@ class DocumentScope:
 
     def correct(self, values: Mapping[str, Value]) -> None:
         """Give names the values that they must have, whatever the document defines them to be."""
-        self.names |= values
+        for name, value in values.items():
+            self._set(name, value)
         self.model = Model(self.derivation, self.names)
 
     def _special_values(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, sp.Expr]:
@@ -216,14 +217,22 @@ class DocumentScope:
             self._add(name, value)
 
     def _add(self, name: str, value: Value) -> None:
-        """Add a name and its rates."""
+        """Add a name, and its rates unless they are known."""
         self.names[name] = value
+        for rate, derivative in self._rates(name, value):
+            self.names.setdefault(rate, derivative)
+
+    def _set(self, name: str, value: Value) -> None:
+        """Give a name another value, and its rates, too."""
+        self.names |= {**dict(self._rates(name, value)), name: value}
+
+    def _rates(self, name: str, value: Value) -> Iterator[tuple[str, Value]]:
         for ending in RATES[1:3]:
             rate = _rate(self._system, value)
             if rate is None:
                 break
             value = rate
-            self.names.setdefault(name + ending, value)
+            yield name + ending, value
 
 
 def _rate(system: Any, value: Value) -> Value | None:

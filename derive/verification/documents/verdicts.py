@@ -14,6 +14,7 @@ from derive.verification.documents.consequences import Consequences
 from derive.verification.documents.derived_matrices import DerivedMatrices
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.manipulator import Manipulator
+from derive.verification.documents.mass_positions import MassPositions
 from derive.verification.documents.partial_energies import PartialEnergies
 from derive.verification.documents.roles import Roles
 from derive.verification.documents.scope import DocumentScope
@@ -30,6 +31,7 @@ class Judge:
     def __init__(self, scope: DocumentScope) -> None:
         linear = Linear(scope.derivation)
         # these give names their correct values, and the scope another model
+        self._positions = MassPositions(scope)
         self._matrices, self._energies = DerivedMatrices(scope, linear), PartialEnergies(scope)
         self._scope, self._model = scope, scope.model
         self._roles = Roles(scope, linear)
@@ -136,7 +138,9 @@ class Judge:
             required = self._energies.required(formula.subject)
             if required is not None:
                 return self._roles.value(side, formula.subject, required)
-            return self._definition(formula, side)
+            return self._position(formula, side) or self._definition(formula, side)
+        if first.entries and (position := self._position(formula, side)):
+            return position
         last = self._scope.defining.get(side.text)
         if last and last[0] is formula:
             return plain("definition", formula, "")
@@ -149,6 +153,16 @@ class Judge:
             return self._comparison.compared(formula, first, side, *values)
         except (ExpressionError, NotImplementedError) as error:
             return plain("context", formula, f"not judged: {error}")
+
+    def _position(self, formula: DocumentFormula, side: Text) -> SideVerdict | None:
+        """The verdict on a definition of a position with a wrong component, if one is known."""
+        first = formula.sides[0]
+        names = [one.text for one in first.entries] or [first.text] * max(1, len(side.entries))
+        for index, (name, entry) in enumerate(zip(names, side.entries or (side,), strict=False)):
+            value = self._positions.required(name, 0 if first.entries else index)
+            if value is not None:
+                return self._roles.value(entry, "position", value)
+        return None
 
     def _definition(self, formula: DocumentFormula, side: Text) -> SideVerdict:
         """The verdict on a definition, which can be that of a matrix of the system."""
