@@ -4,12 +4,16 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.polynomial.chebyshev import chebfit, chebpts1, chebroots, chebtrim
 from scipy.optimize import brentq
 
+from solvers.integration.events import Event
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array
 
+#: Attempts to find two crossings in a step; a polynomial that vanishes twice at both of its ends.
+PROBES, BUMP = 2, Polynomial([0, 0, 1, -2, 1])
 #: Degree of the polynomial of an event in a long step, and its relative rounding errors.
 DEGREE, EPSILON = 24, 1e-13
 #: Roots, in [-1, 1], whose distance or imaginary part is smaller count as a real double root.
@@ -62,10 +66,12 @@ class Recorder:
             return self.form.to_ordinary(time, state(time), before, time - start)
 
         values = [event(end, ordinary(end)) for event in self.events]
-        parts = [[end]] * len(values)
         if rough:
             curve = partial(ordinary, state=rough)
             parts = [[*_parts(event, t, end, curve), end] for event in self.events]
+        else:
+            ends = zip(self.events, self._values, values, strict=True)
+            parts = [[*self._dips(event, x, y, end, ordinary), end] for event, x, y in ends]
         roots = self._roots(t, parts, values, ordinary)
         stops = bool(roots) and _is_terminal(self.events[roots[-1][0]])
         until = roots[-1][1] if stops else end
@@ -84,6 +90,39 @@ class Recorder:
         self._values = values
         self.t, self.y = self._outcome.end = until, y
         return stops
+
+    def _dips(
+        self,
+        event: EventFunction,
+        before: float,
+        after: float,
+        end: float,
+        ordinary: Callable[[float], Array],
+    ) -> list[float]:
+        """A time at which the event of a coordinate has another sign than at both ends of the step.
+
+        Values and velocities at the ends give a cubic polynomial; at its extremum, and then at that
+        of the polynomial of degree 4 through the value there, the event is evaluated.
+        """
+        if not isinstance(event, Event) or f"{event.name}_dot" not in event.module.STATE:
+            return []
+        k, h = event.module.STATE.index(f"{event.name}_dot"), end - self.t
+        u, v = (h * float(y[k]) for y in (self.y, ordinary(end)))
+        is_dip = before * u < 0 < after * v and before * after > 0
+        if not is_dip or not v * before - u * after < -2 * u * v:
+            return []
+        curve = Polynomial(
+            [before, u, 3 * (after - before) - 2 * u - v, u + v - 2 * (after - before)]
+        )
+        for _ in range(PROBES):
+            slope = curve.deriv()
+            part = float(brentq(slope, 0, 1))
+            time = self.t + part * h
+            value = event(time, ordinary(time))
+            if value * before < 0:
+                return [time]
+            curve += (value - curve(part)) * (BUMP / BUMP(part))
+        return []
 
     def _due(self, until: float) -> Array:
         """The times up to `until` to record that are not recorded yet."""

@@ -161,6 +161,7 @@ def _event(form: Form, event: Event, pauses: bool) -> tuple[float | int, ...]:
     extremum = form.locate(event.coordinate) if isinstance(event, Extremum) else (False, 0)
     assert component is not None
     assert extremum is not None
+    rate = form.locate_rate(event.name)
     angle = event.value, np.sin(event.value), np.cos(event.value)
     flags = event.direction, int(event.terminal), int(extremes_only)
-    return (*angle, *map(int, component), *flags, *map(int, extremum))
+    return (*angle, *map(int, component), -1 if rate is None else rate, *flags, *map(int, extremum))

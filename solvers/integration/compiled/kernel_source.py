@@ -37,6 +37,7 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 {step_h}
 {method}
 {motion_h}
+{dip_h}
 {within_step_h}
 {integrator_c}
 {probe_h}
@@ -248,7 +249,7 @@ def program(
         to_ordinary="\n".join(f"    {line}" for line in equations.to_ordinary),
         single_h=_source("single.h"),
     )
-    files = ("lanes.h", "step.h", "motion.h", "within_step.h", "integrator.c", "probe.h")
+    files = ("lanes.h", "step.h", "motion.h", "dip.h", "within_step.h", "integrator.c", "probe.h")
     return PROGRAM.format(
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
         constants=_constants(tableau),

@@ -198,6 +198,19 @@ static int bracket_crossings(Lanes *lanes, WithinStep *within, int e, double bef
 }
 #endif
 
+#if !INTERPOLATES
+/* Whether an event with equal signs at both ends of the step may occur twice in it. */
+static inline mask dips(const Lanes *lanes, int e)
+{
+    const int64_t rate = lanes->task->events[e].rate_index;
+    if (rate < 0) {
+        return (mask){0};
+    }
+    const real u = lanes->h*lanes->motion.state.z[rate], v = lanes->h*lanes->end.z[rate];
+    return may_dip(lanes->before[e], u, lanes->after[e], v);
+}
+#endif
+
 /* Evaluate a lane's step; return whether its motion moves to the end of the step. */
 static int process_step(Lanes *lanes, int lane, int accepted, int failed)
 {
@@ -228,10 +241,17 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
                 return 0;
             }
 #else
-            const mask crossed = has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
-            if (MASK_LANE(crossed, lane)) {
-                Bracket bracket = {e, 0, before, h, after, {0}};
-                memcpy(bracket.far_state, within->full_end, sizeof bracket.far_state);
+            const mask dip = dips(lanes, e);
+            Bracket bracket = {.event = e, .near_value = before, .far = h, .far_value = after};
+            memcpy(bracket.far_state, within->full_end, sizeof bracket.far_state);
+            if (is_crossed(&task->events[e], before, after)) {
+                add_bracket(within, &bracket);
+            } else if (MASK_LANE(dip, lane)) {
+                const int64_t rate = task->events[e].rate_index;
+                const double u = bracket.near_slope = h*LANE(motion->state.z[rate], lane);
+                const double v = bracket.far_slope = h*LANE(lanes->end.z[rate], lane);
+                bracket.probes = PROBES;
+                bracket.aim = h*cubic_extremum(before, u, after, v);
                 add_bracket(within, &bracket);
             }
 #endif
@@ -358,7 +378,9 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     for (int e = 0; e < task->event_count; e++) {
         lanes->after[e] = event_value(&task->events[e], end);
         attention |= *accepted & has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
-#if INTERPOLATES
+#if !INTERPOLATES
+        attention |= *accepted & dips(lanes, e);
+#else
         double coefficients[STAGES + 1];
         event_polynomial(&task->events[e], state, end, lanes->before[e], coefficients);
         const int roots = sign_changes(coefficients);

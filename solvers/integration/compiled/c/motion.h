@@ -89,3 +89,10 @@ static inline mask has_crossed(const Event *event, real x, real y)
     const mask down = less_than(zero, x) & ~less_than(zero, y);
     return event->direction > 0 ? up : event->direction < 0 ? down : up | down;
 }
+
+/* The same for numbers. */
+static inline int is_crossed(const Event *event, double x, double y)
+{
+    const int up = x < 0 && !(y < 0), down = x > 0 && !(y > 0);
+    return event->direction > 0 ? up : event->direction < 0 ? down : up || down;
+}

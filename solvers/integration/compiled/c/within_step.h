@@ -2,7 +2,7 @@
    states at sample times. Each substep is a step of the same method from the same state, with a
    shorter h. */
 
-enum { MAX_SUBSTEPS = 100, MAX_BRACKETS = INTERPOLATES ? 8*MAX_EVENTS : MAX_EVENTS };
+enum { MAX_SUBSTEPS = 100, MAX_BRACKETS = (INTERPOLATES ? 8 : 2)*MAX_EVENTS };
 
 typedef enum { IDLE, ADVANCE, LOCATE, SAMPLE } Mode;
 
@@ -11,6 +11,11 @@ typedef struct {
     int event;
     double near, near_value;                /* an h before the event */
     double far, far_value, far_state[STATE_SIZE];   /* and one not before it */
+    /* two crossings are sought where the signs are equal, by this number of attempts */
+    int probes;
+    double aim;                             /* h of the next attempt */
+    double near_slope, far_slope;           /* derivatives times the step */
+    int is_void;                            /* there is no crossing */
 } Bracket;
 
 typedef struct {
@@ -35,6 +40,9 @@ typedef struct {
 static double next_event_h(const WithinStep *within)
 {
     const Bracket *bracket = within->bracket;
+    if (bracket->probes) {
+        return bracket->aim;
+    }
     const double x = bracket->near, y = bracket->far;
     const double u = bracket->near_value, v = bracket->far_value;
     const double aim = within->substeps < MAX_SUBSTEPS/2 ? (x*v - y*u)/(v - u) : (x + y)/2;
@@ -112,11 +120,14 @@ static double next_h(const Task *task, WithinStep *within, double t, double t_lo
 {
     for (;;) {
         if (within->mode == LOCATE) {
-            if (fabs(within->bracket->far - within->bracket->near) > 2*within->resolution
-                    && within->substeps < MAX_SUBSTEPS) {
+            const Bracket *bracket = within->bracket;
+            const int is_wide = fabs(bracket->far - bracket->near) > 2*within->resolution;
+            if (is_wide && within->substeps < MAX_SUBSTEPS && !bracket->is_void) {
                 return next_event_h(within);
             }
-            use_event(task, within);
+            if (!bracket->is_void) {
+                use_event(task, within);
+            }
         }
         if (within->mode == SAMPLE || !select_bracket(task, within)) {
             break;
@@ -144,6 +155,31 @@ static void begin_within_step(WithinStep *within, double h, const double *end)
     within->terminal = -1;
 }
 
+/* Use the value at an extremum: if its sign differs, there is a crossing on either side. */
+static void use_probe(
+    const Task *task, WithinStep *within, double h, const double *state, double value)
+{
+    Bracket *bracket = within->bracket;
+    const Event *event = &task->events[bracket->event];
+    const double x = bracket->near_value, y = bracket->far_value, full = within->full_h;
+    if (value*x < 0) {
+        Bracket second;
+        memcpy(&second, bracket, sizeof second);
+        second.probes = bracket->probes = 0;
+        second.near = bracket->far = h;
+        second.near_value = bracket->far_value = value;
+        memcpy(bracket->far_state, state, sizeof bracket->far_state);
+        bracket->is_void = !is_crossed(event, x, value);
+        if (is_crossed(event, value, y)) {
+            add_bracket(within, &second);
+        }
+        return;
+    }
+    bracket->is_void = --bracket->probes == 0;
+    bracket->aim = full*quartic_extremum(
+        x, bracket->near_slope, y, bracket->far_slope, h/full, value);
+}
+
 /* Use a substep of length h that ends at `state`, where the event being located has `value`. */
 static void use_substep(
     const Task *task, WithinStep *within, double h, const double *state, double value)
@@ -153,6 +189,10 @@ static void use_substep(
         return;
     }
     Bracket *bracket = within->bracket;
+    if (bracket->probes) {
+        use_probe(task, within, h, state, value);
+        return;
+    }
     within->substeps++;
     if ((value < 0) == (bracket->near_value < 0) && value != 0) {
         bracket->near = h;
