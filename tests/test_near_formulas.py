@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from derive.verification.documents.corrections import inserted, places
+from derive.verification.documents.corrections import in_brackets, inserted, places
 from derive.verification.documents.jets import Jet, evaluated
 from derive.verification.documents.near import is_near
+from derive.verification.verdict import Correction
 
 SPEED = np.linspace(0.3, 1.7, 8)[None]
 NAMES = {
@@ -72,3 +73,19 @@ def test_places_of_a_term_come_before_those_of_a_factor(
     text: str, term: str, before: list[str]
 ) -> None:
     assert [text[:start] for start, _ in places(text, term)] == before
+
+
+@pytest.mark.parametrize(
+    ("correct", "before", "after", "result"),
+    [
+        ("b + c", "x = ", " d", r"\left(b + c\right)"),
+        ("b + c", "x = 2 ", "", r"\left(b + c\right)"),
+        ("b + c", "x = ", " + d", "b + c"),
+        ("b + c", r"x = \frac{", "}{2}", "b + c"),
+        ("b*c", "x = 2 ", " d", "b*c"),
+    ],
+)
+def test_a_sum_stands_in_brackets_where_it_is_a_factor(
+    correct: str, before: str, after: str, result: str
+) -> None:
+    assert in_brackets(Correction("a", correct), correct, before, after) == result

@@ -43,7 +43,7 @@ def corrected(
         if span is None:
             return Corrected(correction=written(verdict.correction, letters))
         new = written(one.correct, letters)
-        new = _in_brackets(one, new, latex[: span[0]], latex[span[1] :]) if one.wrong else new
+        new = in_brackets(one, new, latex[: span[0]], latex[span[1] :]) if one.wrong else new
         changes.append((span, new))
     changes.sort(reverse=True)
     text, start = latex, tree.span[0]
@@ -107,7 +107,7 @@ def inserted(before: str, old: str, new: str, after: str) -> str:
     return before + new + after
 
 
-def _in_brackets(one: Correction, new: str, before: str, after: str) -> str:
+def in_brackets(one: Correction, new: str, before: str, after: str) -> str:
     """A sum in brackets where it replaces a factor."""
     is_factor = before.rstrip()[-1:] not in ("", *"(+=&[{,") or after.lstrip()[:1] not in (
         "", *")+-=&]},\\",
