@@ -318,3 +318,12 @@ def test_another_system_is_sought_for_formulas_that_are_left(tmp_path: Path) -> 
         "Single pendulum",
         "Mass on a spring",
     }
+
+
+def test_two_wrong_terms_are_corrected_together(tmp_path: Path) -> None:
+    text = rf"{PENDULUM}$$L = 3 m l^2\dot\theta^2 + 5 m g l\cos\theta$$"
+    wrong = judged(tmp_path, text, "single_pendulum")[-1]
+    assert wrong.wrong_term == r"3 m l^2\dot\theta^2; 5 m g l\cos\theta"
+    assert [text[slice(*one)] for one in wrong.wrong_spans] == wrong.wrong_term.split("; ")
+    formulas = judged(tmp_path, text.replace(wrong.latex, wrong.correction), "single_pendulum")
+    assert formulas[-1].verdict == "verified"
