@@ -28,6 +28,12 @@ $$T = \tfrac12 (M + m) a^2 \dot\alpha^2 + \tfrac12 m b^2 \dot\beta^2
      + m a b \dot\alpha \dot\beta \cos(\alpha - \beta)$$
 $$V = -(M + m) g a \cos\alpha - m g b \cos\beta$$
 """
+VANISHING = r"""
+$$(m_1+m_2) a \ddot\theta_1 + m_2 b \ddot\theta_2 \cos(\theta_1-\theta_2)
+ + m_2 b \dot\theta_2^2\sin(\theta_1-\theta_2) + (m_1+m_2) g \sin\theta_1 = 0$$
+$$b \ddot\theta_2 + a \ddot\theta_1 \cos(\theta_1-\theta_2)
+ - a \dot\theta_1^2\sin(\theta_1-\theta_2) + g \sin\theta_2 = 0$$
+"""
 
 
 def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
@@ -56,9 +62,14 @@ def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
         (POSITIONS, r"x_1 = a\sin", r"x_1 = a\cos", r"a\cos\alpha", r"a \sin"),
         (POSITIONS, r"y_1 = -a", r"y_1 = -b", r"b", r"-a"),
         (POSITIONS, r"- b\cos\beta\end", r"+ b\cos\beta\end", r"b\cos\beta", r"- b"),
+        (VANISHING, r"^2\sin(\theta_1-\theta_2) + (m", r"^2\sin(\theta_1-\theta_1) + (m",
+         r"m_2 b \dot\theta_2^2\sin(\theta_1-\theta_1)", r"\sin\left("),
+        (VANISHING, r"- a \dot\theta_1^2\sin(\theta_1-\theta_2)",
+         r"- a \dot\theta_1^2\sin(\theta_2-\theta_2)",
+         r"- a \dot\theta_1^2\sin(\theta_2-\theta_2)", r"\sin\left("),
         (FIELD, r"(E + \frac kr", r"(E - \frac kr", r"- \frac kr", r"\frac{k}{r}"),
     ],
-)
+)  # fmt: skip
 def test_the_wrong_part_is_found(
     text: str, old: str, new: str, term: str, correct: str, tmp_path: Path
 ) -> None:

@@ -1,5 +1,6 @@
 """Verdicts on a side of a formula by what its first side is: an energy, a momentum, an equation."""
 
+import ast
 import re
 from collections.abc import Iterator
 from contextlib import suppress
@@ -7,7 +8,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Value, parse
+from derive.formulas.expression import ExpressionError, Value, parse, summands, syntax_tree
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.rates import order, stem
 from derive.verification.documents.scope import DocumentScope
@@ -16,6 +17,7 @@ from derive.verification.documents.statements import WORD
 from derive.verification.documents.text import Text
 from derive.verification.model import Model, depends_on
 from derive.verification.quantities import judge_formula
+from derive.verification.verdict import Correction
 
 
 class Roles:
@@ -83,7 +85,18 @@ class Roles:
         """The verdict on an equation of motion."""
         text = f"{first.text} = {side.text}"
         verdict = judge_formula(self._model_of(first, side), "", text, "euler_lagrange")
+        verdict = replace(verdict, corrections=self._in_place(verdict.corrections, first))
         return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
+
+    def _in_place(self, corrections: tuple[Correction, ...], side: Text) -> tuple[Correction, ...]:
+        """A missing term in place of one that vanishes, such as that with sin(q1 - q1)."""
+        if len(corrections) != 1 or corrections[0].wrong:
+            return corrections
+        for term, sign in summands(syntax_tree(side.text)):
+            text = ast.unparse(term)
+            if self._scope.value(text) == 0 and text != "0":
+                return (Correction(f"-{text}" if sign < 0 else text, corrections[0].correct),)
+        return corrections
 
     def value(self, side: Text, name: str, value: sp.Expr) -> SideVerdict:
         """The verdict on a side that must have a value, to which a name is given."""
