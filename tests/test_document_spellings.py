@@ -4,9 +4,13 @@ from pathlib import Path
 
 import pytest
 
+from derive.reading.document import Document
 from derive.reading.documents import read_document
+from derive.reading.latex.reader import formulas
 from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letter_search import letters_of
+from derive.verification.documents.statements import Occurrence, Translated, translated
 
 PENDULUM = r"""
 $$x = l\sin\theta(t), \quad y = -l\cos\theta(t)$$
@@ -119,3 +123,19 @@ def test_uniform_rods_are_recognised_by_their_numbers(tmp_path: Path) -> None:
     )
     assert verdicts(tmp_path, text) == ["verified", "verified"]
     assert "wrong" in verdicts(tmp_path, text.replace("F + m", "F - m"))
+
+
+def test_statements_about_all_coordinates_name_no_further_one(tmp_path: Path) -> None:
+    file = tmp_path / "notes.md"
+    rate = r"\frac{d}{dt}\frac{\partial L}{\partial\dot q_i}"
+    general = rf"$${rate} = \frac{{\partial L}}{{\partial q_i}}$$"
+    file.write_text(rf"{general} $$L = \frac m2 (\dot x_1^2 + \dot y_1^2)$$", encoding="utf-8")
+    statements = read_statements(read_document(file))
+    letters = letters_of(statements.formulas, statements.derivatives)
+    assert {*letters.coordinates} == {"x_1", "y_1"}
+
+
+def read_statements(document: Document) -> Translated:
+    trees = [tree for one in document.displays for tree in formulas(one.latex)]
+    places = [Occurrence(n, 1, 1, 0, 0, "", tree) for n, tree in enumerate(trees, 1)]
+    return translated(places)

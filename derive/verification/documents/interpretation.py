@@ -79,7 +79,9 @@ def _best(
 
 
 def _is_supported(best: Match, least: float) -> bool:
-    """Whether enough comparisons hold: with unusual meanings of letters, half of them."""
+    """Whether enough comparisons hold: more of them if most do not, or letters are unusual."""
+    if best.support < 0 and best.compared - len(best.failed) < ENOUGH:
+        return False
     if best.candidate.is_usual:
         return best.holding >= max(1, min(ENOUGH, least * best.compared))
     return best.holding >= max(1, UNUSUAL * best.compared)

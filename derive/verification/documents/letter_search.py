@@ -66,6 +66,8 @@ def letters_of(
         if one not in quantities and coordinate is not None:
             momenta[one] = coordinate
     coordinates = [one for one in moving if one not in momenta]
+    generic = _generic(formulas, derivatives)
+    coordinates = [one for one in coordinates if one not in generic] or coordinates
     coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
     if all(re.fullmatch(r"q_\d", one) for one in coordinates):
         # with abbreviations such as s_1, angles need not be written
@@ -105,6 +107,18 @@ def _orders(
         return
     used = sorted(coordinates, key=lambda q: stems.index(q) if q in stems else 0)
     yield from islice(permutations(used), MAX_ORDERS)
+
+
+def _generic(
+    formulas: Iterable[DocumentFormula], derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
+) -> set[str]:
+    """Names such as q_1 that only statements with an index have, such as that about all q_i."""
+    found: dict[bool, set[str]] = {True: set(), False: set()}
+    for formula in formulas:
+        for name in formula.words:
+            operand, variables = derivatives.get(name, (name, ()))
+            found[bool(formula.index)].update(map(stem, (operand, *variables)))
+    return found[True] - found[False]
 
 
 def _abbreviations(
