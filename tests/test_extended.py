@@ -158,6 +158,27 @@ def test_a_perturbation_changes_the_last_digits_only() -> None:
         assert 1e-13 < np.abs(runs[one][-1] - runs[other][-1]).max() < 1e-8
 
 
+#: Both are at rest, and grow by e^40 from a change of a parameter alone, or of the start alone.
+AT_REST = (("10*state[0] + params[0] - params[1]", 0.0), ("10*(state[0] + 0.5)", -0.5))
+
+
+@pytest.mark.parametrize(("rate", "start"), AT_REST)
+def test_a_perturbation_changes_start_and_parameters(
+    rate: str, start: float, tmp_path: Path
+) -> None:
+    (tmp_path / "hand.h").write_text(
+        "static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,\n"
+        "    const HOLONOMIC_REAL *params, HOLONOMIC_REAL *result)\n"
+        f"{{ result[0] = {rate}; (void)t; (void)params; }}\n"
+    )
+    module = handwritten("hand", ("y",), ("p", "q"), __file__=str(tmp_path / "hand.py"))
+    arguments = module, (1.25, 1.25), (start,), [0, 4], "long double", 1e-18
+    ends = [integrate_extended(*arguments, perturbation=seed)[1, 0] for seed in range(5)]
+    assert ends[0] == start
+    assert len(set(ends)) > 1
+    assert max(abs(end - start) for end in ends) < 1.0
+
+
 def test_a_singularity_and_too_many_steps_end_a_motion_with_an_error(tmp_path: Path) -> None:
     (tmp_path / "hand.h").write_text(
         "static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,\n"

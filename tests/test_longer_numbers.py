@@ -74,6 +74,18 @@ SIMILAR = (
 )
 
 
+def test_every_check_has_a_perturbation_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    seeds, states = list[int](), IntegrationRun.extended_states
+
+    def recorded(run, times, progress, perturbation=0):
+        seeds.append(perturbation)
+        return states(run, times, progress, perturbation)
+
+    monkeypatch.setattr(IntegrationRun, "extended_states", recorded)
+    by_longer_numbers(motion_of(LONG), 1e-9, LONG.times, {}, lambda _: None)
+    assert seeds == [0, 1, 2, 3]
+
+
 def test_rounding_errors_of_constants_count() -> None:
     rng = np.random.default_rng(5)
     starts = [*SIMILAR, *rng.uniform(-2.5, 2.5, (12, 4)).tolist()]

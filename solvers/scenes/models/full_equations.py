@@ -25,8 +25,8 @@ CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14
 MARGIN = 2.0
 #: Number of tolerances or steps to try, and the share of the requested accuracy to aim at.
 TRIES, RESERVE = 6, 0.3
-#: How much smaller an error may be with compensated sums and the finest tolerances.
-MOST_GAIN = 2000.0
+#: How much smaller an error may be than in proportion to the tolerance, by compensated sums, too.
+MOST_GAIN = 2e4
 
 
 @dataclass(frozen=True)
@@ -76,6 +76,7 @@ def integrated(
     setting, power = max(accuracy / 3, finest), 1.0
     if choice.is_fixed:
         setting, power = motion.duration / 200, float(load(choice.method).order)
+    may_compensate = not choice.is_fixed and choice.method not in SCIPY
     best = np.inf
     for _ in range(TRIES):
         run = IntegrationRun(motion, choice, setting)
@@ -83,13 +84,15 @@ def integrated(
         if error <= accuracy:
             return FullEquations.of(run, error)
         best = min(best, error)
+        least = error * finest / setting / MOST_GAIN
+        if may_compensate and not choice.is_named and accuracy < least < np.inf:
+            best, may_compensate = least, False
+            break
         if not choice.is_fixed and setting <= finest:
             break
         factor = (RESERVE * accuracy / error) ** (1 / power) if np.isfinite(error) else 0.1
         setting = max(setting * min(max(factor, 1e-4), 0.5), 0.0 if choice.is_fixed else finest)
-    if not choice.is_named and MOST_GAIN * accuracy < best < np.inf:
-        best /= MOST_GAIN
-    elif not choice.is_fixed and choice.method not in SCIPY:
+    if may_compensate:
         run, error = sufficient(checked, accuracy, choice if choice.is_named else None)
         if error <= accuracy:
             return FullEquations.of(run, error)

@@ -15,7 +15,7 @@ from solvers.scenes.models.double_precision import MARGIN
 from solvers.scenes.models.full_equations import FullEquations, check_length
 from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
 from solvers.scenes.models.method_choice import MethodChoice
-from solvers.scenes.models.motion import Array, Motion
+from solvers.scenes.models.motion import Array, Motion, golden_points
 
 #: Most turns, and most products of a run, which take up to a minute.
 MOST_TURNS, MOST_PRODUCTS = 20_000.0, 2e8
@@ -23,6 +23,8 @@ MOST_TURNS, MOST_PRODUCTS = 20_000.0, 2e8
 #: attempts in one precision, the share of the requested accuracy to aim at, and the largest factor
 #: between the tolerances of attempts.
 MULTIPLES, COARSEST, TRIES, RESERVE, LEAST_CHANGE = (2.0, 5.0, 10.0), 1e-18, 4, 0.1, 0.01
+#: Most samples at which runs are compared.
+MOST_SAMPLES = 256
 #: Difference of two runs below which it grows as small changes do, and the largest exponent.
 SMALL, MOST_EXPONENT = 1e-3, 700.0
 WHY = "the motion loses more digits than double precision has"
@@ -85,12 +87,13 @@ def _checked(
     run, before = IntegrationRun(motion, choice, finest, most), perf_counter()
     fine = run.states(times, progress)
     seconds, distances = perf_counter() - before, list[Array]()
+    some = np.unique([*(len(times) * golden_points(MOST_SAMPLES)).astype(int), len(times) - 1])
     for k, multiple in enumerate(MULTIPLES, 1):
-        other = replace(run, setting=multiple * finest).extended_states(times, progress, k)
-        distances.append(np.abs(fine - other)[:, list(motion.requested)].max(axis=1))
+        other = replace(run, setting=multiple * finest).extended_states(times[some], progress, k)
+        distances.append(np.abs(fine[some] - other)[:, list(motion.requested)].max(axis=1))
     error = MARGIN * float(np.max(distances)) + float(np.spacing(np.abs(fine).max()))
     model = replace(FullEquations.of(run, error), computed=(times, fine), computing_seconds=seconds)
-    return model, _growth(times, distances[-1], MULTIPLES[-1] * finest)
+    return model, _growth(times[some], distances[-1], MULTIPLES[-1] * finest)
 
 
 def _growth(times: Array, errors: Array, tolerance: float) -> float:
