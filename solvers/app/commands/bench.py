@@ -9,7 +9,7 @@ from typing import Any
 from solvers.app.commands import options
 
 SUMMARY = "time compiled loops and other programs"
-PARTS = ("pendulum", "pipelines", "chains", "maps")
+PARTS = ("pendulum", "starts", "pipelines", "chains", "maps")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -55,7 +55,7 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
     from solvers.app import derivation_timing as timing
     from solvers.app.modules import load
     from solvers.io.figures import save
-    from solvers.studies.benchmarks import chains, double_pendulum, flip_maps, pipeline
+    from solvers.studies.benchmarks import chains, double_pendulum, flip_maps, pipeline, starts
 
     peer = partial(options.required_package, extra="bench")
     module = load("double_pendulum")
@@ -63,6 +63,9 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
         case "pendulum":
             results = double_pendulum.figures(module, timing.lambdified_rhs(), peer("heyoka"))
             return results, double_pendulum.summary(results)
+        case "starts":
+            ratios = starts.figures({name: load(name) for name in starts.SYSTEMS}, peer("heyoka"))
+            return ratios, starts.summary(ratios)
         case "pipelines":
             rows = pipeline.pipelines(module, peer, timing.chain, timing.mechanics)
             return rows, [*pipeline.summary(rows), ""]

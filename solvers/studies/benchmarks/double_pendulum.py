@@ -18,7 +18,7 @@ from solvers.runge_kutta.catalogue import load
 from solvers.studies import heyoka
 from solvers.studies.benchmarks import motions
 from solvers.studies.benchmarks.median_times import compile_loop, median_times
-from solvers.studies.benchmarks.motions import END, METHODS, MOTIONS, START
+from solvers.studies.benchmarks.motions import END, METHODS, MOTIONS, PARALLEL, START
 
 #: Global errors at which programs are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -45,8 +45,9 @@ def _compared(curves: motions.Curves) -> list[dict[str, Any]]:
     for error in ERRORS:
         times = {name: _time_at(curve, error) for name, curve in curves.items()}
         times = {name: time for name, time in times.items() if time > 0}  # neither 0 nor NaN
-        method = min((name for name in METHODS if name in times), key=times.__getitem__)
-        peers = {name: time for name, time in times.items() if name not in METHODS}
+        ours = METHODS | PARALLEL
+        method = min((name for name in ours if name in times), key=times.__getitem__)
+        peers = {name: time for name, time in times.items() if name not in ours}
         ratios = {name: time / times[method] for name, time in peers.items()}
         row = {"global_error": error, "method": method, "seconds": times[method]}
         rows.append(row | {"peers": peers, "ratios": ratios})

@@ -26,7 +26,7 @@ typedef struct {
     double h, end[STATE_SIZE];              /* the same up to a terminal event */
     double after[MAX_EVENTS];               /* event values at its end */
     int terminal;                           /* the event that ends the motion, or -1 */
-    Bracket brackets[MAX_BRACKETS];         /* of each event in ascending order */
+    Bracket *brackets;                      /* of each event in ascending order */
     int bracket_count;
     uint64_t pending;                       /* brackets to be reduced, one bit each */
     Bracket *bracket;                       /* the one being reduced, or NULL */
