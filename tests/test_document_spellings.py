@@ -135,6 +135,12 @@ def test_statements_about_all_coordinates_name_no_further_one(tmp_path: Path) ->
     assert {*letters.coordinates} == {"x_1", "y_1"}
 
 
+def test_general_momenta_beside_named_coordinates_are_judged(tmp_path: Path) -> None:
+    text = r"""$$\dot q_i = \frac{\partial H}{\partial p_i}, \quad T = \frac m2 l^2\dot\phi_1^2,
+    \quad V = -m g l\cos\phi_1$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
+
+
 def read_statements(document: Document) -> Translated:
     trees = [tree for one in document.displays for tree in formulas(one.latex)]
     places = [Occurrence(n, 1, 1, 0, 0, "", tree) for n, tree in enumerate(trees, 1)]

@@ -60,14 +60,14 @@ def letters_of(
         and not GENERIC.match(one)
         and not one.endswith("_column")
     ]
+    generic = _generic(formulas, derivatives)
+    moving = [one for one in moving if one not in generic] or moving
     momenta = {}
     for one in stems:
         coordinate = _coordinate(one, moving) if orders[one] < 2 else None
         if one not in quantities and coordinate is not None:
             momenta[one] = coordinate
     coordinates = [one for one in moving if one not in momenta]
-    generic = _generic(formulas, derivatives)
-    coordinates = [one for one in coordinates if one not in generic] or coordinates
     coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
     if all(re.fullmatch(r"q_\d", one) for one in coordinates):
         # with abbreviations such as s_1, angles need not be written
