@@ -113,10 +113,10 @@ class Sweep:
 
     @property
     def form(self) -> str:
-        """The form of the equations; variational where a map needs it."""
+        """The form of the equations; variational where a map needs it, with a Jacobian if needed."""
         if any(one.is_variational for one in self.maps.values()):
             return "variational"
-        return fastest_form(self.module)
+        return "lagrangian" if load(self.method).needs_jacobian else fastest_form(self.module)
 
     @property
     def samples(self) -> int:
