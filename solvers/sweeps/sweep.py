@@ -113,7 +113,7 @@ class Sweep:
 
     @property
     def form(self) -> str:
-        """The form of the equations; variational where a map needs it, with a Jacobian if needed."""
+        """The form of the equations: variational where a map needs it, or with a Jacobian."""
         if any(one.is_variational for one in self.maps.values()):
             return "variational"
         return "lagrangian" if load(self.method).needs_jacobian else fastest_form(self.module)
