@@ -238,7 +238,7 @@ def test_no_compiler_no_longer_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PRECISIONS, "long double", short)
     with pytest.raises(NoCompilerError, match="no more digits than doubles"):
         kernel(sp, "long double")
-    missing = NumberType("no_such_type", "0", "", "", is_standard=False)
+    missing = NumberType("no_such_type", "0", "")
     monkeypatch.setitem(PRECISIONS, "quadruple", extended.Precision(missing, extended.DOUBLE, 8))
     with pytest.raises(NoCompilerError, match="no quadruple numbers: no C compiler built"):
         kernel(sp, "quadruple")

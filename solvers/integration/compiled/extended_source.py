@@ -57,23 +57,22 @@ HOOKS = """\
 
 @dataclass(frozen=True)
 class NumberType:
-    """A floating-point type of C, with the suffixes of its literals and functions."""
+    """A floating-point type of C, with the suffix of its literals."""
 
     name: str
     epsilon: str
     literal: str
-    call: str
-    is_standard: bool = True  # in C99, so that headers have its literals and functions
+    call: str = ""  # suffix of its functions, for a type that is not in C99
 
     def equations(self, equations: Equations, prefix: str) -> str:
         """The header's text for this type, with a prefix before all its names."""
-        names = [] if self.is_standard else [f"{function}{self.call}" for function in ELEMENTARY]
+        names = [f"{function}{self.call}" for function in ELEMENTARY if self.call]
         system = equations.rhs.partition("_rhs")[0]
         renamed = rf"\b(HOLONOMIC_)?({system}|{system.upper()})_"
         return EQUATIONS.format(
             prototypes="\n".join(f"{self.name} {name}({self.name});" for name in names),
             type=self.name,
-            hooks="" if self.is_standard else HOOKS.format(**vars(self)),
+            hooks=HOOKS.format(**vars(self)) if self.call else "",
             header=re.sub(renamed, rf"{prefix}\g<0>", equations.header),
             prefix=prefix,
             rhs=f"{prefix}{equations.rhs}",
@@ -91,10 +90,10 @@ class NumberType:
         return f"{value:.{DIGITS}e}{self.literal}"
 
 
-DOUBLE = NumberType("double", "DBL_EPSILON", "", "")
-LONG_DOUBLE = NumberType("long double", "LDBL_EPSILON", "L", "l")
+DOUBLE = NumberType("double", "DBL_EPSILON", "")
+LONG_DOUBLE = NumberType("long double", "LDBL_EPSILON", "L")
 #: Its functions are those of the GNU C library.
-QUADRUPLE = NumberType("__float128", "0x1p-112Q", "Q", "f128", is_standard=False)
+QUADRUPLE = NumberType("__float128", "0x1p-112Q", "Q", "f128")
 
 
 def program(
