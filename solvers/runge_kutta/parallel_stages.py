@@ -26,7 +26,7 @@ CLOSE = 0.02
 #: Relative rounding errors of numbers, and of derivatives, at which an iteration may stagnate.
 #: A number that counts as 0, but whose reciprocal has a square.
 SMALLEST = 1e-100
-EPSILON, ROUNDING, MAX_ITERATIONS = np.finfo(float).eps, 32 * np.finfo(float).eps, 50
+EPSILON, ROUNDING, MAX_ITERATIONS = np.finfo(float).eps, 32 * np.finfo(float).eps, 200
 
 
 def symplectic_ratios(tableau: Tableau) -> Array:
@@ -145,13 +145,15 @@ class ParallelStages:
             if iteration == 1 and not self._limit:
                 allowed = EPSILON * size
             floor = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
-            change = float(np.sum(((changed - increments) / allowed) ** 2))
+            with np.errstate(over="ignore"):
+                change = float(np.sum(((changed - increments) / allowed) ** 2))
             increments = changed
             if iteration > 1:
                 square = max(change / previous if previous else 0.0, square / 4)
                 if change * square <= self._limit or previous <= change < floor:
                     return Stages(increments, float(np.sqrt(square)))
-            if not change < 16 * previous:
+            # with fixed steps changes may grow at first; others are shortened at once
+            if not change < (16 * previous if self._limit else np.inf):
                 break
             previous = change
         raise NoFixedPointError(f"the stages still change by {np.sqrt(change):.1e} tolerances")

@@ -10,7 +10,7 @@
 
 #define HAS_POLYNOMIAL 1
 #define INTERPOLATES 1
-enum { TOP = STAGES - 1, MAX_ITERATIONS = 50 };
+enum { TOP = STAGES - 1, MAX_ITERATIONS = 200 };
 
 /* The iteration ends when the next change would be below this part of the tolerance. */
 static const double CLOSE = 0.02;
@@ -157,7 +157,8 @@ static void solve_stages(
                 return;
             }
         }
-        if (!(change < 16*previous) || iteration == MAX_ITERATIONS) {
+        /* with fixed steps changes may grow at first; others are shortened at once */
+        if (!(change < (task->fixed_h ? INFINITY : 16*previous)) || iteration == MAX_ITERATIONS) {
             increments->vector[0] = splat_stages(NAN);
             return;
         }
