@@ -135,7 +135,9 @@ def test_an_unknown_command_or_option_is_invalid_input(capsys: pytest.CaptureFix
     with pytest.raises(SystemExit, match="2"):
         main(["verify", "--yaml"])
     assert main(["bench", "chain"]) == 2
-    assert "PART must be one of pendulum, pipelines, chains, maps" in capsys.readouterr().err
+    assert (
+        "PART must be one of pendulum, starts, pipelines, chains, maps" in capsys.readouterr().err
+    )
 
 
 def test_verify_prints_json_with_every_verdict(
@@ -288,4 +290,4 @@ def test_bench_prints_the_measurements_of_the_parts_in_their_order(
     else:
         assert output == "chains 2.5 s\nmaps 2.5 s\n"
     assert main(["bench", "mapss"]) == 2
-    assert "PART must be one of pendulum, pipelines" in capsys.readouterr().err
+    assert "PART must be one of pendulum, starts" in capsys.readouterr().err

@@ -559,7 +559,7 @@ def test_the_cheapest_method_is_the_recorded_one() -> None:
     recorded = next(scene for scene in json.loads(RECORD.read_text()) if scene["scene"] == "report")
     row = next(row for row in recorded["frontier"] if row["global_error"] == 1e-9)
     assert (choice.method, choice.form) == (row["method"], row["form"])
-    assert choice.method in ("verner853", "verner98")  # the difference is the noise of one run
+    assert choice.method in ("verner853", "verner98", "gauss8")
     assert "as measured in scene 'report'" in choice.why
     assert choice.seconds > 0
     assert mode_spread(dp, dp.DEFAULTS) == pytest.approx(1 + 2**0.5)

@@ -29,7 +29,8 @@ RESERVED = {
     *"co_yield const_cast reinterpret_cast static_cast typeof typeof_unqual".split(),
     *"linux unix i386 EOF INFINITY NAN NULL MAXFLOAT DECIMAL_DIG math_errhandling".split(),
     # macros of the compiled loops; a header of the system `lane` would define functions of theirs
-    *"ONE_LANE LANE MASK_LANE RHS JACOBIAN COMPENSATED lane holonomic".split(),
+    *"ONE_LANE LANE MASK_LANE RHS JACOBIAN COMPENSATED HAS_POLYNOMIAL INTERPOLATES".split(),
+    *"lane holonomic".split(),
 }
 
 #: Macros of C's standard headers, many of which only some compilers define.

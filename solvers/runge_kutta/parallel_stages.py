@@ -144,9 +144,9 @@ class ParallelStages:
             size = np.abs(y) + np.abs(changed).sum(axis=0) + SMALLEST
             if iteration == 1 and not self._limit:
                 allowed = EPSILON * size
-            floor = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
             with np.errstate(over="ignore"):
                 change = float(np.sum(((changed - increments) / allowed) ** 2))
+                floor = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
             increments = changed
             if iteration > 1:
                 square = max(change / previous if previous else 0.0, square / 4)
