@@ -52,18 +52,14 @@ class Recorder:
 
         `state` gives the state at a time within the step, in the form of the problem, `states`
         those at several times in columns; where they raise `ArithmeticError`, nothing is recorded.
-        `rough` gives states approximately, where steps may be long.
+        `rough` gives states approximately, where steps are long.
         """
         t = self.t
 
         def ordinary(time: float, state: Callable[[float], Array] = state) -> Array:
             if time == t:
                 return self.y.copy()
-            before, start = self.y, t
-            if rough:  # a long step, in which the velocity of an angle may change much
-                start = t + (time - t) / 2
-                before = self.form.to_ordinary(start, rough(start), self.y, start - t)
-            return self.form.to_ordinary(time, state(time), before, time - start)
+            return self.form.to_ordinary(time, state(time), self.y, time - t)
 
         values = [event(end, ordinary(end)) for event in self.events]
         if rough:
@@ -78,10 +74,7 @@ class Recorder:
         y, occurrences = ordinary(until), [(k, root, ordinary(root)) for k, root in roots]
         times, sampled = self._due(until), y[:, np.newaxis]
         if self.samples is not None and len(times):
-            if rough:
-                sampled = np.stack([ordinary(float(time)) for time in times], axis=1)
-            else:
-                sampled = self.form.to_ordinary(times, states(times), self.y, times - t)
+            sampled = self.form.to_ordinary(times, states(times), self.y, times - t)
         if len(times):
             self._sample(times, sampled)
         for k, root, y_event in occurrences:

@@ -38,8 +38,7 @@ def symplectic_ratios(tableau: Tableau) -> Array:
     for i in range(tableau.stages):
         ratios[i, i] = 0.5
         for j in range(i):
-            ratios[j, i] = 1 - ratios[i, j]
-            ratios[i, j] = 1 - ratios[j, i]  # both have the spacing of the larger one
+            ratios[j, i] = 1 - ratios[i, j]  # exactly, since the ratio is between 1/2 and 2
             assert Fraction(ratios[i, j]) + Fraction(ratios[j, i]) == 1
     return ratios
 

@@ -97,10 +97,3 @@ static double step_factor(
     const double factor = SAFETY*lane_exp2(exponent);
     return accepted && factor > 1 && factor < LEAST_GROWTH ? 1 : factor;
 }
-
-/* Mean velocity, component n, of a step. */
-static inline double mean_rate(const State *start, double h, const State *end, int n)
-{
-    (void)h;
-    return (start->z[n] + end->z[n])*0.5;
-}

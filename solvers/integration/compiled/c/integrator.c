@@ -10,7 +10,7 @@ static inline real count_turns(const State *start, real h, State *end)
 {
     real check = splat(0.0);
     for (int a = 0; a < ANGLES; a++) {
-        const real change = h*mean_rate(start, h, end, RATE[a]);
+        const real change = h*(start->z[RATE[a]] + end->z[RATE[a]])*0.5;
         const real excess = approximate_angle(start, a) + change - approximate_angle(end, a);
         end->turns[a] = start->turns[a] + lane_round(excess*(0.5/PI));
         check += excess - excess;

@@ -18,7 +18,7 @@ static const double CLOSE = 0.02;
 static const double ROUNDING = 32*DBL_EPSILON;
 /* A number that counts as 0, but whose reciprocal has a square. */
 static const double SMALLEST = 1e-100;
-/* Limits to the change of h; CONTRACTION is the fastest that an iteration should need. */
+/* Limits to the change of h; CONTRACTION is the slowest of an iteration that is efficient. */
 static const double SAFETY = 0.85, SHRINK = 0.2, GROW = 1.5, CONTRACTION = 0.4;
 
 static inline stage_vector splat_stages(double x) { return (stage_vector){0} + x; }
@@ -233,22 +233,6 @@ static __attribute__((noinline)) double step_within(
     }
     collocate(task, start, polynomial, full->length[0], 0, h, params, end, &result);
     return result.evaluations;
-}
-
-/* Mean velocity, component n, of a step, by Simpson's rule. */
-static inline double mean_rate(const State *start, double h, const State *end, int n)
-{
-    const double *c = end->polynomial + n*STAGES;
-    double middle = start->z[n] + c[0]*0.5;
-    /* at the middle the integral of P_k is (P_{k+1} - P_{k-1})/(2 (2k + 1)), 0 for even k */
-    double before = 1;
-    for (int k = 1; k < STAGES; k += 2) {
-        const double next = -before*k/(k + 1);
-        middle += c[k]*(next - before)*(0.5/(2*k + 1));
-        before = next;
-    }
-    (void)h;
-    return (start->z[n] + 4*middle + end->z[n])*(1.0/6);
 }
 
 /* Factor of h after an error of this norm: predictive control after an accepted step

@@ -73,10 +73,3 @@ static inline real step_factor(
     (void)h; (void)start;
     return SAFETY*lane_exp2(lane_fmin(lane_fmax(exponent, least), most));
 }
-
-/* Mean velocity, component n, of a step. */
-static inline real mean_rate(const State *start, real h, const State *end, int n)
-{
-    (void)h;
-    return (start->z[n] + end->z[n])*0.5;
-}
