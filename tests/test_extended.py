@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from handwritten import handwritten
 from mpmath import mp, mpf, workdps
+from valid_files import HILL
 
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
@@ -96,25 +97,9 @@ def test_errors_are_proportional_to_tolerances(precision: str) -> None:
     assert 30 < errors[0] / errors[1] < 30_000
 
 
-UNSTABLE = """
-title = "Particle on a hill"
-potential = "-m*(pi/3 + 9.81 + 1/7)*x**2/2"
-
-[coordinates]
-x = { unit = "m", meaning = "position" }
-
-[parameters]
-m = { value = 1, unit = "kg" }
-
-[[masses]]
-mass = "m"
-position = ["x", "0"]
-"""
-
-
 @pytest.mark.parametrize(("precision", "error"), [("long double", 1e-3), ("quadruple", 1e-12)])
 def test_constants_have_all_digits(precision: str, error: float, tmp_path: Path) -> None:
-    (tmp_path / "hill.toml").write_text(UNSTABLE)
+    (tmp_path / "hill.toml").write_text(HILL)
     hill = load_module(str(tmp_path / "hill.toml"))
     with workdps(50):
         rate = mp.sqrt(mp.pi / 3 + mpf("9.81") + mpf(1) / 7)
@@ -130,7 +115,7 @@ def test_constants_have_all_digits(precision: str, error: float, tmp_path: Path)
 
 def test_functions_have_all_digits(tmp_path: Path) -> None:
     # another hill, on top of which the particle nearly stops: cos x is no coordinate's cosine alone
-    text = UNSTABLE.replace("-m*(pi/3 + 9.81 + 1/7)*x**2/2", "-m*(5*x**2 + cos(x))")
+    text = HILL.replace("-m*(pi/3 + 9.81 + 1/7)*x**2/2", "-m*(5*x**2 + cos(x))")
     (tmp_path / "wavy.toml").write_text(text)
     wavy = load_module(str(tmp_path / "wavy.toml"))
     start, times = (1.0, -float(mp.sqrt(8 + 2 * mp.cos(1)))), [0.0, 9.0]

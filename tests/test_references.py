@@ -10,6 +10,7 @@ import pytest
 from mpmath import mp
 from scipy.special import ellipk
 from sympy import symbols
+from valid_files import HILL
 
 import generated.coupled_pendulums as coupled
 import generated.double_pendulum as dp
@@ -191,22 +192,6 @@ def test_the_fall_from_next_to_the_upright_place_is_exact_all_the_way(distance: 
             for t in map(mp.mpf, times.tolist())
         ]
     assert np.abs(found[:, 0] - np.array(exact, dtype=float)).max() < 1e-13
-
-
-HILL = """
-title = "Particle on a hill"
-potential = "-m*(pi/3 + 9.81 + 1/7)*x**2/2"
-
-[coordinates]
-x = { unit = "m", meaning = "position" }
-
-[parameters]
-m = { value = 1, unit = "kg" }
-
-[[masses]]
-mass = "m"
-position = ["x", "0"]
-"""
 
 
 def test_series_have_all_digits_of_constants(tmp_path: Path) -> None:

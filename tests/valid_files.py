@@ -1,5 +1,20 @@
 """Valid files of every kind, and names that may stand in them."""
 
+HILL = """
+title = "Particle on a hill"
+potential = "-m*(pi/3 + 9.81 + 1/7)*x**2/2"
+
+[coordinates]
+x = { unit = "m", meaning = "position" }
+
+[parameters]
+m = { value = 1, unit = "kg" }
+
+[[masses]]
+mass = "m"
+position = ["x", "0"]
+"""
+
 BEAD = """
 title = "Bead on a parabola that is shaken"
 potential = "m*g*height"

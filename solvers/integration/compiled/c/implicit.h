@@ -65,11 +65,7 @@ static __attribute__((noinline)) void step(
     RHS(start->t, start->z, params, derivative);
     solve_stages(task, start, h, params, derivative, k, end, result);
     for (int n = 0; n < DIM; n++) {
-        end->z[n] = start->z[n];
-#if COMPENSATED
-        end->z_low[n] = start->z_low[n];
-#endif
-        add_to_component(end, n, increment(h, k, n));
+        move_component(start, end, n, increment(h, k, n));
     }
     memcpy(end->polynomial, k, sizeof k);
     end->length[0] = h;

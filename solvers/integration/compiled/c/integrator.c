@@ -4,7 +4,7 @@
    either to advance the motion, or within an accepted step. A lane whose motion ends loads the next
    one. The result of a motion depends on no other motion. */
 
-/* An angle changes by its mean velocity times h, approximately; the rest is whole turns. Returns 0, or NaN
+/* An angle changes by about its mean velocity times h; the rest is whole turns. Returns 0, or NaN
    where they cannot be counted. */
 static inline real count_turns(const State *start, real h, State *end)
 {
@@ -242,18 +242,20 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
             }
 #else
             const mask dip = dips(lanes, e);
+            const int crossed = is_crossed(&task->events[e], before, after);
+            if (!crossed && !MASK_LANE(dip, lane)) {
+                continue;
+            }
             Bracket bracket = {.event = e, .near_value = before, .far = h, .far_value = after};
             memcpy(bracket.far_state, within->full_end, sizeof bracket.far_state);
-            if (is_crossed(&task->events[e], before, after)) {
-                add_bracket(within, &bracket);
-            } else if (MASK_LANE(dip, lane)) {
+            if (!crossed) {
                 const int64_t rate = task->events[e].rate_index;
                 const double u = bracket.near_slope = h*LANE(motion->state.z[rate], lane);
                 const double v = bracket.far_slope = h*LANE(lanes->end.z[rate], lane);
                 bracket.probes = PROBES;
                 bracket.aim = h*cubic_extremum(before, u, after, v);
-                add_bracket(within, &bracket);
             }
+            add_bracket(within, &bracket);
 #endif
         }
     } else {

@@ -195,11 +195,7 @@ static void collocate(
     solve_stages(task, start, polynomial, length, origin, h, params, &increments, result);
     multiply(LEGENDRE, &increments, zero, coefficients);
     for (int n = 0; n < DIM; n++) {
-        end->z[n] = start->z[n];
-#if COMPENSATED
-        end->z_low[n] = start->z_low[n];
-#endif
-        add_to_component(end, n, coefficients[n][0]);   /* P_0 is 1: the sum of the increments */
+        move_component(start, end, n, coefficients[n][0]);   /* P_0 is 1: the sum of the increments */
     }
     memcpy(end->polynomial, coefficients, sizeof coefficients);
     end->length[0] = h;

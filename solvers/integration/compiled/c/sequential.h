@@ -37,11 +37,7 @@ static __attribute__((noinline)) void step(
     result->evaluations = splat(STAGES - IS_FSAL);
     result->jacobians = splat(0.0);
     for (int n = 0; n < DIM; n++) {
-        end->z[n] = start->z[n];
-#if COMPENSATED
-        end->z_low[n] = start->z_low[n];
-#endif
-        add_to_component(end, n, increment(h, k, n));
+        move_component(start, end, n, increment(h, k, n));
     }
     for (int n = 0; n < DIM && IS_FSAL; n++) {
         end->derivative[n] = k[STAGES - 1][n];

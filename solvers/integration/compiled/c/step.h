@@ -26,6 +26,16 @@ static inline void add_to_component(State *state, int n, real change)
 #endif
 }
 
+/* Component n at the end of a step that changes it. */
+static inline void move_component(const State *start, State *end, int n, real change)
+{
+    end->z[n] = start->z[n];
+#if COMPENSATED
+    end->z_low[n] = start->z_low[n];
+#endif
+    add_to_component(end, n, change);
+}
+
 /* Restore sin^2 + cos^2 = 1: by the series of 1/sqrt(1 - d) where d is small, as it nearly always
    is, after a division elsewhere. */
 static inline void normalise_angles(State *state)
