@@ -133,7 +133,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "8c0ed5805667513b"
+DIGEST = "7bb10b0ad1dda483"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x",
@@ -209,12 +209,14 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "mass_matrix",
     "positions",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
@@ -222,12 +224,14 @@ CALLS_FUNCTIONS = (
 OPERATIONS = {
     "rhs": (131, 13),
     "jacobian": (399, 14),
+    "parameter_jacobian": (452, 14),
     "energy": (66, 15),
     "mass_matrix": (27, 12),
     "positions": (20, 0),
     "hamiltonian_state": (53, 7),
     "rhs_hamiltonian": (138, 14),
     "jacobian_hamiltonian": (453, 14),
+    "parameter_jacobian_hamiltonian": (644, 23),
     "energy_hamiltonian": (111, 11),
     "lagrangian_state": (98, 9),
     "rational_state": (6, 0),
@@ -804,6 +808,405 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         x85,
         x86,
         2.0*c13*(x5*x78 + x6*x84 - cos_theta3*x72),
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    452 operations, 14 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 8 floats
+        x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
+        theta3_dot in rad/s.
+    params : iterable of 8 floats
+        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    _, theta1, theta2, theta3, _, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = m1 + m2
+    c1 = m3 + c0
+    c2 = c1*l1
+    c3 = m2 + m3
+    c4 = c3*l2
+    c5 = m3*l3
+    c6 = c3*l1
+    c7 = c3*g
+    c8 = c1*g
+    c9 = m0 + c0
+    c10 = 1.0/l1
+    c11 = 1.0/l2
+    c12 = 1.0/l3
+    c13 = 1.0/m3
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    x0 = theta1_dot*theta1_dot
+    x1 = sin_theta1*x0
+    sin_theta2 = sin(theta2)
+    x2 = theta2_dot*theta2_dot
+    x3 = sin_theta2*x2
+    sin_theta3 = sin(theta3)
+    x4 = theta3_dot*theta3_dot
+    x5 = sin_theta3*x4
+    cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    x6 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x7 = x6*x0
+    cos_theta2 = cos(theta2)
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x9 = x8*x2
+    x10 = l1*x7 + l2*x9 - g*sin_theta3
+    x11 = m3*cos_theta3
+    x12 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x13 = x12*x0
+    x14 = x8*x4
+    x15 = c6*x13 - c5*x14 - c7*sin_theta2
+    x16 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x17 = m3*x16
+    x18 = x15 - x10*x17
+    x19 = c3*cos_theta2
+    x20 = x19 - cos_theta3*x17
+    x21 = 1.0/(m2 + m3*x8*x8)
+    x22 = x20*x21
+    x23 = x12*x2
+    x24 = x6*x4
+    x25 = c4*x23 + c5*x24 + c8*sin_theta1
+    x26 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x27 = m3*x26
+    x28 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x29 = c3*x28
+    x30 = x29 - x26*x17
+    x31 = x21*x30
+    x32 = x25 + x10*x27 + x18*x31
+    x33 = c1*cos_theta1
+    x34 = x33 - cos_theta3*x27 - x30*x22
+    x35 = 1.0/(c0 + m3*x6*x6 - x30*x31)
+    x36 = x34*x35
+    x37 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x18*x22 + x32*x36
+    x38 = c9 + m3*sin_theta3*sin_theta3 - x20*x22 - x34*x36
+    x39 = x37/x38
+    x40 = x39/x38
+    x41 = l1*x1
+    x42 = x35*(x32 + x34*x39)
+    x43 = x39 - cos_theta1*x42
+    x44 = g*sin_theta1
+    x45 = x42 - cos_theta1*x39
+    x46 = x44 - x45
+    x47 = (x41 - x43 + x46*x36)/x38
+    x48 = x41 + l2*x3
+    x49 = x21*(x18 + x30*x42 - x20*x39)
+    x50 = x43 + cos_theta2*x49
+    x51 = l1*x13
+    x52 = g*sin_theta2
+    x53 = x28*x42 - (x49 + cos_theta2*x39)
+    x54 = x51 - x52 - (-x53)
+    x55 = l2*x23
+    x56 = x45 - x28*x49
+    x57 = x44 + x55 + (-x56) + x54*x31
+    x58 = (x48 - x50 - x54*x22 + x57*x36)/x38
+    x59 = x16*x49 + (cos_theta3*x39 - x26*x42)
+    x60 = x10 - x59
+    x61 = x10 - (x60 + x59)
+    x62 = x48 + l3*x5 - (x50 + cos_theta3*x60) - cos_theta3*x61
+    x63 = x52 - (x51 - l3*x14) + (x16*x60 - x53) + x16*x61
+    x64 = x44 + (x55 + l3*x24) + (x26*x60 - x56) + x26*x61 - x63*x31
+    x65 = (x62 + x63*x22 + x64*x36)/x38
+    x66 = c10*x42
+    x67 = x7 + x26*x66
+    x68 = c3*(x13 + x28*x66) - x67*x17
+    x69 = c10*(x25 + (x33*x39 + x29*x49 + x60*x27 - 2.0*c1*x42))
+    x70 = x69 + x67*x27 + x68*x31
+    x71 = c1*(x1 + cos_theta1*x66) - x67*x11 - x68*x22 + x70*x36
+    x72 = x71/x38
+    x73 = c11*x49
+    x74 = x9 - x16*x73
+    x75 = c11*(x15 - (x19*x39 + 2.0*c3*x49 + x60*x17 - x29*x42))
+    x76 = x75 - x74*x17
+    x77 = c3*(x23 + x28*x73) + x74*x27 + x76*x31
+    x78 = c3*(x3 - cos_theta2*x73) - x74*x11 - x76*x22 + x77*x36
+    x79 = x78/x38
+    x80 = c12*x60
+    x81 = c12*(x10 - (2.0*x60 + x59))
+    x82 = x14 + x16*x80 + x16*x81
+    x83 = x24 + x26*x80 + x26*x81 - x82*x31
+    x84 = x5 - cos_theta3*x80 - cos_theta3*x81 + x82*x22 + x83*x36
+    x85 = m3*x84/x38
+    x86 = c3*sin_theta2 - sin_theta3*x17
+    x87 = c1*sin_theta1 - sin_theta3*x27 - x86*x31
+    x88 = (sin_theta3*x11 + x86*x22 + x87*x36)/x38
+    x89 = x40*x36
+    x90 = x35*(x46 + x34*x47)
+    x91 = x35*(x57 + x34*x58)
+    x92 = x35*(x64 + x34*x65)
+    x93 = x35*(x70 + x34*x72)
+    x94 = x35*(x77 + x34*x79)
+    x95 = x35*(m3*x83 + x34*x85)
+    x96 = x35*(x87 + x34*x88)
+    x97 = x21*(x20*x40 - x30*x89)
+    x98 = x21*(x20*x47 - x30*x90)
+    x99 = x21*(x54 + x30*x91 - x20*x58)
+    x100 = x21*(x63 + x20*x65 - x30*x92)
+    x101 = x21*(x68 + x30*x93 - x20*x72)
+    x102 = x21*(x76 + x30*x94 - x20*x79)
+    x103 = x21*(m3*x82 + x20*x85 - x30*x95)
+    x104 = x21*(x86 + x20*x88 - x30*x96)
+    x105 = c12*(c13*x61 + x26*x92 + x16*x100 - cos_theta3*x65)
+    x106 = c12*(sin_theta3 + cos_theta3*x88 - x26*x96 - x16*x104)
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (-x40, x47, x58, x65, x72, x79, x85, x88),
+        (
+            c10*x89,
+            -c10*x90,
+            -c10*x91,
+            -c10*x92,
+            -c10*x93,
+            -c10*x94,
+            -c10*x95,
+            -c10*x96,
+        ),
+        (
+            c11*x97,
+            -c11*x98,
+            c11*x99,
+            -c11*x100,
+            c11*x101,
+            c11*x102,
+            -c11*x103,
+            -c11*x104,
+        ),
+        (
+            -c12*(x26*x89 + x16*x97 - cos_theta3*x40),
+            c12*(x26*x90 + x16*x98 - cos_theta3*x47),
+            -c12*(cos_theta3*x58 + x16*x99 - x26*x91),
+            x105,
+            c12*(x67 + x26*x93 - cos_theta3*x72 - x16*x101),
+            c12*(x74 + x26*x94 - cos_theta3*x79 - x16*x102),
+            c12*(x81 + x26*x95 + x16*x103 - cos_theta3*x85),
+            -x106,
+        ),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (8, 8, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    _, theta1, theta2, theta3, _, theta1_dot, theta2_dot, theta3_dot = y
+    m0, m1, m2, m3, l1, l2, l3, g = params
+    # terms of the parameters alone
+    c0 = m1 + m2
+    c1 = m3 + c0
+    c2 = c1*l1
+    c3 = m2 + m3
+    c4 = c3*l2
+    c5 = m3*l3
+    c6 = c3*l1
+    c7 = c3*g
+    c8 = c1*g
+    c9 = m0 + c0
+    c10 = 1.0/l1
+    c11 = 1.0/l2
+    c12 = 1.0/l3
+    c13 = 1.0/m3
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    x0 = theta1_dot*theta1_dot
+    x1 = sin_theta1*x0
+    sin_theta2 = sin(theta2)
+    x2 = theta2_dot*theta2_dot
+    x3 = sin_theta2*x2
+    sin_theta3 = sin(theta3)
+    x4 = theta3_dot*theta3_dot
+    x5 = sin_theta3*x4
+    cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    x6 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x7 = x6*x0
+    cos_theta2 = cos(theta2)
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x9 = x8*x2
+    x10 = l1*x7 + l2*x9 - g*sin_theta3
+    x11 = m3*cos_theta3
+    x12 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x13 = x12*x0
+    x14 = x8*x4
+    x15 = c6*x13 - c5*x14 - c7*sin_theta2
+    x16 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x17 = m3*x16
+    x18 = x15 - x10*x17
+    x19 = c3*cos_theta2
+    x20 = x19 - cos_theta3*x17
+    x21 = 1.0/(m2 + m3*x8*x8)
+    x22 = x20*x21
+    x23 = x12*x2
+    x24 = x6*x4
+    x25 = c4*x23 + c5*x24 + c8*sin_theta1
+    x26 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x27 = m3*x26
+    x28 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x29 = c3*x28
+    x30 = x29 - x26*x17
+    x31 = x21*x30
+    x32 = x25 + x10*x27 + x18*x31
+    x33 = c1*cos_theta1
+    x34 = x33 - cos_theta3*x27 - x30*x22
+    x35 = 1.0/(c0 + m3*x6*x6 - x30*x31)
+    x36 = x34*x35
+    x37 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x18*x22 + x32*x36
+    x38 = c9 + m3*sin_theta3*sin_theta3 - x20*x22 - x34*x36
+    x39 = x37/x38
+    x40 = x39/x38
+    x41 = l1*x1
+    x42 = x35*(x32 + x34*x39)
+    x43 = x39 - cos_theta1*x42
+    x44 = g*sin_theta1
+    x45 = x42 - cos_theta1*x39
+    x46 = x44 - x45
+    x47 = (x41 - x43 + x46*x36)/x38
+    x48 = x41 + l2*x3
+    x49 = x21*(x18 + x30*x42 - x20*x39)
+    x50 = x43 + cos_theta2*x49
+    x51 = l1*x13
+    x52 = g*sin_theta2
+    x53 = x28*x42 - (x49 + cos_theta2*x39)
+    x54 = x51 - x52 - (-x53)
+    x55 = l2*x23
+    x56 = x45 - x28*x49
+    x57 = x44 + x55 + (-x56) + x54*x31
+    x58 = (x48 - x50 - x54*x22 + x57*x36)/x38
+    x59 = x16*x49 + (cos_theta3*x39 - x26*x42)
+    x60 = x10 - x59
+    x61 = x10 - (x60 + x59)
+    x62 = x48 + l3*x5 - (x50 + cos_theta3*x60) - cos_theta3*x61
+    x63 = x52 - (x51 - l3*x14) + (x16*x60 - x53) + x16*x61
+    x64 = x44 + (x55 + l3*x24) + (x26*x60 - x56) + x26*x61 - x63*x31
+    x65 = (x62 + x63*x22 + x64*x36)/x38
+    x66 = c10*x42
+    x67 = x7 + x26*x66
+    x68 = c3*(x13 + x28*x66) - x67*x17
+    x69 = c10*(x25 + (x33*x39 + x29*x49 + x60*x27 - 2.0*c1*x42))
+    x70 = x69 + x67*x27 + x68*x31
+    x71 = c1*(x1 + cos_theta1*x66) - x67*x11 - x68*x22 + x70*x36
+    x72 = x71/x38
+    x73 = c11*x49
+    x74 = x9 - x16*x73
+    x75 = c11*(x15 - (x19*x39 + 2.0*c3*x49 + x60*x17 - x29*x42))
+    x76 = x75 - x74*x17
+    x77 = c3*(x23 + x28*x73) + x74*x27 + x76*x31
+    x78 = c3*(x3 - cos_theta2*x73) - x74*x11 - x76*x22 + x77*x36
+    x79 = x78/x38
+    x80 = c12*x60
+    x81 = c12*(x10 - (2.0*x60 + x59))
+    x82 = x14 + x16*x80 + x16*x81
+    x83 = x24 + x26*x80 + x26*x81 - x82*x31
+    x84 = x5 - cos_theta3*x80 - cos_theta3*x81 + x82*x22 + x83*x36
+    x85 = m3*x84/x38
+    x86 = c3*sin_theta2 - sin_theta3*x17
+    x87 = c1*sin_theta1 - sin_theta3*x27 - x86*x31
+    x88 = (sin_theta3*x11 + x86*x22 + x87*x36)/x38
+    x89 = x40*x36
+    x90 = x35*(x46 + x34*x47)
+    x91 = x35*(x57 + x34*x58)
+    x92 = x35*(x64 + x34*x65)
+    x93 = x35*(x70 + x34*x72)
+    x94 = x35*(x77 + x34*x79)
+    x95 = x35*(m3*x83 + x34*x85)
+    x96 = x35*(x87 + x34*x88)
+    x97 = x21*(x20*x40 - x30*x89)
+    x98 = x21*(x20*x47 - x30*x90)
+    x99 = x21*(x54 + x30*x91 - x20*x58)
+    x100 = x21*(x63 + x20*x65 - x30*x92)
+    x101 = x21*(x68 + x30*x93 - x20*x72)
+    x102 = x21*(x76 + x30*x94 - x20*x79)
+    x103 = x21*(m3*x82 + x20*x85 - x30*x95)
+    x104 = x21*(x86 + x20*x88 - x30*x96)
+    x105 = c12*(c13*x61 + x26*x92 + x16*x100 - cos_theta3*x65)
+    x106 = c12*(sin_theta3 + cos_theta3*x88 - x26*x96 - x16*x104)
+    # outputs
+    return _stacked(
+        (8, 8),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -x40,
+        x47,
+        x58,
+        x65,
+        x72,
+        x79,
+        x85,
+        x88,
+        c10*x89,
+        -c10*x90,
+        -c10*x91,
+        -c10*x92,
+        -c10*x93,
+        -c10*x94,
+        -c10*x95,
+        -c10*x96,
+        c11*x97,
+        -c11*x98,
+        c11*x99,
+        -c11*x100,
+        c11*x101,
+        c11*x102,
+        -c11*x103,
+        -c11*x104,
+        -c12*(x26*x89 + x16*x97 - cos_theta3*x40),
+        c12*(x26*x90 + x16*x98 - cos_theta3*x47),
+        -c12*(cos_theta3*x58 + x16*x99 - x26*x91),
+        x105,
+        c12*(x67 + x26*x93 - cos_theta3*x72 - x16*x101),
+        c12*(x74 + x26*x94 - cos_theta3*x79 - x16*x102),
+        c12*(x81 + x26*x95 + x16*x103 - cos_theta3*x85),
+        -x106,
     )
 
 
@@ -1699,6 +2102,499 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         x65,
         x75,
         -x85,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    644 operations, 23 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 8 floats
+        x in m; theta1, theta2, theta3 in rad; p_x in kg m/s; p_theta1, p_theta2, p_theta3
+        in J s.
+    params : iterable of 8 floats
+        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
+    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l3
+    c1 = 1.0/l2
+    c2 = m2 + m3
+    c3 = 1.0/l1
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = m0 + c4
+    c7 = m3*l3
+    c8 = 1.0/c7
+    c9 = m3*c0
+    c10 = 1.0/m3
+    c11 = l1*g
+    c12 = c5*c3
+    c13 = m3*c3
+    c14 = c5*g
+    c15 = c2*c3
+    c16 = c2*c1
+    c17 = c5*l1
+    c18 = l2*g
+    c19 = m3*c1
+    c20 = c2*g
+    c21 = c2*l2
+    c22 = l3*g
+    # intermediate terms
+    cos_theta3 = cos(theta3)
+    x0 = c0*p_theta3
+    cos_theta2 = cos(theta2)
+    sin_theta3 = sin(theta3)
+    sin_theta2 = sin(theta2)
+    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x2 = c1*p_theta2 - x1*x0
+    x3 = c2*cos_theta2
+    x4 = m3*x1
+    x5 = x3 - cos_theta3*x4
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = 1.0/(m2 + m3*x6*x6)
+    x8 = x5*x7
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x9 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x10 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x11 = c2*x10
+    x12 = x11 - x9*x4
+    x13 = x7*x12
+    x14 = c3*p_theta1 - x9*x0 - x2*x13
+    x15 = c5*cos_theta1
+    x16 = m3*x9
+    x17 = x15 - cos_theta3*x16 - x5*x13
+    x18 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x19 = 1.0/(c4 + m3*x18*x18 - x12*x13)
+    x20 = x17*x19
+    x21 = c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x17*x20
+    x22 = (p_x - cos_theta3*x0 - x2*x8 - x14*x20)/x21
+    x23 = x22/x21
+    x24 = x19*(x14 - x17*x22)
+    x25 = x22 + cos_theta1*x24
+    x26 = x24 + cos_theta1*x22
+    x27 = (x25 - x26*x20)/x21
+    x28 = x12*x24
+    x29 = x7*(x5*x22 + x28 - x2)
+    x30 = x25 - cos_theta2*x29
+    x31 = x10*x24 - (x29 - cos_theta2*x22)
+    x32 = x26 - x10*x29
+    x33 = x32 - x31*x13
+    x34 = (x30 - x31*x8 - x33*x20)/x21
+    x35 = x1*x29
+    x36 = x9*x24
+    x37 = x35 - (cos_theta3*x22 + x36)
+    x38 = c8*p_theta3 + x37
+    x39 = x38 - x37
+    x40 = x31 + x1*x38 - x1*x39
+    x41 = x32 + x9*x38 - x9*x39 - x40*x13
+    x42 = x30 + cos_theta3*x38 - cos_theta3*x39 - x40*x8 - x41*x20
+    x43 = x42/x21
+    x44 = m3*x38
+    x45 = c2*x29
+    x46 = x15*x22 + 2.0*c5*x24 + x9*x44 - x10*x45 - x36*x16
+    x47 = x46 - x28*x13
+    x48 = c3*x17*(x24 - x19*x47)/x21
+    x49 = x3*x22 + x11*x24 + x1*x44 - 2.0*x45 + x35*x4
+    x50 = c1*(x29 + x7*x49)
+    x51 = (x5 - x12*x20)*x50/x21
+    x52 = x9 - x1*x13
+    x53 = 2.0*x38 - x37
+    x54 = c9*(x38 - x53)
+    x55 = (cos_theta3 - x1*x8 - x52*x20)*x54/x21
+    x56 = x23*x20
+    x57 = x19*(x26 - x17*x27)
+    x58 = x19*(x33 - x17*x34)
+    x59 = x19*(x41 - x17*x43)
+    x60 = x19*(c3*x47 - x17*x48)
+    x61 = x19*(x12*x50 - x17*x51)
+    x62 = x19*(x52*x54 - x17*x55)
+    x63 = x7*(x5*x23 - x12*x56)
+    x64 = x7*(x5*x27 + x12*x57)
+    x65 = x7*(x5*x34 + x12*x58 - x31)
+    x66 = x7*(x5*x43 + x12*x59 - x40)
+    x67 = x7*(x5*x48 + x12*x60 - c3*x28)
+    x68 = x7*(c1*x49 + x5*x51 + x12*x61)
+    x69 = x7*(x5*x55 + x12*x62 - x1*x54)
+    x70 = x9*x56 + x1*x63 - cos_theta3*x23
+    x71 = cos_theta3*x27 + x9*x57 - x1*x64
+    x72 = cos_theta3*x34 + x9*x58 - x1*x65
+    x73 = c10*x39 + x1*x66 - cos_theta3*x43 - x9*x59
+    x74 = c3*x36 + x1*x67 - cos_theta3*x48 - x9*x60
+    x75 = c1*x35 + x1*x68 - cos_theta3*x51 - x9*x61
+    x76 = c0*x53 + x1*x69 - cos_theta3*x55 - x9*x62
+    x77 = c5*sin_theta1
+    x78 = x24*x77
+    x79 = x18*x24
+    x80 = m3*x79
+    x81 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x82 = x45*x81
+    x83 = x24*x81
+    x84 = c2*x83
+    x85 = x56*x82 - x63*x84
+    x86 = x22*x77
+    x87 = x18*x44
+    x88 = x24*(sin_theta1*x22)
+    x89 = x88 + c11*sin_theta1
+    x90 = x57*x82 + x64*x84
+    x91 = x71*x80 + x89 + x90 - x27*x78 - x57*x86 - x57*x87
+    x92 = x29*x83
+    x93 = x65*x84 - (x92 - x58*x82)
+    x94 = x72*x80 + x89 + x93 - x34*x78 - x58*x86 - x58*x87
+    x95 = x66*x84 - (x92 - x59*x82)
+    x96 = x38*x79
+    x97 = x73*x80 - (x96 - x59*x87)
+    x98 = x67*x84 - (c15*x92 - x60*x82)
+    x99 = c12*x88 + c13*x96 + c14*sin_theta1 + x98 - x48*x78 - x60*x86 - x60*x87 - x74*x80
+    x100 = x68*x84 + (c16*x92 + x61*x82)
+    x101 = x62*x82 + x69*x84
+    x102 = x55*x78 + x62*x86 + x62*x87 + x76*x80 - c9*x96 - x101
+    x103 = sin_theta2*x45
+    x104 = sin_theta2*x22
+    x105 = c2*x104
+    x106 = x6*x44
+    x107 = x6*x29
+    x108 = m3*x107
+    x109 = -(x23*x103 + x63*x105 + x63*x106 + x70*x108 + x85)
+    x110 = x29*x104
+    x111 = x110 - c18*sin_theta2
+    x112 = x34*x103 + x65*x105 + x65*x106 - x72*x108 - x93 - x111
+    x113 = x38*x107
+    x114 = x73*x108 - (x113 - x66*x106)
+    x115 = -(x48*x103 + x67*x105 + x67*x106 + x74*x108 - x98)
+    x116 = (
+        c16*x110 + c19*x113 + x51*x103 + x68*x105 + x68*x106 + x75*x108 - c20*sin_theta2
+        - x100
+    )
+    x117 = x55*x103 + x69*x105 + x69*x106 + x76*x108 - c9*x113 - x101
+    x118 = x18*x38
+    x119 = x6*x38
+    x120 = sin_theta3*x38
+    x121 = sin_theta3*x22
+    x122 = x56*x118 + x63*x119 + x70*x107 + x23*x120 + x70*x121 - x70*x79
+    x123 = x57*x118 + x71*x107 + x71*x121 - x71*x79 - x64*x119 - x27*x120
+    x124 = x58*x118 + x72*x107 + x72*x121 - x72*x79 - x65*x119 - x34*x120
+    x125 = x38*x121
+    x126 = sin_theta3*x43*x44 + m3*x73*x121 + x114 - x125 - c22*sin_theta3 - x97
+    x127 = c3*x96 + x67*x119 + x74*x107 + x48*x120 + x74*x121 - x60*x118 - x74*x79
+    x128 = c1*x113 + x68*x119 + x75*x107 + x51*x120 + x75*x121 - x61*x118 - x75*x79
+    x129 = (
+        c0*x96 + x69*x119 + x76*x107 + x55*x120 + x76*x121 - x62*x118 - x76*x79 - c0*x113
+        - c0*x125 - g*sin_theta3
+    )
+    # outputs
+    return (
+        (-x23, -x27, -x34, -x43, -x48, x51, -x55, 0.0),
+        (
+            c3*x56,
+            -c3*x57,
+            -c3*x58,
+            -c3*x59,
+            -c3*x60,
+            c3*x61,
+            -c3*x62,
+            0.0,
+        ),
+        (c1*x63, c1*x64, c1*x65, c1*x66, c1*x67, -c1*x68, c1*x69, 0.0),
+        (
+            -c0*x70,
+            c0*x71,
+            c0*x72,
+            -c0*x73,
+            -c0*x74,
+            c0*x75,
+            -c0*x76,
+            0.0,
+        ),
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (
+            x23*x78 + x70*x80 + x85 - x56*x86 - x56*x87,
+            -x91,
+            -x94,
+            -(x89 + x95 - x43*x78 - x59*x86 - x97),
+            -x99,
+            -(x51*x78 + x61*x86 + x61*x87 + x75*x80 - x100),
+            x102,
+            -c17*sin_theta1,
+        ),
+        (
+            x109,
+            x71*x108 + x90 - x27*x103 - x64*x105 - x64*x106,
+            -x112,
+            -(x43*x103 + x66*x105 + x114 - x95 - x111),
+            x115,
+            x116,
+            -x117,
+            -c21*sin_theta2,
+        ),
+        (
+            m3*x122,
+            -m3*x123,
+            -m3*x124,
+            x126,
+            m3*x127,
+            -m3*x128,
+            m3*x129,
+            -c7*sin_theta3,
+        ),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (8, 8, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
+    m0, m1, m2, m3, l1, l2, l3, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l3
+    c1 = 1.0/l2
+    c2 = m2 + m3
+    c3 = 1.0/l1
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = m0 + c4
+    c7 = m3*l3
+    c8 = 1.0/c7
+    c9 = m3*c0
+    c10 = 1.0/m3
+    c11 = l1*g
+    c12 = c5*c3
+    c13 = m3*c3
+    c14 = c5*g
+    c15 = c2*c3
+    c16 = c2*c1
+    c17 = c5*l1
+    c18 = l2*g
+    c19 = m3*c1
+    c20 = c2*g
+    c21 = c2*l2
+    c22 = l3*g
+    # intermediate terms
+    cos_theta3 = cos(theta3)
+    x0 = c0*p_theta3
+    cos_theta2 = cos(theta2)
+    sin_theta3 = sin(theta3)
+    sin_theta2 = sin(theta2)
+    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x2 = c1*p_theta2 - x1*x0
+    x3 = c2*cos_theta2
+    x4 = m3*x1
+    x5 = x3 - cos_theta3*x4
+    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x7 = 1.0/(m2 + m3*x6*x6)
+    x8 = x5*x7
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    x9 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x10 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x11 = c2*x10
+    x12 = x11 - x9*x4
+    x13 = x7*x12
+    x14 = c3*p_theta1 - x9*x0 - x2*x13
+    x15 = c5*cos_theta1
+    x16 = m3*x9
+    x17 = x15 - cos_theta3*x16 - x5*x13
+    x18 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
+    x19 = 1.0/(c4 + m3*x18*x18 - x12*x13)
+    x20 = x17*x19
+    x21 = c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x17*x20
+    x22 = (p_x - cos_theta3*x0 - x2*x8 - x14*x20)/x21
+    x23 = x22/x21
+    x24 = x19*(x14 - x17*x22)
+    x25 = x22 + cos_theta1*x24
+    x26 = x24 + cos_theta1*x22
+    x27 = (x25 - x26*x20)/x21
+    x28 = x12*x24
+    x29 = x7*(x5*x22 + x28 - x2)
+    x30 = x25 - cos_theta2*x29
+    x31 = x10*x24 - (x29 - cos_theta2*x22)
+    x32 = x26 - x10*x29
+    x33 = x32 - x31*x13
+    x34 = (x30 - x31*x8 - x33*x20)/x21
+    x35 = x1*x29
+    x36 = x9*x24
+    x37 = x35 - (cos_theta3*x22 + x36)
+    x38 = c8*p_theta3 + x37
+    x39 = x38 - x37
+    x40 = x31 + x1*x38 - x1*x39
+    x41 = x32 + x9*x38 - x9*x39 - x40*x13
+    x42 = x30 + cos_theta3*x38 - cos_theta3*x39 - x40*x8 - x41*x20
+    x43 = x42/x21
+    x44 = m3*x38
+    x45 = c2*x29
+    x46 = x15*x22 + 2.0*c5*x24 + x9*x44 - x10*x45 - x36*x16
+    x47 = x46 - x28*x13
+    x48 = c3*x17*(x24 - x19*x47)/x21
+    x49 = x3*x22 + x11*x24 + x1*x44 - 2.0*x45 + x35*x4
+    x50 = c1*(x29 + x7*x49)
+    x51 = (x5 - x12*x20)*x50/x21
+    x52 = x9 - x1*x13
+    x53 = 2.0*x38 - x37
+    x54 = c9*(x38 - x53)
+    x55 = (cos_theta3 - x1*x8 - x52*x20)*x54/x21
+    x56 = x23*x20
+    x57 = x19*(x26 - x17*x27)
+    x58 = x19*(x33 - x17*x34)
+    x59 = x19*(x41 - x17*x43)
+    x60 = x19*(c3*x47 - x17*x48)
+    x61 = x19*(x12*x50 - x17*x51)
+    x62 = x19*(x52*x54 - x17*x55)
+    x63 = x7*(x5*x23 - x12*x56)
+    x64 = x7*(x5*x27 + x12*x57)
+    x65 = x7*(x5*x34 + x12*x58 - x31)
+    x66 = x7*(x5*x43 + x12*x59 - x40)
+    x67 = x7*(x5*x48 + x12*x60 - c3*x28)
+    x68 = x7*(c1*x49 + x5*x51 + x12*x61)
+    x69 = x7*(x5*x55 + x12*x62 - x1*x54)
+    x70 = x9*x56 + x1*x63 - cos_theta3*x23
+    x71 = cos_theta3*x27 + x9*x57 - x1*x64
+    x72 = cos_theta3*x34 + x9*x58 - x1*x65
+    x73 = c10*x39 + x1*x66 - cos_theta3*x43 - x9*x59
+    x74 = c3*x36 + x1*x67 - cos_theta3*x48 - x9*x60
+    x75 = c1*x35 + x1*x68 - cos_theta3*x51 - x9*x61
+    x76 = c0*x53 + x1*x69 - cos_theta3*x55 - x9*x62
+    x77 = c5*sin_theta1
+    x78 = x24*x77
+    x79 = x18*x24
+    x80 = m3*x79
+    x81 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
+    x82 = x45*x81
+    x83 = x24*x81
+    x84 = c2*x83
+    x85 = x56*x82 - x63*x84
+    x86 = x22*x77
+    x87 = x18*x44
+    x88 = x24*(sin_theta1*x22)
+    x89 = x88 + c11*sin_theta1
+    x90 = x57*x82 + x64*x84
+    x91 = x71*x80 + x89 + x90 - x27*x78 - x57*x86 - x57*x87
+    x92 = x29*x83
+    x93 = x65*x84 - (x92 - x58*x82)
+    x94 = x72*x80 + x89 + x93 - x34*x78 - x58*x86 - x58*x87
+    x95 = x66*x84 - (x92 - x59*x82)
+    x96 = x38*x79
+    x97 = x73*x80 - (x96 - x59*x87)
+    x98 = x67*x84 - (c15*x92 - x60*x82)
+    x99 = c12*x88 + c13*x96 + c14*sin_theta1 + x98 - x48*x78 - x60*x86 - x60*x87 - x74*x80
+    x100 = x68*x84 + (c16*x92 + x61*x82)
+    x101 = x62*x82 + x69*x84
+    x102 = x55*x78 + x62*x86 + x62*x87 + x76*x80 - c9*x96 - x101
+    x103 = sin_theta2*x45
+    x104 = sin_theta2*x22
+    x105 = c2*x104
+    x106 = x6*x44
+    x107 = x6*x29
+    x108 = m3*x107
+    x109 = -(x23*x103 + x63*x105 + x63*x106 + x70*x108 + x85)
+    x110 = x29*x104
+    x111 = x110 - c18*sin_theta2
+    x112 = x34*x103 + x65*x105 + x65*x106 - x72*x108 - x93 - x111
+    x113 = x38*x107
+    x114 = x73*x108 - (x113 - x66*x106)
+    x115 = -(x48*x103 + x67*x105 + x67*x106 + x74*x108 - x98)
+    x116 = (
+        c16*x110 + c19*x113 + x51*x103 + x68*x105 + x68*x106 + x75*x108 - c20*sin_theta2
+        - x100
+    )
+    x117 = x55*x103 + x69*x105 + x69*x106 + x76*x108 - c9*x113 - x101
+    x118 = x18*x38
+    x119 = x6*x38
+    x120 = sin_theta3*x38
+    x121 = sin_theta3*x22
+    x122 = x56*x118 + x63*x119 + x70*x107 + x23*x120 + x70*x121 - x70*x79
+    x123 = x57*x118 + x71*x107 + x71*x121 - x71*x79 - x64*x119 - x27*x120
+    x124 = x58*x118 + x72*x107 + x72*x121 - x72*x79 - x65*x119 - x34*x120
+    x125 = x38*x121
+    x126 = sin_theta3*x43*x44 + m3*x73*x121 + x114 - x125 - c22*sin_theta3 - x97
+    x127 = c3*x96 + x67*x119 + x74*x107 + x48*x120 + x74*x121 - x60*x118 - x74*x79
+    x128 = c1*x113 + x68*x119 + x75*x107 + x51*x120 + x75*x121 - x61*x118 - x75*x79
+    x129 = (
+        c0*x96 + x69*x119 + x76*x107 + x55*x120 + x76*x121 - x62*x118 - x76*x79 - c0*x113
+        - c0*x125 - g*sin_theta3
+    )
+    # outputs
+    return _stacked(
+        (8, 8),
+        y[0],
+        -x23,
+        -x27,
+        -x34,
+        -x43,
+        -x48,
+        x51,
+        -x55,
+        0.0,
+        c3*x56,
+        -c3*x57,
+        -c3*x58,
+        -c3*x59,
+        -c3*x60,
+        c3*x61,
+        -c3*x62,
+        0.0,
+        c1*x63,
+        c1*x64,
+        c1*x65,
+        c1*x66,
+        c1*x67,
+        -c1*x68,
+        c1*x69,
+        0.0,
+        -c0*x70,
+        c0*x71,
+        c0*x72,
+        -c0*x73,
+        -c0*x74,
+        c0*x75,
+        -c0*x76,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        x23*x78 + x70*x80 + x85 - x56*x86 - x56*x87,
+        -x91,
+        -x94,
+        -(x89 + x95 - x43*x78 - x59*x86 - x97),
+        -x99,
+        -(x51*x78 + x61*x86 + x61*x87 + x75*x80 - x100),
+        x102,
+        -c17*sin_theta1,
+        x109,
+        x71*x108 + x90 - x27*x103 - x64*x105 - x64*x106,
+        -x112,
+        -(x43*x103 + x66*x105 + x114 - x95 - x111),
+        x115,
+        x116,
+        -x117,
+        -c21*sin_theta2,
+        m3*x122,
+        -m3*x123,
+        -m3*x124,
+        x126,
+        m3*x127,
+        -m3*x128,
+        m3*x129,
+        -c7*sin_theta3,
     )
 
 

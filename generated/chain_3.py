@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "7c34d04961bd009b"
+DIGEST = "f9dc9424ae76fa3b"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -162,12 +162,14 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "mass_matrix",
     "positions",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
@@ -175,12 +177,14 @@ CALLS_FUNCTIONS = (
 OPERATIONS = {
     "rhs": (91, 11),
     "jacobian": (256, 12),
+    "parameter_jacobian": (270, 12),
     "energy": (50, 14),
     "mass_matrix": (20, 11),
     "positions": (19, 0),
     "hamiltonian_state": (34, 6),
     "rhs_hamiltonian": (94, 13),
     "jacobian_hamiltonian": (271, 13),
+    "parameter_jacobian_hamiltonian": (382, 21),
     "energy_hamiltonian": (76, 10),
     "lagrangian_state": (51, 7),
     "rational_state": (6, 0),
@@ -612,6 +616,279 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         2.0*c10*(x11*x12 + x3*x46 - x16*x54),
         2.0*c10*(l2*x55 + x3*x48 + x16*x56),
         2.0*c10*(x3*x50 + x16*x57),
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    270 operations, 12 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 6 floats
+        theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
+    params : iterable of 7 floats
+        m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2 + m3
+    c2 = c1*l2
+    c3 = m3*l3
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = g*c5
+    c7 = l1*c1
+    c8 = c1*g
+    c9 = 1.0/l2
+    c10 = 1.0/l3
+    c11 = 1.0/m3
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    x0 = g*sin_theta1
+    cos_theta2 = cos(theta2)
+    cos_theta1 = cos(theta1)
+    sin_theta2 = sin(theta2)
+    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x2 = theta2_dot*theta2_dot
+    x3 = x1*x2
+    cos_theta3 = cos(theta3)
+    sin_theta3 = sin(theta3)
+    x4 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x5 = theta3_dot*theta3_dot
+    x6 = x4*x5
+    x7 = c2*x3 + c3*x6 + c6*sin_theta1
+    x8 = theta1_dot*theta1_dot
+    x9 = x4*x8
+    x10 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x11 = x10*x2
+    x12 = l1*x9 + l2*x11 - g*sin_theta3
+    x13 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x14 = m3*x13
+    x15 = x1*x8
+    x16 = x10*x5
+    x17 = c7*x15 - c3*x16 - c8*sin_theta2
+    x18 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x19 = m3*x18
+    x20 = x17 - x12*x19
+    x21 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x22 = c1*x21
+    x23 = x22 - x18*x14
+    x24 = 1.0/(m2 + m3*x10*x10)
+    x25 = x23*x24
+    x26 = c4 + m3*x4*x4 - x23*x25
+    x27 = (x7 + x12*x14 + x20*x25)/x26
+    x28 = (x0 - x27)/x26
+    x29 = l2*x3
+    x30 = x24*(x20 + x23*x27)
+    x31 = x21*x30
+    x32 = x27 - x31
+    x33 = l1*x15
+    x34 = g*sin_theta2
+    x35 = x21*x27
+    x36 = x30 - x35
+    x37 = x33 - x34 - x36
+    x38 = (x0 + x29 - x32 + x37*x25)/x26
+    x39 = x13*x27
+    x40 = x18*x30
+    x41 = x39 - x40
+    x42 = x12 + x41
+    x43 = x13*x42
+    x44 = x12 - (x42 - x41)
+    x45 = x18*x42
+    x46 = x34 - (x33 - l3*x16) + (x36 + x45) + x18*x44
+    x47 = x0 + (x29 + l3*x6) + (x43 - x32) + x13*x44 - x46*x25
+    x48 = x47/x26
+    x49 = x9 + c0*x39
+    x50 = c0*(x7 + (x22*x30 + x42*x14 - 2.0*c5*x27)) + x49*x14
+    x51 = c1*(x15 + c0*x35) - x49*x19
+    x52 = (x50 + x51*x25)/x26
+    x53 = x11 - c9*x40
+    x54 = c9*(x17 - (2.0*c1*x30 + x42*x19 - x22*x27)) - x53*x19
+    x55 = (c1*(x3 + c9*x31) + x53*x14 + x54*x25)/x26
+    x56 = c10*(x12 - (2.0*x42 - x41))
+    x57 = x16 + c10*x45 + x18*x56
+    x58 = m3*(x6 + c10*x43 + x13*x56 - x57*x25)/x26
+    x59 = c1*sin_theta2 - sin_theta3*x19
+    x60 = (c5*sin_theta1 - sin_theta3*x14 - x59*x25)/x26
+    x61 = x28*x25
+    x62 = x24*(x37 + x23*x38)
+    x63 = x24*(x46 - x23*x48)
+    x64 = x24*(x51 + x23*x52)
+    x65 = x24*(x54 + x23*x55)
+    x66 = x24*(m3*x57 - x23*x58)
+    x67 = x24*(x59 - x23*x60)
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (-c0*x28, -c0*x38, -c0*x48, -c0*x52, -c0*x55, -c0*x58, -c0*x60),
+        (c9*x61, c9*x62, -c9*x63, c9*x64, c9*x65, -c9*x66, -c9*x67),
+        (
+            c10*(x13*x28 - x18*x61),
+            c10*(x13*x38 - x18*x62),
+            c10*(c11*x44 + x13*x48 + x18*x63),
+            c10*(x49 + x13*x52 - x18*x64),
+            c10*(x53 + x13*x55 - x18*x65),
+            c10*(x56 + x13*x58 + x18*x66),
+            c10*(x13*x60 + x18*x67 - sin_theta3),
+        ),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (6, 7, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
+    m1, m2, m3, l1, l2, l3, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2 + m3
+    c2 = c1*l2
+    c3 = m3*l3
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = g*c5
+    c7 = l1*c1
+    c8 = c1*g
+    c9 = 1.0/l2
+    c10 = 1.0/l3
+    c11 = 1.0/m3
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    x0 = g*sin_theta1
+    cos_theta2 = cos(theta2)
+    cos_theta1 = cos(theta1)
+    sin_theta2 = sin(theta2)
+    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x2 = theta2_dot*theta2_dot
+    x3 = x1*x2
+    cos_theta3 = cos(theta3)
+    sin_theta3 = sin(theta3)
+    x4 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x5 = theta3_dot*theta3_dot
+    x6 = x4*x5
+    x7 = c2*x3 + c3*x6 + c6*sin_theta1
+    x8 = theta1_dot*theta1_dot
+    x9 = x4*x8
+    x10 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x11 = x10*x2
+    x12 = l1*x9 + l2*x11 - g*sin_theta3
+    x13 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x14 = m3*x13
+    x15 = x1*x8
+    x16 = x10*x5
+    x17 = c7*x15 - c3*x16 - c8*sin_theta2
+    x18 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x19 = m3*x18
+    x20 = x17 - x12*x19
+    x21 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x22 = c1*x21
+    x23 = x22 - x18*x14
+    x24 = 1.0/(m2 + m3*x10*x10)
+    x25 = x23*x24
+    x26 = c4 + m3*x4*x4 - x23*x25
+    x27 = (x7 + x12*x14 + x20*x25)/x26
+    x28 = (x0 - x27)/x26
+    x29 = l2*x3
+    x30 = x24*(x20 + x23*x27)
+    x31 = x21*x30
+    x32 = x27 - x31
+    x33 = l1*x15
+    x34 = g*sin_theta2
+    x35 = x21*x27
+    x36 = x30 - x35
+    x37 = x33 - x34 - x36
+    x38 = (x0 + x29 - x32 + x37*x25)/x26
+    x39 = x13*x27
+    x40 = x18*x30
+    x41 = x39 - x40
+    x42 = x12 + x41
+    x43 = x13*x42
+    x44 = x12 - (x42 - x41)
+    x45 = x18*x42
+    x46 = x34 - (x33 - l3*x16) + (x36 + x45) + x18*x44
+    x47 = x0 + (x29 + l3*x6) + (x43 - x32) + x13*x44 - x46*x25
+    x48 = x47/x26
+    x49 = x9 + c0*x39
+    x50 = c0*(x7 + (x22*x30 + x42*x14 - 2.0*c5*x27)) + x49*x14
+    x51 = c1*(x15 + c0*x35) - x49*x19
+    x52 = (x50 + x51*x25)/x26
+    x53 = x11 - c9*x40
+    x54 = c9*(x17 - (2.0*c1*x30 + x42*x19 - x22*x27)) - x53*x19
+    x55 = (c1*(x3 + c9*x31) + x53*x14 + x54*x25)/x26
+    x56 = c10*(x12 - (2.0*x42 - x41))
+    x57 = x16 + c10*x45 + x18*x56
+    x58 = m3*(x6 + c10*x43 + x13*x56 - x57*x25)/x26
+    x59 = c1*sin_theta2 - sin_theta3*x19
+    x60 = (c5*sin_theta1 - sin_theta3*x14 - x59*x25)/x26
+    x61 = x28*x25
+    x62 = x24*(x37 + x23*x38)
+    x63 = x24*(x46 - x23*x48)
+    x64 = x24*(x51 + x23*x52)
+    x65 = x24*(x54 + x23*x55)
+    x66 = x24*(m3*x57 - x23*x58)
+    x67 = x24*(x59 - x23*x60)
+    # outputs
+    return _stacked(
+        (6, 7),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -c0*x28,
+        -c0*x38,
+        -c0*x48,
+        -c0*x52,
+        -c0*x55,
+        -c0*x58,
+        -c0*x60,
+        c9*x61,
+        c9*x62,
+        -c9*x63,
+        c9*x64,
+        c9*x65,
+        -c9*x66,
+        -c9*x67,
+        c10*(x13*x28 - x18*x61),
+        c10*(x13*x38 - x18*x62),
+        c10*(c11*x44 + x13*x48 + x18*x63),
+        c10*(x49 + x13*x52 - x18*x64),
+        c10*(x53 + x13*x55 - x18*x65),
+        c10*(x56 + x13*x58 + x18*x66),
+        c10*(x13*x60 + x18*x67 - sin_theta3),
     )
 
 
@@ -1307,6 +1584,333 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -x36,
         -x45,
         x54,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    382 operations, 21 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 6 floats
+        theta1, theta2, theta3 in rad; p_theta1, p_theta2, p_theta3 in J s.
+    params : iterable of 7 floats
+        m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
+    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = 1.0/l3
+    c2 = 1.0/l2
+    c3 = m2 + m3
+    c4 = m1 + m2
+    c5 = m3*l3
+    c6 = 1.0/c5
+    c7 = m3 + c4
+    c8 = m3*c1
+    c9 = 1.0/m3
+    c10 = l1*g
+    c11 = c7*g
+    c12 = c3*c0
+    c13 = m3*c0
+    c14 = c3*c2
+    c15 = l1*c7
+    c16 = l2*g
+    c17 = c3*g
+    c18 = m3*c2
+    c19 = c3*l2
+    c20 = l3*g
+    # intermediate terms
+    cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    sin_theta3 = sin(theta3)
+    x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x1 = c1*p_theta3
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x2 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x3 = c2*p_theta2 - x2*x1
+    x4 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x5 = c3*x4
+    x6 = m3*x0
+    x7 = x5 - x2*x6
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x9 = 1.0/(m2 + m3*x8*x8)
+    x10 = x7*x9
+    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x12 = c4 + m3*x11*x11 - x7*x10
+    x13 = (c0*p_theta1 - x0*x1 - x3*x10)/x12
+    x14 = x13/x12
+    x15 = x7*x13
+    x16 = x9*(x3 - x15)
+    x17 = x13 + x4*x16
+    x18 = x16 + x4*x13
+    x19 = (x17 - x18*x10)/x12
+    x20 = x0*x13
+    x21 = x2*x16
+    x22 = x20 + x21
+    x23 = x22 - c6*p_theta3
+    x24 = x22 - x23
+    x25 = x18 - x2*x23 - x2*x24
+    x26 = (x17 - x0*x23 - x0*x24 - x25*x10)/x12
+    x27 = m3*x23
+    x28 = c0*(2.0*c7*x13 + x5*x16 - x0*x27 - x20*x6 - x15*x10)
+    x29 = x28/x12
+    x30 = x5*x13 + 2.0*c3*x16 - x2*x27 - m3*x2*x21
+    x31 = c2*x7*(x16 - x9*x30)/x12
+    x32 = x22 - 2.0*x23
+    x33 = c8*(x23 + x32)
+    x34 = (x0 - x2*x10)*x33/x12
+    x35 = x14*x10
+    x36 = x9*(x18 - x7*x19)
+    x37 = x9*(x25 - x7*x26)
+    x38 = (x29 - c0*x13)*x10
+    x39 = x9*(c2*x30 - x7*x31)
+    x40 = x9*(x2*x33 - x7*x34)
+    x41 = x0*x14 - x2*x35
+    x42 = x0*x19 + x2*x36
+    x43 = x0*x26 + x2*x37 - c9*x24
+    x44 = c0*x20 + x2*x38 - x0*x29
+    x45 = x0*x31 + x2*x39 - c2*x21
+    x46 = c1*x32 + x0*x34 + x2*x40
+    x47 = x11*x27
+    x48 = x11*x13
+    x49 = m3*x48
+    x50 = c10*sin_theta1
+    x51 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x52 = c3*x51
+    x53 = x16*x52
+    x54 = x13*x52
+    x55 = x14*x53 - x35*x54
+    x56 = x51*(x13*x16)
+    x57 = x50 + x56
+    x58 = x19*x53 + x36*x54
+    x59 = x23*x48
+    x60 = x43*x49 - (x59 - x26*x47)
+    x61 = x26*x53 + x37*x54
+    x62 = x38*x54 + (c12*x56 - x29*x53)
+    x63 = x29*x47 + c11*sin_theta1 + x62 - c13*x59 - x44*x49
+    x64 = x39*x54 - (c14*x56 - x31*x53)
+    x65 = x34*x53 + x40*x54
+    x66 = x8*x16
+    x67 = m3*x66
+    x68 = x8*x27
+    x69 = x56 - c16*sin_theta2
+    x70 = x23*x66
+    x71 = x43*x67 - (x70 - x37*x68)
+    x72 = x39*x68 + x45*x67 + c17*sin_theta2 + x64 - c18*x70
+    x73 = x11*x23
+    x74 = x8*x23
+    x75 = m3*(c0*x59 + x44*x48 + x38*x74 + x44*x66 - x29*x73)
+    x76 = m3*(x31*x73 + x45*x48 + x39*x74 + x45*x66 - c2*x70)
+    x77 = c1*x59 + x34*x73 + x46*x48 + c1*x70 + x40*x74 + x46*x66 + g*sin_theta3
+    # outputs
+    return (
+        (-c0*x14, -c0*x19, -c0*x26, -c0*x29, -c0*x31, c0*x34, 0.0),
+        (c2*x35, -c2*x36, -c2*x37, c2*x38, -c2*x39, c2*x40, 0.0),
+        (c1*x41, c1*x42, c1*x43, -c1*x44, c1*x45, -c1*x46, 0.0),
+        (
+            -(x14*x47 + x41*x49 + x50 - x55),
+            -(x19*x47 + x42*x49 + x57 - x58),
+            -(x57 + x60 - x61),
+            -x63,
+            -(x31*x47 + x45*x49 - x64),
+            c8*x59 + x34*x47 + x46*x49 - x65,
+            -c15*sin_theta1,
+        ),
+        (
+            -(x41*x67 + x55 - x35*x68),
+            -(x36*x68 + x42*x67 + x58 - x69),
+            -(x61 + x71 - x69),
+            x38*x68 + x44*x67 + x62,
+            -x72,
+            c8*x70 + x40*x68 + x46*x67 + x65,
+            -c19*sin_theta2,
+        ),
+        (
+            m3*(x14*x73 + x41*x48 + x41*x66 - x35*x74),
+            m3*(x19*x73 + x42*x48 + x36*x74 + x42*x66),
+            x60 + x71 - c20*sin_theta3,
+            -x75,
+            x76,
+            -m3*x77,
+            -c5*sin_theta3,
+        ),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (6, 7, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y
+    m1, m2, m3, l1, l2, l3, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = 1.0/l3
+    c2 = 1.0/l2
+    c3 = m2 + m3
+    c4 = m1 + m2
+    c5 = m3*l3
+    c6 = 1.0/c5
+    c7 = m3 + c4
+    c8 = m3*c1
+    c9 = 1.0/m3
+    c10 = l1*g
+    c11 = c7*g
+    c12 = c3*c0
+    c13 = m3*c0
+    c14 = c3*c2
+    c15 = l1*c7
+    c16 = l2*g
+    c17 = c3*g
+    c18 = m3*c2
+    c19 = c3*l2
+    c20 = l3*g
+    # intermediate terms
+    cos_theta3 = cos(theta3)
+    cos_theta1 = cos(theta1)
+    sin_theta1 = sin(theta1)
+    sin_theta3 = sin(theta3)
+    x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x1 = c1*p_theta3
+    cos_theta2 = cos(theta2)
+    sin_theta2 = sin(theta2)
+    x2 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x3 = c2*p_theta2 - x2*x1
+    x4 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x5 = c3*x4
+    x6 = m3*x0
+    x7 = x5 - x2*x6
+    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x9 = 1.0/(m2 + m3*x8*x8)
+    x10 = x7*x9
+    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x12 = c4 + m3*x11*x11 - x7*x10
+    x13 = (c0*p_theta1 - x0*x1 - x3*x10)/x12
+    x14 = x13/x12
+    x15 = x7*x13
+    x16 = x9*(x3 - x15)
+    x17 = x13 + x4*x16
+    x18 = x16 + x4*x13
+    x19 = (x17 - x18*x10)/x12
+    x20 = x0*x13
+    x21 = x2*x16
+    x22 = x20 + x21
+    x23 = x22 - c6*p_theta3
+    x24 = x22 - x23
+    x25 = x18 - x2*x23 - x2*x24
+    x26 = (x17 - x0*x23 - x0*x24 - x25*x10)/x12
+    x27 = m3*x23
+    x28 = c0*(2.0*c7*x13 + x5*x16 - x0*x27 - x20*x6 - x15*x10)
+    x29 = x28/x12
+    x30 = x5*x13 + 2.0*c3*x16 - x2*x27 - m3*x2*x21
+    x31 = c2*x7*(x16 - x9*x30)/x12
+    x32 = x22 - 2.0*x23
+    x33 = c8*(x23 + x32)
+    x34 = (x0 - x2*x10)*x33/x12
+    x35 = x14*x10
+    x36 = x9*(x18 - x7*x19)
+    x37 = x9*(x25 - x7*x26)
+    x38 = (x29 - c0*x13)*x10
+    x39 = x9*(c2*x30 - x7*x31)
+    x40 = x9*(x2*x33 - x7*x34)
+    x41 = x0*x14 - x2*x35
+    x42 = x0*x19 + x2*x36
+    x43 = x0*x26 + x2*x37 - c9*x24
+    x44 = c0*x20 + x2*x38 - x0*x29
+    x45 = x0*x31 + x2*x39 - c2*x21
+    x46 = c1*x32 + x0*x34 + x2*x40
+    x47 = x11*x27
+    x48 = x11*x13
+    x49 = m3*x48
+    x50 = c10*sin_theta1
+    x51 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x52 = c3*x51
+    x53 = x16*x52
+    x54 = x13*x52
+    x55 = x14*x53 - x35*x54
+    x56 = x51*(x13*x16)
+    x57 = x50 + x56
+    x58 = x19*x53 + x36*x54
+    x59 = x23*x48
+    x60 = x43*x49 - (x59 - x26*x47)
+    x61 = x26*x53 + x37*x54
+    x62 = x38*x54 + (c12*x56 - x29*x53)
+    x63 = x29*x47 + c11*sin_theta1 + x62 - c13*x59 - x44*x49
+    x64 = x39*x54 - (c14*x56 - x31*x53)
+    x65 = x34*x53 + x40*x54
+    x66 = x8*x16
+    x67 = m3*x66
+    x68 = x8*x27
+    x69 = x56 - c16*sin_theta2
+    x70 = x23*x66
+    x71 = x43*x67 - (x70 - x37*x68)
+    x72 = x39*x68 + x45*x67 + c17*sin_theta2 + x64 - c18*x70
+    x73 = x11*x23
+    x74 = x8*x23
+    x75 = m3*(c0*x59 + x44*x48 + x38*x74 + x44*x66 - x29*x73)
+    x76 = m3*(x31*x73 + x45*x48 + x39*x74 + x45*x66 - c2*x70)
+    x77 = c1*x59 + x34*x73 + x46*x48 + c1*x70 + x40*x74 + x46*x66 + g*sin_theta3
+    # outputs
+    return _stacked(
+        (6, 7),
+        y[0],
+        -c0*x14,
+        -c0*x19,
+        -c0*x26,
+        -c0*x29,
+        -c0*x31,
+        c0*x34,
+        0.0,
+        c2*x35,
+        -c2*x36,
+        -c2*x37,
+        c2*x38,
+        -c2*x39,
+        c2*x40,
+        0.0,
+        c1*x41,
+        c1*x42,
+        c1*x43,
+        -c1*x44,
+        c1*x45,
+        -c1*x46,
+        0.0,
+        -(x14*x47 + x41*x49 + x50 - x55),
+        -(x19*x47 + x42*x49 + x57 - x58),
+        -(x57 + x60 - x61),
+        -x63,
+        -(x31*x47 + x45*x49 - x64),
+        c8*x59 + x34*x47 + x46*x49 - x65,
+        -c15*sin_theta1,
+        -(x41*x67 + x55 - x35*x68),
+        -(x36*x68 + x42*x67 + x58 - x69),
+        -(x61 + x71 - x69),
+        x38*x68 + x44*x67 + x62,
+        -x72,
+        c8*x70 + x40*x68 + x46*x67 + x65,
+        -c19*sin_theta2,
+        m3*(x14*x73 + x41*x48 + x41*x66 - x35*x74),
+        m3*(x19*x73 + x42*x48 + x36*x74 + x42*x66),
+        x60 + x71 - c20*sin_theta3,
+        -x75,
+        x76,
+        -m3*x77,
+        -c5*sin_theta3,
     )
 
 

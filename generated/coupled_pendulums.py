@@ -90,7 +90,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "6a96297b07182c40"
+DIGEST = "c8d6389baf0b4da5"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -125,10 +125,12 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
     "rhs_rational",
@@ -137,12 +139,14 @@ CALLS_FUNCTIONS = (
 OPERATIONS = {
     "rhs": (46, 4),
     "jacobian": (94, 6),
+    "parameter_jacobian": (128, 8),
     "energy": (38, 4),
     "mass_matrix": (2, 2),
     "positions": (11, 0),
     "hamiltonian_state": (4, 2),
     "rhs_hamiltonian": (49, 5),
     "jacobian_hamiltonian": (92, 7),
+    "parameter_jacobian_hamiltonian": (120, 8),
     "energy_hamiltonian": (42, 5),
     "lagrangian_state": (7, 3),
     "rational_state": (4, 0),
@@ -405,6 +409,157 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -c0*(c1*x22),
         0.0,
         0.0,
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    128 operations, 8 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
+    params : iterable of 5 floats
+        m in kg; l in m; k in N/m; d in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    theta1, theta2, _, _ = y.tolist() if hasattr(y, "tolist") else y
+    m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*l
+    c3 = m*g
+    c4 = 1.0/(l*m)
+    c5 = l*k
+    c6 = k*c1
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    cos_theta1 = cos(theta1)
+    cos_theta2 = cos(theta2)
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
+    x2 = x0*x1
+    sin_theta2 = sin(theta2)
+    x3 = sin_theta2 - sin_theta1
+    x4 = l*x3
+    x5 = d + x4
+    x6 = sqrt(c2*x0*x0 + x5*x5)
+    x7 = l*(x2 + x3*(2.0*d + x4))/(d + x6)
+    x8 = sin_theta1*x1 + cos_theta1*x5
+    x9 = x7*x8
+    x10 = k*x9/x6 - c3*sin_theta1
+    x11 = c1*x10
+    x12 = x2 + x3*x5
+    x13 = x6*x12
+    x14 = x6*x6
+    x15 = x7*x14
+    x16 = x8*x13 + (sin_theta1*x0 + cos_theta1*x3)*x15 - x12*x9
+    x17 = x6*x14
+    x18 = (1.0 - x5/x6)*x14
+    x19 = sin_theta2*x1 + cos_theta2*x5
+    x20 = x7*x19
+    x21 = k*x20/x6 + c3*sin_theta2
+    x22 = c1*x21
+    x23 = x19*x13 + (x0*sin_theta2 + cos_theta2*x3)*x15 - x12*x20
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (
+            -c0*(c1*(g*sin_theta1 + x11)),
+            c0*(c4*(x10 + c5*x16/x17 - 2.0*m*x11)),
+            c0*(c1*x9/x6),
+            -c0*(c6*(x5*x9 + x8*x18 - cos_theta1*x15)/x17),
+            -c0*sin_theta1,
+        ),
+        (
+            -c0*(c1*(g*sin_theta2 - x22)),
+            -c0*(c4*(x21 + c5*x23/x17 - 2.0*m*x22)),
+            -c0*(c1*x20/x6),
+            c0*(c6*(x5*x20 + x19*x18 - cos_theta2*x15)/x17),
+            -c0*sin_theta2,
+        ),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (4, 5, ...)."""
+    from numpy import cos, sin, sqrt
+
+    # inputs
+    theta1, theta2, _, _ = y
+    m, l, k, d, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*l
+    c3 = m*g
+    c4 = 1.0/(l*m)
+    c5 = l*k
+    c6 = k*c1
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    cos_theta1 = cos(theta1)
+    cos_theta2 = cos(theta2)
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
+    x2 = x0*x1
+    sin_theta2 = sin(theta2)
+    x3 = sin_theta2 - sin_theta1
+    x4 = l*x3
+    x5 = d + x4
+    x6 = sqrt(c2*x0*x0 + x5*x5)
+    x7 = l*(x2 + x3*(2.0*d + x4))/(d + x6)
+    x8 = sin_theta1*x1 + cos_theta1*x5
+    x9 = x7*x8
+    x10 = k*x9/x6 - c3*sin_theta1
+    x11 = c1*x10
+    x12 = x2 + x3*x5
+    x13 = x6*x12
+    x14 = x6*x6
+    x15 = x7*x14
+    x16 = x8*x13 + (sin_theta1*x0 + cos_theta1*x3)*x15 - x12*x9
+    x17 = x6*x14
+    x18 = (1.0 - x5/x6)*x14
+    x19 = sin_theta2*x1 + cos_theta2*x5
+    x20 = x7*x19
+    x21 = k*x20/x6 + c3*sin_theta2
+    x22 = c1*x21
+    x23 = x19*x13 + (x0*sin_theta2 + cos_theta2*x3)*x15 - x12*x20
+    # outputs
+    return _stacked(
+        (4, 5),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -c0*(c1*(g*sin_theta1 + x11)),
+        c0*(c4*(x10 + c5*x16/x17 - 2.0*m*x11)),
+        c0*(c1*x9/x6),
+        -c0*(c6*(x5*x9 + x8*x18 - cos_theta1*x15)/x17),
+        -c0*sin_theta1,
+        -c0*(c1*(g*sin_theta2 - x22)),
+        -c0*(c4*(x21 + c5*x23/x17 - 2.0*m*x22)),
+        -c0*(c1*x20/x6),
+        c0*(c6*(x5*x20 + x19*x18 - cos_theta2*x15)/x17),
+        -c0*sin_theta2,
     )
 
 
@@ -807,6 +962,155 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -l*x22,
         0.0,
         0.0,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    120 operations, 8 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta1, theta2 in rad; p_theta1, p_theta2 in J s.
+    params : iterable of 5 floats
+        m in kg; l in m; k in N/m; d in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
+    m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = l*g
+    c5 = l*l
+    c6 = m*g
+    c7 = l*k
+    # intermediate terms
+    x0 = c3*p_theta1
+    x1 = c3*p_theta2
+    sin_theta1 = sin(theta1)
+    cos_theta1 = cos(theta1)
+    cos_theta2 = cos(theta2)
+    x2 = cos_theta1 - cos_theta2
+    x3 = l*x2
+    x4 = x2*x3
+    sin_theta2 = sin(theta2)
+    x5 = sin_theta2 - sin_theta1
+    x6 = l*x5
+    x7 = d + x6
+    x8 = sqrt(c5*x2*x2 + x7*x7)
+    x9 = l*(x4 + x5*(2.0*d + x6))/(d + x8)
+    x10 = sin_theta1*x3 + cos_theta1*x7
+    x11 = x9*x10
+    x12 = x4 + x5*x7
+    x13 = x8*x12
+    x14 = x8*x8
+    x15 = x9*x14
+    x16 = x10*x13 + (sin_theta1*x2 + cos_theta1*x5)*x15 - x12*x11
+    x17 = x8*x14
+    x18 = (1.0 - x7/x8)*x14
+    x19 = sin_theta2*x3 + cos_theta2*x7
+    x20 = x9*x19
+    x21 = x19*x13 + (x2*sin_theta2 + cos_theta2*x5)*x15 - x12*x20
+    # outputs
+    return (
+        (-c0*(c1*x0), -2.0*c0*(c0*x0), 0.0, 0.0, 0.0),
+        (-c0*(c1*x1), -2.0*c0*(c0*x1), 0.0, 0.0, 0.0),
+        (
+            -c4*sin_theta1,
+            k*x11/x8 - c6*sin_theta1 + c7*x16/x17,
+            l*x11/x8,
+            -c7*(x7*x11 + x10*x18 - cos_theta1*x15)/x17,
+            -c2*sin_theta1,
+        ),
+        (
+            -c4*sin_theta2,
+            -(k*x20/x8 + c6*sin_theta2 + c7*x21/x17),
+            -l*x20/x8,
+            c7*(x7*x20 + x19*x18 - cos_theta2*x15)/x17,
+            -c2*sin_theta2,
+        ),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 5, ...)."""
+    from numpy import cos, sin, sqrt
+
+    # inputs
+    theta1, theta2, p_theta1, p_theta2 = y
+    m, l, k, d, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = l*g
+    c5 = l*l
+    c6 = m*g
+    c7 = l*k
+    # intermediate terms
+    x0 = c3*p_theta1
+    x1 = c3*p_theta2
+    sin_theta1 = sin(theta1)
+    cos_theta1 = cos(theta1)
+    cos_theta2 = cos(theta2)
+    x2 = cos_theta1 - cos_theta2
+    x3 = l*x2
+    x4 = x2*x3
+    sin_theta2 = sin(theta2)
+    x5 = sin_theta2 - sin_theta1
+    x6 = l*x5
+    x7 = d + x6
+    x8 = sqrt(c5*x2*x2 + x7*x7)
+    x9 = l*(x4 + x5*(2.0*d + x6))/(d + x8)
+    x10 = sin_theta1*x3 + cos_theta1*x7
+    x11 = x9*x10
+    x12 = x4 + x5*x7
+    x13 = x8*x12
+    x14 = x8*x8
+    x15 = x9*x14
+    x16 = x10*x13 + (sin_theta1*x2 + cos_theta1*x5)*x15 - x12*x11
+    x17 = x8*x14
+    x18 = (1.0 - x7/x8)*x14
+    x19 = sin_theta2*x3 + cos_theta2*x7
+    x20 = x9*x19
+    x21 = x19*x13 + (x2*sin_theta2 + cos_theta2*x5)*x15 - x12*x20
+    # outputs
+    return _stacked(
+        (4, 5),
+        y[0],
+        -c0*(c1*x0),
+        -2.0*c0*(c0*x0),
+        0.0,
+        0.0,
+        0.0,
+        -c0*(c1*x1),
+        -2.0*c0*(c0*x1),
+        0.0,
+        0.0,
+        0.0,
+        -c4*sin_theta1,
+        k*x11/x8 - c6*sin_theta1 + c7*x16/x17,
+        l*x11/x8,
+        -c7*(x7*x11 + x10*x18 - cos_theta1*x15)/x17,
+        -c2*sin_theta1,
+        -c4*sin_theta2,
+        -(k*x20/x8 + c6*sin_theta2 + c7*x21/x17),
+        -l*x20/x8,
+        c7*(x7*x20 + x19*x18 - cos_theta2*x15)/x17,
+        -c2*sin_theta2,
     )
 
 

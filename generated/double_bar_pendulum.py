@@ -85,7 +85,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_bar_pendulum"
-DIGEST = "0544938710da98f6"
+DIGEST = "016539e031fe76fe"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -120,12 +120,14 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "mass_matrix",
     "positions",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
@@ -133,12 +135,14 @@ CALLS_FUNCTIONS = (
 OPERATIONS = {
     "rhs": (39, 8),
     "jacobian": (99, 9),
+    "parameter_jacobian": (120, 9),
     "energy": (31, 12),
     "mass_matrix": (12, 8),
     "positions": (15, 0),
     "hamiltonian_state": (19, 4),
     "rhs_hamiltonian": (47, 11),
     "jacobian_hamiltonian": (89, 11),
+    "parameter_jacobian_hamiltonian": (165, 15),
     "energy_hamiltonian": (40, 9),
     "lagrangian_state": (27, 6),
     "rational_state": (4, 0),
@@ -391,6 +395,147 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         1.5*c5*(x18 + x0*x19),
         3.0*c5*(x5 + 1.5*x0*x20),
         3.0*c5*(x0*x21),
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    120 operations, 9 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
+    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2*l2
+    c2 = m2 + 0.5*m1
+    c3 = g*c2
+    c4 = m2 + (1.0/3.0)*m1
+    c5 = 1.0/l2
+    c6 = 1.0/m2
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    x0 = g*sin_theta1
+    x1 = theta1 - theta2
+    sin_x1 = sin(x1)
+    x2 = sin_x1*(theta2_dot*theta2_dot)
+    x3 = c1*x2 + 2.0*c3*sin_theta1
+    x4 = theta1_dot*(sin_x1*theta1_dot)
+    sin_theta2 = sin(theta2)
+    x5 = l1*x4 - g*sin_theta2
+    cos_x1 = cos(x1)
+    x6 = m2*cos_x1
+    x7 = 2.0*c4 - 1.5*cos_x1*x6
+    x8 = (x3 + 1.5*x5*x6)/x7
+    x9 = (3.0*x0 - 2.0*x8)/x7
+    x10 = cos_x1*x8
+    x11 = x5 + x10
+    x12 = cos_x1*x11
+    x13 = x5 + (x10 - x11)
+    x14 = 2.0*(x0 + 0.5*l2*x2 - (x8 - 0.75*x12)) + 1.5*cos_x1*x13
+    x15 = x14/x7
+    x16 = x4 + c0*x10
+    x17 = 2.0*c0*(0.5*x3 - (2.0*c4*x8 - 0.75*x11*x6)) + 1.5*x16*x6
+    x18 = x17/x7
+    x19 = c5*(0.5*x5 + (0.5*x10 - x11))
+    x20 = m2*(x2 + 1.5*c5*x12 + 3.0*cos_x1*x19)/x7
+    x21 = (2.0*c2*sin_theta1 - 1.5*sin_theta2*x6)/x7
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (-(1.0/3.0)*c0*x9, -c0*x15, -c0*x18, -c0*x20, -c0*x21),
+        (
+            0.5*c5*(cos_x1*x9),
+            1.5*c5*(c6*x13 + cos_x1*x15),
+            1.5*c5*(x16 + cos_x1*x18),
+            3.0*c5*(x19 + 0.5*cos_x1*x20),
+            -1.5*c5*(sin_theta2 - cos_x1*x21),
+        ),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (4, 5, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, theta1_dot, theta2_dot = y
+    m1, m2, l1, l2, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2*l2
+    c2 = m2 + 0.5*m1
+    c3 = g*c2
+    c4 = m2 + (1.0/3.0)*m1
+    c5 = 1.0/l2
+    c6 = 1.0/m2
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    x0 = g*sin_theta1
+    x1 = theta1 - theta2
+    sin_x1 = sin(x1)
+    x2 = sin_x1*(theta2_dot*theta2_dot)
+    x3 = c1*x2 + 2.0*c3*sin_theta1
+    x4 = theta1_dot*(sin_x1*theta1_dot)
+    sin_theta2 = sin(theta2)
+    x5 = l1*x4 - g*sin_theta2
+    cos_x1 = cos(x1)
+    x6 = m2*cos_x1
+    x7 = 2.0*c4 - 1.5*cos_x1*x6
+    x8 = (x3 + 1.5*x5*x6)/x7
+    x9 = (3.0*x0 - 2.0*x8)/x7
+    x10 = cos_x1*x8
+    x11 = x5 + x10
+    x12 = cos_x1*x11
+    x13 = x5 + (x10 - x11)
+    x14 = 2.0*(x0 + 0.5*l2*x2 - (x8 - 0.75*x12)) + 1.5*cos_x1*x13
+    x15 = x14/x7
+    x16 = x4 + c0*x10
+    x17 = 2.0*c0*(0.5*x3 - (2.0*c4*x8 - 0.75*x11*x6)) + 1.5*x16*x6
+    x18 = x17/x7
+    x19 = c5*(0.5*x5 + (0.5*x10 - x11))
+    x20 = m2*(x2 + 1.5*c5*x12 + 3.0*cos_x1*x19)/x7
+    x21 = (2.0*c2*sin_theta1 - 1.5*sin_theta2*x6)/x7
+    # outputs
+    return _stacked(
+        (4, 5),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -(1.0/3.0)*c0*x9,
+        -c0*x15,
+        -c0*x18,
+        -c0*x20,
+        -c0*x21,
+        0.5*c5*(cos_x1*x9),
+        1.5*c5*(c6*x13 + cos_x1*x15),
+        1.5*c5*(x16 + cos_x1*x18),
+        3.0*c5*(x19 + 0.5*cos_x1*x20),
+        -1.5*c5*(sin_theta2 - cos_x1*x21),
     )
 
 
@@ -812,6 +957,177 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -0.5*m2*(c5*cos(theta2) + 1.5*x21),
         x9,
         x16,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    165 operations, 15 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta1, theta2 in rad; p_theta1, p_theta2 in J s.
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
+    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = 1.0/l2
+    c2 = m2 + (1.0/3.0)*m1
+    c3 = m2*l2
+    c4 = 1.0/c3
+    c5 = m2*c1
+    c6 = 1.0/m2
+    c7 = l1*g
+    c8 = m2 + 0.5*m1
+    c9 = g*c8
+    c10 = m2*c0
+    c11 = l1*c8
+    c12 = l2*g
+    # intermediate terms
+    x0 = theta1 - theta2
+    cos_x0 = cos(x0)
+    x1 = m2*cos_x0
+    x2 = 2.0*c2 - 1.5*cos_x0*x1
+    x3 = (2.0*c0*p_theta1 - 3.0*c1*cos_x0*p_theta2)/x2
+    x4 = x3/x2
+    x5 = cos_x0*x3
+    x6 = c4*p_theta2 - 0.5*x5
+    x7 = x5 + 2.0*x6
+    x8 = (2.0*x3 + 3.0*cos_x0*x6 - 1.5*cos_x0*x7)/x2
+    x9 = c0*(2.0*(2.0*c2*x3 + 1.5*x6*x1) - 1.5*x5*x1)/x2
+    x10 = 0.5*x5 + 2.0*x6
+    x11 = c5*cos_x0*(x6 - x10)/x2
+    x12 = cos_x0*x4
+    x13 = c6*x7 - cos_x0*x8
+    x14 = cos_x0*(c0*x3 - x9)
+    x15 = c1*x10 - 1.5*cos_x0*x11
+    sin_x0 = sin(x0)
+    x16 = m2*sin_x0
+    x17 = x3*x16
+    sin_theta1 = sin(theta1)
+    x18 = c7*sin_theta1
+    x19 = x6*x16
+    x20 = x3*x6
+    x21 = sin_x0*x20
+    x22 = x21 - x8*x19
+    x23 = x13*x17
+    x24 = c9*sin_theta1 + 1.5*(c10*x21 - x9*x19) - 0.75*x14*x17
+    x25 = x6*x11
+    x26 = x3*x15
+    sin_theta2 = sin(theta2)
+    x27 = 9.0*sin_x0*x25 + g*sin_theta2 + 3.0*(sin_x0*x26 - c1*x21)
+    # outputs
+    return (
+        (-(2.0/3.0)*c0*x4, -c0*x8, -c0*x9, -3.0*c0*x11, 0.0),
+        (c1*x12, -1.5*c1*x13, -1.5*c1*x14, -3.0*c1*x15, 0.0),
+        (
+            -(0.5*(x12*x17 + x18) - x4*x19),
+            -(x18 + 1.5*x22 - 0.75*x23),
+            -x24,
+            1.5*(3.0*x25 + x26 - c1*x20)*x16,
+            -c11*sin_theta1,
+        ),
+        (
+            -(x4*x6 - 0.5*x3*x12)*x16,
+            -0.5*(1.5*x23 + c12*sin_theta2 + 3.0*(-x22)),
+            -1.5*(x6*x9 + 0.5*x3*x14 - c0*x20)*x16,
+            -0.5*m2*x27,
+            -0.5*c3*sin_theta2,
+        ),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 5, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, p_theta1, p_theta2 = y
+    m1, m2, l1, l2, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = 1.0/l2
+    c2 = m2 + (1.0/3.0)*m1
+    c3 = m2*l2
+    c4 = 1.0/c3
+    c5 = m2*c1
+    c6 = 1.0/m2
+    c7 = l1*g
+    c8 = m2 + 0.5*m1
+    c9 = g*c8
+    c10 = m2*c0
+    c11 = l1*c8
+    c12 = l2*g
+    # intermediate terms
+    x0 = theta1 - theta2
+    cos_x0 = cos(x0)
+    x1 = m2*cos_x0
+    x2 = 2.0*c2 - 1.5*cos_x0*x1
+    x3 = (2.0*c0*p_theta1 - 3.0*c1*cos_x0*p_theta2)/x2
+    x4 = x3/x2
+    x5 = cos_x0*x3
+    x6 = c4*p_theta2 - 0.5*x5
+    x7 = x5 + 2.0*x6
+    x8 = (2.0*x3 + 3.0*cos_x0*x6 - 1.5*cos_x0*x7)/x2
+    x9 = c0*(2.0*(2.0*c2*x3 + 1.5*x6*x1) - 1.5*x5*x1)/x2
+    x10 = 0.5*x5 + 2.0*x6
+    x11 = c5*cos_x0*(x6 - x10)/x2
+    x12 = cos_x0*x4
+    x13 = c6*x7 - cos_x0*x8
+    x14 = cos_x0*(c0*x3 - x9)
+    x15 = c1*x10 - 1.5*cos_x0*x11
+    sin_x0 = sin(x0)
+    x16 = m2*sin_x0
+    x17 = x3*x16
+    sin_theta1 = sin(theta1)
+    x18 = c7*sin_theta1
+    x19 = x6*x16
+    x20 = x3*x6
+    x21 = sin_x0*x20
+    x22 = x21 - x8*x19
+    x23 = x13*x17
+    x24 = c9*sin_theta1 + 1.5*(c10*x21 - x9*x19) - 0.75*x14*x17
+    x25 = x6*x11
+    x26 = x3*x15
+    sin_theta2 = sin(theta2)
+    x27 = 9.0*sin_x0*x25 + g*sin_theta2 + 3.0*(sin_x0*x26 - c1*x21)
+    # outputs
+    return _stacked(
+        (4, 5),
+        y[0],
+        -(2.0/3.0)*c0*x4,
+        -c0*x8,
+        -c0*x9,
+        -3.0*c0*x11,
+        0.0,
+        c1*x12,
+        -1.5*c1*x13,
+        -1.5*c1*x14,
+        -3.0*c1*x15,
+        0.0,
+        -(0.5*(x12*x17 + x18) - x4*x19),
+        -(x18 + 1.5*x22 - 0.75*x23),
+        -x24,
+        1.5*(3.0*x25 + x26 - c1*x20)*x16,
+        -c11*sin_theta1,
+        -(x4*x6 - 0.5*x3*x12)*x16,
+        -0.5*(1.5*x23 + c12*sin_theta2 + 3.0*(-x22)),
+        -1.5*(x6*x9 + 0.5*x3*x14 - c0*x20)*x16,
+        -0.5*m2*x27,
+        -0.5*c3*sin_theta2,
     )
 
 

@@ -85,7 +85,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_pendulum"
-DIGEST = "844c142ae1c6f257"
+DIGEST = "e436b8a12343cd23"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -120,6 +120,7 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "reactions",
     "mass_matrix",
@@ -127,6 +128,7 @@ CALLS_FUNCTIONS = (
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
@@ -134,6 +136,7 @@ CALLS_FUNCTIONS = (
 OPERATIONS = {
     "rhs": (32, 5),
     "jacobian": (85, 6),
+    "parameter_jacobian": (94, 6),
     "energy": (26, 8),
     "reactions": (48, 4),
     "mass_matrix": (9, 6),
@@ -141,6 +144,7 @@ OPERATIONS = {
     "hamiltonian_state": (15, 3),
     "rhs_hamiltonian": (35, 8),
     "jacobian_hamiltonian": (65, 8),
+    "parameter_jacobian_hamiltonian": (133, 12),
     "energy_hamiltonian": (31, 6),
     "lagrangian_state": (20, 4),
     "rational_state": (4, 0),
@@ -378,6 +382,141 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         c4*(x17 + x0*x18),
         2.0*c4*(x4*x3 + x0*x19),
         2.0*c4*(x0*x20),
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    94 operations, 6 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
+    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2*l2
+    c2 = m1 + m2
+    c3 = g*c2
+    c4 = 1.0/l2
+    c5 = 1.0/m2
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    x0 = g*sin_theta1
+    x1 = theta1 - theta2
+    sin_x1 = sin(x1)
+    x2 = theta2_dot*(sin_x1*theta2_dot)
+    x3 = c1*x2 + c3*sin_theta1
+    x4 = theta1_dot*(sin_x1*theta1_dot)
+    sin_theta2 = sin(theta2)
+    x5 = l1*x4 - g*sin_theta2
+    cos_x1 = cos(x1)
+    x6 = m2*cos_x1
+    x7 = m1 + m2*sin_x1*sin_x1
+    x8 = (x3 + x5*x6)/x7
+    x9 = (x0 - x8)/x7
+    x10 = cos_x1*x8
+    x11 = x5 + x10
+    x12 = cos_x1*x11
+    x13 = x5 + (x10 - x11)
+    x14 = (x0 + l2*x2 - (x8 - x12) + cos_x1*x13)/x7
+    x15 = x4 + c0*x10
+    x16 = (c0*(x3 - (2.0*c2*x8 - x11*x6)) + x15*x6)/x7
+    x17 = c4*(x5 + (x10 - 2.0*x11))
+    x18 = m2*(x2 + c4*x12 + cos_x1*x17)/x7
+    x19 = (c2*sin_theta1 - sin_theta2*x6)/x7
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (-c0*x9, -c0*x14, -c0*x16, -c0*x18, -c0*x19),
+        (
+            c4*(cos_x1*x9),
+            c4*(c5*x13 + cos_x1*x14),
+            c4*(x15 + cos_x1*x16),
+            c4*(x17 + cos_x1*x18),
+            -c4*(sin_theta2 - cos_x1*x19),
+        ),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (4, 5, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, theta1_dot, theta2_dot = y
+    m1, m2, l1, l2, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2*l2
+    c2 = m1 + m2
+    c3 = g*c2
+    c4 = 1.0/l2
+    c5 = 1.0/m2
+    # intermediate terms
+    sin_theta1 = sin(theta1)
+    x0 = g*sin_theta1
+    x1 = theta1 - theta2
+    sin_x1 = sin(x1)
+    x2 = theta2_dot*(sin_x1*theta2_dot)
+    x3 = c1*x2 + c3*sin_theta1
+    x4 = theta1_dot*(sin_x1*theta1_dot)
+    sin_theta2 = sin(theta2)
+    x5 = l1*x4 - g*sin_theta2
+    cos_x1 = cos(x1)
+    x6 = m2*cos_x1
+    x7 = m1 + m2*sin_x1*sin_x1
+    x8 = (x3 + x5*x6)/x7
+    x9 = (x0 - x8)/x7
+    x10 = cos_x1*x8
+    x11 = x5 + x10
+    x12 = cos_x1*x11
+    x13 = x5 + (x10 - x11)
+    x14 = (x0 + l2*x2 - (x8 - x12) + cos_x1*x13)/x7
+    x15 = x4 + c0*x10
+    x16 = (c0*(x3 - (2.0*c2*x8 - x11*x6)) + x15*x6)/x7
+    x17 = c4*(x5 + (x10 - 2.0*x11))
+    x18 = m2*(x2 + c4*x12 + cos_x1*x17)/x7
+    x19 = (c2*sin_theta1 - sin_theta2*x6)/x7
+    # outputs
+    return _stacked(
+        (4, 5),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -c0*x9,
+        -c0*x14,
+        -c0*x16,
+        -c0*x18,
+        -c0*x19,
+        c4*(cos_x1*x9),
+        c4*(c5*x13 + cos_x1*x14),
+        c4*(x15 + cos_x1*x16),
+        c4*(x17 + cos_x1*x18),
+        -c4*(sin_theta2 - cos_x1*x19),
     )
 
 
@@ -871,6 +1010,171 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -m2*(x18 + c4*cos(theta2)),
         x8,
         x14,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    133 operations, 12 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta1, theta2 in rad; p_theta1, p_theta2 in J s.
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
+    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = 1.0/l2
+    c2 = m2*l2
+    c3 = 1.0/c2
+    c4 = m1 + m2
+    c5 = m2*c1
+    c6 = 1.0/m2
+    c7 = l1*g
+    c8 = m2*c0
+    c9 = c4*g
+    c10 = l1*c4
+    c11 = l2*g
+    # intermediate terms
+    x0 = theta1 - theta2
+    cos_x0 = cos(x0)
+    sin_x0 = sin(x0)
+    x1 = m2*sin_x0
+    x2 = m1 + sin_x0*x1
+    x3 = (c0*p_theta1 - c1*p_theta2*cos_x0)/x2
+    x4 = x3/x2
+    x5 = cos_x0*x3
+    x6 = c3*p_theta2 - x5
+    x7 = x5 + x6
+    x8 = (x3 + cos_x0*x6 - cos_x0*x7)/x2
+    x9 = m2*cos_x0
+    x10 = c0*(2.0*c4*x3 + x6*x9 - x5*x9)/x2
+    x11 = x5 + 2.0*x6
+    x12 = c5*cos_x0*(x6 - x11)/x2
+    x13 = cos_x0*x4
+    x14 = c6*x7 - cos_x0*x8
+    x15 = cos_x0*(c0*x3 - x10)
+    x16 = c1*x11 - cos_x0*x12
+    x17 = x3*x1
+    sin_theta1 = sin(theta1)
+    x18 = c7*sin_theta1
+    x19 = x6*x1
+    x20 = x3*x6
+    x21 = sin_x0*x20
+    x22 = x14*x17 - (x21 - x8*x19)
+    x23 = x6*x12
+    x24 = x3*x16
+    sin_theta2 = sin(theta2)
+    x25 = m2*(sin_x0*x23 + sin_x0*x24 + g*sin_theta2 - c1*x21)
+    # outputs
+    return (
+        (-c0*x4, -c0*x8, -c0*x10, -c0*x12, 0.0),
+        (c1*x13, -c1*x14, -c1*x15, -c1*x16, 0.0),
+        (
+            -(x13*x17 + x18 - x4*x19),
+            -(x18 - x22),
+            -(c8*x21 + c9*sin_theta1 - x10*x19 - x15*x17),
+            (x23 + x24 - c1*x20)*x1,
+            -c10*sin_theta1,
+        ),
+        (
+            -(x4*x6 - x3*x13)*x1,
+            -(c11*sin_theta2 + x22),
+            -(x6*x10 + x3*x15 - c0*x20)*x1,
+            -x25,
+            -c2*sin_theta2,
+        ),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 5, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, p_theta1, p_theta2 = y
+    m1, m2, l1, l2, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = 1.0/l2
+    c2 = m2*l2
+    c3 = 1.0/c2
+    c4 = m1 + m2
+    c5 = m2*c1
+    c6 = 1.0/m2
+    c7 = l1*g
+    c8 = m2*c0
+    c9 = c4*g
+    c10 = l1*c4
+    c11 = l2*g
+    # intermediate terms
+    x0 = theta1 - theta2
+    cos_x0 = cos(x0)
+    sin_x0 = sin(x0)
+    x1 = m2*sin_x0
+    x2 = m1 + sin_x0*x1
+    x3 = (c0*p_theta1 - c1*p_theta2*cos_x0)/x2
+    x4 = x3/x2
+    x5 = cos_x0*x3
+    x6 = c3*p_theta2 - x5
+    x7 = x5 + x6
+    x8 = (x3 + cos_x0*x6 - cos_x0*x7)/x2
+    x9 = m2*cos_x0
+    x10 = c0*(2.0*c4*x3 + x6*x9 - x5*x9)/x2
+    x11 = x5 + 2.0*x6
+    x12 = c5*cos_x0*(x6 - x11)/x2
+    x13 = cos_x0*x4
+    x14 = c6*x7 - cos_x0*x8
+    x15 = cos_x0*(c0*x3 - x10)
+    x16 = c1*x11 - cos_x0*x12
+    x17 = x3*x1
+    sin_theta1 = sin(theta1)
+    x18 = c7*sin_theta1
+    x19 = x6*x1
+    x20 = x3*x6
+    x21 = sin_x0*x20
+    x22 = x14*x17 - (x21 - x8*x19)
+    x23 = x6*x12
+    x24 = x3*x16
+    sin_theta2 = sin(theta2)
+    x25 = m2*(sin_x0*x23 + sin_x0*x24 + g*sin_theta2 - c1*x21)
+    # outputs
+    return _stacked(
+        (4, 5),
+        y[0],
+        -c0*x4,
+        -c0*x8,
+        -c0*x10,
+        -c0*x12,
+        0.0,
+        c1*x13,
+        -c1*x14,
+        -c1*x15,
+        -c1*x16,
+        0.0,
+        -(x13*x17 + x18 - x4*x19),
+        -(x18 - x22),
+        -(c8*x21 + c9*sin_theta1 - x10*x19 - x15*x17),
+        (x23 + x24 - c1*x20)*x1,
+        -c10*sin_theta1,
+        -(x4*x6 - x3*x13)*x1,
+        -(c11*sin_theta2 + x22),
+        -(x6*x10 + x3*x15 - c0*x20)*x1,
+        -x25,
+        -c2*sin_theta2,
     )
 
 

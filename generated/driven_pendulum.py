@@ -68,7 +68,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "4225940cb54cecb0"
+DIGEST = "9180229a7cd8a52e"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -90,12 +90,14 @@ POSITIVE = ("m", "l")
 TIMED = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "power",
     "positions",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rhs_rational",
@@ -104,12 +106,14 @@ TIMED = (
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "power",
     "positions",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
@@ -119,6 +123,7 @@ CALLS_FUNCTIONS = (
 OPERATIONS = {
     "rhs": (19, 7),
     "jacobian": (16, 8),
+    "parameter_jacobian": (43, 9),
     "energy": (21, 6),
     "power": (22, 6),
     "mass_matrix": (2, 2),
@@ -126,6 +131,7 @@ OPERATIONS = {
     "hamiltonian_state": (10, 2),
     "rhs_hamiltonian": (25, 8),
     "jacobian_hamiltonian": (34, 10),
+    "parameter_jacobian_hamiltonian": (76, 13),
     "energy_hamiltonian": (29, 8),
     "lagrangian_state": (13, 5),
     "rational_state": (2, 0),
@@ -273,6 +279,102 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         1.0,
         -c0*(cos(theta)*(g - c1*cos(Omega*t))),
         -c0*(c*(1.0/(l*m))),
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    43 operations, 9 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s.
+    y : iterable of 2 floats
+        theta in rad; theta_dot in rad/s.
+    params : iterable of 6 floats
+        m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    m, l, a, Omega, c, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = g*c2
+    c5 = Omega*Omega
+    c6 = a*c5
+    c7 = c2*c6
+    c8 = Omega*a
+    # intermediate terms
+    sin_theta = sin(theta)
+    x0 = Omega*t
+    cos_x0 = cos(x0)
+    x1 = sin_theta*cos_x0
+    x2 = c3*(c4*sin_theta + c*theta_dot - c7*x1)
+    x3 = sin_theta*(c6*cos_x0 - g)
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        (
+            c0*(c1*(x2 + x3)),
+            c0*(c0*(2.0*x2 + x3)),
+            c0*(c5*x1),
+            c0*(c8*sin_theta*(2.0*cos_x0 - x0*sin(x0))),
+            -c0*(c3*theta_dot),
+            -c0*sin_theta,
+        ),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (2, 6, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta, theta_dot = y
+    m, l, a, Omega, c, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = g*c2
+    c5 = Omega*Omega
+    c6 = a*c5
+    c7 = c2*c6
+    c8 = Omega*a
+    # intermediate terms
+    sin_theta = sin(theta)
+    x0 = Omega*t
+    cos_x0 = cos(x0)
+    x1 = sin_theta*cos_x0
+    x2 = c3*(c4*sin_theta + c*theta_dot - c7*x1)
+    x3 = sin_theta*(c6*cos_x0 - g)
+    # outputs
+    return _stacked(
+        (2, 6),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        c0*(c1*(x2 + x3)),
+        c0*(c0*(2.0*x2 + x3)),
+        c0*(c5*x1),
+        c0*(c8*sin_theta*(2.0*cos_x0 - x0*sin(x0))),
+        -c0*(c3*theta_dot),
+        -c0*sin_theta,
     )
 
 
@@ -643,6 +745,128 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x4 = c4*x2*x1 + c5*cos_theta + c6*x2 - c4*(c3*(p_theta + c7*x3))*x3
     # outputs
     return _stacked((2, 2), y[0], c0*x2, c0*c3, -x4, -c0*(c8 + x2))
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    76 operations, 13 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s.
+    y : iterable of 2 floats
+        theta in rad; p_theta in J s.
+    params : iterable of 6 floats
+        m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
+    m, l, a, Omega, c, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = m*Omega
+    c5 = a*c4
+    c6 = l*c5
+    c7 = Omega*a
+    c8 = l*g
+    c9 = c0*c
+    c10 = c0*c5
+    c11 = m*g
+    c12 = m*a
+    # intermediate terms
+    sin_theta = sin(theta)
+    x0 = Omega*t
+    sin_x0 = sin(x0)
+    x1 = sin_theta*sin_x0
+    x2 = c3*(p_theta + c6*x1)
+    x3 = c7*x1
+    x4 = c1*(x2 - x3)
+    x5 = c0*(2.0*x2 - x3)
+    x6 = Omega*x1
+    x7 = sin_x0 + x0*cos(x0)
+    x8 = a*sin_theta*x7
+    cos_theta = cos(theta)
+    x9 = sin_x0*cos_theta
+    x10 = x2*x9
+    x11 = c5*x9
+    # outputs
+    return (
+        (-c0*x4, -c0*x5, c0*x6, c0*x8, 0.0, 0.0),
+        (
+            -(c7*x10 + c8*sin_theta - x4*x11 - c9*x4),
+            -(c10*x10 + c11*sin_theta - x5*x11 - c9*x5),
+            -(c4*x10 + x6*x11 + c9*x6),
+            -(c12*x2*x7*cos_theta + x8*x11 + c9*x8),
+            -c0*x2,
+            -c2*sin_theta,
+        ),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (2, 6, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta, p_theta = y
+    m, l, a, Omega, c, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = m*Omega
+    c5 = a*c4
+    c6 = l*c5
+    c7 = Omega*a
+    c8 = l*g
+    c9 = c0*c
+    c10 = c0*c5
+    c11 = m*g
+    c12 = m*a
+    # intermediate terms
+    sin_theta = sin(theta)
+    x0 = Omega*t
+    sin_x0 = sin(x0)
+    x1 = sin_theta*sin_x0
+    x2 = c3*(p_theta + c6*x1)
+    x3 = c7*x1
+    x4 = c1*(x2 - x3)
+    x5 = c0*(2.0*x2 - x3)
+    x6 = Omega*x1
+    x7 = sin_x0 + x0*cos(x0)
+    x8 = a*sin_theta*x7
+    cos_theta = cos(theta)
+    x9 = sin_x0*cos_theta
+    x10 = x2*x9
+    x11 = c5*x9
+    # outputs
+    return _stacked(
+        (2, 6),
+        y[0],
+        -c0*x4,
+        -c0*x5,
+        c0*x6,
+        c0*x8,
+        0.0,
+        0.0,
+        -(c7*x10 + c8*sin_theta - x4*x11 - c9*x4),
+        -(c10*x10 + c11*sin_theta - x5*x11 - c9*x5),
+        -(c4*x10 + x6*x11 + c9*x6),
+        -(c12*x2*x7*cos_theta + x8*x11 + c9*x8),
+        -c0*x2,
+        -c2*sin_theta,
+    )
 
 
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:

@@ -76,7 +76,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "elastic_pendulum"
-DIGEST = "e648ac1ac658b01f"
+DIGEST = "a8b5e62a7c840483"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -103,22 +103,26 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (19, 2),
     "jacobian": (26, 1),
+    "parameter_jacobian": (22, 3),
     "energy": (17, 1),
     "mass_matrix": (2, 0),
     "positions": (5, 0),
     "hamiltonian_state": (4, 0),
     "rhs_hamiltonian": (20, 2),
     "jacobian_hamiltonian": (27, 2),
+    "parameter_jacobian_hamiltonian": (28, 1),
     "energy_hamiltonian": (19, 2),
     "lagrangian_state": (5, 1),
     "rational_state": (2, 0),
@@ -290,6 +294,83 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -g*cos(theta)/r,
         -2.0*theta_dot/r,
         -2.0*r_dot/r,
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    22 operations, 3 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
+    params : iterable of 4 floats
+        m in kg; k in N/m; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    r, theta, _, theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/m
+    c1 = m*g
+    # intermediate terms
+    x0 = theta_dot*(r*theta_dot)
+    cos_theta = cos(theta)
+    x1 = r - l
+    x2 = x0 + g*cos_theta - c0*(m*x0 - (k*x1 - c1*cos_theta))
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0),
+        (c0*x2, -c0*x1, k*c0, cos_theta),
+        (0.0, 0.0, 0.0, -sin(theta)/r),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (4, 4, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    r, theta, _, theta_dot = y
+    m, k, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/m
+    c1 = m*g
+    # intermediate terms
+    x0 = theta_dot*(r*theta_dot)
+    cos_theta = cos(theta)
+    x1 = r - l
+    x2 = x0 + g*cos_theta - c0*(m*x0 - (k*x1 - c1*cos_theta))
+    # outputs
+    return _stacked(
+        (4, 4),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        c0*x2,
+        -c0*x1,
+        k*c0,
+        cos_theta,
+        0.0,
+        0.0,
+        0.0,
+        -sin(theta)/r,
     )
 
 
@@ -580,6 +661,86 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -c1*r*cos(theta),
         0.0,
         0.0,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    28 operations, 1 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        r in m; theta in rad; p_r in kg m/s; p_theta in J s.
+    params : iterable of 4 floats
+        m in kg; k in N/m; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    r, theta, p_r, p_theta = y.tolist() if hasattr(y, "tolist") else y
+    m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/m
+    # intermediate terms
+    x0 = c0*p_theta/r
+    x1 = c0*x0
+    cos_theta = cos(theta)
+    x2 = r*sin(theta)
+    # outputs
+    return (
+        (-c0*(c0*p_r), 0.0, 0.0, 0.0),
+        (-x1/r, 0.0, 0.0, 0.0),
+        (
+            x0*x0/r + g*cos_theta - 2.0*m*x0*x1/r,
+            -(r - l),
+            k,
+            m*cos_theta,
+        ),
+        (-g*x2, 0.0, 0.0, -m*x2),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    r, theta, p_r, p_theta = y
+    m, k, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/m
+    # intermediate terms
+    x0 = c0*p_theta/r
+    x1 = c0*x0
+    cos_theta = cos(theta)
+    x2 = r*sin(theta)
+    # outputs
+    return _stacked(
+        (4, 4),
+        y[0],
+        -c0*(c0*p_r),
+        0.0,
+        0.0,
+        0.0,
+        -x1/r,
+        0.0,
+        0.0,
+        0.0,
+        x0*x0/r + g*cos_theta - 2.0*m*x0*x1/r,
+        -(r - l),
+        k,
+        m*cos_theta,
+        -g*x2,
+        0.0,
+        0.0,
+        -m*x2,
     )
 
 

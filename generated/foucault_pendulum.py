@@ -97,7 +97,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "049b8d08bef920e9"
+DIGEST = "1c1841d73840c8fd"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")
@@ -122,11 +122,13 @@ TIMED = ("positions",)
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "positions",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rhs_variational",
@@ -134,12 +136,14 @@ CALLS_FUNCTIONS = (
 OPERATIONS = {
     "rhs": (122, 8),
     "jacobian": (387, 10),
+    "parameter_jacobian": (302, 12),
     "energy": (41, 5),
     "mass_matrix": (15, 1),
     "positions": (25, 3),
     "hamiltonian_state": (38, 3),
     "rhs_hamiltonian": (134, 10),
     "jacobian_hamiltonian": (394, 11),
+    "parameter_jacobian_hamiltonian": (498, 17),
     "energy_hamiltonian": (69, 8),
     "lagrangian_state": (45, 4),
     "rhs_variational": (370, 10),
@@ -565,6 +569,259 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         (x67 - x68*x16/x2)*x42,
         -(x72 - x74*x16/x2)*x42,
         (2.0*x75 + x*x2*x77)*x73/x6,
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    302 operations, 12 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        x, y in m; x_dot, y_dot in m/s.
+    params : iterable of 5 floats
+        m in kg; l in m; g in m/s^2; Omega in rad/s; latitude in rad.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    x, y_, x_dot, y_dot = y.tolist() if hasattr(y, "tolist") else y
+    m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = l*l
+    sin_latitude = sin(latitude)
+    cos_latitude = cos(latitude)
+    c1 = Omega*Omega
+    c2 = 2.0*latitude
+    cos_c2 = cos(c2)
+    c3 = cos_c2 - 1.0
+    sin_c2 = sin(c2)
+    c4 = m*l
+    c5 = Omega*cos_latitude
+    c6 = sin_c2*c1
+    c7 = m*Omega
+    # intermediate terms
+    x0 = x*x
+    x1 = y_*y_
+    x2 = x0 + x1 - c0
+    x3 = x2 - x0
+    x4 = x_dot*x_dot
+    x5 = x*x4
+    x6 = x2*x2
+    x7 = x*y_
+    x8 = y_*y_dot
+    x9 = y_dot*x8
+    x10 = x7*x9
+    x11 = cos_latitude*y_
+    x12 = sqrt(-x2)
+    x13 = x*x7
+    x14 = x12*x12
+    x15 = x12*x14
+    x16 = sin_latitude - x11/x12 - cos_latitude*x13/x15
+    x17 = Omega*y_dot
+    x18 = x14 - x0
+    x19 = sin_latitude - x11*x18/x15
+    x20 = sin_c2*y_
+    x21 = c3 + x20/x12
+    x22 = x_dot*y_dot*x13
+    x23 = 2.0*x1 - x2
+    x24 = y_dot*(x*y_dot)
+    x25 = x3*x5/x6 + x10/x6 + x16*x17 + x19*x17 - 0.5*c1*x*x21 - 2.0*x22/x6 - x23*x24/x6
+    x26 = g*x
+    x27 = x25 - x26/x12
+    x28 = 1.0 - x0/x2
+    x29 = Omega*x_dot
+    x30 = cos_c2*y_
+    x31 = x12 - x1/x12
+    x32 = 2.0*x30 - sin_c2*x31
+    x33 = x_dot*x7*x8
+    x34 = x4*x13
+    x35 = x2 - x1
+    x36 = x2 - 2.0*x0
+    x37 = y_*x4
+    x38 = x19*x29 + 0.5*c1*x32 + 2.0*x33/x6 + x16*x29 - x34/x6 - x35*x9/x6 - x36*x37/x6
+    x39 = g*y_
+    x40 = x38 + x39/x12
+    x41 = 1.0 - x1/x2
+    x42 = 1.0/(m*x41)
+    x43 = m*x42
+    x44 = x7*x43
+    x45 = m*(x28 - x7*x44/x6)
+    x46 = m*(x27 - x40*x44/x2)/x45
+    x47 = x46*x7/x2
+    x48 = (x40 - x47)*x43
+    x49 = x40 - (x47 + x41*x48)
+    x50 = (x27 - (x28*x46 + x48*x7/x2) - x49*x44/x2)/x45
+    x51 = x2*x6
+    x52 = c5*(3.0*x0 + x14)
+    x53 = x15*x14
+    x54 = c5*(2.0*x14 - 3.0*x18)
+    x55 = (
+        4.0*x10/x51 + x8*x52/x53 + 0.5*c6*x7/x15
+        + 2.0*((2.0*x3 - x2)*x5/x51 - (x2 + 2.0*x23)*x24/x51) - 8.0*x22/x51 - x8*x54/x53
+    )
+    x56 = x*x46 - y_*x48
+    x57 = y_*x_dot
+    x58 = (
+        4.0*x34/x51 + x57*x54/x53 + 0.5*c6*(x1 + x14)/x15
+        + 2.0*((2.0*x35 - x2)*x9/x51 + (2.0*x36 - x2)*x37/x51) - 8.0*x33/x51 - x57*x52/x53
+    )
+    x59 = x58 + x39/x15 + 2.0*y_*x56/x6
+    x60 = c4*(x55 + x26/x15 + 2.0*x*x56/x6 + x59*x44/x2)/x45
+    x61 = m*x*(1.0 + x1*x43/x2)/(x45*x12)
+    x62 = Omega*x
+    x63 = x_dot*x19 + Omega*x32 + x_dot*x16
+    x64 = m*(y_dot*x16 + y_dot*x19 - x21*x62 - x63*x44/x2)/x45
+    x65 = sin_latitude*y_
+    x66 = cos_latitude + x65/x12 + sin_latitude*x13/x15
+    x67 = cos_latitude + x18*x65/x15
+    x68 = x_dot*x67 + x_dot*x66 - Omega*(2.0*x20 + cos_c2*x31)
+    x69 = y_dot*x66 + (sin_c2 - x30/x12)*x62 + y_dot*x67 - x68*x44/x2
+    x70 = c7*x69/x45
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (x50, x60, -x61, x64, x70),
+        (
+            -x42*(x49 - m*x50*x7/x2),
+            (l*x59 + x60*x7/x2)*x43,
+            -y_*(1.0/x12 + x*x61/x2)*x43,
+            -(x63 - x64*x7/x2)*x43,
+            -(Omega*x68 - x70*x7/x2)*x43,
+        ),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (4, 5, ...)."""
+    from numpy import cos, sin, sqrt
+
+    # inputs
+    x, y_, x_dot, y_dot = y
+    m, l, g, Omega, latitude = params
+    # terms of the parameters alone
+    c0 = l*l
+    sin_latitude = sin(latitude)
+    cos_latitude = cos(latitude)
+    c1 = Omega*Omega
+    c2 = 2.0*latitude
+    cos_c2 = cos(c2)
+    c3 = cos_c2 - 1.0
+    sin_c2 = sin(c2)
+    c4 = m*l
+    c5 = Omega*cos_latitude
+    c6 = sin_c2*c1
+    c7 = m*Omega
+    # intermediate terms
+    x0 = x*x
+    x1 = y_*y_
+    x2 = x0 + x1 - c0
+    x3 = x2 - x0
+    x4 = x_dot*x_dot
+    x5 = x*x4
+    x6 = x2*x2
+    x7 = x*y_
+    x8 = y_*y_dot
+    x9 = y_dot*x8
+    x10 = x7*x9
+    x11 = cos_latitude*y_
+    x12 = sqrt(-x2)
+    x13 = x*x7
+    x14 = x12*x12
+    x15 = x12*x14
+    x16 = sin_latitude - x11/x12 - cos_latitude*x13/x15
+    x17 = Omega*y_dot
+    x18 = x14 - x0
+    x19 = sin_latitude - x11*x18/x15
+    x20 = sin_c2*y_
+    x21 = c3 + x20/x12
+    x22 = x_dot*y_dot*x13
+    x23 = 2.0*x1 - x2
+    x24 = y_dot*(x*y_dot)
+    x25 = x3*x5/x6 + x10/x6 + x16*x17 + x19*x17 - 0.5*c1*x*x21 - 2.0*x22/x6 - x23*x24/x6
+    x26 = g*x
+    x27 = x25 - x26/x12
+    x28 = 1.0 - x0/x2
+    x29 = Omega*x_dot
+    x30 = cos_c2*y_
+    x31 = x12 - x1/x12
+    x32 = 2.0*x30 - sin_c2*x31
+    x33 = x_dot*x7*x8
+    x34 = x4*x13
+    x35 = x2 - x1
+    x36 = x2 - 2.0*x0
+    x37 = y_*x4
+    x38 = x19*x29 + 0.5*c1*x32 + 2.0*x33/x6 + x16*x29 - x34/x6 - x35*x9/x6 - x36*x37/x6
+    x39 = g*y_
+    x40 = x38 + x39/x12
+    x41 = 1.0 - x1/x2
+    x42 = 1.0/(m*x41)
+    x43 = m*x42
+    x44 = x7*x43
+    x45 = m*(x28 - x7*x44/x6)
+    x46 = m*(x27 - x40*x44/x2)/x45
+    x47 = x46*x7/x2
+    x48 = (x40 - x47)*x43
+    x49 = x40 - (x47 + x41*x48)
+    x50 = (x27 - (x28*x46 + x48*x7/x2) - x49*x44/x2)/x45
+    x51 = x2*x6
+    x52 = c5*(3.0*x0 + x14)
+    x53 = x15*x14
+    x54 = c5*(2.0*x14 - 3.0*x18)
+    x55 = (
+        4.0*x10/x51 + x8*x52/x53 + 0.5*c6*x7/x15
+        + 2.0*((2.0*x3 - x2)*x5/x51 - (x2 + 2.0*x23)*x24/x51) - 8.0*x22/x51 - x8*x54/x53
+    )
+    x56 = x*x46 - y_*x48
+    x57 = y_*x_dot
+    x58 = (
+        4.0*x34/x51 + x57*x54/x53 + 0.5*c6*(x1 + x14)/x15
+        + 2.0*((2.0*x35 - x2)*x9/x51 + (2.0*x36 - x2)*x37/x51) - 8.0*x33/x51 - x57*x52/x53
+    )
+    x59 = x58 + x39/x15 + 2.0*y_*x56/x6
+    x60 = c4*(x55 + x26/x15 + 2.0*x*x56/x6 + x59*x44/x2)/x45
+    x61 = m*x*(1.0 + x1*x43/x2)/(x45*x12)
+    x62 = Omega*x
+    x63 = x_dot*x19 + Omega*x32 + x_dot*x16
+    x64 = m*(y_dot*x16 + y_dot*x19 - x21*x62 - x63*x44/x2)/x45
+    x65 = sin_latitude*y_
+    x66 = cos_latitude + x65/x12 + sin_latitude*x13/x15
+    x67 = cos_latitude + x18*x65/x15
+    x68 = x_dot*x67 + x_dot*x66 - Omega*(2.0*x20 + cos_c2*x31)
+    x69 = y_dot*x66 + (sin_c2 - x30/x12)*x62 + y_dot*x67 - x68*x44/x2
+    x70 = c7*x69/x45
+    # outputs
+    return _stacked(
+        (4, 5),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        x50,
+        x60,
+        -x61,
+        x64,
+        x70,
+        -x42*(x49 - m*x50*x7/x2),
+        (l*x59 + x60*x7/x2)*x43,
+        -y_*(1.0/x12 + x*x61/x2)*x43,
+        -(x63 - x64*x7/x2)*x43,
+        -(Omega*x68 - x70*x7/x2)*x43,
     )
 
 
@@ -1214,6 +1471,353 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -m*x76,
         x45,
         x49,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    498 operations, 17 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        x, y in m; p_x, p_y in kg m/s.
+    params : iterable of 5 floats
+        m in kg; l in m; g in m/s^2; Omega in rad/s; latitude in rad.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    x, y_, p_x, p_y = y.tolist() if hasattr(y, "tolist") else y
+    m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = l*l
+    c1 = m*Omega
+    sin_latitude = sin(latitude)
+    cos_latitude = cos(latitude)
+    c2 = m*l
+    c3 = Omega*cos_latitude
+    c4 = Omega*Omega
+    c5 = 2.0*latitude
+    cos_c5 = cos(c5)
+    c6 = cos_c5 - 1.0
+    sin_c5 = sin(c5)
+    c7 = m*c3
+    c8 = l*sin_c5*c4
+    c9 = l*c3
+    c10 = l*g
+    c11 = Omega*sin_latitude
+    # intermediate terms
+    x0 = x*x
+    x1 = y_*y_
+    x2 = x0 + x1 - c0
+    x3 = 1.0 - x0/x2
+    x4 = sin_latitude*y_
+    x5 = sqrt(-x2)
+    x6 = x5 + x0/x5
+    x7 = x4 + cos_latitude*x6
+    x8 = cos_latitude*y_
+    x9 = sin_latitude - x8/x5
+    x10 = x*x9
+    x11 = p_y - c1*x10
+    x12 = 1.0 - x1/x2
+    x13 = 1.0/(m*x12)
+    x14 = x*y_
+    x15 = m*x14
+    x16 = x13*x15
+    x17 = x2*x2
+    x18 = m*(x3 - x14*x16/x17)
+    x19 = (p_x + c1*x7 + x11*x16/x2)/x18
+    x20 = x13*(x11 + x19*x15/x2)
+    x21 = x19*x14/x2 - x12*x20 - Omega*x10
+    x22 = (x3*x19 - x20*x14/x2 - Omega*x7 - x21*x16/x2)/x18
+    x23 = x*x19
+    x24 = y_*x20
+    x25 = x23 + x24
+    x26 = x5*x5
+    x27 = x26 - x0
+    x28 = x5*x26
+    x29 = c3*x
+    x30 = 2.0*x25/x17 - x29/x28
+    x31 = c2*(2.0*x*x25/x17 + c3*x27/x28 + y_*x30*x16/x2)/x18
+    x32 = m*(x7 - x16*x10/x2)/x18
+    x33 = cos_latitude + x4/x5
+    x34 = c1*(x8 - sin_latitude*x6 - x*x33*x16/x2)/x18
+    x35 = x22*x15
+    x36 = x13*(x21 - x35/x2)
+    x37 = m*y_
+    x38 = x13*(l*x30 + x*x31/x2)*x37
+    x39 = m*x
+    x40 = x13*x39
+    x41 = (x9 - y_*x32/x2)*x40
+    x42 = (Omega*x33 - y_*x34/x2)*x40
+    x43 = x26 - (x0 + 2.0*x26)
+    x44 = x23*x43
+    x45 = x24*x14
+    x46 = x*x14
+    x47 = x9 - cos_latitude*x46/x28
+    x48 = Omega*x47
+    x49 = x2 - 2.0*x0
+    x50 = x24*x49
+    x51 = m*x22
+    x52 = x2 - x0
+    x53 = x23*x52
+    x54 = sin_c5*y_
+    x55 = x*(c6 + x54/x5)
+    x56 = c7*x
+    x57 = y_*x19
+    x58 = x49*x57
+    x59 = m*x36
+    x60 = (
+        c3*x44/x28 + x20*x45/x17 + x20*x48 + x50*x51/x17 + c1*x36*x47
+        + 2.0*(x53*x51/x17 + x24*x36*x15/x17) - 0.5*c4*x55 - x19*x53/x17 - x19*x50/x17
+        - x22*x43*x56/x28 - x58*x59/x17 - g*x/x5
+    )
+    x61 = l*x20
+    x62 = x2*x17
+    x63 = x26*x28
+    x64 = x29*x43
+    x65 = l*x19
+    x66 = (
+        x38*x45/x17 - x23*(2.0*x52 - x2)*x65/x62 - x24*(2.0*x49 - x2)*x65/x62 - x31*x53/x17
+    )
+    x67 = (
+        0.5*c8*x14/x28 + 4.0*x45*x61/x62 + c9*x24*(3.0*x0 + x26)/x63 + x31*x64/x28 + x38*x48
+        + c10*x/x28 + 2.0*x66 - c9*x23*(2.0*x26 + 3.0*x43)/x63 - x31*x50/x17 - x38*x58/x17
+    )
+    x68 = (
+        Omega*x55 + x32*x50/x17 + x41*x48 + 2.0*(x32*x53/x17 + x41*x45/x17)
+        - cos_latitude*x44/x28 - x20*x47 - x32*x64/x28 - x41*x58/x17
+    )
+    x69 = cos_c5*y_
+    x70 = (
+        c11*x44/x28 + x34*x50/x17 + x42*x48 + 2.0*(x34*x53/x17 + x42*x45/x17)
+        - c4*x*(sin_c5 - x69/x5) - Omega*x20*(x33 + sin_latitude*x46/x28) - x34*x64/x28
+        - x42*x58/x17
+    )
+    x71 = x5 - x1/x5
+    x72 = 2.0*x69 - sin_c5*x71
+    x73 = sin_latitude - x8*x27/x28
+    x74 = Omega*x73
+    x75 = x2 - x1
+    x76 = x24*x75
+    x77 = x1 + x26
+    x78 = x*x20
+    x79 = x77*x78
+    x80 = 2.0*x1 - x2
+    x81 = x80*x78
+    x82 = x23*x14
+    x83 = x23*x80
+    x84 = (
+        0.5*c4*x72 + x19*x74 + x20*x76/x17 + c3*x79/x28 + x81*x51/x17 + x36*x77*x56/x28
+        + g*y_/x5 + 2.0*(x23*x35/x17 + x76*x59/x17) - x19*x82/x17 - x20*x83/x17 - c1*x22*x73
+        - x83*x59/x17
+    )
+    x85 = (
+        x23*(x2 + 2.0*x80)*x61/x62 + x24*(x2 - 2.0*x75)*x61/x62 + x31*x82/x17 - x38*x76/x17
+    )
+    x86 = x29*x77
+    x87 = (
+        0.5*c8*x77/x28 + 4.0*x82*x65/x62 + c9*(2.0*x26 - 3.0*x27)*x57/x63 + x31*x81/x17
+        + x38*x83/x17 + c10*y_/x28 + 2.0*x85 - c9*(2.0*x26 - 3.0*x77)*x78/x63 - x31*x74
+        - x38*x86/x28
+    )
+    x88 = (
+        Omega*x72 + x19*x73 + cos_latitude*x79/x28 + x32*x74 + x41*x83/x17
+        + 2.0*(-(x32*x82/x17 + x41*x76/x17)) - x32*x81/x17 - x41*x86/x28
+    )
+    x89 = (
+        c4*(2.0*x54 + cos_c5*x71) + c11*x79/x28 + x34*x81/x17 + x42*x86/x28
+        + 2.0*(x34*x82/x17 + x42*x76/x17) - Omega*x19*(cos_latitude + x4*x27/x28) - x34*x74
+        - x42*x83/x17
+    )
+    # outputs
+    return (
+        (-x22, x31, 0.0, x32, x34),
+        (x36, x38, 0.0, -x41, -x42),
+        (x60, m*x67, -x39/x5, -m*x68, -m*x70),
+        (-x84, m*x87, -x37/x5, -m*x88, m*x89),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 5, ...)."""
+    from numpy import cos, sin, sqrt
+
+    # inputs
+    x, y_, p_x, p_y = y
+    m, l, g, Omega, latitude = params
+    # terms of the parameters alone
+    c0 = l*l
+    c1 = m*Omega
+    sin_latitude = sin(latitude)
+    cos_latitude = cos(latitude)
+    c2 = m*l
+    c3 = Omega*cos_latitude
+    c4 = Omega*Omega
+    c5 = 2.0*latitude
+    cos_c5 = cos(c5)
+    c6 = cos_c5 - 1.0
+    sin_c5 = sin(c5)
+    c7 = m*c3
+    c8 = l*sin_c5*c4
+    c9 = l*c3
+    c10 = l*g
+    c11 = Omega*sin_latitude
+    # intermediate terms
+    x0 = x*x
+    x1 = y_*y_
+    x2 = x0 + x1 - c0
+    x3 = 1.0 - x0/x2
+    x4 = sin_latitude*y_
+    x5 = sqrt(-x2)
+    x6 = x5 + x0/x5
+    x7 = x4 + cos_latitude*x6
+    x8 = cos_latitude*y_
+    x9 = sin_latitude - x8/x5
+    x10 = x*x9
+    x11 = p_y - c1*x10
+    x12 = 1.0 - x1/x2
+    x13 = 1.0/(m*x12)
+    x14 = x*y_
+    x15 = m*x14
+    x16 = x13*x15
+    x17 = x2*x2
+    x18 = m*(x3 - x14*x16/x17)
+    x19 = (p_x + c1*x7 + x11*x16/x2)/x18
+    x20 = x13*(x11 + x19*x15/x2)
+    x21 = x19*x14/x2 - x12*x20 - Omega*x10
+    x22 = (x3*x19 - x20*x14/x2 - Omega*x7 - x21*x16/x2)/x18
+    x23 = x*x19
+    x24 = y_*x20
+    x25 = x23 + x24
+    x26 = x5*x5
+    x27 = x26 - x0
+    x28 = x5*x26
+    x29 = c3*x
+    x30 = 2.0*x25/x17 - x29/x28
+    x31 = c2*(2.0*x*x25/x17 + c3*x27/x28 + y_*x30*x16/x2)/x18
+    x32 = m*(x7 - x16*x10/x2)/x18
+    x33 = cos_latitude + x4/x5
+    x34 = c1*(x8 - sin_latitude*x6 - x*x33*x16/x2)/x18
+    x35 = x22*x15
+    x36 = x13*(x21 - x35/x2)
+    x37 = m*y_
+    x38 = x13*(l*x30 + x*x31/x2)*x37
+    x39 = m*x
+    x40 = x13*x39
+    x41 = (x9 - y_*x32/x2)*x40
+    x42 = (Omega*x33 - y_*x34/x2)*x40
+    x43 = x26 - (x0 + 2.0*x26)
+    x44 = x23*x43
+    x45 = x24*x14
+    x46 = x*x14
+    x47 = x9 - cos_latitude*x46/x28
+    x48 = Omega*x47
+    x49 = x2 - 2.0*x0
+    x50 = x24*x49
+    x51 = m*x22
+    x52 = x2 - x0
+    x53 = x23*x52
+    x54 = sin_c5*y_
+    x55 = x*(c6 + x54/x5)
+    x56 = c7*x
+    x57 = y_*x19
+    x58 = x49*x57
+    x59 = m*x36
+    x60 = (
+        c3*x44/x28 + x20*x45/x17 + x20*x48 + x50*x51/x17 + c1*x36*x47
+        + 2.0*(x53*x51/x17 + x24*x36*x15/x17) - 0.5*c4*x55 - x19*x53/x17 - x19*x50/x17
+        - x22*x43*x56/x28 - x58*x59/x17 - g*x/x5
+    )
+    x61 = l*x20
+    x62 = x2*x17
+    x63 = x26*x28
+    x64 = x29*x43
+    x65 = l*x19
+    x66 = (
+        x38*x45/x17 - x23*(2.0*x52 - x2)*x65/x62 - x24*(2.0*x49 - x2)*x65/x62 - x31*x53/x17
+    )
+    x67 = (
+        0.5*c8*x14/x28 + 4.0*x45*x61/x62 + c9*x24*(3.0*x0 + x26)/x63 + x31*x64/x28 + x38*x48
+        + c10*x/x28 + 2.0*x66 - c9*x23*(2.0*x26 + 3.0*x43)/x63 - x31*x50/x17 - x38*x58/x17
+    )
+    x68 = (
+        Omega*x55 + x32*x50/x17 + x41*x48 + 2.0*(x32*x53/x17 + x41*x45/x17)
+        - cos_latitude*x44/x28 - x20*x47 - x32*x64/x28 - x41*x58/x17
+    )
+    x69 = cos_c5*y_
+    x70 = (
+        c11*x44/x28 + x34*x50/x17 + x42*x48 + 2.0*(x34*x53/x17 + x42*x45/x17)
+        - c4*x*(sin_c5 - x69/x5) - Omega*x20*(x33 + sin_latitude*x46/x28) - x34*x64/x28
+        - x42*x58/x17
+    )
+    x71 = x5 - x1/x5
+    x72 = 2.0*x69 - sin_c5*x71
+    x73 = sin_latitude - x8*x27/x28
+    x74 = Omega*x73
+    x75 = x2 - x1
+    x76 = x24*x75
+    x77 = x1 + x26
+    x78 = x*x20
+    x79 = x77*x78
+    x80 = 2.0*x1 - x2
+    x81 = x80*x78
+    x82 = x23*x14
+    x83 = x23*x80
+    x84 = (
+        0.5*c4*x72 + x19*x74 + x20*x76/x17 + c3*x79/x28 + x81*x51/x17 + x36*x77*x56/x28
+        + g*y_/x5 + 2.0*(x23*x35/x17 + x76*x59/x17) - x19*x82/x17 - x20*x83/x17 - c1*x22*x73
+        - x83*x59/x17
+    )
+    x85 = (
+        x23*(x2 + 2.0*x80)*x61/x62 + x24*(x2 - 2.0*x75)*x61/x62 + x31*x82/x17 - x38*x76/x17
+    )
+    x86 = x29*x77
+    x87 = (
+        0.5*c8*x77/x28 + 4.0*x82*x65/x62 + c9*(2.0*x26 - 3.0*x27)*x57/x63 + x31*x81/x17
+        + x38*x83/x17 + c10*y_/x28 + 2.0*x85 - c9*(2.0*x26 - 3.0*x77)*x78/x63 - x31*x74
+        - x38*x86/x28
+    )
+    x88 = (
+        Omega*x72 + x19*x73 + cos_latitude*x79/x28 + x32*x74 + x41*x83/x17
+        + 2.0*(-(x32*x82/x17 + x41*x76/x17)) - x32*x81/x17 - x41*x86/x28
+    )
+    x89 = (
+        c4*(2.0*x54 + cos_c5*x71) + c11*x79/x28 + x34*x81/x17 + x42*x86/x28
+        + 2.0*(x34*x82/x17 + x42*x76/x17) - Omega*x19*(cos_latitude + x4*x27/x28) - x34*x74
+        - x42*x83/x17
+    )
+    # outputs
+    return _stacked(
+        (4, 5),
+        y[0],
+        -x22,
+        x31,
+        0.0,
+        x32,
+        x34,
+        x36,
+        x38,
+        0.0,
+        -x41,
+        -x42,
+        x60,
+        m*x67,
+        -x39/x5,
+        -m*x68,
+        -m*x70,
+        -x84,
+        m*x87,
+        -x37/x5,
+        -m*x88,
+        m*x89,
     )
 
 

@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "ca4c999a5a387a61"
+DIGEST = "033538b9e0a6df66"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -87,22 +87,26 @@ TIMED = ("positions",)
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (9, 3),
     "jacobian": (13, 3),
+    "parameter_jacobian": (20, 3),
     "energy": (15, 3),
     "mass_matrix": (2, 2),
     "positions": (10, 0),
     "hamiltonian_state": (3, 2),
     "rhs_hamiltonian": (14, 5),
     "jacobian_hamiltonian": (16, 6),
+    "parameter_jacobian_hamiltonian": (29, 7),
     "energy_hamiltonian": (18, 5),
     "lagrangian_state": (5, 3),
     "rational_state": (2, 0),
@@ -236,6 +240,80 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x0 = c1*sin_theta*sin_theta - cos_theta*(c1*cos_theta - g)
     # outputs
     return _stacked((2, 2), y[0], 0.0, 1.0, -c0*x0, 0.0)
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    20 operations, 3 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 2 floats
+        theta in rad; theta_dot in rad/s.
+    params : iterable of 4 floats
+        m in kg; R in m; Omega in rad/s; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    theta, _ = y.tolist() if hasattr(y, "tolist") else y
+    _, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/R
+    c1 = R*Omega
+    c2 = Omega*c1
+    # intermediate terms
+    sin_theta = sin(theta)
+    cos_theta = cos(theta)
+    x0 = c2*cos_theta
+    x1 = x0 - g
+    # outputs
+    return (
+        (0.0, 0.0, 0.0, 0.0),
+        (
+            0.0,
+            c0*(c0*(sin_theta*(x0 + x1) - 2.0*sin_theta*x1)),
+            2.0*c0*(c1*sin_theta*cos_theta),
+            -c0*sin_theta,
+        ),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (2, 4, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta, _ = y
+    _, R, Omega, g = params
+    # terms of the parameters alone
+    c0 = 1.0/R
+    c1 = R*Omega
+    c2 = Omega*c1
+    # intermediate terms
+    sin_theta = sin(theta)
+    cos_theta = cos(theta)
+    x0 = c2*cos_theta
+    x1 = x0 - g
+    # outputs
+    return _stacked(
+        (2, 4),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        c0*(c0*(sin_theta*(x0 + x1) - 2.0*sin_theta*x1)),
+        2.0*c0*(c1*sin_theta*cos_theta),
+        -c0*sin_theta,
+    )
 
 
 def energy(t: float, y: Numbers, params: Numbers) -> float:
@@ -498,6 +576,88 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x0 = c1*(sin_theta*sin_theta - cos_theta*cos_theta) + g*cos_theta
     # outputs
     return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/R), -c0*x0, 0.0)
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    29 operations, 7 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 2 floats
+        theta in rad; p_theta in J s.
+    params : iterable of 4 floats
+        m in kg; R in m; Omega in rad/s; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
+    m, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/R
+    c1 = 1.0/m
+    c2 = R*m
+    c3 = 1.0/c2
+    c4 = R*Omega
+    c5 = Omega*c4
+    c6 = c2*c4
+    # intermediate terms
+    x0 = c3*p_theta
+    sin_theta = sin(theta)
+    cos_theta = cos(theta)
+    x1 = c5*cos_theta
+    # outputs
+    return (
+        (-c0*(c1*x0), -2.0*c0*(c0*x0), 0.0, 0.0),
+        (
+            R*sin_theta*(x1 - g),
+            m*sin_theta*(2.0*x1 - g),
+            2.0*c6*sin_theta*cos_theta,
+            -c2*sin_theta,
+        ),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (2, 4, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta, p_theta = y
+    m, R, Omega, g = params
+    # terms of the parameters alone
+    c0 = 1.0/R
+    c1 = 1.0/m
+    c2 = R*m
+    c3 = 1.0/c2
+    c4 = R*Omega
+    c5 = Omega*c4
+    c6 = c2*c4
+    # intermediate terms
+    x0 = c3*p_theta
+    sin_theta = sin(theta)
+    cos_theta = cos(theta)
+    x1 = c5*cos_theta
+    # outputs
+    return _stacked(
+        (2, 4),
+        y[0],
+        -c0*(c1*x0),
+        -2.0*c0*(c0*x0),
+        0.0,
+        0.0,
+        R*sin_theta*(x1 - g),
+        m*sin_theta*(2.0*x1 - g),
+        2.0*c6*sin_theta*cos_theta,
+        -c2*sin_theta,
+    )
 
 
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:

@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "single_pendulum"
-DIGEST = "4d56d5d89280264d"
+DIGEST = "da700d138cf1d02d"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -86,17 +86,20 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "reactions",
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (5, 1),
     "jacobian": (5, 1),
+    "parameter_jacobian": (9, 1),
     "energy": (8, 1),
     "reactions": (6, 0),
     "mass_matrix": (2, 2),
@@ -104,6 +107,7 @@ OPERATIONS = {
     "hamiltonian_state": (3, 2),
     "rhs_hamiltonian": (9, 4),
     "jacobian_hamiltonian": (8, 5),
+    "parameter_jacobian_hamiltonian": (20, 6),
     "energy_hamiltonian": (11, 4),
     "lagrangian_state": (5, 3),
     "rational_state": (2, 0),
@@ -224,6 +228,60 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c0 = 1.0/l
     # outputs
     return _stacked((2, 2), y[0], 0.0, 1.0, -c0*(g*cos(theta)), 0.0)
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    9 operations, 1 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 2 floats
+        theta in rad; theta_dot in rad/s.
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    theta, _ = y.tolist() if hasattr(y, "tolist") else y
+    _, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # intermediate terms
+    sin_theta = sin(theta)
+    # outputs
+    return ((0.0, 0.0, 0.0), (0.0, -c0*(c0*(-g*sin_theta)), -c0*sin_theta))
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (2, 3, ...)."""
+    from numpy import sin
+
+    # inputs
+    theta, _ = y
+    _, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # intermediate terms
+    sin_theta = sin(theta)
+    # outputs
+    return _stacked(
+        (2, 3),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -c0*(c0*(-g*sin_theta)),
+        -c0*sin_theta,
+    )
 
 
 def energy(t: float, y: Numbers, params: Numbers) -> float:
@@ -501,6 +559,75 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = c0*g
     # outputs
     return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/l), -c1*cos(theta), 0.0)
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    20 operations, 6 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 2 floats
+        theta in rad; p_theta in J s.
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
+    m, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = l*g
+    c5 = m*g
+    # intermediate terms
+    x0 = c3*p_theta
+    sin_theta = sin(theta)
+    # outputs
+    return (
+        (-c0*(c1*x0), -2.0*c0*(c0*x0), 0.0),
+        (-c4*sin_theta, -c5*sin_theta, -c2*sin_theta),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (2, 3, ...)."""
+    from numpy import sin
+
+    # inputs
+    theta, p_theta = y
+    m, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = l*g
+    c5 = m*g
+    # intermediate terms
+    x0 = c3*p_theta
+    sin_theta = sin(theta)
+    # outputs
+    return _stacked(
+        (2, 3),
+        y[0],
+        -c0*(c1*x0),
+        -2.0*c0*(c0*x0),
+        0.0,
+        -c4*sin_theta,
+        -c5*sin_theta,
+        -c2*sin_theta,
+    )
 
 
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:

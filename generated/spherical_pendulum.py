@@ -77,7 +77,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "c91ec9666104f7bb"
+DIGEST = "8f6092d5fbcf4d84"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -112,12 +112,14 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "mass_matrix",
     "positions",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
@@ -125,12 +127,14 @@ CALLS_FUNCTIONS = (
 OPERATIONS = {
     "rhs": (13, 1),
     "jacobian": (36, 1),
+    "parameter_jacobian": (16, 1),
     "energy": (14, 1),
     "mass_matrix": (5, 2),
     "positions": (9, 0),
     "hamiltonian_state": (7, 2),
     "rhs_hamiltonian": (19, 4),
     "jacobian_hamiltonian": (32, 5),
+    "parameter_jacobian_hamiltonian": (47, 5),
     "energy_hamiltonian": (18, 4),
     "lagrangian_state": (10, 3),
     "rational_state": (4, 0),
@@ -323,6 +327,79 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         -2.0*c0*x1/sin_theta,
         -2.0*c0*(l*cos_theta*theta_dot)/sin_theta,
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    16 operations, 1 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta, phi in rad; theta_dot, phi_dot in rad/s.
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    theta, _, _, phi_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # intermediate terms
+    sin_theta = sin(theta)
+    x0 = phi_dot*(cos(theta)*(l*phi_dot))
+    x1 = x0 - g
+    # outputs
+    return (
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+        (
+            0.0,
+            c0*(c0*(sin_theta*(x0 + x1) - 2.0*sin_theta*x1)),
+            -c0*sin_theta,
+        ),
+        (0.0, 0.0, 0.0),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (4, 3, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta, _, _, phi_dot = y
+    _, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # intermediate terms
+    sin_theta = sin(theta)
+    x0 = phi_dot*(cos(theta)*(l*phi_dot))
+    x1 = x0 - g
+    # outputs
+    return _stacked(
+        (4, 3),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        c0*(c0*(sin_theta*(x0 + x1) - 2.0*sin_theta*x1)),
+        -c0*sin_theta,
+        0.0,
+        0.0,
+        0.0,
     )
 
 
@@ -655,6 +732,95 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         2.0*x3,
         0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    47 operations, 5 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta, phi in rad; p_theta, p_phi in J s.
+    params : iterable of 3 floats
+        m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    theta, _, p_theta, p_phi = y.tolist() if hasattr(y, "tolist") else y
+    m, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = l*g
+    # intermediate terms
+    x0 = c3*p_theta
+    sin_theta = sin(theta)
+    x1 = c3*p_phi/sin_theta
+    x2 = c1*x1
+    x3 = c0*x1
+    x4 = x1*cos(theta)
+    x5 = 2.0*m*x2*x4/sin_theta + c4*sin_theta - x1*x4/sin_theta
+    x6 = x3*x4
+    x7 = 4.0*x6/sin_theta + g*sin_theta - 2.0*x6/sin_theta
+    # outputs
+    return (
+        (-c0*(c1*x0), -2.0*c0*(c0*x0), 0.0),
+        (-c0*x2/sin_theta, -2.0*c0*x3/sin_theta, 0.0),
+        (-x5, -m*x7, -c2*sin_theta),
+        (0.0, 0.0, 0.0),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 3, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta, _, p_theta, p_phi = y
+    m, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*m
+    c3 = 1.0/c2
+    c4 = l*g
+    # intermediate terms
+    x0 = c3*p_theta
+    sin_theta = sin(theta)
+    x1 = c3*p_phi/sin_theta
+    x2 = c1*x1
+    x3 = c0*x1
+    x4 = x1*cos(theta)
+    x5 = 2.0*m*x2*x4/sin_theta + c4*sin_theta - x1*x4/sin_theta
+    x6 = x3*x4
+    x7 = 4.0*x6/sin_theta + g*sin_theta - 2.0*x6/sin_theta
+    # outputs
+    return _stacked(
+        (4, 3),
+        y[0],
+        -c0*(c1*x0),
+        -2.0*c0*(c0*x0),
+        0.0,
+        -c0*x2/sin_theta,
+        -2.0*c0*x3/sin_theta,
+        0.0,
+        -x5,
+        -m*x7,
+        -c2*sin_theta,
         0.0,
         0.0,
         0.0,

@@ -76,7 +76,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "swinging_atwood"
-DIGEST = "7a1f2f4fe1565fc1"
+DIGEST = "c7af83d1cc71c87b"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
@@ -103,22 +103,26 @@ TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
+    "parameter_jacobian",
     "energy",
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
+    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (18, 2),
     "jacobian": (27, 4),
+    "parameter_jacobian": (24, 2),
     "energy": (17, 3),
     "mass_matrix": (3, 1),
     "positions": (5, 0),
     "hamiltonian_state": (5, 1),
     "rhs_hamiltonian": (21, 4),
     "jacobian_hamiltonian": (26, 4),
+    "parameter_jacobian_hamiltonian": (31, 4),
     "energy_hamiltonian": (17, 3),
     "lagrangian_state": (7, 3),
     "rational_state": (2, 0),
@@ -289,6 +293,77 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -g*cos(theta)/r,
         -2.0*theta_dot/r,
         -2.0*r_dot/r,
+    )
+
+
+def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs` with respect to the parameters, without inputs.
+
+    24 operations, 2 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
+    params : iterable of 3 floats
+        M, m in kg; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
+    """
+    # inputs
+    r, theta, _, theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    M, m, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/(M + m)
+    # intermediate terms
+    x0 = theta_dot*(r*theta_dot)
+    cos_theta = cos(theta)
+    x1 = M - m*cos_theta
+    x2 = c0*(m*x0 - g*x1)
+    # outputs
+    return (
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+        (-c0*(g + x2), -c0*(x2 - (x0 + g*cos_theta)), -c0*x1),
+        (0.0, 0.0, -sin(theta)/r),
+    )
+
+
+def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian` over arrays: the result has shape (4, 3, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    r, theta, _, theta_dot = y
+    M, m, g = params
+    # terms of the parameters alone
+    c0 = 1.0/(M + m)
+    # intermediate terms
+    x0 = theta_dot*(r*theta_dot)
+    cos_theta = cos(theta)
+    x1 = M - m*cos_theta
+    x2 = c0*(m*x0 - g*x1)
+    # outputs
+    return _stacked(
+        (4, 3),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -c0*(g + x2),
+        -c0*(x2 - (x0 + g*cos_theta)),
+        -c0*x1,
+        0.0,
+        0.0,
+        -sin(theta)/r,
     )
 
 
@@ -585,6 +660,81 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -c1*r*cos(theta),
         0.0,
         0.0,
+    )
+
+
+def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
+
+    31 operations, 4 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        r in m; theta in rad; p_r in kg m/s; p_theta in J s.
+    params : iterable of 3 floats
+        M, m in kg; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
+    """
+    # inputs
+    r, theta, p_r, p_theta = y.tolist() if hasattr(y, "tolist") else y
+    M, m, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/(M + m)
+    c1 = 1.0/m
+    # intermediate terms
+    x0 = -c0*(c0*p_r)
+    x1 = c1*p_theta/r
+    x2 = c1*x1
+    cos_theta = cos(theta)
+    x3 = r*sin(theta)
+    # outputs
+    return (
+        (x0, x0, 0.0),
+        (0.0, -x2/r, 0.0),
+        (-g, x1*x1/r + g*cos_theta - 2.0*m*x1*x2/r, -(M - m*cos_theta)),
+        (0.0, -g*x3, -m*x3),
+    )
+
+
+def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 3, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    r, theta, p_r, p_theta = y
+    M, m, g = params
+    # terms of the parameters alone
+    c0 = 1.0/(M + m)
+    c1 = 1.0/m
+    # intermediate terms
+    x0 = -c0*(c0*p_r)
+    x1 = c1*p_theta/r
+    x2 = c1*x1
+    cos_theta = cos(theta)
+    x3 = r*sin(theta)
+    # outputs
+    return _stacked(
+        (4, 3),
+        y[0],
+        x0,
+        x0,
+        0.0,
+        0.0,
+        -x2/r,
+        0.0,
+        -g,
+        x1*x1/r + g*cos_theta - 2.0*m*x1*x2/r,
+        -(M - m*cos_theta),
+        0.0,
+        -g*x3,
+        -m*x3,
     )
 
 

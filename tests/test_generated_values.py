@@ -313,6 +313,7 @@ def test_both_forms_give_the_report_s_motion() -> None:
         "mass_matrix",
         "jacobian",
         "jacobian_hamiltonian",
+        "parameter_jacobian_hamiltonian",
         "equilibrium",
         "linear",
     ],

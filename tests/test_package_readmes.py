@@ -139,7 +139,7 @@ def test_the_command_refuses_a_page_without_a_marker(
 def test_the_operations_of_the_readme_are_those_of_the_module() -> None:
     table = DERIVE.read_text(encoding="utf-8").partition("| operations |\n|---|---|---|\n")[2]
     rows = re.findall(r"^\| `(\w+)` \|.*\| (\d+) \|$", table.partition("\n\n")[0], re.MULTILINE)
-    assert len(rows) == 8
+    assert len(rows) == 10
     assert {name: int(count) for name, count in rows}.items() <= {
         name: operations for name, (operations, _) in dp.OPERATIONS.items()
     }.items()

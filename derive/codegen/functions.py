@@ -31,6 +31,11 @@ def _reactions(derivation: Derivation) -> str:
     return ", ".join(symbol.name for symbol in derivation.system.reactions)
 
 
+def _is_small(derivation: Derivation) -> bool:
+    # of a large system, n² entries of n terms each are too much text
+    return len(derivation.system.q) < LARGE
+
+
 @dataclass(frozen=True)
 class FunctionSpec:
     """A function that a generated module may have; a property of a form gives its outputs."""
@@ -51,6 +56,13 @@ SPECS = (
     FunctionSpec("jacobian", "lagrangian", "state state",
         "Jacobian of `rhs`.",
         "Entry [i][j] is the derivative of rhs[i] with respect to y[j]."),
+    FunctionSpec("input_jacobian", "lagrangian", "state inputs",
+        "Derivatives of `rhs` with respect to the inputs.",
+        "Entry [i][j] is the derivative of rhs[i] with respect to input j."),
+    FunctionSpec("parameter_jacobian", "lagrangian", "state parameters",
+        "Derivatives of `rhs` with respect to the parameters, without inputs.",
+        "Entry [i][j] is the derivative of rhs[i] with respect to parameter j.",
+        exists=_is_small),
     FunctionSpec("energy", "lagrangian", "",
         "{}.",
         "Energy in J.", _energy),
@@ -73,11 +85,17 @@ SPECS = (
     FunctionSpec("rhs_hamiltonian", "hamiltonian", "state",
         "Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).",
         "Time derivative of y: velocities from M qdot = p, then -dH/dq."),
-    # of a large system, n² entries of n terms each are too much text
     FunctionSpec("jacobian_hamiltonian", "hamiltonian", "state state",
         "Jacobian of `rhs_hamiltonian`.",
         "Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].",
-        exists=lambda derivation: len(derivation.system.q) < LARGE),
+        exists=_is_small),
+    FunctionSpec("input_jacobian_hamiltonian", "hamiltonian", "state inputs",
+        "Derivatives of `rhs_hamiltonian` with respect to the inputs.",
+        "Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to input j."),
+    FunctionSpec("parameter_jacobian_hamiltonian", "hamiltonian", "state parameters",
+        "Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.",
+        "Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.",
+        exists=_is_small),
     FunctionSpec("energy_hamiltonian", "hamiltonian", "",
         "Hamiltonian H(q, p): `energy` by momenta.",
         "Energy in J."),
@@ -157,6 +175,9 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     system, states = derivation.system, _states(derivation)
     sizes = {"q": len(system.q), "masses": len(system.masses), "axes": system.dimension}
     sizes |= {"state": 2 * len(system.q), "reactions": len(system.reactions), "2": 2}
+    # a function whose result has an axis of no entries does not exist
+    constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
+    sizes |= {name: count for name, count in constants.items() if count}
     sizes |= {form: len(states[form]) for form in ("rational", "variational") if form in states}
     functions = []
     for spec in SPECS:

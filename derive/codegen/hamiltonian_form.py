@@ -56,9 +56,9 @@ class HamiltonianForm(EquationsOfMotion):
             rates.append(self._graph.sum([*inertial, *forces]))
         return [*self._velocities, *rates]
 
-    def _gradient(self, q: sp.Symbol, matrix: Rows) -> list[list[Node]]:
-        """∂matrix/∂q."""
-        return [[self._derivative(entry, q.name) for entry in row] for row in matrix]
+    def _gradient(self, variable: sp.Symbol, matrix: Rows) -> list[list[Node]]:
+        """∂matrix/∂variable."""
+        return [[self._derivative(entry, variable.name) for entry in row] for row in matrix]
 
     @staticmethod
     def _bilinear(matrix: Rows, v: Sequence[Node], w: Sequence[Node], number: Fraction) -> Terms:
@@ -72,38 +72,59 @@ class HamiltonianForm(EquationsOfMotion):
 
         Without applied forces ∂ṗ/∂p is -(∂q̇/∂q)ᵀ.
         """
-        by_q, by_p = self._velocity_derivatives
+        by_q = [self._velocity_change(q) for q in self._system.q]
+        by_p = [
+            self._factorisation.solve([self._graph.node(int(i == k)) for i in self._n])
+            for k in self._n
+        ]
         upper = [[column[i] for column in (*by_q, *by_p)] for i in self._n]
-        return [node for row in (*upper, *map(self._force_derivatives, self._n)) for node in row]
+        lower = []
+        for i in self._n:
+            pairs = zip(self._system.q, by_q, strict=True)
+            row = [self._force_change(i, q, change) for q, change in pairs]
+            row += [
+                self._graph.sum([(-by_q[i][k], 1), *self._friction(i, by_p[k])]) for k in self._n
+            ]
+            lower.append(row)
+        return [node for row in (*upper, *lower) for node in row]
 
-    @cached_property
-    def _velocity_derivatives(self) -> tuple[list[list[Node]], list[list[Node]]]:
-        """Columns of ∂w/∂q and of ∂w/∂p."""
-        w, solve, derivative = self._velocities, self._factorisation.solve, self._derivative
-        drift, by_q = self._nodes(self._derivation.drift), []
-        by_p = [solve([self._graph.node(int(i == k)) for i in self._n]) for k in self._n]
-        for q in self._system.q:
-            shift = self._shifted(q, w)
-            right = [-(a + derivative(b, q.name)) for a, b in zip(shift, drift, strict=True)]
-            by_q.append(solve(right))
-        return by_q, by_p
+    @property
+    def input_jacobian_hamiltonian(self) -> list[Node]:
+        """Rows of ∂(q̇, ṗ)/∂u."""
+        return self._derivatives(self._system.u)
 
-    def _force_derivatives(self, i: int) -> list[Node]:
-        """The row ∂ṗ_i/∂(q, p)."""
-        q, graph, derivative = self._system.q, self._graph, self._derivative
-        w, (by_q, by_p) = self._velocities, self._velocity_derivatives
-        v = self._rates(w)
-        gradient, force = self._gradient(q[i], self._inertia), self._system.applied[i]
-        drag = [self._at_velocities(force.diff(rate)) for rate in self._system.qdot]
-        row = []
-        for qk, change in zip(q, by_q, strict=True):
-            second = self._bilinear(self._gradient(qk, gradient), v, v, HALF)
-            terms = [*second, *self._bilinear(gradient[: len(w)], change, v, Fraction(1))]
-            potential = derivative(derivative(self._potential, q[i].name), qk.name)
-            forces = [(potential, -1), (self._at_velocities(force.diff(qk)), 1)]
-            friction = [(a * b, 1) for a, b in zip(drag, change, strict=True)]
-            row.append(graph.sum([*terms, *forces, *friction]))
-        for k in self._n:
-            friction = [(a * b, 1) for a, b in zip(drag, by_p[k], strict=True)]
-            row.append(graph.sum([(-by_q[i][k], 1), *friction]))
-        return row
+    @property
+    def parameter_jacobian_hamiltonian(self) -> list[Node]:
+        """Rows of ∂(q̇, ṗ)/∂(parameters, without inputs)."""
+        return self._derivatives([part.symbol for part in self._system.parameters])
+
+    def _derivatives(self, constants: Sequence[sp.Symbol]) -> list[Node]:
+        """Rows of ∂(q̇, ṗ)/∂constants."""
+        changes = [self._velocity_change(s) for s in constants]
+        pairs = [*zip(constants, changes, strict=True)]
+        upper = [[change[i] for change in changes] for i in self._n]
+        lower = [[self._force_change(i, s, change) for s, change in pairs] for i in self._n]
+        return [node for row in (*upper, *lower) for node in row]
+
+    def _velocity_change(self, variable: sp.Symbol) -> list[Node]:
+        """∂w/∂variable: M ∂w = -(∂M w + ∂b)."""
+        shift, drift = self._shifted(variable, self._velocities), self._derivation.drift
+        pairs = zip(shift, self._nodes(drift), strict=True)
+        right = [-(a + self._derivative(b, variable.name)) for a, b in pairs]
+        return self._factorisation.solve(right)
+
+    def _force_change(self, i: int, variable: sp.Symbol, change: Sequence[Node]) -> Node:
+        """∂ṗ_i/∂variable, a coordinate or constant by which w has the derivative `change`."""
+        q, w, derivative = self._system.q[i], self._velocities, self._derivative
+        v, gradient = self._rates(w), self._gradient(q, self._inertia)
+        second = self._bilinear(self._gradient(variable, gradient), v, v, HALF)
+        terms = [*second, *self._bilinear(gradient[: len(w)], change, v, Fraction(1))]
+        potential = derivative(derivative(self._potential, q.name), variable.name)
+        force = self._at_velocities(self._system.applied[i].diff(variable))
+        return self._graph.sum([*terms, (potential, -1), (force, 1), *self._friction(i, change)])
+
+    def _friction(self, i: int, change: Sequence[Node]) -> Terms:
+        """The terms of ∂Q_i/∂q̇ times a change of the velocities."""
+        force = self._system.applied[i]
+        drag = (self._at_velocities(force.diff(rate)) for rate in self._system.qdot)
+        return tuple((a * b, Fraction(1)) for a, b in zip(drag, change, strict=True))

@@ -84,7 +84,21 @@ class LagrangianForm(EquationsOfMotion):
     @property
     def jacobian(self) -> list[Node]:
         """Rows of ∂(q̇, q̈)/∂(q, q̇)."""
-        variables, columns = (*self._system.q, *self._system.qdot), []
+        return self._derivatives((*self._system.q, *self._system.qdot))
+
+    @property
+    def input_jacobian(self) -> list[Node]:
+        """Rows of ∂(q̇, q̈)/∂u."""
+        return self._derivatives(self._system.u)
+
+    @property
+    def parameter_jacobian(self) -> list[Node]:
+        """Rows of ∂(q̇, q̈)/∂(parameters, without inputs)."""
+        return self._derivatives([part.symbol for part in self._system.parameters])
+
+    def _derivatives(self, variables: Sequence[sp.Symbol]) -> list[Node]:
+        """Rows of ∂(q̇, q̈)/∂variables: M ∂q̈ = ∂f - ∂M q̈."""
+        columns = []
         for variable in variables:
             change = [self._derivative(force, variable.name) for force in self._forcing]
             shift = self._shifted(variable, self._accelerations)

@@ -100,13 +100,20 @@ class Lowering:
             case Component(solution, index):
                 return self._add(op.Component, [self._lower(solution)], index)
             case Sum(terms):
-                merged = _merged(list(self._terms(terms)))
+                merged = [t for t in _merged(list(self._terms(terms))) if not self._is_zero(t[0])]
                 return self._sum(merged) if merged else self._constant(0)
             case Product():
                 factors = _merged(list(self._powers(*_numeric(node))))
+                if any(self._is_zero(n) for n, _ in factors):
+                    return self._constant(0)
                 return self._product(factors) if factors else self._constant(1)
             case _:
                 raise NotImplementedError(f"no operation for a {type(node).__name__} node")
+
+    def _is_zero(self, n: int) -> bool:
+        """Whether an operation is 0, as a sum may be whose terms cancel without their `Let`."""
+        operation = self.operations[n]
+        return isinstance(operation, op.Constant) and operation.value == 0
 
     def _constant(self, value: Fraction | int) -> int:
         return self._add(op.Constant, (), Fraction(value))

@@ -25,7 +25,7 @@ STATES: dict[Form, str] = {
 
 def units(system: System) -> dict[str, str]:
     """Units of all names."""
-    rows = {parameter.symbol.name: parameter.unit for parameter in system.parameters}
+    rows = {part.symbol.name: part.unit for part in system.parameters_and_inputs}
     for coordinate, qdot, p in zip(system.coordinates, system.qdot, system.p, strict=True):
         rows[coordinate.symbol.name] = coordinate.unit
         rows[qdot.name] = f"{coordinate.unit}/s"
@@ -51,6 +51,10 @@ def summary(contents: Contents) -> str:
         f"default {p.default}: {p.meaning}"
         for p in system.parameters
     ]
+    if system.inputs:
+        sections["Inputs, the last of params"] = [
+            f"{u.symbol} [{u.unit}]: {u.meaning}" for u in system.inputs
+        ]
     sections["Masses and their positions"] = [mass.words for mass in system.masses]
     is_short = len(system.q) <= READABLE
     if is_short and derivation.lagrangian.count_ops() <= READABLE_OPERATIONS:

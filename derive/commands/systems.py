@@ -25,6 +25,8 @@ def description(name: str) -> str:
         "state": ", ".join(s.name for s in system.q + system.qdot),
         "parameters": ", ".join(parameters) or "none",
     }
+    if system.inputs:
+        rows["inputs"] = ", ".join(f"{u.symbol} [{u.unit}]" for u in system.inputs)
     layout = TextWrapper(WIDTH + 2, initial_indent="  ", subsequent_indent=" " * 6)
     lines = [layout.fill(f"{title}: {text}") for title, text in rows.items()]
     return "\n".join([f"{name}: {system.title}", *picture, "", *lines])

@@ -52,7 +52,10 @@ class Notation:
         system = self.system
         omega = sp.Symbol(self.letter("omega"), positive=True)  # of normal modes
         kinds: dict[sp.Symbol, Kind] = {
-            **{p.symbol: KIND_OF_UNIT.get(p.unit, "parameter") for p in system.parameters},
+            **{
+                p.symbol: KIND_OF_UNIT.get(p.unit, "parameter")
+                for p in system.parameters_and_inputs
+            },
             **dict.fromkeys((*system.q, TIME), "coordinate"),
             **dict.fromkeys((*system.qdot, *system.p, omega), "rate"),
             **dict.fromkeys(system.qddot, "acceleration"),

@@ -93,6 +93,6 @@ def _code(derivation: Derivation) -> Iterator[Block]:
 
 def _example(derivation: Derivation) -> str:
     """A call of the right-hand side at a state."""
-    defaults = [float(parameter.default) for parameter in derivation.system.parameters]
+    defaults = [float(parameter.default) for parameter in derivation.system.parameters_and_inputs]
     lines = [f"y = [0.1] * {2 * len(derivation.system.q)}", fill(f"params = {defaults}", WIDTH)]
     return "\n".join([*lines, "rhs(0.0, y, params)"])

@@ -8,7 +8,7 @@ from derive.handout.document import Block, Paragraph, Table
 from derive.handout.notation import unit_words, words
 from derive.handout.numbering import Numbering
 from derive.mechanics.derivation import Derivation
-from derive.system.parts import Coordinate, Parameter, RigidBody
+from derive.system.parts import Coordinate, Input, Parameter, RigidBody
 
 
 def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:
@@ -23,6 +23,10 @@ def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:
             for p in d.system.parameters
         )
         yield Table(("parameter", "default value", "meaning"), tuple(parameters))
+    if d.system.inputs:
+        yield Paragraph("The inputs may change during a motion.")
+        inputs = ((f"`{u.symbol}`", unit_words(u.unit), meaning(u)) for u in d.system.inputs)
+        yield Table(("input", "unit", "meaning"), tuple(inputs))
     masses = d.system.masses
     noun = "positions of the masses" if len(masses) > 1 else "position of the mass"
     names = formulas.text(*dict.fromkeys(mass.mass for mass in masses))
@@ -37,7 +41,7 @@ def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         yield Table(("mass", "moment of inertia", "orientation"), rows)
 
 
-def meaning(part: Coordinate | Parameter) -> str:
+def meaning(part: Coordinate | Parameter | Input) -> str:
     """The meaning of a symbol; none if it only repeats the name."""
     return "" if part.meaning == part.symbol.name else words(part.meaning)
 

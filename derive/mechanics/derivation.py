@@ -38,7 +38,8 @@ class Derivation:
     Raises
     ------
     SystemDefinitionError
-        When `system` is not a `System`; when a coordinate moves no mass, or moves the masses only
+        When `system` is not a `System`; when positions or the potential contain an input; when a
+        coordinate moves no mass, or moves the masses only
         as others do, or has no inertia that is a positive number.
 
     Notes
@@ -60,7 +61,22 @@ class Derivation:
 
     def __post_init__(self) -> None:
         as_system(self.system)
+        self._check_inputs()
         check_independence(self.system, self.mass_matrix)
+
+    def _check_inputs(self) -> None:
+        positions = sp.Tuple(*(r for m in self.system.masses for _, r in m.motions))
+        for part, expression in (
+            ("positions", positions),
+            ("the potential", self.system.potential_energy),
+        ):
+            if held := expression.free_symbols & {*self.system.u}:
+                names = ", ".join(sorted(symbol.name for symbol in held))
+                raise SystemDefinitionError(
+                    f"{part} of system {self.system.name!r} depend on {names}, whose derivatives "
+                    "are not known: replace such an input by a function of time, with "
+                    "derive.with_inputs, or let forces depend on it"
+                )
 
     @cached_property
     def position_jacobians(self) -> tuple[Matrix, ...]:

@@ -1,12 +1,15 @@
-"""Systems with numbers in place of parameters; terms that become zero vanish."""
+"""Systems with numbers in place of parameters, or formulas in place of inputs."""
 
 from collections.abc import Mapping
 from dataclasses import replace
 
 import sympy as sp
 
+from derive.formulas.expression import FUNCTIONS, ExpressionError, number
 from derive.system.parts import SystemDefinitionError, formula
-from derive.system.system import System
+from derive.system.symbols import TIME
+from derive.system.system import System, as_system
+from solvers.io.suggestion import did_you_mean
 
 
 def specialised(system: System, values: Mapping[str, float]) -> System:
@@ -20,8 +23,62 @@ def specialised(system: System, values: Mapping[str, float]) -> System:
     return substituted(system, {symbols[name]: formula(value) for name, value in values.items()})
 
 
+def with_inputs(system: System, formulas: Mapping[str, sp.Expr | float | str]) -> System:
+    """The system with functions of time and state in place of inputs.
+
+    Parameters
+    ----------
+    system : System
+        A system with inputs.
+    formulas : mapping of str to sympy.Expr, number or str
+        For each input to replace, by name, a function of time, coordinates, velocities and
+        parameters, such as ``"-k*x - c*x_dot"``; text is parsed, never executed. In positions
+        and potentials inputs cannot depend on velocities.
+
+    Returns
+    -------
+    System
+        Its other inputs remain inputs.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When the system has no such input, or a formula is invalid.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> from derive import Coordinate, Derivation, Input, Parameter, PointMass, System, with_inputs
+    >>> x, F = Symbol("x", real=True), Symbol("F", real=True)
+    >>> m = Symbol("m", positive=True)
+    >>> cart = System("cart", "A cart", [Coordinate(x, "m", "position")],
+    ...     [Parameter(m, "kg", 1.0, "mass")], [PointMass(m, (x, 0))], potential=0, forces=(F,),
+    ...     inputs=[Input(F, "N", "force on the cart")])
+    >>> Derivation(with_inputs(cart, {"F": "-3*x - 2*x_dot"})).forcing[0]
+    -3*x - 2*x_dot
+    """
+    inputs = {symbol.name: symbol for symbol in as_system(system).u}
+    for name in formulas:
+        if name not in inputs:
+            hint, known = did_you_mean(str(name), inputs), ", ".join(inputs) or "none"
+            raise SystemDefinitionError(
+                f"system {system.name!r} has no input {str(name)[:50]!r}{hint}; inputs are {known}"
+            )
+    others = [symbol for symbol in system.params if symbol.name not in formulas]
+    scope = FUNCTIONS | {s.name: s for s in (*system.q, *system.qdot, *others, TIME)}
+
+    def value(name: str) -> sp.Expr:
+        given = formulas[name]
+        try:
+            return formula(number(given, scope) if isinstance(given, str) else given)
+        except (ExpressionError, SystemDefinitionError) as error:
+            raise SystemDefinitionError(f"input {name}: {error}") from error
+
+    return substituted(system, {inputs[name]: value(name) for name in formulas})
+
+
 def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
-    """The system with parameters replaced by numbers or by formulas of other parameters."""
+    """The system with parameters or inputs replaced by numbers or by formulas of others."""
 
     def substitute(expression: sp.Expr) -> sp.Expr:
         return expression.subs(values)
@@ -36,4 +93,5 @@ def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
         forces=tuple(map(substitute, system.forces)),
         equilibrium=system.equilibrium and tuple(map(substitute, system.equilibrium)),
         reactions=[length for length in system.reactions if length not in values],
+        inputs=[part for part in system.inputs if part.symbol not in values],
     )

@@ -50,8 +50,8 @@ def _check_counts(system: "System") -> None:
 
 def _parts(system: "System") -> Iterator[Part]:
     """Every expression of a system."""
-    constants = frozenset(system.params)
-    moving = constants | {*system.q, TIME}
+    constants = frozenset(system.params) - {*system.u}
+    moving = frozenset(system.params) | {*system.q, TIME}
     fixed = "parameters"
     place = "coordinates, parameters and t; forces and dissipation can depend on velocities"
     for mass in system.masses:
@@ -77,7 +77,7 @@ def _check_symbols(system: "System", part: Part) -> None:
             f"{part.name} contains {same} as a symbol with other assumptions than the declared "
             "one: use the same object; time is derive.TIME, the velocity of x derive.velocity(x)"
         )
-    variables = {*system.q, *system.qdot, *system.qddot, *system.p, TIME}
+    variables = {*system.q, *system.qdot, *system.qddot, *system.p, *system.u, TIME}
     if {*unknown} <= {symbol.name for symbol in variables}:
         raise SystemDefinitionError(
             f"{part.name} depends on {names}: it must be a function of {part.variables}"

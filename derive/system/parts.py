@@ -1,11 +1,11 @@
-"""The parts of a system: coordinates, parameters, point masses and rigid bodies."""
+"""The parts of a system: coordinates, parameters, inputs, point masses and rigid bodies."""
 
 import sys
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -165,6 +165,50 @@ class Parameter:
                 f"the default of {self.symbol} is {shortened(number)}: give a "
                 f"{'positive' if positive else 'finite'} number in {self.unit}"
             )
+
+
+@dataclass(frozen=True)
+class Input:
+    """A force, torque or other quantity that may change during a motion.
+
+    In generated code an input is one of the parameters, after all others; its default value is 0.
+
+    Parameters
+    ----------
+    symbol : sympy.Symbol
+        Real, and not only positive; generated code uses its name.
+    unit : str
+        Such as ``N`` or ``N m``.
+    meaning : str
+        A description of one line.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When `symbol` is not a real symbol, or cannot be 0; when `unit` or `meaning` is not one line
+        that generated files can contain.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> Input(Symbol("F", real=True), "N", "force on the cart").default
+    0.0
+    """
+
+    symbol: sp.Symbol
+    unit: str
+    meaning: str
+    default: ClassVar[float] = 0.0
+
+    def __post_init__(self) -> None:
+        _check_symbol(self.symbol)
+        if self.symbol.is_zero is False:
+            raise SystemDefinitionError(
+                f"input {self.symbol} cannot be 0, its default value: declare "
+                f"Symbol({self.symbol.name!r}, real=True)"
+            )
+        _check_unit(f"the unit of {self.symbol}", self.unit)
+        check_text(f"the meaning of {self.symbol}", self.meaning)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from derive.system.checks import check
 from derive.system.naming import check_module_name, check_name, check_unique
 from derive.system.parts import (
     Coordinate,
+    Input,
     Parameter,
     PointMass,
     SystemDefinitionError,
@@ -25,6 +26,7 @@ from solvers.io.suggestion import shortened
 KINDS = {
     "coordinates": Coordinate,
     "parameters": Parameter,
+    "inputs": Input,
     "masses": PointMass,
     "reactions": sp.Symbol,
 }
@@ -63,14 +65,17 @@ class System:
     reactions : sequence of sympy.Symbol, optional
         Parameters, such as lengths of rods, whose constraint forces are requested: a rod's
         tension.
+    inputs : sequence of Input, optional
+        Quantities in `forces` and `dissipation` that may change during a motion. Positions and
+        potentials may contain inputs that `derive.with_inputs` replaces.
 
     Raises
     ------
     SystemDefinitionError
-        When coordinates, parameters or masses are not a list of these, or there is no coordinate
-        or no mass; when `title` is not one line that generated files can contain; when a name is
-        no identifier, reserved or used twice; when a value is neither a real expression nor a
-        finite number, or contains an unknown symbol; when positions do not all have two or all
+        When coordinates, parameters, inputs or masses are not a list of these, or there is no
+        coordinate or no mass; when `title` is not one line that generated files can contain; when a
+        name is no identifier, reserved or used twice; when a value is neither a real expression nor
+        a finite number, or contains an unknown symbol; when positions do not all have two or all
         three components; when `gravity` or `forces` has a wrong number of components, or weight
         needs a parameter named ``g``; when `dissipation` depends on no velocity; when `reactions`
         are combined with applied forces.
@@ -101,6 +106,7 @@ class System:
     forces: Sequence[sp.Expr] = ()
     equilibrium: Sequence[sp.Expr] | None = None
     reactions: Sequence[sp.Symbol] = ()
+    inputs: Sequence[Input] = ()
 
     def __post_init__(self) -> None:
         for field, kind in KINDS.items():
@@ -154,8 +160,18 @@ class System:
 
     @cached_property
     def params(self) -> tuple[sp.Symbol, ...]:
-        """The parameters' symbols."""
-        return tuple(parameter.symbol for parameter in self.parameters)
+        """Symbols of the parameters and, after them, of the inputs."""
+        return tuple(part.symbol for part in self.parameters_and_inputs)
+
+    @cached_property
+    def u(self) -> tuple[sp.Symbol, ...]:
+        """The inputs' symbols."""
+        return tuple(part.symbol for part in self.inputs)
+
+    @property
+    def parameters_and_inputs(self) -> tuple[Parameter | Input, ...]:
+        """In the order of ``params`` in generated code."""
+        return (*self.parameters, *self.inputs)
 
     @cached_property
     def potential_energy(self) -> sp.Expr:

@@ -14,7 +14,14 @@ import sympy as sp
 from derive.formulas.budget import MAX_FACTORS_IN_SYSTEM, MAX_SECOND_IN_SYSTEM, Budget
 from derive.formulas.expression import FUNCTIONS, ExpressionError, number
 from derive.system.naming import IDENTIFIER, check_name
-from derive.system.parts import Coordinate, Parameter, PointMass, RigidBody, SystemDefinitionError
+from derive.system.parts import (
+    Coordinate,
+    Input,
+    Parameter,
+    PointMass,
+    RigidBody,
+    SystemDefinitionError,
+)
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
 from derive.system.tables import Table, read
@@ -22,7 +29,7 @@ from solvers.io.toml_input import InputError
 
 KEYS = (
     *("name", "title", "coordinates", "parameters", "definitions", "masses", "potential"),
-    *("gravity", "dissipation", "forces", "equilibrium", "reactions"),
+    *("gravity", "dissipation", "forces", "equilibrium", "reactions", "inputs"),
 )
 #: Units of parameters that are positive by default.
 POSITIVE_UNITS = ("kg", "m")
@@ -67,8 +74,11 @@ def _system(stem: str, table: Table) -> System:
     budget = Budget(MAX_SECOND_IN_SYSTEM, MAX_FACTORS_IN_SYSTEM)
     numbers = Formulas(FUNCTIONS, budget)
     parameters = [_parameter(key, name, row, numbers) for key, row in rows.items()]
+    rows = table.tables("inputs", ("unit", "meaning"))
+    inputs = [_input(key, name, row) for key, row in rows.items()]
     q = [coordinate.symbol for coordinate in coordinates]
-    symbols = [*q, *(p.symbol for p in parameters), TIME, *map(velocity, q)]
+    symbols = [*q, *(p.symbol for p in parameters), *(u.symbol for u in inputs)]
+    symbols += [TIME, *map(velocity, q)]
     scope = FUNCTIONS | {symbol.name: symbol for symbol in symbols}
     formulas = Formulas(scope, budget)
     formulas = Formulas(scope | _definitions(table, name, formulas), budget)
@@ -85,6 +95,7 @@ def _system(stem: str, table: Table) -> System:
         forces=each("forces") or (),
         equilibrium=each("equilibrium"),
         reactions=[*_lengths(table, formulas, "reactions")],
+        inputs=inputs,
     )
 
 
@@ -148,6 +159,11 @@ def _masses(table: Table, formulas: Formulas) -> Iterator[PointMass]:
 def _coordinate(key: str, system: str, row: Table) -> Coordinate:
     symbol = _symbol(key, system, positive=row.flag("positive", default=False))
     return Coordinate(symbol, row.text("unit", "rad"), row.text("meaning", key))
+
+
+def _input(key: str, system: str, row: Table) -> Input:
+    symbol = _symbol(key, system, positive=False)
+    return Input(symbol, row.text("unit", "1"), row.text("meaning", key))
 
 
 def _parameter(key: str, system: str, row: Table, numbers: Formulas) -> Parameter:

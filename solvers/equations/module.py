@@ -43,6 +43,8 @@ class GeneratedModule(Protocol):
     @property
     def PARAMETERS(self) -> tuple[str, ...]: ...
     @property
+    def INPUTS(self) -> tuple[str, ...]: ...  # the last parameters, if the system has inputs
+    @property
     def DEFAULTS(self) -> tuple[float, ...]: ...
     @property
     def POSITIVE(self) -> tuple[str, ...]: ...  # parameters and coordinates that must be
@@ -105,6 +107,11 @@ def with_functions(
 def named(stem: str, form: str) -> str:
     """The name of a function in a form: ``rhs`` in Lagrange's form, else ``rhs_rational`` etc."""
     return stem if form == "lagrangian" else f"{stem}_{form}"
+
+
+def inputs(module: GeneratedModule) -> tuple[str, ...]:
+    """Names of the inputs, which are the last parameters of systems that have inputs."""
+    return module.INPUTS if has_function(module, "input_jacobian") else ()
 
 
 def operations_on_state(module: GeneratedModule, name: str) -> int:

@@ -250,7 +250,7 @@ class CBackend(Backend):
             summary=indent(summary(contents), "   "),
             length=2 * len(system.q),
             count=len(system.params),
-            defaults=", ".join(repr(float(p.default)) for p in system.parameters),
+            defaults=", ".join(repr(float(p.default)) for p in system.parameters_and_inputs),
             sizes="\n".join(f"    {guard}_{k.upper()} = {n}," for k, n in lengths.items()),
             double=f"#define {guard}_DOUBLE\n" if has_loops else "",
             indices="\n".join(_indices(contents)),

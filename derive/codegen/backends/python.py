@@ -217,7 +217,10 @@ def _constants(contents: Contents) -> str:
         "FORMS": _literal(forms),
         "STATES": _dict({form: _literal(contents.states[form], depth=1) for form in forms}),
         "PARAMETERS: tuple[str, ...]": _literal(parameters),
-        "DEFAULTS: tuple[float, ...]": _literal(float(p.default) for p in system.parameters),
+        **({"INPUTS": _literal(u.name for u in system.u)} if system.u else {}),
+        "DEFAULTS: tuple[float, ...]": _literal(
+            float(p.default) for p in system.parameters_and_inputs
+        ),
         "POSITIVE": _literal(s.name for s in (*system.params, *system.q) if s.is_positive),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.functions),
