@@ -147,7 +147,7 @@ def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
     # the derivatives no longer change: the first ones are rounded on the way to the blocks and back
     source = kernel_source._source
     exact = ("CLOSE = 1e-14", "CLOSE = 0.0")
-    assert exact[0] in source("newton.h")
+    assert exact[0] in source("simplified_newton.h")
     monkeypatch.setattr(kernel_source, "_source", lambda file: source(file).replace(*exact))
     method = load(name)
     module, rest = probe(tmp_path, method.stages), [0.0] * method.stages

@@ -271,13 +271,13 @@ def test_the_message_of_a_step_without_solution_suggests_a_way_out() -> None:
 #: Mistakes in the C of Newton's iteration and of the error estimate.
 MISTAKES = {
     "none": [],
-    "a wrong eigenvalue": [("h*M[first", "1.1*h*M[first")],
+    "a wrong eigenvalue": [("h*method->M[first", "1.1*h*method->M[first")],
     "a Jacobian that is never refreshed": [("KEPT_RATE = 1e-3", "KEPT_RATE = 1e300")],
     "no filter of the error": [
         ("    solve(DIM, linearisation.factors, linearisation.pivots, error);\n", ""),
         ("    solve(DIM, linearisation.factors, linearisation.pivots, filtered);\n", ""),
     ],
-    "a predictor of the wrong interval": [("extrapolate(1.0, h/", "extrapolate(0.0, h/")],
+    "a predictor of the wrong interval": [("method, 1.0, h/", "method, 0.0, h/")],
     "no predictor": [("if (has_polynomial) {", "if (0) {")],
 }
 

@@ -4,7 +4,7 @@ It consists of the module's generated header, the method's stages written out fr
 tableau, and the handwritten files in the folder ``c``.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -167,28 +167,40 @@ static inline void stages(
 {rows}    (void)t; (void)z; (void)h; (void)stage; (void)k; (void)params;
 }}"""
 
+#: One of `METHODS`, a structure in ``coefficients.h``.
+COEFFICIENTS = """\
+{{ /* {title} */
+    {stages}, {blocks}, {{{sizes}}},
+    {A},
+    {T},
+    {inverse},
+    {M},
+    {b},
+    {c},
+    {lagrange},
+    {at_start},
+    {error_power},
+}},"""
+
 IMPLICIT = """\
-static const double A[STAGES][STAGES] = {{
-{A}
+enum {{ FACTORS = {squares}*DIM*DIM }};
+{coefficients_h}
+static const Method METHODS[] = {{
+{methods}
 }};
-static const double T[STAGES][STAGES] = {{
-{T}
-}};
-static const double T_INVERSE[STAGES][STAGES] = {{
-{inverse}
-}};
-static const double M[STAGES][STAGES] = {{
-{M}
-}};
-static const double C[STAGES] = {{{nodes}}};
-static const double LAGRANGE[STAGES] = {{{lagrange}}}, AT_START[STAGES] = {{{at_start}}};
-static const double ERROR_POWER = {error_power};
-enum {{ BLOCKS = {blocks}, FACTORS = {squares}*DIM*DIM }};
-static const int BLOCK_SIZES[BLOCKS] = {{{sizes}}};
-{increment}
 {linear_h}
+{linearisation_h}
+{simplified_newton_h}
+{predictor_h}
+{full_newton_h}
 {newton_h}
 {implicit_h}"""
+
+#: Handwritten files of implicit methods.
+IMPLICIT_FILES = (
+    *("coefficients", "linear", "linearisation", "simplified_newton", "predictor", "full_newton"),
+    *("newton", "implicit"),
+)
 
 STAGE = """\
     for (int n = 0; n < DIM; n++) {{
@@ -327,24 +339,32 @@ def _explicit(tableau: Tableau) -> str:
 
 
 def _implicit(tableau: Tableau) -> str:
+    sizes = Blocks.of(np.array(tableau.A, float)).sizes
+    return IMPLICIT.format(
+        squares=sum(size**2 for size in sizes),
+        methods=_coefficients(tableau),
+        **{f"{name}_h": _source(f"{name}.h") for name in IMPLICIT_FILES},
+    )
+
+
+def _coefficients(tableau: Tableau) -> str:
     A, c = np.array(tableau.A, float), np.array(tableau.c, float)
     blocks = Blocks.of(A)
     matrices = {"A": A, "T": blocks.T, "inverse": blocks.inverse, "M": blocks.M}
-    rows = {
-        name: ",\n".join(f"    {{{', '.join(map(_real, row))}}}" for row in matrix)
-        for name, matrix in matrices.items()
+    vectors = {
+        "b": tableau.b,
+        "c": tableau.c,
+        "lagrange": lagrange_factors(c),
+        "at_start": lagrange(c, np.zeros(1))[0],
     }
-    return IMPLICIT.format(
-        nodes=", ".join(map(_real, tableau.c)),
-        lagrange=", ".join(map(_real, lagrange_factors(c))),
-        at_start=", ".join(map(_real, lagrange(c, np.zeros(1))[0])),
-        error_power=_real(tolerance_power(tableau.stages)),
+    return COEFFICIENTS.format(
+        title=tableau.title,
+        stages=tableau.stages,
         blocks=len(blocks.sizes),
-        squares=sum(size**2 for size in blocks.sizes),
         sizes=", ".join(map(str, blocks.sizes)),
-        increment=WEIGHTED_SUM.format(name="increment", sum=_sum(tableau.b)),
-        **{f"{name}_h": _source(f"{name}.h") for name in ("linear", "newton", "implicit")},
-        **rows,
+        error_power=_real(tolerance_power(tableau.stages)),
+        **{name: f"{{{', '.join(map(_row, rows))}}}" for name, rows in matrices.items()},
+        **{name: _row(numbers) for name, numbers in vectors.items()},
     )
 
 
@@ -366,6 +386,10 @@ def _sum(weights: Sequence[Number]) -> str:
     """Σ h w k, with all products but the last one independent of the last stage."""
     terms = [f"(h*{_real(w)})*k[{j}][n]" for j, w in enumerate(weights) if w != 0]
     return "\n            + ".join(terms) or "0.0*h"
+
+
+def _row(numbers: Iterable[Number]) -> str:
+    return f"{{{', '.join(map(_real, numbers))}}}"
 
 
 def _real(number: Number) -> str:

@@ -1,7 +1,6 @@
 /* One step of an implicit method, in one lane, and the length of the next one.
 
-   Defined before this file, beside that of newton.h: increment(), ERROR_ORDER, ERROR_POWER, and the
-   Lagrange polynomials at the start, AT_START. */
+   Defined before this file, beside that of step.h: JACOBIAN, STAGES, and the methods, METHODS. */
 
 #define HAS_POLYNOMIAL 1
 #define INTERPOLATES 0
@@ -20,18 +19,18 @@ static const double LEAST_ERROR = 1e-2;
    that uses f, too, differs by h g (f - p'(0)), where g is the real eigenvalue of A. The filter
    (I - h g J)^-1 keeps it bounded for stiff equations, a second one makes it small (E. Hairer,
    G. Wanner, section IV.8; Journal of Computational and Applied Mathematics 111 (1999) 93-111). Its
-   order is STAGES, that of the method nearly twice as large: the tolerance of the estimate is
+   order is the number of stages, that of the method nearly twice as large: the tolerance of the estimate is
    larger by a power accordingly, as there. */
 static double squared_error_norm(
-    const Task *task, const State *start, double h, const double *params,
+    const Method *method, const Task *task, const State *start, double h, const double *params,
     const double *derivative, const double (*k)[DIM], const State *end, StepResult *result)
 {
     double at_start[DIM], error[DIM], state[DIM], filtered[DIM], check = 0.0;
-    const double weight = h*M[0][0];
+    const double weight = h*method->M[0][0];
     for (int n = 0; n < DIM; n++) {
         at_start[n] = 0.0;
-        for (int j = 0; j < STAGES; j++) {
-            at_start[n] += AT_START[j]*k[j][n];
+        for (int j = 0; j < method->stages; j++) {
+            at_start[n] += method->at_start[j]*k[j][n];
         }
         error[n] = weight*(derivative[n] - at_start[n]);
     }
@@ -49,9 +48,18 @@ static double squared_error_norm(
         check += filtered[n] - filtered[n];
     }
     const double tolerance = task->rtol > 0 ? task->rtol : fmin(task->atol, 1.0);
-    const double relaxed = ESTIMATE_SHARE*pow(tolerance, ERROR_POWER);
+    const double relaxed = ESTIMATE_SHARE*pow(tolerance, method->error_power);
     return mean_square(check == 0 ? filtered : error, start->z, end->z, task->rtol*relaxed,
                        task->atol*relaxed);
+}
+
+static inline double increment(const Method *method, double h, const double (*k)[DIM], int n)
+{
+    double sum = 0.0;
+    for (int j = 0; j < method->stages; j++) {
+        sum += (h*method->b[j])*k[j][n];
+    }
+    return sum;
 }
 
 /* The state after h; with step control also the norm of the estimated error. */
@@ -59,20 +67,21 @@ static __attribute__((noinline)) void step(
     const Task *task, const State *restrict start, double h, const double *restrict params,
     State *restrict end, StepResult *restrict result)
 {
+    const Method *method = &METHODS[0];
     double k[STAGES][DIM], derivative[DIM];
     result->evaluations = 1;
     result->jacobians = 0;
     RHS(start->t, start->z, params, derivative);
-    solve_stages(task, start, h, params, derivative, k, end, result);
+    solve_stages(method, task, start, h, params, derivative, k, end, result);
     for (int n = 0; n < DIM; n++) {
-        move_component(start, end, n, increment(h, k, n));
+        move_component(start, end, n, increment(method, h, (const double (*)[DIM])k, n));
     }
     memcpy(end->polynomial, k, sizeof k);
     end->length[0] = h;
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
     if (!task->fixed_h) {
         result->squared_error = squared_error_norm(
-            task, start, h, params, derivative, (const double (*)[DIM])k, end, result);
+            method, task, start, h, params, derivative, (const double (*)[DIM])k, end, result);
     }
 }
 

@@ -9,7 +9,7 @@ typedef struct {
     real z_low[LOW_DIM];        /* rounding errors of z */
     real turns[ANGLES];         /* whole turns of angles known by sine and cosine */
     real derivative[FSAL_DIM];  /* dz/dt, from the last stage of the step before */
-    real polynomial[POLYNOMIAL_DIM];    /* of the last step, see parallel.h and newton.h */
+    real polynomial[POLYNOMIAL_DIM];    /* of the last step, see parallel.h and predictor.h */
     real length[LENGTHS];       /* h of that step */
     real jacobian_t[JACOBIANS]; /* point at which the Jacobian was evaluated */
     real jacobian_z[JACOBIAN_DIM];
