@@ -1,5 +1,6 @@
 """Implicit methods: step control, starts of Newton's iteration, steps that need a better one."""
 
+import re
 from collections.abc import Sequence
 from fractions import Fraction
 from importlib import import_module
@@ -305,6 +306,12 @@ def test_mistakes_increase_the_work(
     within = stiff.success and stiff.nfev < 7000
     assert within == (mistake == "none"), (stiff.status, stiff.nfev)
     assert {*used} == {right for right, _ in MISTAKES[mistake]}
+
+
+@pytest.mark.parametrize("name", kernel_source.IMPLICIT_FILES)
+def test_no_function_is_called_for_a_maximum(name: str) -> None:
+    # calls of fmax without AVX, among AVX instructions, took up to nine tenths of a fixed step
+    assert not re.search(r"\bfm(ax|in)\(", kernel_source._source(f"{name}.h"))
 
 
 SYSTEMS = (

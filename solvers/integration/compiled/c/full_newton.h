@@ -26,7 +26,7 @@ static int iterate_fully(
             for (int j = 0; j < unknowns; j++) {
                 const double slope = jacobian[i % DIM*DIM + j % DIM];
                 full_matrix[i*unknowns + j] = (i == j) - h*method->A[i/DIM][j/DIM]*slope;
-                steepest = fmax(steepest, fabs(h*slope));
+                steepest = lane_fmax(steepest, fabs(h*slope));
             }
         }
         if (!factorise(unknowns, full_matrix, pivots)) {
@@ -56,7 +56,7 @@ static int continue_from_short_steps(
     const int has_polynomial = method->lagrange[0] != 0;
     double solved[STAGES][DIM], part = 0.0, advance = 0.5;
     while (advance >= SHORTEST_PART) {
-        const double aim = fmin(part + advance, 1.0);
+        const double aim = lane_fmin(part + advance, 1.0);
         if (part > 0 && has_polynomial) {
             extrapolate(method, 0.0, aim/part, (const double (*)[DIM])solved, method, k);
         }

@@ -47,7 +47,7 @@ static double squared_error_norm(
     for (int n = 0; n < DIM; n++) {
         check += filtered[n] - filtered[n];
     }
-    const double tolerance = task->rtol > 0 ? task->rtol : fmin(task->atol, 1.0);
+    const double tolerance = task->rtol > 0 ? task->rtol : lane_fmin(task->atol, 1.0);
     const double relaxed = ESTIMATE_SHARE*pow(tolerance, method->error_power);
     return mean_square(check == 0 ? filtered : error, start->z, end->z, task->rtol*relaxed,
                        task->atol*relaxed);
@@ -95,10 +95,10 @@ static double step_factor(
     double exponent = -share*error;
     if (accepted) {
         const double trend = lane_log2(h/start->length[0]) + share*(*previous_error - error);
-        exponent += fmin(trend, 0);
-        *previous_error = fmax(error, log2(LEAST_ERROR));
+        exponent += lane_fmin(trend, 0);
+        *previous_error = lane_fmax(error, log2(LEAST_ERROR));
     }
-    exponent = fmin(fmax(exponent, log2(SHRINK/SAFETY)), log2(GROW/SAFETY));
+    exponent = lane_fmin(lane_fmax(exponent, log2(SHRINK/SAFETY)), log2(GROW/SAFETY));
     const double factor = SAFETY*lane_exp2(exponent);
     return accepted && factor > 1 && factor < LEAST_GROWTH ? 1 : factor;
 }

@@ -28,7 +28,7 @@ static int linearise(
         memcpy(now->params, params, params_size);
         now->largest = 0.0;
         for (int n = 0; n < DIM*DIM; n++) {
-            now->largest = fmax(now->largest, fabs(now->jacobian[n]));
+            now->largest = lane_fmax(now->largest, fabs(now->jacobian[n]));
         }
     }
     if (is_same && now->h == h && now->method == method) {

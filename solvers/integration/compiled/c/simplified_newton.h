@@ -46,12 +46,12 @@ static double relative_change(
 {
     double largest = 0.0, largest_change = 0.0, largest_increment = 0.0, check = 0.0;
     for (int n = 0; n < DIM; n++) {
-        largest = fmax(largest, fabs(z[n]));
+        largest = lane_fmax(largest, fabs(z[n]));
     }
     for (int i = 0; i < method->stages; i++) {
         for (int n = 0; n < DIM; n++) {
-            largest_change = fmax(largest_change, fabs(h*change[i][n]));
-            largest_increment = fmax(largest_increment, fabs(h*k[i][n]));
+            largest_change = lane_fmax(largest_change, fabs(h*change[i][n]));
+            largest_increment = lane_fmax(largest_increment, fabs(h*k[i][n]));
             check += change[i][n] - change[i][n];
         }
     }
@@ -65,7 +65,7 @@ static double scaled_change(
 {
     double total = 0.0;
     for (int n = 0; n < DIM; n++) {
-        const double inverse = h/fmax(task->atol + task->rtol*fabs(z[n]), 1e-75);
+        const double inverse = h/lane_fmax(task->atol + task->rtol*fabs(z[n]), 1e-75);
         for (int i = 0; i < method->stages; i++) {
             total += (change[i][n]*inverse)*(change[i][n]*inverse);
         }
@@ -107,7 +107,7 @@ static int iterate(
         }
         if (task->fixed_h ? is_rounding(size, previous, fabs(h)*linearisation.largest)
                           : size == 0 || (*rate < 1 && size**rate < SHARE*(1 - *rate))) {
-            *rate = fmin(*rate, 1);
+            *rate = lane_fmin(*rate, 1);
             return 1;
         }
         if (!(size < INFINITY) || (iteration > 1 && *rate >= 1)) {
