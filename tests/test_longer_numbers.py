@@ -44,13 +44,26 @@ def check(selection: ModelSelection, scene: Scene, precision: str) -> None:
     assert "double precision" in selection.declined
 
 
-def test_long_double_takes_over_where_doubles_end() -> None:
+def test_double_double_numbers_take_over_where_doubles_end() -> None:
     selection = selected(LONG)
-    check(selection, LONG, "long double")
+    check(selection, LONG, "double-double")
     assert "at best where 1e-09 is requested" in selection.declined["double precision"]
     assert set(selection.declined).isdisjoint(PRECISIONS)
 
 
+@pytest.fixture
+def without_double_double(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As for right-hand sides that call functions."""
+    rest = {name: PRECISIONS[name] for name in ("long double", "quadruple")}
+    monkeypatch.setattr(longer_numbers, "PRECISIONS", rest)
+
+
+@pytest.mark.usefixtures("without_double_double")
+def test_long_double_takes_over_where_doubles_end() -> None:
+    check(selected(LONG), LONG, "long double")
+
+
+@pytest.mark.usefixtures("without_double_double")
 def test_quadruple_numbers_take_over_where_long_double_ends() -> None:
     scene = replace(LONG, accuracy=1e-13)
     selection = selected(scene)
@@ -59,9 +72,17 @@ def test_quadruple_numbers_take_over_where_long_double_ends() -> None:
     assert "quadruple" not in selection.declined
 
 
-def test_quadruple_numbers_reach_far_into_chaos() -> None:
+def test_quadruple_numbers_take_over_where_sums_of_doubles_end() -> None:
+    scene = replace(LONG, duration=50.0, accuracy=1e-11)
+    selection = selected(scene)
+    check(selection, scene, "quadruple")
+    assert selection.declined["double-double"].startswith("double-double numbers reach ")
+    assert "long double" not in selection.declined  # it has fewer digits
+
+
+def test_double_double_numbers_reach_far_into_chaos() -> None:
     scene = replace(LONG, duration=50.0, accuracy=1e-7)
-    check(selected(scene), scene, "quadruple")
+    check(selected(scene), scene, "double-double")
 
 
 #: Starts of motions over 12 s whose runs agreed better than they were accurate, when they had the
@@ -122,22 +143,22 @@ def test_without_a_compiler_decimals_take_over(monkeypatch: pytest.MonkeyPatch) 
     result = selected(LONG)
     assert result.model.run.method_choice.is_series
     assert [result.declined[name] for name in PRECISIONS] == [
-        "no long double numbers", "no quadruple numbers"
-    ]  # fmt: skip
+        f"no {name} numbers" for name in PRECISIONS
+    ]
 
 
 def test_quadruple_numbers_need_no_long_double(monkeypatch: pytest.MonkeyPatch) -> None:
-    def long_double_is_double(module, name):
-        if name == "long double":
-            raise NoCompilerError("no long double numbers")
+    def only_quadruple(module, name):
+        if name != "quadruple":
+            raise NoCompilerError(f"no {name} numbers")
         return kernel(module, name)
 
-    monkeypatch.setattr(longer_numbers, "kernel", long_double_is_double)
+    monkeypatch.setattr(longer_numbers, "kernel", only_quadruple)
     declined: dict[str, str] = {}
     scene = replace(LONG, duration=5.0)
     model = by_longer_numbers(motion_of(scene), 1e-14, scene.times, declined, lambda _: None)
     assert model.run.method_choice.precision == "quadruple"
-    assert declined == {"long double": "no long double numbers"}
+    assert declined == {name: f"no {name} numbers" for name in ("double-double", "long double")}
 
 
 def test_too_many_steps_and_too_little_accuracy_are_reasons(
@@ -147,7 +168,7 @@ def test_too_many_steps_and_too_little_accuracy_are_reasons(
     scene = replace(LONG, duration=2.0)
     arguments = motion_of(scene), 1e-20, scene.times, declined, lambda _: None
     assert by_longer_numbers(*arguments) is None
-    assert declined["long double"].startswith("long double numbers reach ")
+    assert declined["double-double"].startswith("double-double numbers reach ")
     assert declined["quadruple"].startswith("quadruple numbers reach ")
     monkeypatch.setattr(longer_numbers, "MOST_PRODUCTS", 1e4)
     assert by_longer_numbers(*arguments) is None
@@ -166,8 +187,8 @@ def test_growth_of_errors_is_extrapolated_where_they_are_large() -> None:
 def test_a_named_method_is_not_replaced_and_the_summary_names_the_numbers() -> None:
     result = run_scene(LONG)
     line = list(summary(result))[1]
-    assert "by gauss8, rational form, rtol = 1.08e-19, long double numbers" in line
-    assert figures(result)["precision"] == "long double"
+    assert "by gauss8, rational form, rtol = 1e-18, double-double numbers" in line
+    assert figures(result)["precision"] == "double-double"
     assert result.method == "gauss8"
     choice = result.selection.model.run.method_choice
     assert choice.is_extended

@@ -2,7 +2,6 @@
 
 import ctypes
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from functools import cache
 
@@ -13,14 +12,16 @@ from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, header
 from solvers.integration.compiled.compiler import NoCompilerError, build
+from solvers.integration.compiled.double_double import DoubleDouble
 from solvers.integration.compiled.extended_source import (
     DIGITS,
     DOUBLE,
     LONG_DOUBLE,
     PARTS,
     QUADRUPLE,
-    NumberType,
-    program,
+    NotArithmeticError,
+    Precision,
+    Sequential,
 )
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.compiled.native import equations
@@ -35,18 +36,10 @@ TIME_LIMIT, ALIGNMENT = 0.05, 64
 CHANGE = 0.5
 
 
-@dataclass(frozen=True)
-class Precision:
-    """A number type longer than double, a shorter one for first approximations, and a method."""
-
-    real: NumberType
-    lower: NumberType
-    stages: int  # of Gauss collocation, whose order is twice as high
-
-
-PRECISIONS = {
-    "long double": Precision(LONG_DOUBLE, DOUBLE, 8),
-    "quadruple": Precision(QUADRUPLE, LONG_DOUBLE, 12),
+PRECISIONS: dict[str, Precision] = {
+    "double-double": DoubleDouble(),
+    "long double": Sequential(LONG_DOUBLE, DOUBLE, 8),
+    "quadruple": Sequential(QUADRUPLE, LONG_DOUBLE, 12),
 }
 
 
@@ -61,7 +54,8 @@ class ExtendedError(ArithmeticError):
 class ExtendedKernel:
     """The compiled program for a module's fastest form in one of `PRECISIONS`.
 
-    `NoCompilerError` where no compiler has its number type, or that is no longer than double.
+    `NoCompilerError` where no compiler has its number type, that is no longer than double, or the
+    equations cannot be written in it.
     """
 
     def __init__(self, module: GeneratedModule, name: str) -> None:
@@ -70,10 +64,10 @@ class ExtendedKernel:
         if header(module) is None:
             raise NoCompilerError(f"there is no C header beside {module.SYSTEM}")
         source = equations(module, form.name)
-        text = program(source, form, precision.real, precision.lower, precision.stages)
         try:
-            self.library = build(text)
-        except NoCompilerError as error:
+            text = precision.program(source, form)
+            self.library = build(text, reproducible=not precision.may_fuse)
+        except (NoCompilerError, NotArithmeticError) as error:
             raise NoCompilerError(f"no {name} numbers: {error}") from error
         functions = self.library.functions
         names = "start", "advance", "progress", "size", "epsilon"
@@ -127,8 +121,9 @@ def integrate_extended(
         In the order of ``module.PARAMETERS`` and ``module.STATE``, taken as exact.
     times : array_like of shape (n,)
         Increasing or decreasing, in s.
-    precision : {"long double", "quadruple"}
-        The number type: that of C, or IEEE 754 binary128.
+    precision : {"double-double", "long double", "quadruple"}
+        The number type: sums of two doubles, for equations without calls of functions; that of C;
+        or IEEE 754 binary128.
     rtol : float
         Relative tolerance of the error of a step, for components above 1e-3 in magnitude.
     max_steps : int, optional
@@ -151,7 +146,7 @@ def integrate_extended(
     ExtendedError
         When the last of the times is not reached: at a singularity, or after `max_steps`.
     solvers.integration.compiled.compiler.NoCompilerError
-        When no compiler has numbers of this type.
+        When no compiler has numbers of this type, or the equations cannot be written in them.
 
     Notes
     -----

@@ -1,10 +1,11 @@
 """The C program that integrates one motion in numbers longer than doubles.
 
 It consists of the module's generated header, once for each of two number types, the coefficients of
-Gauss collocation, and the handwritten file ``c/extended.c``.
+Gauss collocation, and handwritten files in the folder ``c``.
 """
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
@@ -25,15 +26,13 @@ PROGRAM = """\
 #include <stdint.h>
 #include <string.h>
 #include <time.h>
-{real}
-{lower}
-typedef {real_type} real;
-typedef {lower_type} lower;
-static const real EPSILON = {epsilon};
-static const lower LOWER_EPSILON = {lower_epsilon};
 {sizes}
+{numbers}
+static const real EPSILON = {epsilon};
 static const int COLUMN[] = {{{columns}}}, RATE[] = {{{rates}}};
 {coefficients}
+{motion_h}
+{stages_h}
 {extended_c}
 """
 
@@ -96,43 +95,93 @@ LONG_DOUBLE = NumberType("long double", "LDBL_EPSILON", "L")
 QUADRUPLE = NumberType("__float128", "0x1p-112Q", "Q", "f128")
 
 
-def program(
-    equations: Equations, form: Form, real: NumberType, lower: NumberType, stages: int
-) -> str:
-    """The text of the C99 program, with ``extended_start``, ``_advance`` and ``_progress``."""
-    rates = [velocity for _, velocity in equations.angles] or [0]
-    added = {k: equations.state + a for a, (k, _) in enumerate(form.angle_columns)}
-    columns = {**dict(form.shared_columns), **added}
-    sizes = {
-        "DIM": equations.state,
-        "PARAMETERS": equations.parameters,
-        "ANGLES": len(equations.angles),
-        "ORDINARY": equations.ordinary,
-        "PARTS": PARTS,
-        "STAGES": stages,
-    }
-    arrays = _coefficients(stages)
-    return PROGRAM.format(
-        real=real.equations(equations, ""),
-        lower=lower.equations(equations, "LOWER_"),
-        real_type=real.name,
-        lower_type=lower.name,
-        epsilon=real.epsilon,
-        lower_epsilon=lower.epsilon,
-        sizes=sizes_and_statuses(sizes),
-        columns=", ".join(str(columns[k]) for k in range(equations.ordinary)),
-        rates=", ".join(map(str, rates)),
-        coefficients="\n".join(
+class NotArithmeticError(ValueError):
+    """A right-hand side has more than sums, products and quotients; the message names it."""
+
+
+class Precision(ABC):
+    """Numbers longer than doubles, and the method of a motion in them."""
+
+    stages: int  # of Gauss collocation, whose order is twice as high
+    epsilon: str
+    files: Sequence[str]  # with the stages
+    may_fuse: bool  # products and sums
+
+    @abstractmethod
+    def numbers(self, equations: Equations) -> str:
+        """The types of numbers, and the right-hand side in them.
+
+        `NotArithmeticError` where it cannot be written in them.
+        """
+
+    @abstractmethod
+    def coefficients(self) -> str:
+        """The coefficients of the method in C."""
+
+    def program(self, equations: Equations, form: Form) -> str:
+        """The C99 program, with ``extended_start``, ``_advance`` and ``_progress``."""
+        rates = [velocity for _, velocity in equations.angles] or [0]
+        added = {k: equations.state + a for a, (k, _) in enumerate(form.angle_columns)}
+        columns = {**dict(form.shared_columns), **added}
+        sizes = {
+            "DIM": equations.state,
+            "PARAMETERS": equations.parameters,
+            "ANGLES": len(equations.angles),
+            "ORDINARY": equations.ordinary,
+            "PARTS": PARTS,
+            "STAGES": self.stages,
+        }
+        return PROGRAM.format(
+            sizes=sizes_and_statuses(sizes),
+            numbers=self.numbers(equations),
+            epsilon=self.epsilon,
+            columns=", ".join(str(columns[k]) for k in range(equations.ordinary)),
+            rates=", ".join(map(str, rates)),
+            coefficients=self.coefficients(),
+            motion_h=source("extended_motion.h"),
+            stages_h="\n".join(map(source, self.files)),
+            extended_c=source("extended.c"),
+        )
+
+
+class Sequential(Precision):
+    """One type of C, and a shorter one for first approximations; one stage after the other."""
+
+    files, may_fuse = ("extended_stages.h", "extended_refinement.h"), True
+
+    def __init__(self, real: NumberType, lower: NumberType, stages: int) -> None:
+        self.real, self.lower, self.stages = real, lower, stages
+        self.epsilon = real.epsilon
+
+    def numbers(self, equations: Equations) -> str:
+        """Both types, with the header for each."""
+        types = {"real": self.real, "lower": self.lower}
+        return "\n".join(
             [
-                *(real.array(name, arrays[name]) for name in ("A", "B", "C")),
-                *(lower.array(f"LOWER_{name}", arrays[name]) for name in arrays),
+                self.real.equations(equations, ""),
+                self.lower.equations(equations, "LOWER_"),
+                *(f"typedef {kind.name} {name};" for name, kind in types.items()),
+                f"static const lower LOWER_EPSILON = {self.lower.epsilon};",
             ]
-        ),
-        extended_c=(SOURCES / "extended.c").read_text(encoding="utf-8"),
-    )
+        )
+
+    def coefficients(self) -> str:
+        """Matrices by their rows."""
+        arrays = coefficients_of(self.stages)
+        return "\n".join(
+            [
+                *(self.real.array(name, arrays[name]) for name in ("A", "B", "C")),
+                *(self.lower.array(f"LOWER_{name}", arrays[name]) for name in arrays),
+            ]
+        )
 
 
-def _coefficients(stages: int) -> dict[str, Sequence[Sequence[Decimal]]]:
+def source(name: str) -> str:
+    """The text of a handwritten file."""
+    return (SOURCES / name).read_text(encoding="utf-8")
+
+
+def coefficients_of(stages: int) -> dict[str, Sequence[Sequence[Decimal]]]:
     """A, b, c, and the matrix from values at the nodes c to Legendre coefficients on [0, 1]."""
     c = gauss_nodes(stages)
     A, b = collocation(c)

@@ -42,13 +42,16 @@ def by_longer_numbers(
     The reasons against insufficient ones are added to `declined`.
     """
     check_length(motion, MOST_TURNS)
-    finest = 0.0
+    finest = shortest = COARSEST
     for precision in PRECISIONS:
         try:
             limit = kernel(motion.module, precision).epsilon
         except NoCompilerError as failure:
-            declined[precision], finest = str(failure), COARSEST
+            declined[precision] = str(failure)
             continue
+        if limit >= shortest:  # another one has as many digits
+            continue
+        shortest = limit
         for _ in range(TRIES):
             finest = min(max(finest, limit), COARSEST)
             try:
