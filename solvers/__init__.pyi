@@ -8,6 +8,7 @@ from solvers.integration.ensemble import ensemble as ensemble
 from solvers.integration.ensemble_solution import Ensemble as Ensemble
 from solvers.integration.events import Event as Event
 from solvers.integration.events import Extremum as Extremum
+from solvers.integration.inputs import Held as Held
 from solvers.integration.integrate import integrate as integrate
 from solvers.integration.ode_solver import ode_solver as ode_solver
 from solvers.integration.prepare import prepare as prepare

@@ -4,7 +4,7 @@ An ordinary state is (q, q̇); the state of a form may differ. In the variationa
 contain a linear perturbation of the state.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,9 @@ from solvers.equations.module import GeneratedModule, function, has_function, na
 
 Array = NDArray[np.float64]
 
+#: Relative step of differences, near the cube root of the rounding error.
+STEP = 1e-5
+
 
 class Form:
     """One form of a generated module's equations, with fixed parameters.
@@ -22,12 +25,21 @@ class Form:
     `state` and `ordinary` are names of components, of the form's state and of an ordinary state.
     `angle_columns` and `shared_columns` are pairs of indices, in an ordinary state and the form's:
     of each angle and its sine, which its cosine follows; and of each component that both share.
+    In Lagrange's form `feedback` may be a function of time and state that returns the inputs, the
+    last parameters.
     """
 
-    def __init__(self, module: GeneratedModule, name: str, params: Sequence[Any]) -> None:
+    def __init__(
+        self,
+        module: GeneratedModule,
+        name: str,
+        params: Sequence[Any],
+        feedback: Callable[[float, Array], Array] | None = None,
+    ) -> None:
         if name not in module.FORMS:
             raise ValueError(f"form {name!r}: {module.SYSTEM} has {', '.join(module.FORMS)}")
         self.name, self.module, self.params = name, module, tuple(params)
+        self.feedback = feedback
         self.function, jacobian = function(module, named("rhs", name)), named("jacobian", name)
         self._jacobian = function(module, jacobian) if has_function(module, jacobian) else None
         self.state: tuple[str, ...] = module.STATES[name]
@@ -65,12 +77,34 @@ class Form:
 
     def rhs(self, t: float, z: Array) -> Array:
         """The right-hand side."""
-        return np.array(self.function(t, z, self.params))
+        return np.array(self.function(t, z, self._params_at(t, z)))
 
     def jacobian(self, t: float, z: Array) -> Array:
         """Its Jacobian."""
         assert self._jacobian is not None
-        return np.array(self._jacobian(t, z, self.params))
+        params = self._params_at(t, z)
+        matrix = np.array(self._jacobian(t, z, params))
+        if self.feedback is None:
+            return matrix
+        by_inputs = np.array(function(self.module, "input_jacobian")(t, z, params))
+        return np.asarray(matrix + by_inputs @ self._feedback_jacobian(t, z))
+
+    def _params_at(self, t: float, z: Array) -> Sequence[Any]:
+        """The parameters, the last of which may be inputs that depend on time and state."""
+        if self.feedback is None:
+            return self.params
+        values = self.feedback(t, z)
+        return (*self.params[: -len(values)], *values)
+
+    def _feedback_jacobian(self, t: float, z: Array) -> Array:
+        """∂u/∂z, shape (inputs, state), by differences."""
+        assert self.feedback is not None
+        steps = STEP * np.maximum(np.abs(z), 1.0)
+        columns = [
+            (self.feedback(t, z + change) - self.feedback(t, z - change)) / (2 * change.sum())
+            for change in np.diag(steps)
+        ]
+        return np.array(columns).T
 
     def from_ordinary(self, t: float, y: Array) -> Array:
         """The state of this form for the ordinary state `y` at time `t`."""

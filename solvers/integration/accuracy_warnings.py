@@ -29,6 +29,8 @@ def accuracy_warnings(problem: Problem, t: float, y: Array) -> Iterator[Predicta
                 f"{after:.4g} J: its end is meaningless; {_remedy(problem)}"
             )
             return
+    if problem.has_varying_inputs:  # the variational equations have constant ones
+        return
     begin, until = problem.span[0], predictable_until(problem, t)
     if abs(until - begin) < abs(t - begin):
         yield PredictabilityWarning(
@@ -55,6 +57,8 @@ def ensemble_warnings(
                 f"ends are meaningless; {_remedy(problem)}"
             )
             return
+    if problem.has_varying_inputs:
+        return
     limits, some = [], examined(n)
     for k in some:
         own = problem.with_params(params[k % len(params)].tolist())

@@ -8,7 +8,9 @@ from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
 from solvers.integration.events import Event
+from solvers.integration.inputs import segments
 from solvers.integration.problem import Outcome, Problem
+from solvers.integration.solution import Status
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.tableau import Tableau
 
@@ -24,6 +26,11 @@ def obstacle(problem: Problem) -> str:
         return "the method is SciPy's"
     if problem.atol.ndim:
         return "atol differs by component"
+    if problem.form.feedback:
+        return (
+            "inputs is a Python function; hold them between samples (solvers.Held), or replace "
+            "them by formulas (derive.with_inputs)"
+        )
     if len(problem.all_events) > MAX_EVENTS:
         return f"there are more than {MAX_EVENTS} events"
     if header(problem.form.module) is None:
@@ -73,15 +80,23 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     samples = problem.samples
     outcome.backend = f"compiled by {program.library.compiler}"
     capacity = ROW_CAPACITY if samples is None else len(samples)
-    batch = Batch(program, problem, capacity=capacity, occurrences=EVENT_CAPACITY, pauses=True)
-    status = None
-    while status is None:
-        batch.restart(TIME_LIMIT)
-        try:
-            batch.run()
-        finally:  # an interruption arrives when C returns: collect its results first
-            status = STATUSES[batch.motions["status"][0]]
-            _collect(batch, problem, outcome)
+    batch, status = None, None
+    for part in segments(problem, lambda: outcome.end[1], outcome.history):
+        if batch is None:
+            batch = Batch(program, part, capacity=capacity, occurrences=EVENT_CAPACITY, pauses=True)
+        else:
+            batch.resume(part)
+        status = None
+        while status is None:
+            batch.restart(TIME_LIMIT)
+            try:
+                batch.run()
+            finally:  # an interruption arrives when C returns: collect its results first
+                status = STATUSES[batch.motions["status"][0]]
+                _collect(batch, problem, outcome)
+        if status is not Status.FINISHED:
+            break
+    assert status is not None
     outcome.end_with(status, problem)
 
 

@@ -9,12 +9,14 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.mass_matrix import check_condition, examined
 from solvers.equations.module import GeneratedModule
+from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import Values
 from solvers.integration import compiled_loop, memory, validation
 from solvers.integration.accuracy_warnings import ensemble_warnings
 from solvers.integration.ensemble_run import EnsembleRun
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Event, Extremum
+from solvers.integration.inputs import Controller, Held
 from solvers.integration.problem import Options
 from solvers.integration.solution import Interrupted
 from solvers.integration.step_stability import StepWarning, mark_unstable
@@ -44,6 +46,7 @@ def ensemble(
     compensated: bool = False,
     workers: int | None = None,
     stop: StopFlag | None = None,
+    inputs: Held | Controller | Values | None = None,
 ) -> Ensemble:
     """Integrate many motions over the same time span.
 
@@ -68,6 +71,10 @@ def ensemble(
         Number of threads; by default one for each processor.
     stop : StopFlag, optional
         Its method ``set`` stops the motions from another thread; there are no warnings then.
+    inputs : array_like of shape (inputs,), mapping of str to float, Held or callable, optional
+        As in `integrate`, for all motions; constants that differ are given in `params`. A
+        controller of `Held` inputs gets the states of all motions, shape (state, n), and returns
+        inputs of shape (inputs, n), or (inputs,).
 
     Returns
     -------
@@ -103,10 +110,15 @@ def ensemble(
     """
     check_type("stop", stop, StopFlag | None, "a StopFlag")
     times = () if t_eval is None else t_eval
-    options = Options(method, form, rtol, atol, h, times, events, max_steps, backend, compensated)
+    options = Options(
+        method, form, rtol, atol, h, times, events, max_steps, backend, compensated, inputs
+    )
     problem = validation.problem_at_rest(module, t_span, options)
     states = validation.state_rows(module, y0, problem.form.name)
     constants = validation.parameter_rows(module, params, len(states))
+    if inputs is not None:
+        count = len(input_names(module))
+        constants[:, -count:] = problem.form.params[-count:]
     extremes = any(isinstance(event, Extremum) for event in problem.events)
     occurrences = validation.count("occurrences", occurrences, 2 if extremes else 1)
     processors = len(os.sched_getaffinity(0))

@@ -12,6 +12,7 @@ from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Extremum
+from solvers.integration.inputs import History, segments
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array, Status
 from solvers.integration.stop_flag import StopFlag
@@ -37,8 +38,16 @@ class EnsembleRun:
         capacity, occurrences = len(result.t_eval), result.t_events.shape[-1]
         batch = Batch(program, problem, states, capacity=capacity, occurrences=occurrences)
         batch.task.stop = self.stop.array.ctypes.data
+
+        def reached() -> Array:
+            return batch.ordinary(batch.motions).T
+
         try:
-            self._run_threads(batch, workers)
+            for part in segments(problem, reached, History()):
+                batch.resume(part)
+                self._run_threads(batch, workers)
+                if self.stop.is_set:
+                    break
         finally:
             self._collect(batch)
             # as given, not as sine and cosine return them

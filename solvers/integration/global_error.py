@@ -22,7 +22,7 @@ def global_error_estimate(problem: Problem, t: Array, y: Array) -> Array:
     """
     method = next(name for name in METHODS if name != problem.options.method)
     module, form = problem.form.module, problem.form.name
-    if form != "variational":
+    if form != "variational" and not problem.form.feedback:
         form = fastest_form(module) if form == "lagrangian" else "lagrangian"
     rtol, atol = TIGHTEST, TIGHTEST
     if problem.h is None:

@@ -10,13 +10,15 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
+from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import Values
 from solvers.integration import compiled_loop, python_loop, validation
 from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.global_error import global_error_estimate
+from solvers.integration.inputs import Controller, Held
 from solvers.integration.memory import limit_steps
 from solvers.integration.problem import EventFunction, Options, Outcome, Problem
-from solvers.integration.solution import Interrupted, Solution, Status
+from solvers.integration.solution import Array, Interrupted, Solution, Status
 from solvers.integration.step_stability import step_instability
 
 
@@ -37,6 +39,7 @@ def integrate(
     max_steps: int = 1_000_000,
     backend: str | None = None,
     compensated: bool = False,
+    inputs: Held | Controller | Values | None = None,
 ) -> Solution:
     """Integrate the motion that starts with `y0` over `t_span`.
 
@@ -82,6 +85,12 @@ def integrate(
     compensated : bool, optional
         Whether a compiled loop compensates the rounding errors of the state, which reduces
         the error over very many steps.
+    inputs : array_like of shape (inputs,), mapping of str to float, Held or callable, optional
+        Constants in the order of ``module.INPUTS`` or by name, in place of those in `params`; 0 for
+        those that are left out. Or a `Held`, with which inputs are constant between samples. Or a
+        function ``u(t, y)`` of the time in s and the state (q, q̇) that returns them, with which
+        the loop runs in Python, in Lagrange's form; `derive.with_inputs` compiles formulas.
+        Estimates of errors call controllers and functions again.
 
     Returns
     -------
@@ -119,7 +128,9 @@ def integrate(
     ((4, 3), 'FINISHED')
     >>> by_name = integrate(dp, (0, 1), {"theta1": 0.1, "theta2": 0.0}, {"g": 9.81})
     """
-    options = Options(method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated)
+    options = Options(
+        method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated, inputs
+    )
     problem = validation.problem(module, t_span, y0, params, options)
     check_condition(module, [("", problem.form.params, problem.start.tolist())], problem.span[0])
     problem, program = compiled_loop.select(problem, lanes=False)
@@ -169,5 +180,20 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = ""
         energy=energies,
         end=outcome.end,
         units=problem.units,
+        inputs=_inputs(problem, outcome, times, states),
         compare=partial(global_error_estimate, problem),
     )
+
+
+def _inputs(problem: Problem, outcome: Outcome, t: Array, y: Array) -> Array | None:
+    """The inputs at times `t` and states `y` in columns; None for a system without inputs."""
+    count = len(input_names(problem.form.module))
+    if not count:
+        return None
+    if problem.schedule:
+        return outcome.history.at(t) if outcome.history.times else np.empty((count, 0))
+    if problem.form.feedback:
+        values = [problem.form.feedback(*point) for point in zip(t.tolist(), y.T, strict=True)]
+        return np.array(values).reshape(-1, count).T
+    constants = np.array(problem.form.params[-count:])
+    return np.tile(constants[:, np.newaxis], len(t))

@@ -10,12 +10,14 @@ import numpy as np
 
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
+from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import REAL, Values
 from solvers.integration import compiled_loop, validation
 from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.inputs import given
 from solvers.integration.problem import SHORTEST, Options, Problem
 from solvers.integration.solution import Status
 from solvers.integration.step_stability import diagnosis
@@ -45,15 +47,15 @@ def prepare(
     max_steps: int = 1_000_000,
     compensated: bool = False,
 ) -> "Prepared":
-    """Compile a function ``run((t0, t1), y0)`` that returns the state at t1.
+    """Compile a function ``run((t0, t1), y0, params=None, inputs=None)``: the state at t1.
 
     Parameters
     ----------
     module : module
         A generated module.
     params : array_like of shape (parameters,), or mapping of str to float
-        As in `integrate`; ``run((t0, t1), y0, params)`` takes others, whose mass matrices are not
-        examined.
+        As in `integrate`; a call can give others, whose mass matrices are not examined, and
+        other inputs, which are the last parameters.
     method, form, rtol, atol, h, max_steps, compensated : optional
         As in `integrate`; `method` is none of SciPy's.
 
@@ -88,11 +90,13 @@ def prepare(
 
 
 class Prepared:
-    """A function that integrates one motion after another: ``run((t0, t1), y0, params=None)``.
+    """A function that integrates one motion after another.
 
-    Times are in s; `y0` and `params` are in order or by name. It raises `ValueError` for invalid
-    arguments, `NotFinishedError` where the motion does not reach the end of the time span, and
-    `RuntimeError` in a thread that calls it during a call of another thread.
+    ``run((t0, t1), y0, params=None, inputs=None)`` takes times in s; `y0`, `params` and `inputs`
+    are in order or by name. Without `params`, and without `inputs`, those are used that were
+    prepared; `inputs` replace those in `params`, and are constant during the call. It raises
+    `ValueError` for invalid arguments, `NotFinishedError` where the motion does not reach the end
+    of the time span, and `RuntimeError` in a thread that calls it during a call of another thread.
     """
 
     def __init__(self, single: Any, batch: Batch, problem: Problem) -> None:
@@ -109,12 +113,17 @@ class Prepared:
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
         module, names = problem.form.module, problem.form.ordinary
         self._positive = [k for k, p in enumerate(module.PARAMETERS) if p in module.POSITIVE]
+        self._inputs = len(input_names(module))
         self._limited = [k for k, q in enumerate(names) if q in module.POSITIVE]
         self._span_start = 0.0
         self._idle = [True]  # empty during a call; faster than a lock, and as atomic
 
     def __call__(
-        self, t_span: tuple[float, float], y0: Numbers, params: Numbers | None = None
+        self,
+        t_span: tuple[float, float],
+        y0: Numbers,
+        params: Numbers | None = None,
+        inputs: Any = None,
     ) -> tuple[float, ...]:
         """The state at the end of `t_span`."""
         try:
@@ -125,17 +134,20 @@ class Prepared:
                 "prepare one function for each thread"
             ) from None
         try:
-            return self._run(t_span, y0, params)
+            return self._run(t_span, y0, params, inputs)
         finally:
             self._idle.append(True)
 
     def _run(
-        self, t_span: tuple[float, float], y0: Numbers, params: Numbers | None
+        self, t_span: tuple[float, float], y0: Numbers, params: Numbers | None, inputs: Any
     ) -> tuple[float, ...]:
         if params is not None or not self._has_defaults:
             self._has_defaults = False
             self._set_params(self._defaults if params is None else params)
             self._has_defaults = params is None
+        if inputs is not None:
+            self._has_defaults = False
+            self._set_inputs(inputs)
         try:
             start, end = t_span
             values = list(y0)
@@ -196,6 +208,19 @@ class Prepared:
         except (TypeError, ValueError, LookupError, OverflowError):
             pass  # a mapping, or invalid
         self._params[:] = validation.parameters(self._problem.form.module, params).tolist()
+
+    def _set_inputs(self, inputs: Any) -> None:
+        try:
+            values: list[Any] = list(inputs)
+            count = len(values)
+            is_complete = 0 < count == self._inputs
+            if is_complete and REAL.issuperset(map(type, values)) and all(map(isfinite, values)):
+                self._params[-count:] = values
+                return
+        except (TypeError, OverflowError):
+            pass  # a mapping, one number, or invalid
+        array = given("inputs", self._problem.form.module, inputs)
+        self._params[-len(array) :] = array.tolist()
 
     def _checked(self, y0: Any) -> list[Any]:
         form = self._problem.form

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form
+from solvers.equations.quantities import Values
+from solvers.integration.inputs import Controller, Held, History, Schedule
 from solvers.integration.solution import Array, Status
 from solvers.runge_kutta.tableau import Tableau
 
@@ -35,6 +37,7 @@ class Options:
     max_steps: int = 1_000_000
     backend: str | None = None
     compensated: bool = False
+    inputs: Held | Controller | Values | None = None
 
 
 @dataclass(frozen=True)
@@ -53,14 +56,26 @@ class Problem:
     limits: Sequence[EventFunction]  # end the motion where a positive coordinate falls to 0
     max_steps: int
     options: Options  # as given
+    schedule: Schedule | None = None  # of inputs that are held between samples
 
     def with_form(self, name: str) -> "Problem":
         """The same problem in another form with the same ordinary state."""
-        return replace(self, form=Form(self.form.module, name, self.form.params))
+        form = self.form
+        return replace(self, form=Form(form.module, name, form.params, form.feedback))
 
     def with_params(self, params: Sequence[Any]) -> "Problem":
         """The same problem with other parameters: numbers, or arrays for several motions."""
-        return replace(self, form=Form(self.form.module, self.form.name, params))
+        form = self.form
+        return replace(self, form=Form(form.module, form.name, params, form.feedback))
+
+    def with_inputs(self, values: Array) -> "Problem":
+        """The same problem with other inputs, the last parameters."""
+        return self.with_params([*self.form.params[: -len(values)], *values])
+
+    @property
+    def has_varying_inputs(self) -> bool:
+        """Whether inputs change during the motion, by samples or as a function of Python."""
+        return self.schedule is not None or self.form.feedback is not None
 
     @property
     def all_events(self) -> list[EventFunction]:
@@ -100,6 +115,7 @@ class Outcome:
     steps: int = 0
     rejected: int = 0
     backend: str = "python"
+    history: History = field(default_factory=History)  # of held inputs
 
     @classmethod
     def at_start(cls, problem: Problem) -> "Outcome":

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solvers.integration import scipy_loop
+from solvers.integration.inputs import segments
 from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
@@ -114,50 +115,72 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> Non
     if not isinstance(problem.method, Tableau):
         scipy_loop.run(problem, outcome, stop)
         return
-    tolerances = problem.rtol, problem.atol
-    stepper = Stepper(problem.method, problem.form.rhs, problem.form.jacobian, *tolerances)
-    controller = Controller.of(problem.method, *tolerances) if problem.h is None else None
-    attempts = Attempts(stepper, controller, problem.form.normalised)
-    try:
-        outcome.end_with(_run(problem, outcome, attempts, stop), problem)
-    finally:
-        outcome.nfev, outcome.njev = stepper.nfev, stepper.njev
+    controller = None
+    if problem.h is None:
+        controller = Controller.of(problem.method, problem.rtol, problem.atol)
+    recorder, h, status = Recorder(problem, outcome), problem.h, Status.FINISHED
+    for part in segments(problem, lambda: recorder.y, outcome.history):
+        form = part.form
+        stepper = Stepper(problem.method, form.rhs, form.jacobian, problem.rtol, problem.atol)
+        attempts = Attempts(stepper, controller, form.normalised)
+        try:
+            status, h = _run(part, outcome, recorder, attempts, h, stop)
+        finally:
+            outcome.nfev += stepper.nfev
+            outcome.njev += stepper.njev
+        if status is not Status.FINISHED:
+            break
+    outcome.end_with(status, problem)
 
 
-def _run(problem: Problem, outcome: Outcome, attempts: Attempts, stop: StopFlag) -> Status:
-    recorder, (begin, end) = Recorder(problem, outcome), problem.span
+def _run(
+    problem: Problem,
+    outcome: Outcome,
+    recorder: Recorder,
+    attempts: Attempts,
+    h: float | None,
+    stop: StopFlag,
+) -> tuple[Status, float | None]:
+    """Integrate from the recorder's state on, by a first step of size `h`, or of a suitable size.
+
+    Return the status, and the size of the next step.
+    """
+    begin, end = problem.span
     if begin == end:
-        return Status.FINISHED
+        return Status.FINISHED, h
     y = problem.form.from_ordinary(begin, recorder.y)
     try:
         point = Point(begin, y, attempts.stepper.derivative(begin, y))
     except NotFiniteError:
-        return Status.NOT_FINITE
-    shortest, failures = shortest_step(begin, end), 0
-    h = problem.h or attempts.first_step_size(point, end, shortest)
+        return Status.NOT_FINITE, h
+    shortest, failures, first = shortest_step(begin, end), 0, outcome.steps
+    if problem.h is None:
+        longest = abs(end - begin)
+        h = min(h, longest) if h else attempts.first_step_size(point, end, shortest)
+    assert h
     while point.t != end:
         if stop.is_set:
-            return Status.INTERRUPTED
+            return Status.INTERRUPTED, h
         if outcome.steps == problem.max_steps:
-            return Status.STEP_LIMIT
-        t = _step_end(problem, point.t, h, outcome.steps)
+            return Status.STEP_LIMIT, h
+        t = _step_end(problem, point.t, h, outcome.steps - first)
         if abs(t - point.t) < shortest and t != end:
-            return Status.STEP_TOO_SMALL
+            return Status.STEP_TOO_SMALL, h
         trial, stops = _step(attempts, recorder, point, t, is_last=t == end)
         if isinstance(trial, Rejected):
             outcome.rejected, h = outcome.rejected + 1, trial.h
             failures += trial.failure is not None
             if trial.failure and (attempts.controller is None or failures > MOST_FAILURES):
                 unsolved = isinstance(trial.failure, NoConvergenceError)
-                return Status.NO_CONVERGENCE if unsolved else Status.NOT_FINITE
+                return Status.NO_CONVERGENCE if unsolved else Status.NOT_FINITE, h
             continue
         outcome.steps, failures = outcome.steps + 1, 0
         if stops:
-            return Status.EVENT
+            return Status.EVENT, h
         point = trial.end
         if attempts.controller:
             h *= attempts.controller.factor(trial.norm, h, trial.step.contraction)
-    return Status.FINISHED
+    return Status.FINISHED, h
 
 
 def _step(

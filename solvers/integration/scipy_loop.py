@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 from scipy import integrate
 
+from solvers.integration.inputs import segments
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
@@ -17,7 +18,12 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag) -> None:
     """Integrate `problem` until `stop` is set; `outcome` holds the results so far at any time."""
     outcome.backend = "scipy"
     try:
-        outcome.end_with(_run(problem, outcome, Recorder(problem, outcome), stop), problem)
+        recorder, status = Recorder(problem, outcome), Status.FINISHED
+        for part in segments(problem, lambda: recorder.y, outcome.history):
+            status = _run(part, outcome, recorder, stop)
+            if status is not Status.FINISHED:
+                break
+        outcome.end_with(status, problem)
     except NotFiniteError:
         outcome.status = Status.NOT_FINITE
 

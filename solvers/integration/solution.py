@@ -73,6 +73,8 @@ class Solution:
         Units of the components of the state, in their order.
     compare : callable or None
         Takes times and states and returns their estimated errors, for the next one.
+    inputs : ndarray of shape (inputs, n) or None
+        The inputs at these times, held ones from there on; None for a system without inputs.
     global_error_estimate : ndarray of shape (state, n)
         Estimated errors of `y`, computed on first use, which takes longer than the run.
 
@@ -103,6 +105,7 @@ class Solution:
     end: tuple[float, Array]
     units: Mapping[str, str]
     compare: Callable[[Array, Array], Array] | None = field(default=None, compare=False)
+    inputs: Array | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """The attributes to copy or send to other processes, which modules cannot be."""

@@ -1,6 +1,7 @@
 """Checks of the arguments of an integration, before anything runs."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, state_names
 from solvers.equations.quantities import Values, quantities, real_number, real_numbers
 from solvers.integration.events import Limit
+from solvers.integration.inputs import Held, Schedule, controlled, given
 from solvers.integration.memory import check_times
 from solvers.integration.problem import Options, Problem, shortest_step
 from solvers.integration.solution import Array
@@ -47,6 +49,7 @@ def problem(
         raise ValueError("compensated = True needs a compiled loop, not backend 'python'")
     span, method, name = time_span(t_span), options.method, options.form or "lagrangian"
     form = Form(module, name, parameters(module, params).tolist())
+    form, schedule = _with_inputs(form, options.inputs, span)
     start = initial_state(module, y0, name)
     tableau = None if method in SCIPY else load(str(method))
     rtol, atol, h = step_control(options, tableau, span, len(start))
@@ -60,7 +63,31 @@ def problem(
     max_steps = count("max_steps", options.max_steps, 0)
     limits = [Limit(module, q) for q in module.COORDINATES if q in module.POSITIVE]
     control, record = (h, rtol, atol), (samples, events, limits)
-    return Problem(form, tableau or method, span, start, *control, *record, max_steps, options)
+    numbers = (*control, *record, max_steps)
+    return Problem(form, tableau or method, span, start, *numbers, options, schedule)
+
+
+def _with_inputs(
+    form: Form, values: Any, span: tuple[float, float]
+) -> tuple[Form, Schedule | None]:
+    """The form with inputs that are constant or functions, and the schedule of held ones."""
+    module = form.module
+    if values is None:
+        return form, None
+    if isinstance(values, Held):
+        return form, Schedule.of(values, module, span)
+    if callable(values):
+        if form.name != "lagrangian":
+            raise ValueError(
+                f"inputs is a function, which form {form.name!r} cannot call: leave out form, hold "
+                "the inputs between samples (solvers.Held), or replace them by formulas "
+                "(derive.with_inputs)"
+            )
+        given("inputs", module, dict[str, float]())  # whether the system has inputs
+        feedback = partial(controlled, module, values)
+        return Form(module, form.name, form.params, feedback), None
+    constants = given("inputs", module, values)
+    return Form(module, form.name, (*form.params[: -len(constants)], *constants.tolist())), None
 
 
 def problem_at_rest(

@@ -11,10 +11,11 @@ from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.kernel_source import program
-from solvers.integration.compiled.layout import EVENT, Task, check, record
+from solvers.integration.compiled.layout import EVENT, STATUSES, Task, check, record
 from solvers.integration.compiled.native import equations
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import SHORTEST, Problem
+from solvers.integration.solution import Status
 from solvers.runge_kutta.catalogue import load
 
 Array = NDArray[np.float64]
@@ -110,6 +111,16 @@ class Batch:
             pauses=pauses,
             stop=self.stop.ctypes.data,
         )
+
+    def resume(self, problem: Problem) -> None:
+        """Let motions that are new or finished go on to the end of `problem`, with its params."""
+        motions, new = self.motions, STATUSES.index(None)
+        goes_on = np.isin(motions["status"], (new, STATUSES.index(Status.FINISHED)))
+        motions["status"][goes_on] = new
+        motions["t_end"][goes_on] = problem.span[1]
+        motions["min_h"][goes_on] = SHORTEST * np.spacing(np.abs(problem.span).max())
+        for k, parameter in enumerate(problem.form.params):
+            motions["params"][:, k] = parameter
 
     def restart(self, time_limit: float = 0.0) -> None:
         """Let the next `run` start with the first motion, and return after `time_limit` seconds."""

@@ -74,7 +74,8 @@ static void evaluate_events(Lanes *lanes)
     lanes->loaded = (mask){0};
 }
 
-/* Derivatives and first step sizes of the starting motions. */
+/* Derivatives and first step sizes of the starting motions. One that resumes with other parameters
+   keeps its step size, and has recorded its state. */
 static void start_motions(Lanes *lanes)
 {
     const Task *task = lanes->task;
@@ -85,13 +86,19 @@ static void start_motions(Lanes *lanes)
     for (int n = 0; n < DIM && IS_FSAL; n++) {
         state->derivative[n] = select(lanes->starting, derivative[n], state->derivative[n]);
     }
-    const real duration = motion->t_end - state->t;
+    const real duration = motion->t_end - state->t, zero = splat(0.0);
+    const mask resuming = lanes->starting & less_than(zero, motion->attempts);
+    const mask new = lanes->starting & ~resuming;
     real h = splat(task->fixed_h);
-    if (!task->fixed_h) {
-        h = initial_step(state, derivative, motion->params, duration, lanes->starting, task->rtol,
-                         task->atol);
+    if (!task->fixed_h && any(new)) {
+        h = initial_step(state, derivative, motion->params, duration, new, task->rtol, task->atol);
         h = lane_fmax(h, 2.0*motion->min_h);
     }
+    if (!task->fixed_h && any(resuming)) {
+        const real longest = lane_fabs(duration), last = lane_fabs(motion->h);
+        h = select(resuming, select(less_than(last, longest), last, longest), h);
+    }
+    motion->evaluations += select(resuming, splat(1.0), zero);
     motion->h = select(lanes->starting, lane_copysign(h, duration), motion->h);
 #if HAS_POLYNOMIAL
     if (any(lanes->starting)) {
@@ -100,9 +107,9 @@ static void start_motions(Lanes *lanes)
 #endif
     for (int lane = 0; lane < LANES; lane++) {
         WithinStep *within = &lanes->within[lane];
-        const int is_sample = task->samples < 0
-            || (task->samples > 0 && task->times[0] == LANE(state->t, lane));
-        if (MASK_LANE(lanes->starting, lane) && is_sample) {
+        const int is_sample = MASK_LANE(new, lane) && (task->samples < 0
+            || (task->samples > 0 && task->times[0] == LANE(state->t, lane)));
+        if (is_sample) {
             double start[STATE_SIZE];
             read_lane(state, STATE_SIZE, lane, start);
             append_row(task, within->trajectory, start);
