@@ -164,7 +164,7 @@ def test_prepared_functions_take_inputs_call_by_call() -> None:
 def test_ensembles_take_held_inputs(backend: str) -> None:
     starts = np.array([START, (0, -0.2, 0, 0), (0.1, 0.05, 0, 3.0)]).T
     held, times = Held(0.05, feedback), [0.0, 0.35, 1.0]
-    event = Event(cart, "theta", 0.11, terminal=True)  # the third motion ends within a piece
+    event = Event(cart, "theta", -0.1, terminal=True, direction=-1)  # in the third motion
     options: dict[str, Any] = {"t_eval": times, "inputs": held, "backend": backend}
     motions = ensemble(cart, (0, 1), starts, {}, events=event, **options)
     assert motions.status.tolist() == [Status.FINISHED, Status.FINISHED, Status.EVENT]
