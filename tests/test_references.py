@@ -20,6 +20,7 @@ import generated.single_pendulum as sp
 from holonomic import Coordinate, Parameter, PointMass, System, build
 from solvers.app.modules import load as load_module
 from solvers.equations.decimal_state import sine_and_cosine
+from solvers.equations.module import ELEMENTARY
 from solvers.references.elliptic import jacobi, pendulum
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.extrapolation import extrapolated
@@ -150,7 +151,7 @@ def test_a_reference_of_a_state_of_zeros_that_a_force_moves() -> None:
     assert end == pytest.approx([-1.5 + 0.75 * np.sin(2), -1.5 + 1.5 * np.cos(2)], abs=1e-15)
 
 
-@pytest.mark.parametrize("name", ["sin", "cos", "tan", "exp", "log", "sqrt"])
+@pytest.mark.parametrize("name", ELEMENTARY)
 def test_functions_of_series_have_the_coefficients_of_taylor(name: str) -> None:
     tape: list[Series] = []
     x = Series(tape, [])

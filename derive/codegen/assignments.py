@@ -54,9 +54,9 @@ class Notation:
                 digits = f"{abs(Decimal(value.numerator)) / value.denominator:e}"
         return f"{'-' * (value < 0)}{digits}"
 
-    def call(self, function: str, argument: str) -> str:
-        """A call of a mathematical function, by its name in C99."""
-        return f"{function}({argument})"
+    def call(self, function: str, *arguments: str) -> str:
+        """A call of ``select`` or of a mathematical function, by its name in C99."""
+        return f"{function}({', '.join(arguments)})"
 
     def component(self, vector: str, index: int) -> str:
         """The component of a vector, from 0 on."""
@@ -147,7 +147,7 @@ class Assignments:
         return statement.name, ATOM
 
     def _name(self, operation: Operation) -> str:
-        if isinstance(operation, op.Call):
+        if isinstance(operation, op.Call) and len(operation.operands) == 1:
             argument = self._text(operation.operands[0])
             name = f"{operation.function}_{argument}"
             if argument.isidentifier() and name not in self._reserved:
@@ -166,8 +166,8 @@ class Assignments:
                 return notation.name(name), ATOM
             case op.Constant(value=value):
                 return notation.literal(value), ATOM
-            case op.Call((argument,), function=function):
-                return notation.call(function, self._text(argument)), ATOM
+            case op.Call(operands, function=function):
+                return notation.call(function, *map(self._text, operands)), ATOM
             case op.Component((solution,), index=index):
                 return notation.component(self._text(solution), index), ATOM
             case op.Quotient((*above, below)):

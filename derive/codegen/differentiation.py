@@ -7,7 +7,8 @@ from derive.codegen.node import Call, Leaf, Let, Node, Powers, Product, Rewritte
 from derive.codegen.translation import Translation
 from derive.formulas.functions import FUNCTIONS
 
-X = sp.Symbol("x", real=True)
+#: Arguments of the functions that are differentiated.
+X = sp.symbols("x y", real=True)
 
 
 class Differentiation:
@@ -40,9 +41,22 @@ class Differentiation:
                 return graph.node(1)
             case Let(value) | Rewritten(short=value):
                 return self(value, leaf)
-            case Call(function, argument):
-                outer = Translation(graph, {X.name: argument})(FUNCTIONS[function](X).diff(X))
-                return outer * self(argument, leaf)
+            case Call("select", (s, a, b)):
+                return graph.call("select", s, self(a, leaf), self(b, leaf))
+            case Call("pow", (base, exponent)):
+                by_base = exponent * graph.call("pow", base, exponent - 1) * self(base, leaf)
+                rate = self(exponent, leaf)
+                if rate.is_number(0):
+                    return by_base
+                return by_base + node * graph.call("log", base) * rate
+            case Call(function, arguments):
+                variables = X[: len(arguments)]
+                known = {x.name: value for x, value in zip(variables, arguments, strict=True)}
+                translation, value = Translation(graph, known), FUNCTIONS[function](*variables)
+                pairs = zip(variables, arguments, strict=True)
+                return graph.sum(
+                    [(translation(value.diff(x)) * self(a, leaf), 1) for x, a in pairs]
+                )
             case Sum(terms):
                 return graph.sum([(self(term, leaf), number) for term, number in terms])
             case Product(powers):

@@ -75,13 +75,29 @@ class Graph:
         """`value`, differentiated by an equal formula that is `short`."""
         return self._intern(Rewritten, value, short)
 
-    def call(self, function: str, argument: Node) -> Node:
-        """``function(argument)``; the sign of the argument of a sine or cosine is moved outside."""
-        coefficient, rest = argument.scaled()
-        if function in PARTNER and rest is not None and coefficient < 0:
-            positive = self._intern(Call, function, -argument)
-            return -positive if function == "sin" else positive
-        return self._intern(Call, function, argument)
+    def call(self, function: str, *arguments: Node) -> Node:
+        """``function(*arguments)``; the sign of the argument of a sine or cosine is moved outside.
+
+        A power whose exponent is an integer is a product, and a known choice is made.
+        """
+        coefficient, rest = arguments[0].scaled()
+        match function, arguments:
+            case (("sin" | "cos"), (argument,)) if rest is not None and coefficient < 0:
+                positive = self._intern(Call, function, (-argument,))
+                return -positive if function == "sin" else positive
+            case "pow", (base, Constant(exponent)) if exponent.denominator == 1:
+                return self.power(base, int(exponent))
+            case "select", (_, a, b) if rest is None or a is b:
+                return a if coefficient > 0 else b
+            case "select", (_, a, b) if rest is not None:  # its scale does not matter
+                s = rest if coefficient > 0 else -rest
+                match a, b:
+                    case Call("select", (number, inner, _)), _ if number is s:
+                        return self.call(function, s, inner, b)
+                    case _, Call("select", (number, _, inner)) if number is s:
+                        return self.call(function, s, a, inner)
+                arguments = (s, a, b)
+        return self._intern(Call, function, arguments)
 
     def factorised(self, upper: Iterable[Node]) -> Factorised:
         """The factorisation of a symmetric matrix, given by its upper triangle row by row."""
@@ -188,7 +204,7 @@ class Graph:
                 rest = self.product([(node, 1), (factor, -2)])
                 expanded = self._expanded(terms, rest)
                 if expanded is not None and expanded.get(rest) == -coefficient:
-                    partner = self._intern(Call, PARTNER[factor.function], factor.argument)
+                    partner = self._intern(Call, PARTNER[factor.function], factor.arguments)
                     replaced = self.product([(rest, 1), (partner, 2)])
                     expanded = {n: c for n, c in expanded.items() if n not in (rest, node)}
                     expanded[replaced] = expanded.get(replaced, Fraction(0)) - coefficient

@@ -68,6 +68,11 @@ class Lowering:
         return frozenset(o.function for o in self.used if isinstance(o, op.Call))
 
     @property
+    def library_functions(self) -> frozenset[str]:
+        """Those of the mathematical library, which numbers call and vectors cannot."""
+        return self.functions - {"select"}
+
+    @property
     def cost(self) -> tuple[int, int]:
         """Arithmetic operations and calls: their number, and how many are of parameters alone."""
         costs = [(op.cost(o), o.constant) for o in self.used]
@@ -91,8 +96,8 @@ class Lowering:
                 return self._constant(value)
             case Let(inner) | Rewritten(value=inner):
                 return self._lower(inner)
-            case Call(function, argument):
-                return self._add(op.Call, [self._lower(argument)], function)
+            case Call(function, arguments):
+                return self._add(op.Call, map(self._lower, arguments), function)
             case Factorised(upper):
                 return self._add(op.Factorised, map(self._lower, upper))
             case Solution():

@@ -107,10 +107,13 @@ class Product(Node):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Call(Node):
-    """``function(argument)``, by the name of the function in C99."""
+    """``function(*arguments)``, by the name of the function in C99.
+
+    Beside those of C99 there is ``select(s, a, b)``: a where s > 0, b where s <= 0.
+    """
 
     function: str
-    argument: Node
+    arguments: tuple[Node, ...]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -156,8 +159,8 @@ def operands(node: Node) -> tuple[Node, ...]:
     match node:
         case Sum(pairs) | Product(pairs):
             return tuple(part for part, _ in pairs)
-        case Call(_, argument):
-            return (argument,)
+        case Call(_, arguments):
+            return arguments
         case Let(value):
             return (value,)
         case Rewritten(value, short):

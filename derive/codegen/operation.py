@@ -44,7 +44,7 @@ class Quotient(Operation):
 
 @dataclass(frozen=True, slots=True)
 class Call(Operation):
-    """A call of a function of one argument."""
+    """A call of a function."""
 
     function: str
 

@@ -81,7 +81,7 @@ def _multiples(node: Node, names: Collection[str]) -> dict[str, int] | None:
     """The coefficients if `node` is the sine or cosine of a small combination of `names`."""
     if not isinstance(node, Call) or node.function not in ("sin", "cos"):
         return None
-    coefficient, rest = node.argument.scaled()
+    coefficient, rest = node.arguments[0].scaled()
     multiples: dict[str, int] = {}
     for term, number in rest.terms if isinstance(rest, Sum) else ((rest, 1),):
         multiple = coefficient * number
@@ -111,10 +111,10 @@ class _Rewriting:
                 return graph.let(self.node(value))
             case Rewritten(value, short):
                 return graph.rewritten(self.node(value), self.node(short))
-            case Call(function, argument):
+            case Call(function, arguments):
                 multiples = _multiples(node, self._names)
                 if multiples is None:
-                    return graph.call(function, self.node(argument))
+                    return graph.call(function, *map(self.node, arguments))
                 return self._pair(tuple(multiples.items()))[function == "cos"]
             case Sum(terms):
                 return graph.sum([(self.node(term), number) for term, number in terms])

@@ -1,15 +1,17 @@
 """SymPy expressions as nodes of a graph."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from types import MappingProxyType
 
 import sympy as sp
 
+from derive.codegen.choices import Choices
 from derive.codegen.elongation import Elongation, elongation
 from derive.codegen.graph import Graph
 from derive.codegen.node import Node
 from derive.formulas.functions import FUNCTIONS
+from derive.formulas.switching import CHOICES
 
 #: Digits of irrational numbers, more than any number type has.
 DIGITS = 50
@@ -27,6 +29,7 @@ class Translation:
     def __init__(self, graph: Graph, known: Mapping[str, Node] = MappingProxyType({})) -> None:
         self.graph, self._known = graph, known
         self._nodes: dict[sp.Expr, Node] = {}
+        self._choice = Choices(graph, self)
 
     def __call__(self, expression: sp.Expr) -> Node:
         """The node of an expression of symbols, real numbers and `FUNCTIONS`."""
@@ -46,15 +49,17 @@ class Translation:
                 return self._elongation(spring)
             return graph.sum([(self(term), 1) for term in expression.args])
         if expression.is_Mul:
-            return graph.product([(self(factor), 1) for factor in expression.args])
+            return graph.product([(self(factor), 1) for factor in _factors(expression)])
         if expression.is_Pow and expression.exp.is_Integer:
             return graph.power(self(expression.base), int(expression.exp))
         if expression.is_number:
             return self._number(expression)
+        if isinstance(expression, CHOICES):
+            return self._choice(expression)
         if type(expression) in NAMES:
-            return graph.call(NAMES[type(expression)], self(expression.args[0]))
-        if expression.is_Pow and expression.exp.is_Rational:
-            return self._root(expression)
+            return graph.call(NAMES[type(expression)], *map(self, expression.args))
+        if expression.is_Pow:
+            return self._power(expression)
         raise _unsupported(expression)
 
     def _number(self, expression: sp.Expr) -> Node:
@@ -74,14 +79,25 @@ class Translation:
         value = graph.rewritten(squares / (root + length), root - length)
         return value * self(spring.scale)
 
-    def _root(self, expression: sp.Expr) -> Node:
-        """A power whose exponent is a fraction with denominator 2, 4, 8 …, by square roots."""
+    def _power(self, expression: sp.Pow) -> Node:
+        """A power; by square roots if its exponent is a fraction with denominator 2, 4, 8, etc."""
         base, exponent = self(expression.base), expression.exp
+        if not exponent.is_Rational or exponent.q & (exponent.q - 1):
+            return self.graph.call("pow", base, self(exponent))
         while exponent.q % 2 == 0:
             base, exponent = self.graph.call("sqrt", base), 2 * exponent
-        if not exponent.is_Integer:
-            raise _unsupported(expression)
         return self.graph.power(base, int(exponent))
+
+
+def _factors(product: sp.Mul) -> Iterable[sp.Expr]:
+    """The factors of a product; powers of one base, such as x**p/x, are one power."""
+    if all(factor.exp.is_Rational for factor in product.args if factor.is_Pow):
+        return product.args
+    exponents: dict[sp.Expr, sp.Expr] = {}
+    for factor in product.args:
+        base, exponent = (factor.base, factor.exp) if factor.is_Pow else (factor, sp.S.One)
+        exponents[base] = exponents.get(base, sp.S.Zero) + exponent
+    return [base**exponent for base, exponent in exponents.items()]
 
 
 def _fraction(number: sp.Rational) -> Fraction:
@@ -93,9 +109,4 @@ def _unsupported(expression: sp.Expr) -> UnsupportedFunctionError:
     reason = f"use finite real numbers, sums, products, powers and {known}"
     if expression.is_Function:
         reason = f"the function {expression.func} is unknown; use {known}"
-    elif expression.is_Pow:
-        reason = (
-            f"the exponent is {expression.exp}; use multiples of 1/2 or 1/4 as exponents, or write "
-            "a**b as exp(b*log(a)) if b is a parameter"
-        )
     return UnsupportedFunctionError(f"no generated code for {str(expression)[:80]!r}: {reason}")

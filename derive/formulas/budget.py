@@ -25,6 +25,10 @@ MAX_DEPTH, MAX_NESTING = 30, 12
 MAX_SECOND, MAX_SECOND_IN_SYSTEM = 60_000, 12_000
 #: Factors of a product in a system, besides powers of names: its derivatives contain those of all.
 MAX_FACTORS_IN_SYSTEM = 12
+#: Arguments of one min or max.
+MAX_ARGUMENTS = 12
+#: Parts of formulas that have no finite value.
+INFINITE = (sp.zoo, sp.nan, sp.oo, -sp.oo)
 
 REMEDY = "simplify the formula, or the definitions that it uses"
 
@@ -110,13 +114,26 @@ class Budget:
                 raise BudgetError(f"a number has {bits} bits; at most {MAX_BITS} are allowed")
         elif value.is_Mul or value.is_Pow or value.is_Function:
             number = sp.Mul(*(factor for factor in sp.Mul.make_args(value) if factor.is_number))
-            if not number.is_Rational and not number.has(sp.zoo, sp.nan, sp.oo):
+            if not number.is_Rational and not number.has(*INFINITE):
                 self._check_magnitude(number)
 
     def check_exponential(self, argument: sp.Expr) -> None:
         """Raise `BudgetError` if the exponential function of a number is out of range."""
         if argument.is_number and abs(self._value(argument).number) > MAX_LOGARITHM:
             raise BudgetError(f"exp({str(argument)[:50]}) is out of range: {RANGE}")
+
+    def check_arguments(self, function: object, arguments: Sequence[Basic]) -> None:
+        """Raise `BudgetError` if a largest or smallest of numbers, which are compared, has many."""
+        counts = (len(a.args) if type(a) is function else 1 for a in arguments)
+        if function in (sp.Max, sp.Min) and sum(counts) > MAX_ARGUMENTS:
+            raise BudgetError(f"more than {MAX_ARGUMENTS} arguments of one min or max: {REMEDY}")
+
+    def check_exponent(self, exponent: sp.Expr) -> None:
+        """Raise `BudgetError` if an exponent is a number that is too large or not real."""
+        self.check_real(exponent)
+        if exponent.is_number and abs(self._value(exponent).number) > MAX_EXPONENT:
+            limit = f"only numbers up to {MAX_EXPONENT} are allowed"
+            raise BudgetError(f"exponent {str(exponent)[:50]}: {limit}")
 
     def check_real(self, value: sp.Expr) -> None:
         """Raise `BudgetError` if a formula is a number that is not real."""
@@ -149,8 +166,9 @@ def _extent(value: Basic, parts: Sequence[Extent]) -> Extent:
         second += varying * (varying * len(parts) + 2 * first)
         first += varying * len(parts)
     elif not value.is_Add:  # f(u)' = f'(u) u', f(u)'' = f''(u) u'² + f'(u) u''
-        second += 2 * first + 2
-        first += 1
+        arguments = max(1, sum(part.first > 0 for part in parts))
+        second += arguments * (2 * first + 2)
+        first += arguments
     size, depth = 1 + sum(part.size for part in parts), 1 + max(part.depth for part in parts)
     is_root = value.is_Pow and not value.exp.is_Integer
     nesting = max(part.nesting for part in parts) + (value.is_Function or is_root)

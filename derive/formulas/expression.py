@@ -14,9 +14,10 @@ from functools import reduce
 from typing import Any, TypeAlias
 
 import sympy as sp
+from sympy.logic.boolalg import Boolean
 
 from derive.formulas import functions
-from derive.formulas.budget import MAX_BITS, MAX_EXPONENT, Budget, BudgetError
+from derive.formulas.budget import INFINITE, MAX_BITS, MAX_EXPONENT, Budget, BudgetError
 from derive.formulas.numeric import NoValueError
 from derive.formulas.sampling import check_value
 from solvers.io.suggestion import did_you_mean
@@ -34,6 +35,9 @@ FUNCTIONS: dict[str, Any] = functions.FUNCTIONS | {"pi": sp.pi}
 KEYWORD = re.compile(rf"\b(?:{'|'.join(keyword.kwlist)})\b")
 #: From an ASCII letter to the wide letter that Python's parser normalises to it.
 WIDE = 0xFEE0
+
+#: The comparisons of conditions.
+COMPARISONS = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt, ast.GtE: sp.Ge}
 
 #: Functions that have no value for some arguments.
 PARTIAL = (sp.tan, sp.log)
@@ -67,7 +71,7 @@ def parse(text: str, scope: Scope, budget: Budget | None = None) -> Value:
         raise ExpressionError(f"{text[:80]!r} has no finite value: {error}") from None
     except Exception as error:  # SymPy raises many types for invalid operations
         raise ExpressionError(f"{text[:80]!r} cannot be computed: {error}") from None
-    if value.has(sp.zoo, sp.nan, sp.oo):
+    if value.has(*INFINITE):
         raise ExpressionError(f"{text[:80]!r} has no finite value: it divides by zero")
     return value
 
@@ -156,6 +160,8 @@ class _Evaluator:
                 return a * b
             case ast.BinOp(left=left, op=ast.Div(), right=right):
                 return self.value(left) / _divisor(self.value(right))
+            case ast.Call(func=ast.Name(id="Piecewise"), args=[_, *_] as pieces, keywords=[]):
+                return self._choice(node, pieces)
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 return self._call(name, [*map(self.value, arguments)])
             case ast.Tuple(elts=[_, *_] as items):
@@ -174,6 +180,33 @@ class _Evaluator:
             "functions, (a, b) for a column and [[a, b], [c, d]] for a matrix"
         )
 
+    def _choice(self, node: ast.expr, pieces: Sequence[ast.expr]) -> sp.Expr:
+        """The first of several numbers whose condition holds."""
+        pairs = []
+        for piece in pieces:
+            match piece:
+                case ast.Tuple(elts=[value, condition]):
+                    pairs.append((self._entry(value), self._condition(condition)))
+        if len(pairs) != len(pieces) or pairs[-1][1] != sp.true:
+            raise ExpressionError(
+                f"{_quoted(node)}: write Piecewise((a, x < 1), (b, x < 2), (c, True)), pairs of "
+                "a value and its condition, of which the last one is True"
+            )
+        self._lookup("Piecewise", function=True)
+        return sp.Piecewise(*pairs)
+
+    def _condition(self, node: ast.expr) -> Boolean:
+        match node:
+            case ast.Name(id="True"):
+                return sp.true
+            case ast.Compare(left=left, ops=[relation], comparators=[right]):
+                if type(relation) in COMPARISONS:
+                    return COMPARISONS[type(relation)](self._entry(left), self._entry(right))
+        raise ExpressionError(
+            f"{_quoted(node)} is not a condition: compare two numbers by <, <=, > or >=, or write "
+            "True"
+        )
+
     def _entry(self, node: ast.expr) -> sp.Expr:
         value = self.value(node)
         if isinstance(value, sp.MatrixBase):
@@ -185,6 +218,7 @@ class _Evaluator:
         for value in arguments:
             if function is FUNCTIONS.get(name) and isinstance(value, sp.MatrixBase):
                 raise ExpressionError(f"{name} of a column or matrix: it is a function of numbers")
+        self._budget.check_arguments(function, arguments)
         for value in arguments:
             if function is sp.exp:
                 self._budget.check_exponential(value)
@@ -196,11 +230,12 @@ class _Evaluator:
         return result
 
     def _power(self, base: Value, exponent: Value) -> Value:
-        if not (isinstance(exponent, sp.Rational) and abs(exponent) <= MAX_EXPONENT):
-            limit = f"only numbers up to {MAX_EXPONENT} are allowed"
-            raise ExpressionError(f"exponent {str(exponent)[:50]}: {limit}")
-        if isinstance(base, sp.MatrixBase):
+        if isinstance(base, sp.MatrixBase) or isinstance(exponent, sp.MatrixBase):
             raise ExpressionError("powers of matrices are not supported: write out the product")
+        self._budget.check_exponent(exponent)
+        if not exponent.is_Rational:
+            self._budget.check_real(base)
+            return (_divisor(base) if exponent.could_extract_minus_sign() else base) ** exponent
         coefficient = base.as_coeff_Mul()[0]  # the power of a product is a product of powers
         bits = max(coefficient.p.bit_length(), coefficient.q.bit_length())
         if (bits - 1) * abs(exponent) > MAX_BITS:

@@ -11,6 +11,8 @@ from typing import Any
 
 import sympy as sp
 from mpmath import MPContext
+from sympy.core.relational import Relational
+from sympy.logic.boolalg import Boolean
 
 #: Digits of the arithmetic, and of values that are converted to SymPy numbers.
 WORKING_DIGITS, DIGITS = 120, 90
@@ -80,9 +82,32 @@ class Evaluator:
             return _product(map(self, expression.args))
         if expression.is_Pow and expression.exp.is_Rational:
             return _power(self(expression.base), expression.exp)
+        if expression.is_Pow:
+            return _real_power(self(expression.base), self(expression.exp))
         if expression.func in FUNCTIONS:
             return FUNCTIONS[expression.func](self(expression.args[0]))
+        if isinstance(expression, sp.Max | sp.Min):
+            values = [*map(self, expression.args)]
+            best = max if isinstance(expression, sp.Max) else min
+            return best(values, key=lambda value: value.number.real)
+        if isinstance(expression, sp.Piecewise):
+            return self(
+                next(value for value, condition in expression.args if self._holds(condition))
+            )
         return self._by_sympy(expression)
+
+    def _holds(self, condition: Boolean) -> bool:
+        """Whether a condition of a choice holds; of numbers that are equal, to all digits."""
+        if not isinstance(condition, Relational):
+            parts = [*map(self._holds, condition.args)]
+            if isinstance(condition, sp.Not):
+                return not parts[0]
+            if isinstance(condition, sp.And | sp.Or):
+                return all(parts) if isinstance(condition, sp.And) else any(parts)
+            return bool(condition == sp.true)
+        difference = self(condition.lhs - condition.rhs)
+        sign = 0 if difference.is_zero else int(mp.sign(difference.number.real))
+        return bool(condition.func(sign, 0))
 
     def _by_sympy(self, expression: sp.Expr) -> Approximation:
         """The value of another function, such as sinh, whose error is assumed small."""
@@ -148,6 +173,14 @@ def _power(base: Approximation, exponent: sp.Rational) -> Approximation:
     number = mp.power(base.number, power)
     relative = 2 * abs(power) * (base.error / abs(base.number) + ROUNDING)
     return Approximation(number, abs(number) * (relative + ROUNDING))
+
+
+def _real_power(base: Approximation, exponent: Approximation) -> Approximation:
+    if base.is_zero:
+        if exponent.number.real <= 0:
+            raise NoValueError("it divides by zero")
+        return Approximation(mp.zero, mp.power(2 * base.error, exponent.number.real))
+    return _exponential(_product([exponent, _logarithm(base)]))
 
 
 def _argument(operand: Approximation, name: str) -> Any:

@@ -15,6 +15,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from derive.formulas.switching import switching_functions
 from derive.mechanics.independence import check_independence
 from derive.mechanics.linearisation import Energies, Linearisation
 from derive.mechanics.reduction import collected, gathered, reduced
@@ -162,6 +163,14 @@ class Derivation:
     def potential_energy(self) -> sp.Expr:
         """V(q, t), one term for each function of the coordinates."""
         return gathered(self.system.potential_energy, *self.system.q)
+
+    @cached_property
+    def switching_functions(self) -> tuple[sp.Expr, ...]:
+        """Functions of (q, q̇, t) at whose zeros forces have a kink or a jump."""
+        system = self.system
+        positions = (r for mass in system.masses for _, motion in mass.motions for r in motion)
+        expressions = (*positions, self.potential_energy, *system.applied)
+        return switching_functions(expressions, (*system.q, *system.qdot, TIME))
 
     @cached_property
     def lagrangian(self) -> sp.Expr:

@@ -6,7 +6,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterable
 
-from derive.formulas.functions import FUNCTIONS
+from derive.formulas.functions import FUNCTIONS, GENERATED
 from derive.system.parts import SystemDefinitionError
 
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}\Z")
@@ -19,6 +19,7 @@ RESERVED = {
     *"restrict short signed sizeof static struct switch typedef union unsigned void".split(),
     *"volatile pi".split(),
     *FUNCTIONS,
+    *GENERATED,
     *"t params state result numpy math hasattr STATE".split(),
     # keywords of C++ and of later standards of C, and macros that compilers define
     *"asm bool catch class delete dynamic_cast explicit export friend mutable namespace".split(),
@@ -47,7 +48,17 @@ MODULES = {*sys.stdlib_module_names, "numpy", "scipy", "sympy", "matplotlib", "m
 }
 
 #: Words that a C header appends to the name of its system.
-HELPERS = ("real", "number", "splat", "block", "clear", "factorise", "solve", *FUNCTIONS)
+HELPERS = (
+    "real",
+    "number",
+    "splat",
+    "block",
+    "clear",
+    "factorise",
+    "solve",
+    *FUNCTIONS,
+    *GENERATED,
+)
 #: Macros that it appends to the same in capitals.
 HELPER_MACROS = ("NUMBER", "BLOCK", "DOUBLE")
 

@@ -22,6 +22,8 @@ LARGEST_INVERSE, LARGEST_DIAGONAL = 3, 7
 #: Factors of coordinates at states, tried until the Lagrangian is real: a thread limits
 #: coordinates from above, a wheel's axis from below.
 SIZES = (sp.S.One, sp.Rational(1, 20), sp.Integer(5))
+#: Factors of all variables, by which switching functions change their signs.
+SCALES = tuple(sp.Integer(10) ** power for power in (0, 1, -1, 2, -2, 3, -3))
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ class Model:
         system = self.derivation.system
         scope = {**own_names(system), **self.names}
         rates = {f"{p}_dot": time_derivative(system, value) for p, value in self.momenta.items()}
-        states = tuple(self._state(index) for index in range(STATES))
+        states = (*(self._state(index) for index in range(STATES)), *self._further_states)
         return Context({**rates, **scope}, states, (self.momenta,))
 
     @cached_property
@@ -98,13 +100,28 @@ class Model:
                 return note
         return None
 
-    def _state(self, index: int) -> State:
+    @property
+    def _further_states(self) -> list[State]:
+        """Larger or smaller states at which switching functions have signs not met before."""
+        functions, states = self.derivation.switching_functions, list[State]()
+        met = set[tuple[int, bool]]()
+        for scale in SCALES if functions else ():
+            for index in range(STATES):
+                state = self._state(index, scale)
+                evaluator = Evaluator(state)
+                signs = {(k, bool(evaluator(s).number.real > 0)) for k, s in enumerate(functions)}
+                if scale != 1 and signs - met:
+                    states.append(state)
+                met |= signs
+        return states
+
+    def _state(self, index: int, scale: sp.Expr = sp.S.One) -> State:
         """One of several states at which nothing vanishes, with the momenta of its velocities."""
         system = self.derivation.system
         moving = (*system.q, *system.qdot, *system.qddot, TIME)
         values = sample((*system.params, *moving), index)
         # at later states, angles exceed a right angle, so that sqrt(cos(x)**2) and cos(x) differ
-        values |= {symbol: values[symbol] * sp.Rational(1 + index, 5) for symbol in moving}
+        values |= {symbol: values[symbol] * scale * sp.Rational(1 + index, 5) for symbol in moving}
         for size in SIZES:
             state = values | {q: values[q] * size for q in system.q}
             if _is_real(self.derivation.lagrangian, state):

@@ -85,8 +85,8 @@ class Pieces:
                 return self._samples(self._scope[name])
             case ast.UnaryOp(operand=operand):
                 return [-x for x in self._value(operand)]
-            case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
-                return applied(name, self._value(argument))
+            case ast.Call(func=ast.Name(id=name), args=arguments) if name in FUNCTIONS:
+                return applied(name, *map(self._value, arguments))
             case ast.BinOp(left=left, op=symbol, right=right):
                 return [*map(OPERATIONS[type(symbol)], self._value(left), self._value(right))]
             case ast.Call():  # an operator such as a derivative

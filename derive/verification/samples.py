@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 import sympy as sp
 from mpmath import fp
+from sympy.core.relational import Relational
 
 from derive.formulas import functions
 from derive.mechanics.derivation import Derivation
@@ -17,9 +18,16 @@ from derive.verification.model import Model
 #: Numbers at all states; NaN where there is no real number.
 Numbers: TypeAlias = list[float]
 
-FUNCTIONS: dict[str, Callable[[float], float]] = {
-    name: getattr(math, name) for name in functions.FUNCTIONS
-} | {"Abs": abs}
+#: By their names in formulas and in SymPy.
+FUNCTIONS: dict[str, Callable[..., float]] = {
+    **{name: getattr(math, name) for name in functions.FUNCTIONS if hasattr(math, name)},
+    **dict.fromkeys(("abs", "Abs"), abs),
+    **dict.fromkeys(("min", "Min"), min),
+    **dict.fromkeys(("max", "Max"), max),
+    "sign": lambda x: (x > 0) - (x < 0),
+    "Heaviside": lambda x, at_zero: 1.0 if x > 0 else 0.0 if x < 0 else at_zero,
+    "DiracDelta": lambda x: 0.0,
+}
 
 
 class Samples:
@@ -48,6 +56,8 @@ class Samples:
     def _value(self, expression: sp.Expr) -> Numbers:
         if expression.is_number:
             return [_number(expression)] * self.count
+        if isinstance(expression, sp.Piecewise):
+            return self._choice(expression)
         parts = [self(part) for part in expression.args]
         if expression.is_Add:
             return [sum(terms) for terms in zip(*parts, strict=True)]
@@ -56,8 +66,20 @@ class Samples:
         if expression.is_Pow:
             return [power(*pair) for pair in zip(*parts, strict=True)]
         if expression.func.__name__ in FUNCTIONS:
-            return applied(expression.func.__name__, parts[0])
+            return applied(expression.func.__name__, *parts)
         raise NotImplementedError(f"no numbers for {expression.func}")
+
+    def _choice(self, expression: sp.Piecewise) -> Numbers:
+        """The values of the first pieces whose conditions hold."""
+        result = [math.nan] * self.count
+        for value, condition in reversed(expression.args):
+            holds = [condition == sp.true] * self.count
+            if isinstance(condition, Relational):
+                differences = self(condition.lhs - condition.rhs)
+                holds = [bool(condition.func(x, 0)) for x in differences]
+            pairs = zip(holds, self(value), result, strict=True)
+            result = [a if chosen else b for chosen, a, b in pairs]
+        return result
 
     def _solve(self, derivation: Derivation) -> None:
         """Set accelerations to those of the motion."""
@@ -91,16 +113,16 @@ def quotient(a: float, b: float) -> float:
     return a / b if b else math.nan
 
 
-def applied(name: str, values: Numbers) -> Numbers:
+def applied(name: str, *arguments: Numbers) -> Numbers:
     """The values of a function, or NaN."""
 
-    def value(x: float) -> float:
+    def value(*numbers: float) -> float:
         try:
-            return FUNCTIONS[name](x)
+            return FUNCTIONS[name](*numbers)
         except (ValueError, OverflowError):
             return math.nan
 
-    return [*map(value, values)]
+    return [*map(value, *arguments)]
 
 
 def _symbols(system: System) -> Sequence[sp.Symbol]:

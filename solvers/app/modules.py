@@ -40,7 +40,7 @@ def load(name: str) -> GeneratedModule:
     ValueError
         If the file does not exist or does not describe a system.
     derive.codegen.translation.UnsupportedFunctionError
-        If its equations contain an unsupported power, such as ``x**(5/3)``.
+        If its equations contain an unsupported function.
 
     Warns
     -----
@@ -97,7 +97,7 @@ def build(system: "System") -> GeneratedModule:
     ValueError
         If `system` is not a system, such as the path of a system file.
     derive.codegen.translation.UnsupportedFunctionError
-        If its equations contain an unsupported power.
+        If its equations contain an unsupported function.
 
     Warns
     -----

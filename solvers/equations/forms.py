@@ -76,18 +76,25 @@ class Form:
         return self._jacobian is not None
 
     def rhs(self, t: float, z: Array) -> Array:
-        """The right-hand side."""
-        return np.array(self.function(t, z, self._params_at(t, z)))
+        """The right-hand side; `ArithmeticError` where it has no finite value."""
+        return self._value(self.function, t, z, self._params_at(t, z))
 
     def jacobian(self, t: float, z: Array) -> Array:
-        """Its Jacobian."""
+        """Its Jacobian; `ArithmeticError` where it has no finite value."""
         assert self._jacobian is not None
         params = self._params_at(t, z)
-        matrix = np.array(self._jacobian(t, z, params))
+        matrix = self._value(self._jacobian, t, z, params)
         if self.feedback is None:
             return matrix
-        by_inputs = np.array(function(self.module, "input_jacobian")(t, z, params))
+        by_inputs = self._value(function(self.module, "input_jacobian"), t, z, params)
         return np.asarray(matrix + by_inputs @ self._feedback_jacobian(t, z))
+
+    @staticmethod
+    def _value(function: Callable[..., Any], t: float, z: Array, params: Sequence[Any]) -> Array:
+        try:
+            return np.array(function(t, z, params))
+        except ValueError as error:  # of a function of `math`, such as a root of a negative number
+            raise FloatingPointError(f"{error} in {function.__name__}") from error
 
     def _params_at(self, t: float, z: Array) -> Sequence[Any]:
         """The parameters, the last of which may be inputs that depend on time and state."""

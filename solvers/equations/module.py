@@ -12,8 +12,9 @@ Arrays = Sequence[Any] | NDArray[Any]
 Array = NDArray[Any]
 Rows = tuple[tuple[float, ...], ...]
 
-#: The functions of `math` that generated functions call.
-ELEMENTARY = ("sin", "cos", "tan", "exp", "log", "sqrt")
+#: The functions of `math` that generated functions call, of one argument and of two.
+ELEMENTARY = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "atan")
+BINARY = ("atan2", "pow")
 
 
 class GeneratedModule(Protocol):

@@ -6,17 +6,22 @@ table 13.2).
 
 from collections.abc import Callable
 from decimal import Decimal
+from math import atan2
 from operator import mul
 
 from solvers.equations.decimal_state import sine_and_cosine
 from solvers.references.series import ZERO, Series, Tape
 
-#: A function of a series or a number.
-SeriesFunction = Callable[[Series | float], Series]
+#: A function of series and numbers.
+SeriesFunction = Callable[..., Series]
 
 
-def series_functions(tape: Tape) -> dict[str, SeriesFunction]:
-    """The functions that generated code calls, by name; they record their operations on `tape`."""
+def series_functions(tape: Tape, switches: "Tape | None" = None) -> dict[str, SeriesFunction]:
+    """The functions that generated code calls, by name; they record their operations on `tape`.
+
+    Series on whose signs choices depend are appended to `switches`; they are valid as long as the
+    signs stay as they are at 0.
+    """
     circular: dict[Series, tuple[Series, Series]] = {}
 
     def sine_cosine(x: Series | float) -> tuple[Series, Series]:
@@ -32,6 +37,28 @@ def series_functions(tape: Tape) -> dict[str, SeriesFunction]:
         sine, cosine = sine_cosine(x)
         return sine / cosine
 
+    def hyperbolic(x: Series | float) -> tuple[Series, Series]:
+        power = _exp(as_series(x))
+        return (power - 1 / power) / 2, (power + 1 / power) / 2
+
+    def tanh(x: Series | float) -> Series:
+        sine, cosine = hyperbolic(x)
+        return sine / cosine
+
+    def power(base: Series | float, exponent: Series | float) -> Series:
+        base, exponent = as_series(base), as_series(exponent)
+        if base.constant and exponent.constant:
+            return Series.number(tape, base.at(0) ** exponent.at(0))
+        return _exp(exponent * _log(base))
+
+    def select(s: Series | float, a: Series | float, b: Series | float) -> Series:
+        s, a, b = map(as_series, (s, a, b))
+        if s.constant:
+            return a if s.at(0) > 0 else b
+        if switches is not None:
+            switches.append(s)
+        return Series(tape, [], lambda k: (a if s.at(0) > 0 else b).at(k))
+
     return {
         "sin": lambda x: sine_cosine(x)[0],
         "cos": lambda x: sine_cosine(x)[1],
@@ -39,6 +66,13 @@ def series_functions(tape: Tape) -> dict[str, SeriesFunction]:
         "exp": lambda x: _exp(as_series(x)),
         "log": lambda x: _log(as_series(x)),
         "sqrt": lambda x: _sqrt(as_series(x)),
+        "sinh": lambda x: hyperbolic(x)[0],
+        "cosh": lambda x: hyperbolic(x)[1],
+        "tanh": tanh,
+        "atan": lambda x: _angle(as_series(x), as_series(1.0)),
+        "atan2": lambda y, x: _angle(as_series(y), as_series(x)),
+        "pow": power,
+        "select": select,
     }
 
 
@@ -71,17 +105,39 @@ def _log(x: Series) -> Series:
     """From x (log x)' = x'."""
     if x.constant:
         return Series.number(x.tape, x.at(0).ln())
-    logarithm = Series(x.tape, [])
+    return _quotient_integrated(_rate(x), x, lambda: x.at(0).ln())
+
+
+def _angle(y: Series, x: Series) -> Series:
+    """From (x² + y²) a' = x y' - y x'."""
+    if x.constant and y.constant:
+        return Series.number(x.tape, _atan2(y.at(0), x.at(0)))
+    rate = (x * _rate(y)) - (y * _rate(x))
+    return _quotient_integrated(rate, x * x + y * y, lambda: _atan2(y.at(0), x.at(0)))
+
+
+def _atan2(y: Decimal, x: Decimal) -> Decimal:
+    """The angle of (x, y): each correction leaves the cube of its error."""
+    angle = Decimal(atan2(y, x))
+    for _ in range(4):
+        sine, cosine = sine_and_cosine(angle)
+        angle += (y * cosine - x * sine) / (x * cosine + y * sine)
+    return angle
+
+
+def _quotient_integrated(rate: Series, other: Series, first: Callable[[], Decimal]) -> Series:
+    """The integral of the quotient of `rate` times 1/x and `other`, from `first` on."""
+    integral = Series(other.tape, [])
 
     def coefficient(k: int) -> Decimal:
         if not k:
-            return x.at(0).ln()
-        lower = map(mul, rate.coefficients[1:k], x.coefficients[k - 1 : 0 : -1])
-        return (x.at(k) - sum(lower, ZERO) / k) / x.at(0)
+            return first()
+        lower = map(mul, own.coefficients[1:k], other.coefficients[k - 1 : 0 : -1])
+        return (rate.at(k) - sum(lower, ZERO)) / (k * other.at(0))
 
-    _recorded(logarithm, coefficient)
-    rate = _rate(logarithm)
-    return logarithm
+    _recorded(integral, coefficient)
+    own = _rate(integral)
+    return integral
 
 
 def _sqrt(x: Series) -> Series:

@@ -68,6 +68,7 @@ def taylor(
     ------
     SeriesError
         When the equations are not finite at a state, such as the logarithm of a negative number;
+        at a kink or a jump, such as that of ``abs(x)`` at 0, beyond which a series is not valid;
         when steps are below the resolution of time, as before a collision; when `max_products`
         do not suffice.
 
@@ -87,6 +88,7 @@ def taylor(
             while abs(sample - t) > h:
                 if h:
                     step = h.copy_sign(sample - t)
+                    motion.check_choices(step)
                     t += step
                     motion.restart(t, motion.state_after(step))
                     progress(float(t))
@@ -100,6 +102,7 @@ def taylor(
                     raise motion.error("the equations are not finite") from error
                 if h < shortest and abs(sample - t) > h:
                     raise motion.error("a step is below the resolution of time, at a singularity")
+            motion.check_choices(sample - t)
             states.append([float(x) for x in motion.ordinary_after(sample - t)])
     return np.array(states)
 
@@ -120,7 +123,8 @@ class _Motion:
         self._state = [Series(self._tape, []) for _ in form.state]
         constants = [Series.number(self._tape, p) for p in params]
         exact = with_exact_literals(form.function, partial(Series.number, self._tape))
-        function = with_functions(exact, series_functions(self._tape))
+        self._switches = list[Series]()
+        function = with_functions(exact, series_functions(self._tape, self._switches))
         rates = function(self._time, self._state, constants)
         self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
         columns = dict(form.shared_columns)
@@ -175,7 +179,15 @@ class _Motion:
         return min(radii) / Decimal(2).exp()
 
     def state_after(self, h: Decimal) -> list[Decimal]:
-        """The state after `h`, by Horner's rule."""
-        zero = Decimal(0)
-        coefficients = (reversed(series.coefficients) for series in self._state)
-        return [reduce(lambda value, c: value * h + c, each, zero) for each in coefficients]
+        """The state after `h`."""
+        return [_sum(series, h) for series in self._state]
+
+    def check_choices(self, h: Decimal) -> None:
+        """Raise `SeriesError` if a choice in the equations is another one after `h`."""
+        if any((_sum(s, h) > 0) != (s.at(0) > 0) for s in self._switches):
+            raise self.error("the equations have a kink or a jump in the next step")
+
+
+def _sum(series: Series, h: Decimal) -> Decimal:
+    """The sum of a series at `h`, by Horner's rule."""
+    return reduce(lambda value, c: value * h + c, reversed(series.coefficients), Decimal(0))

@@ -51,7 +51,7 @@ enum {{
 
 /* Indices of parameters, and of the components of states. */
 {indices}
-{numbers}{calls}
+{numbers}{calls}{select}
 {functions}
 
 #endif
@@ -87,16 +87,33 @@ CALLS = """
 """
 
 CALL = """\
-static inline {system}_real {system}_{name}({system}_real x)
+static inline {system}_real {system}_{name}({parameters})
 {{
 #ifdef HOLONOMIC_CALL
-    return HOLONOMIC_CALL({name})(x);
+    return HOLONOMIC_CALL({name})({names});
 #else
-    return sizeof(x) > sizeof(double) ? ({system}_real){name}l((long double)x)
-        : sizeof(x) > sizeof(float) ? ({system}_real){name}((double)x)
-        : ({system}_real){name}f((float)x);
+    return sizeof(x) > sizeof(double) ? ({system}_real){name}l({long_doubles})
+        : sizeof(x) > sizeof(float) ? ({system}_real){name}({doubles})
+        : ({system}_real){name}f({floats});
 #endif
 }}"""
+#: Functions of two arguments.
+BINARY = ("atan2", "pow")
+
+SELECT = """
+/* x where s > 0, y where s <= 0, and s where it is not a number. */
+static inline {system}_real {system}_select({system}_real s, {system}_real x, {system}_real y)
+{{
+#ifdef HOLONOMIC_VECTOR
+    const {system}_real zero = {{0}};
+    const __typeof__(s > zero) first = s > zero, second = s <= zero;
+    return ({system}_real)((first & (__typeof__(s > zero))x) | (second & (__typeof__(s > zero))y)
+        | (~(first | second) & (__typeof__(s > zero))s));
+#else
+    return s > 0 ? x : s <= 0 ? y : s;
+#endif
+}}
+"""
 
 FUNCTION = """\
 /* {f.summary}
@@ -194,8 +211,8 @@ class CNotation(Notation):
         sign = "-" * digits.startswith("-")
         return f"{sign}{self.system.upper()}_NUMBER({digits.removeprefix('-')})"
 
-    def call(self, function: str, argument: str) -> str:
-        return f"{self.system}_{function}({argument})"
+    def call(self, function: str, *arguments: str) -> str:
+        return f"{self.system}_{super().call(function, *arguments)}"
 
 
 class CBackend(Backend):
@@ -241,8 +258,9 @@ class CBackend(Backend):
             loops = LOOPS.format(system=system.name, guard=guard, block=BLOCK)
             functions = loops + functions
         numbers = NUMBERS if f"{guard}_NUMBER(" in functions else ""
-        called = {name for f in contents.functions for name in f.lowering.functions}
-        calls = "\n".join(CALL.format(system=system.name, name=name) for name in sorted(called))
+        called = {name for f in contents.functions for name in f.lowering.library_functions}
+        calls = "\n".join(_call(system.name, name) for name in sorted(called))
+        has_choices = any("select" in f.lowering.functions for f in contents.functions)
         return HEADER.format(
             digest=DIGEST,
             system=system,
@@ -256,6 +274,7 @@ class CBackend(Backend):
             indices="\n".join(_indices(contents)),
             numbers=numbers.format(system=system.name, guard=guard),
             calls=CALLS.format(calls=calls) if called else "",
+            select=SELECT.format(system=system.name) if has_choices else "",
             functions=functions,
         )
 
@@ -274,7 +293,21 @@ class CBackend(Backend):
     def _guarded(self, function: Function) -> str:
         """The function, which a vector omits if it calls the mathematical library."""
         text = self.function(function)
-        return f"#ifndef HOLONOMIC_VECTOR\n{text}#endif\n" if function.lowering.functions else text
+        calls = function.lowering.library_functions
+        return f"#ifndef HOLONOMIC_VECTOR\n{text}#endif\n" if calls else text
+
+
+def _call(system: str, name: str) -> str:
+    """The function of the header's number type that calls one of the mathematical library."""
+    names = ("x", "y") if name in BINARY else ("x",)
+    casts = {
+        f"{kind.replace(' ', '_')}s": ", ".join(f"({kind}){x}" for x in names)
+        for kind in ("long double", "double", "float")
+    }
+    parameters = ", ".join(f"{system}_real {x}" for x in names)
+    return CALL.format(
+        system=system, name=name, names=", ".join(names), parameters=parameters, **casts
+    )
 
 
 def _stride(n: int) -> int:

@@ -1,6 +1,6 @@
 """Python modules: every function for one state, and for arrays of states."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from textwrap import indent, wrap
 
@@ -127,6 +127,22 @@ def _solved(rows: list[list[Any]], right: Sequence[Any]) -> list[Any]:
         for i in range(k):
             x[i] = x[i] - rows[i][k - i]*x[k]
     return x'''
+
+SELECT = '''\
+def select(s: float, a: float, b: float) -> float:
+    """a where s > 0, b where s <= 0, and s where it is not a number."""
+    return a if s > 0.0 else b if s <= 0.0 else s
+
+
+def _select_many(s: ArrayLike, a: ArrayLike, b: ArrayLike) -> Array:
+    """`select` over arrays."""
+    import numpy
+
+    s = numpy.asarray(s)
+    return numpy.where(s > 0.0, a, numpy.where(s <= 0.0, b, s))
+
+
+'''
 TYPES = ("float", "Vector", "Matrix", "tuple[Matrix, ...]")
 
 
@@ -153,7 +169,9 @@ class PythonBackend(Backend):
 
     def file(self, contents: Contents) -> str:
         functions = "\n\n".join(map(self._functions, contents.functions)).rstrip("\n")
-        called = {name for function in contents.functions for name in function.lowering.functions}
+        called = {name for f in contents.functions for name in f.lowering.library_functions}
+        has_choices = any("select" in f.lowering.functions for f in contents.functions)
+        functions = (SELECT if has_choices else "") + functions
         return MODULE.format(
             system=contents.system,
             summary=summary(contents),
@@ -176,12 +194,12 @@ class PythonBackend(Backend):
 
     def _functions(self, function: Function) -> str:
         """The function for one state, and that for arrays."""
-        assigned, called = self.assignments(function), function.lowering.functions
+        assigned = self.assignments(function)
         many = MANY.format(
             f=function,
             arguments=_arguments(function, "ArrayLike", "Arrays"),
             shape=f"({', '.join([*map(str, function.shape), '...'])})",
-            imports=indent(_imports("numpy", called), "    ") + ("\n" if called else ""),
+            imports=_imports_of_many(function),
             body="\n".join(self.body(function, self._inputs(function, "{0}"), assigned)),
             outputs=_stacked(function, assigned.outputs),
         )
@@ -201,8 +219,21 @@ class PythonBackend(Backend):
 TO_FLOATS = '{0}.tolist() if hasattr({0}, "tolist") else {0}'
 
 
-def _imports(module: str, called: Collection[str]) -> str:
-    return f"from {module} import {', '.join(sorted(called))}\n" if called else ""
+#: Functions whose names in NumPy differ from those in Python's `math` and in C99.
+IN_NUMPY = {"atan": "arctan as atan", "atan2": "arctan2 as atan2", "pow": "power as pow"}
+
+
+def _imports(module: str, called: Iterable[str], names: Mapping[str, str] = {}) -> str:
+    imported = ", ".join(names.get(name, name) for name in sorted(called))
+    return f"from {module} import {imported}\n" if imported else ""
+
+
+def _imports_of_many(function: Function) -> str:
+    """The lines by which functions of arrays take the place of those of numbers."""
+    lines = _imports("numpy", function.lowering.library_functions, IN_NUMPY)
+    if "select" in function.lowering.functions:
+        lines += "select = _select_many\n"
+    return f"{indent(lines, '    ')}\n" if lines else ""
 
 
 def _constants(contents: Contents) -> str:
@@ -223,7 +254,7 @@ def _constants(contents: Contents) -> str:
         ),
         "POSITIVE": _literal(s.name for s in (*system.params, *system.q) if s.is_positive),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
-        "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.functions),
+        "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),
         "OPERATIONS": _dict({f.name: repr(f.lowering.cost) for f in functions}),
         "UNITS": _dict({name: f'"{unit}"' for name, unit in units(system).items() if name in used}),
     }

@@ -7,9 +7,9 @@ Derivatives, chapter 13). Unknown coefficients, such as third derivatives, are N
 
 import ast
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, reduce
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -98,8 +98,25 @@ FUNCTIONS: dict[str, Callable[[Array], tuple[Array, Array, Array]]] = {
     "exp": lambda x: (np.exp(x),) * 3,
     "log": lambda x: (np.log(x), 1 / x, -1 / x**2),
     "sqrt": lambda x: _power(x, 0.5),
-    "Abs": lambda x: (np.abs(x), np.sign(x), 0 * x),
-    "norm": lambda x: (np.abs(x), np.sign(x), 0 * x),
+    **dict.fromkeys(("Abs", "abs", "norm"), lambda x: (np.abs(x), np.sign(x), 0 * x)),
+    "sinh": lambda x: (np.sinh(x), np.cosh(x), np.sinh(x)),
+    "cosh": lambda x: (np.cosh(x), np.sinh(x), np.cosh(x)),
+    "tanh": lambda x: (np.tanh(x), np.cosh(x) ** -2.0, -2 * np.tanh(x) * np.cosh(x) ** -2.0),
+    "atan": lambda x: (np.arctan(x), 1 / (1 + x**2), -2 * x / (1 + x**2) ** 2),
+    "sign": lambda x: (np.sign(x), 0 * x, 0 * x),
+    "Heaviside": lambda x: ((np.sign(x) + 1) / 2, 0 * x, 0 * x),
+    "DiracDelta": lambda x: (0 * x, 0 * x, 0 * x),
+}
+#: The larger and the smaller of two numbers.
+EXTREMES: dict[str, Callable[[Array, Array], Any]] = {
+    **dict.fromkeys(("max", "Max"), np.greater),
+    **dict.fromkeys(("min", "Min"), np.less),
+}
+COMPARISONS: dict[type[ast.cmpop], Callable[[Array, Array], Any]] = {
+    ast.Lt: np.less,
+    ast.LtE: np.less_equal,
+    ast.Gt: np.greater,
+    ast.GtE: np.greater_equal,
 }
 
 OPERATIONS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
@@ -155,6 +172,15 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
             return (column.T @ column)[0, 0]
         case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
             return _value(argument, values).function(FUNCTIONS[name])
+        case ast.Call(func=ast.Name(id="Heaviside"), args=[argument, _]):
+            return _value(argument, values).function(FUNCTIONS["Heaviside"])
+        case ast.Call(func=ast.Name(id=name), args=[_, *_] as arguments) if name in EXTREMES:
+            jets = [_value(argument, values) for argument in arguments]
+            return reduce(lambda a, b: _chosen(EXTREMES[name](a.value, b.value), a, b), jets)
+        case ast.Call(func=ast.Name(id="atan2"), args=[y, x]):
+            return _angle(_value(y, values), _value(x, values))
+        case ast.Call(func=ast.Name(id="Piecewise"), args=[_, *_] as pieces):
+            return _first_piece(pieces, values)
         case ast.Tuple(elts=items):
             entries = [_value(item, values) for item in items]
             if all(isinstance(one, np.ndarray) for one in entries):
@@ -175,5 +201,26 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
 def _raised(base: Jet, exponent: Jet) -> Jet:
     value = exponent.value
     if np.any(value != value.flat[0]) or np.any(exponent.coefficients[1:]):
-        raise UnknownNameError("an exponent that is not constant")
+        return (exponent * base.function(FUNCTIONS["log"])).function(FUNCTIONS["exp"])
     return base.power(float(value.flat[0]))
+
+
+def _chosen(condition: Any, a: Jet, b: Jet) -> Jet:
+    return Jet(np.where(condition, a.coefficients, b.coefficients))
+
+
+def _angle(y: Jet, x: Jet) -> Jet:
+    rate = (x * y.rate - y * x.rate) / (x * x + y * y)
+    return Jet.of(np.arctan2(y.value, x.value), rate.value, rate.coefficients[1])
+
+
+def _first_piece(pieces: Sequence[ast.expr], values: Mapping[str, Value]) -> Jet:
+    """The value of the first piece whose condition holds."""
+    match pieces:
+        case [ast.Tuple(elts=[value, ast.Name(id="True")])]:
+            return _value(value, values)
+        case [ast.Tuple(elts=[value, ast.Compare(left, [relation], [right])]), *rest]:
+            a, b = (_value(side, values).value for side in (left, right))
+            condition = COMPARISONS[type(relation)](a, b)
+            return _chosen(condition, _value(value, values), _first_piece(rest, values))
+    raise UnknownNameError("a choice without a last piece")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from decimal import Decimal, localcontext
 
 from solvers.equations.forms import Form
-from solvers.equations.module import ELEMENTARY
+from solvers.equations.module import BINARY, ELEMENTARY
 from solvers.integration.compiled.kernel_source import Equations
 from solvers.integration.compiled.layout import SOURCES, sizes_and_statuses
 from solvers.runge_kutta.collocation import collocation, gauss_nodes
@@ -65,11 +65,14 @@ class NumberType:
 
     def equations(self, equations: Equations, prefix: str) -> str:
         """The header's text for this type, with a prefix before all its names."""
-        names = [f"{function}{self.call}" for function in ELEMENTARY if self.call]
+        counts = dict.fromkeys(ELEMENTARY, 1) | dict.fromkeys(BINARY, 2) if self.call else {}
         system = equations.rhs.partition("_rhs")[0]
         renamed = rf"\b(HOLONOMIC_)?({system}|{system.upper()})_"
         return EQUATIONS.format(
-            prototypes="\n".join(f"{self.name} {name}({self.name});" for name in names),
+            prototypes="\n".join(
+                f"{self.name} {function}{self.call}({', '.join([self.name] * count)});"
+                for function, count in counts.items()
+            ),
             type=self.name,
             hooks=HOOKS.format(**vars(self)) if self.call else "",
             header=re.sub(renamed, rf"{prefix}\g<0>", equations.header),
