@@ -86,11 +86,14 @@ def no_disk_cache(hy: Any) -> Iterator[None]:
 def single(
     hy: Any, system: System, start: Numbers, params: Numbers, end: float, tol: float, **options: Any
 ) -> Callable[[], Array]:
-    """A function that integrates one motion; its next call overwrites the array it returns."""
+    """A function that integrates one motion; its next call overwrites the array it returns.
+
+    All numbers have the type `fp_type` of the options.
+    """
     integrator = hy.taylor_adaptive(system, list(start), tol=tol, pars=list(params), **options)
 
     def run() -> Array:
-        integrator.time = 0.0
+        integrator.time = type(end)(0)
         integrator.state[:] = start
         integrator.propagate_until(end)
         return integrator.state

@@ -9,13 +9,13 @@ from typing import Any
 from solvers.app.commands import options
 
 SUMMARY = "time compiled loops and other programs"
-PARTS = ("pendulum", "starts", "pipelines", "chains", "maps")
+PARTS = ("pendulum", "starts", "precision", "events", "pipelines", "chains", "maps")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Describe the command and its arguments."""
     parser.description = (
-        "Time compiled loops and other programs at equal global error. All parts take about ten "
+        "Time compiled loops and other programs at equal global error. All parts take about twelve "
         "minutes; nothing else should run on the machine meanwhile."
     )
     meaning = f"one of {', '.join(PARTS)} (default: all)"
@@ -55,7 +55,15 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
     from solvers.app import derivation_timing as timing
     from solvers.app.modules import load
     from solvers.io.figures import save
-    from solvers.studies.benchmarks import chains, double_pendulum, flip_maps, pipeline, starts
+    from solvers.studies.benchmarks import (
+        chains,
+        double_pendulum,
+        events,
+        flip_maps,
+        pipeline,
+        precision,
+        starts,
+    )
 
     peer = partial(options.required_package, extra="bench")
     module = load("double_pendulum")
@@ -66,6 +74,12 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
         case "starts":
             ratios = starts.figures({name: load(name) for name in starts.SYSTEMS}, peer("heyoka"))
             return ratios, starts.summary(ratios)
+        case "precision":
+            times = precision.figures(module, peer("heyoka"))
+            return times, precision.summary(times)
+        case "events":
+            crossings = events.figures(module, peer("heyoka"))
+            return crossings, events.summary(crossings)
         case "pipelines":
             rows = pipeline.pipelines(module, peer, timing.chain, timing.mechanics)
             return rows, [*pipeline.summary(rows), ""]

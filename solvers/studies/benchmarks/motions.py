@@ -69,7 +69,7 @@ def one_motion(module: GeneratedModule, hy: Any) -> Curves:
         if tol > FINEST_OF_SCIPY:
             runs["solve_ivp"] = partial(_by_scipy, module, tol)
         for name, time in median_times(runs, 0.3).items():
-            state = _ordinary(runs[name]()[np.newaxis])[0]
+            state = ordinary(runs[name]()[np.newaxis])[0]
             if not isnan(error := float(np.abs(state - FINAL).max())):
                 curves.setdefault(name, []).append((time, error))
     return curves
@@ -104,7 +104,7 @@ def many_motions(module: GeneratedModule, hy: Any) -> Curves:
             runs[f"heyoka, {name}"] = run
         for name, time in median_times(runs, 0.0).items():
             # angles of the rational form are known up to whole turns
-            apart = np.abs(_ordinary(runs[name]()) - final)
+            apart = np.abs(ordinary(runs[name]()) - final)
             apart[:, :2] = np.abs((apart[:, :2] + pi) % (2 * pi) - pi)
             if not isnan(error := float(np.median(apart.max(axis=1)))):
                 curves.setdefault(name, []).append((time / MOTIONS, error))
@@ -117,7 +117,7 @@ def _by_ensemble(module: GeneratedModule, starts: Array, tol: float, method: str
     return solve(module, (0.0, END), starts.T, module.DEFAULTS).y.T
 
 
-def _ordinary(states: Array) -> Array:
+def ordinary(states: Array) -> Array:
     """Angles and velocities of states, which may be rational."""
     if states.shape[1] == len(START):
         return states
