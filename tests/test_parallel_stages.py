@@ -20,7 +20,16 @@ from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import prepare
 from solvers.integration.solution import Status
 from solvers.runge_kutta.catalogue import load
-from solvers.runge_kutta.parallel_stages import Polynomial, symplectic_ratios
+from solvers.runge_kutta.parallel_stages import (
+    EARLY,
+    ParallelStages,
+    Polynomial,
+    rough_exp2,
+    rough_log2,
+    symplectic_ratios,
+)
+from solvers.runge_kutta.step_control import Controller
+from solvers.runge_kutta.stepper import Stepper
 
 PARALLEL = ["gauss4", "gauss8"]
 FORMS = ["rational", "lagrangian", "hamiltonian"]
@@ -115,9 +124,57 @@ def test_a_polynomial_predicts_longer_and_shorter_steps() -> None:
 
     for predicted, t in (
         (polynomial.derivatives(0.2, c), 0.5 + 0.2 * c),
-        (polynomial.from_start().derivatives(0.2, c), 0.2 * c),
+        (polynomial.within().derivatives(0.2, c), 0.2 * c),
     ):
         assert predicted[:, 0] == pytest.approx(0.2 * slope(t), abs=1e-15)
+
+
+def test_a_step_with_a_large_error_ends_early_and_predicts_a_shorter_one() -> None:
+    def motion(t: float, z: np.ndarray) -> np.ndarray:
+        return np.array(dp.rhs_rational(t, z, dp.DEFAULTS))
+
+    stepper = Stepper(load("gauss8"), motion, rtol=1e-9, atol=1e-9)
+    z = np.array([1.0, 0.0, 0.0, -1.0, 0.0, 0.0])
+    first = stepper.derivative(0.0, z)
+    long = stepper.step(0.0, z, 0.8, first)
+    assert long.error[0, 0] > 1
+    assert stepper.nfev == 1 + EARLY * 8
+    assert long.polynomial is not None
+    evaluations = []
+    for last in (None, long.polynomial.after_rejection()):
+        stepper.nfev = 0
+        short = stepper.step(0.0, z, 0.3, first, last)
+        assert short.error[0, 0] < 1
+        evaluations.append(stepper.nfev)
+    assert evaluations[1] <= evaluations[0] - 8
+
+
+def test_the_early_estimate_is_that_of_converged_stages() -> None:
+    def motion(t: float, z: np.ndarray) -> np.ndarray:
+        return np.array(dp.rhs_rational(t, z, dp.DEFAULTS))
+
+    z, h = np.array([1.0, 0.0, 0.0, -1.0, 0.0, 0.0]), 0.3
+    early = Stepper(load("gauss8"), motion, rtol=1e-9, atol=1e-9).step(0.0, z, h, motion(0.0, z))
+    exact = Stepper(load("gauss8"), motion).step(0.0, z, h, motion(0.0, z))
+    stages = ParallelStages(load("gauss8"), 1e-9, 1e-9)
+    assert exact.polynomial is not None
+    increments = np.linalg.solve(stages.legendre, exact.polynomial.coefficients)
+    assert early.error[0, 0] == pytest.approx(stages.error_norm(z, increments), rel=0.2)
+
+
+def test_rough_logarithms_and_powers_are_inverse() -> None:
+    for x in (1e-300, 0.3, 1.0, 1.5, 7.0, 1e200):
+        assert rough_log2(x) == pytest.approx(np.log2(x), abs=0.0861)
+        assert rough_exp2(rough_log2(x)) == pytest.approx(x, rel=1e-13)
+
+
+def test_steps_do_not_grow_after_a_rejected_one() -> None:
+    control = Controller.of(load("gauss8"), 1e-6, 1e-6)
+    assert control.factor(1e-12, 1.0, 0.01) == 2.0
+    assert control.factor(1e6, 1.0, 0.01) < 0.5
+    assert control.factor(1e-12, 0.3, 0.01) == 1.0
+    assert control.factor(1e-12, 0.3, 0.01) > 1.5
+    assert control.factor(1e-12, 0.3, 0.8) == pytest.approx(0.5, rel=0.1)  # contracts slowly
 
 
 @pytest.mark.parametrize("backend", ["python", "compiled"])

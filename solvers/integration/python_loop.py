@@ -1,7 +1,7 @@
 """Integration in Python by the methods of `solvers.runge_kutta`; compiled loops agree with it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,7 +48,7 @@ class Accepted:
         if t == self.end.t:
             return self.end.y
         start, polynomial = self.start, self.step.polynomial
-        guess = polynomial.from_start() if polynomial else start.last
+        guess = polynomial.within() if polynomial else start.last
         step = self.attempts.stepper.step
         y = step(start.t, start.y, t - start.t, start.derivative, guess).y
         return self.attempts.normalise(y)
@@ -66,10 +66,14 @@ class Accepted:
 
 @dataclass(frozen=True)
 class Rejected:
-    """A step that failed, or whose error is too large; `h` is the next step size to try."""
+    """A step that failed, or whose error is too large.
+
+    `h` is the next step size to try; `last` predicts its stages, unless those of the last step do.
+    """
 
     h: float
     failure: ArithmeticError | None = None
+    last: Polynomial | None = None
 
 
 @dataclass(frozen=True)
@@ -90,7 +94,8 @@ class Attempts:
             if not np.isfinite(y).all() or not np.isfinite(norm):
                 raise NotFiniteError(f"the state at t = {t} or its error is not finite")
             if controller and norm > 1:
-                return Rejected(h * controller.factor(norm, h, step.contraction))
+                last = step.polynomial.after_rejection() if step.polynomial else None
+                return Rejected(h * controller.factor(norm, h, step.contraction), last=last)
             if derivative is None:  # after the last step and a polynomial it is not needed
                 needed = not is_last and step.polynomial is None
                 derivative = self.stepper.derivative(t, y) if needed else start.derivative
@@ -169,6 +174,7 @@ def _run(
         trial, stops = _step(attempts, recorder, point, t, is_last=t == end)
         if isinstance(trial, Rejected):
             outcome.rejected, h = outcome.rejected + 1, trial.h
+            point = replace(point, last=trial.last or point.last)
             failures += trial.failure is not None
             if trial.failure and (attempts.controller is None or failures > MOST_FAILURES):
                 unsolved = isinstance(trial.failure, NoConvergenceError)

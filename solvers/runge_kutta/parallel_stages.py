@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from decimal import localcontext
 from fractions import Fraction
-from math import comb
+from math import comb, floor, frexp, ldexp
 
 import numpy as np
 from numpy.polynomial.legendre import legint, legval
@@ -23,10 +23,15 @@ from solvers.runge_kutta.tableau import Tableau
 Array = NDArray[np.float64]
 #: The iteration ends when the next change would be below this part of the tolerance.
 CLOSE = 0.02
+#: The error of a step is estimated after this many iterations: the top coefficient of the
+#: polynomial converges faster than the stages. It is estimated again at the end where the square of
+#: the contraction is larger than `SLOW`.
+EARLY, SLOW = 3, 0.25
 #: Relative rounding errors of numbers, and of derivatives, at which an iteration may stagnate.
 #: A number that counts as 0, but whose reciprocal has a square.
 SMALLEST = 1e-100
 EPSILON, ROUNDING, MAX_ITERATIONS = np.finfo(float).eps, 32 * np.finfo(float).eps, 200
+TINY = float(np.finfo(float).tiny)
 
 
 def symplectic_ratios(tableau: Tableau) -> Array:
@@ -62,6 +67,17 @@ def bernstein_matrix(stages: int) -> Array:
     return np.array(rows, float)
 
 
+def rough_log2(x: float) -> float:
+    """Binary logarithm within 0.09, more than step control needs: linear between powers of two."""
+    mantissa, exponent = frexp(x)
+    return exponent + 2 * mantissa - 2
+
+
+def rough_exp2(x: float) -> float:
+    """The inverse of this function."""
+    return ldexp(1 + x - floor(x), floor(x))
+
+
 def error_power(stages: int) -> float:
     """The power of a ratio in the error norm, such that it has the order of the local error.
 
@@ -76,12 +92,13 @@ class Polynomial:
     """h dy/dt of a step of size `h`, signed, by Legendre coefficients on [0, 1].
 
     It predicts the stages of a step that starts at `origin`, a part of h: where the step ends, or
-    at its start for a shorter step.
+    at its start for a shorter step. A step whose error is larger than `largest_error` ends early.
     """
 
     h: float
     coefficients: Array  # of shape (stages, state)
     origin: float = 1.0
+    largest_error: float = 1.0
 
     @classmethod
     def constant(cls, h: float, derivative: Array, stages: int) -> "Polynomial":
@@ -90,9 +107,13 @@ class Polynomial:
         rows[0] = h * derivative
         return cls(h, rows)
 
-    def from_start(self) -> "Polynomial":
-        """The same polynomial for shorter steps from the start."""
+    def after_rejection(self) -> "Polynomial":
+        """The same polynomial for a shorter step instead of this one."""
         return replace(self, origin=0.0)
+
+    def within(self) -> "Polynomial":
+        """The same polynomial for states within this step, which has been accepted."""
+        return replace(self, origin=0.0, largest_error=np.inf)
 
     def derivatives(self, h: float, c: Array) -> Array:
         """Value of h dy/dt at the nodes of a step of size `h`, in rows."""
@@ -108,10 +129,14 @@ class Polynomial:
 
 @dataclass(frozen=True)
 class Stages:
-    """Solved stages: their increments, and the contraction of the iteration."""
+    """Stages after an iteration: increments, its contraction, the norm of the step's error.
+
+    The iteration ended early if that is larger than the prediction permits.
+    """
 
     increments: Array
     contraction: float
+    error_norm: float
 
 
 class NoFixedPointError(ArithmeticError):
@@ -136,23 +161,53 @@ class ParallelStages:
         `NoFixedPointError` where the iteration does not converge.
         """
         increments = self.b[:, np.newaxis] * last.derivatives(h, self.c)
-        previous, square = np.inf, 0.0
+        previous, square, norm, is_last = np.inf, 0.0, None if self._limit else 0.0, False
         allowed = self._atol + self._rtol * np.abs(y) + SMALLEST
         for iteration in range(1, MAX_ITERATIONS + 1):
-            changed = h * self.b[:, np.newaxis] * derivatives(y + self.ratios @ increments)
-            size = np.abs(y) + np.abs(changed).sum(axis=0) + SMALLEST
+            before = increments
+            increments = h * self.b[:, np.newaxis] * derivatives(y + self.ratios @ increments)
+            if is_last:
+                break
+            size = np.abs(y) + np.abs(increments).sum(axis=0) + SMALLEST
             if iteration == 1 and not self._limit:
                 allowed = EPSILON * size
             with np.errstate(over="ignore"):
-                change = float(np.sum(((changed - increments) / allowed) ** 2))
-                floor = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
-            increments = changed
+                change = float(np.sum(((increments - before) / allowed) ** 2))
+                least = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
             if iteration > 1:
                 square = max(change / previous if previous else 0.0, square / 4)
-                if change * square <= self._limit or previous <= change < floor:
-                    return Stages(increments, float(np.sqrt(square)))
+                is_last = change * (square * square) <= self._limit
+                if change * square <= self._limit or previous <= change < least:
+                    break
             # with fixed steps changes may grow at first; others are shortened at once
             if not change < (16 * previous if self._limit else np.inf):
-                break
+                message = f"the stages still change by {np.sqrt(change):.1e} tolerances"
+                raise NoFixedPointError(message)
+            if iteration == EARLY and self._limit:
+                norm = self.error_norm(y, increments)
+                if norm > last.largest_error:
+                    break
             previous = change
-        raise NoFixedPointError(f"the stages still change by {np.sqrt(change):.1e} tolerances")
+        else:
+            raise NoFixedPointError(f"{MAX_ITERATIONS} iterations do not suffice")
+        if norm is None or (square > SLOW and is_last):
+            norm = self.error_norm(y, increments)
+        return Stages(increments, float(np.sqrt(square)), norm)
+
+    def error_norm(self, y: Array, increments: Array) -> float:
+        """Root mean square of the top coefficients, times a power of their ratio to the lowest.
+
+        The power makes it decrease as the local error does, see `error_power`.
+        """
+        squares = (self.legendre @ increments) ** 2
+        size = np.maximum(np.abs(y), np.abs(y + increments.sum(axis=0)))
+        allowed = np.maximum(self._atol + self._rtol * size, SMALLEST)
+        lowest = squares[:3].sum(axis=0) + SMALLEST
+        with np.errstate(over="ignore"):
+            quotients = squares[-1] / (allowed**2 * lowest)
+            total = float(np.sum(quotients * lowest)) + TINY
+            weighted = float(np.sum(quotients * squares[-1])) + TINY
+        if not np.isfinite(total):
+            return np.inf
+        decrease = error_power(len(self.b)) * (rough_log2(weighted) - rough_log2(total))
+        return float(np.sqrt(total / len(y) * rough_exp2(decrease)))

@@ -31,7 +31,8 @@ class Step(NamedTuple):
     """A step: the state at its end, and what its stages tell.
 
     Estimates of the local error are of shape (estimates, state): one row of zeros for a method
-    without any. The derivative at the end is known if the last stage is the first of the next step.
+    without any; of parallel stages the norm itself, relative to the tolerances. The derivative at
+    the end is known if the last stage is the first of the next step.
     """
 
     y: Array
@@ -153,8 +154,8 @@ class Stepper:
             raise NoConvergenceError(f"stages at t = {t}, h = {h}: {error}") from error
         coefficients = stages.legendre @ solved.increments
         end = y + coefficients[0]
-        estimate = np.array([coefficients[-1], np.sqrt((coefficients[:3] ** 2).sum(axis=0))])
-        return Step(end, estimate, None, Polynomial(h, coefficients), solved.contraction)
+        norm = np.array([[solved.error_norm]])
+        return Step(end, norm, None, Polynomial(h, coefficients), solved.contraction)
 
     def _explicit(self, t: float, y: Array, h: float, first: Array) -> Array:
         k = np.empty((len(self._b), len(y)))

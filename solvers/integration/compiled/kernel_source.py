@@ -235,6 +235,7 @@ class Equations:
             "PARAMETERS": self.parameters,
             "POLYNOMIAL_DIM": (not tableau.is_explicit) * tableau.stages * self.state,
             "LENGTHS": int(not tableau.is_explicit),
+            "ORIGINS": int(tableau.is_parallel),
             "JACOBIANS": int(tableau.needs_jacobian),
             "JACOBIAN_DIM": tableau.needs_jacobian * self.state,
             "VARIATIONS": variations,

@@ -373,6 +373,11 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
             step_factor(&result, *accepted, lanes->h, state, &motion->previous_error);
         const real h = select(*accepted, motion->h, lanes->h)*factor;
         motion->h = select(advancing & ~*failed, h, motion->h);
+#if INTERPOLATES
+        if (advancing & ~*failed & ~*accepted) {
+            keep_polynomial(state, end);
+        }
+#endif
     }
     normalise_angles(end);
     rescale_variation(state, end);

@@ -11,6 +11,7 @@ typedef struct {
     real derivative[FSAL_DIM];  /* dz/dt, from the last stage of the step before */
     real polynomial[POLYNOMIAL_DIM];    /* of the last step, see parallel.h and predictor.h */
     real length[LENGTHS];       /* h of that step */
+    real origin[ORIGINS];       /* part of it at which the next step starts, see parallel.h */
     real jacobian_t[JACOBIANS]; /* point at which the Jacobian was evaluated */
     real jacobian_z[JACOBIAN_DIM];
     real rate[JACOBIANS];       /* part of the error that an iteration with it leaves */

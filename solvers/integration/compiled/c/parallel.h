@@ -6,11 +6,18 @@
 
    The derivatives of the stages are those of a polynomial over the step. State holds h dz/dt as a
    sum of Legendre polynomials on [0, 1]: component n has the coefficients polynomial[n*STAGES] to
-   polynomial[n*STAGES + STAGES - 1], and h is length[0]. */
+   polynomial[n*STAGES + STAGES - 1], h is length[0], and the next step starts at the part origin[0]
+   of it: at its end, or after a rejected step at its start. */
 
 #define HAS_POLYNOMIAL 1
 #define INTERPOLATES 1
 enum { TOP = STAGES - 1, MAX_ITERATIONS = 200 };
+
+/* The error of a step is estimated after this many iterations: the top coefficient of the polynomial
+   converges faster than the stages. It is estimated again at the end where the square of the
+   contraction is larger than SLOW. */
+enum { EARLY = 3 };
+static const double SLOW = 0.25;
 
 /* The iteration ends when the next change would be below this part of the tolerance. */
 static const double CLOSE = 0.02;
@@ -18,38 +25,40 @@ static const double CLOSE = 0.02;
 static const double ROUNDING = 32*DBL_EPSILON;
 /* A number that counts as 0, but whose reciprocal has a square. */
 static const double SMALLEST = 1e-100;
+static const double ZERO[DIM];
 /* Limits to the change of h; CONTRACTION is the slowest of an iteration that is efficient. */
-static const double SAFETY = 0.85, SHRINK = 0.2, GROW = 1.5, CONTRACTION = 0.4;
+static const double SAFETY = 0.82, SHRINK = 0.2, GROW = 2, CONTRACTION = 0.4;
 
 static inline stage_vector splat_stages(double x) { return (stage_vector){0} + x; }
 
 static inline double sum_of(stage_vector x)
 {
-    double pairs[STAGES/2], sum = 0;
-    for (int i = 0; i < STAGES/2; i++) {
-        pairs[i] = x[i] + x[i + STAGES/2];
-    }
+    typedef double half_vector __attribute__((vector_size(4*STAGES)));
+    const union { stage_vector whole; half_vector halves[2]; } lanes = {.whole = x};
+    const half_vector pairs = lanes.halves[0] + lanes.halves[1];
+    double sum = 0;
     for (int i = 0; i < STAGES/4; i++) {
         sum += pairs[i] + pairs[i + STAGES/4];
     }
     return sum;
 }
 
-/* A vector for each component, also by its numbers. */
-typedef union {
-    stage_vector vector[DIM];
-    double number[DIM][STAGES];
-} StageVectors;
+/* Binary logarithm of a positive normal number within 0.09, more than step control needs: linear
+   between powers of two. */
+static inline double rough_log2(double x) { return (as_mask(x) - as_mask(1.0))*0x1p-52; }
+
+/* The inverse of this function, for |x| < 1000. */
+static inline double rough_exp2(double x) { return as_real((int64_t)(x*0x1p52) + as_mask(1.0)); }
 
 /* For each component, `first` plus a matrix, given by its columns, times a vector. */
 static inline void multiply(
-    const stage_vector *columns, StageVectors *vectors, const double *first,
-    stage_vector *products)
+    const stage_vector *columns, const void *vectors, const double *first, stage_vector *products)
 {
     /* numbers are read from memory: to load one into all lanes takes less than to permute lanes */
-    __asm__("" : "+m"(*vectors));
+    const double *numbers = vectors;
+    __asm__("" : "+r"(numbers) : : "memory");
     for (int n = 0; n < DIM; n++) {
-        const double *number = vectors->number[n];
+        const double *number = numbers + n*STAGES;
         stage_vector even = first[n] + columns[0]*number[0], odd = columns[1]*number[1];
         for (int j = 2; j < STAGES; j += 2) {
             even += columns[j]*number[j];
@@ -59,17 +68,14 @@ static inline void multiply(
     }
 }
 
-/* The sum of Legendre polynomials at x from -1 to 1, beyond it by extrapolation (C. W. Clenshaw,
-   Mathematics of Computation 9 (1955) 118-120); x[k] is (2k + 1)/(k + 1) x. */
-static inline stage_vector legendre_sum(const double *coefficients, const stage_vector *x)
+/* The Legendre polynomials times `scale` at x from -1 to 1, beyond it by extrapolation. */
+static inline void legendre_polynomials(stage_vector x, stage_vector scale, stage_vector *values)
 {
-    stage_vector next = splat_stages(coefficients[TOP]), after = splat_stages(0);
-    for (int k = TOP - 1; k >= 0; k--) {
-        const stage_vector sum = (coefficients[k] - after*((k + 1)/(k + 2.0))) + x[k]*next;
-        after = next;
-        next = sum;
+    values[0] = scale;
+    values[1] = x*scale;
+    for (int k = 1; k < TOP; k++) {
+        values[k + 1] = ((2*k + 1)/(k + 1.0)*x)*values[k] - (k/(k + 1.0))*values[k - 1];
     }
-    return next;
 }
 
 /* The polynomial of a motion that starts with a derivative and a first step. */
@@ -80,6 +86,15 @@ static void start_polynomial(State *state, double h, const double *derivative)
         state->polynomial[n*STAGES] = h*derivative[n];
     }
     state->length[0] = h;
+    state->origin[0] = 1;
+}
+
+/* The polynomial of a rejected step, which ends at `end`, predicts a shorter one. */
+static void keep_polynomial(State *state, const State *end)
+{
+    memcpy(state->polynomial, end->polynomial, sizeof state->polynomial);
+    state->length[0] = end->length[0];
+    state->origin[0] = 0;
 }
 
 /* Sizes of the numbers that are added to a component in a step. */
@@ -91,127 +106,149 @@ static inline double size_of(double z, stage_vector increment)
 
 /* Squared change of an iteration that rounding errors may cause, in units of the tolerances. */
 static double rounding_change(
-    const double *z, const StageVectors *increments, const double *inverse)
+    const double *z, const stage_vector *increments, const double *inverse)
 {
     double sum = 0;
     for (int n = 0; n < DIM; n++) {
-        const double size = inverse[n]*size_of(z[n], increments->vector[n]);
+        const double size = inverse[n]*size_of(z[n], increments[n]);
         sum += size*size;
     }
     return sum*(ROUNDING*ROUNDING*STAGES);
 }
 
-/* Increments h b k of all stages by fixed-point iteration; NaN where it does not converge. The
-   polynomial of a step of this length predicts them: the step starts at `origin`, a part of it. */
-static void solve_stages(
-    const Task *task, const State *start, const double *polynomial, double length, double origin,
-    double h, const double *params, StageVectors *increments, StepResult *result)
+/* Squared norm of the error. The top coefficient of a component decreases with the power STAGES of
+   h, and its ratio to the lowest ones with TOP; their product with ERROR_POWER decreases as the
+   local error, with 2*STAGES + 1. */
+static __attribute__((noinline)) double squared_error_norm(
+    const Task *task, const double *start, const stage_vector *increments)
 {
-    stage_vector parameters[PARAMETERS + 1], z[DIM], k[DIM];
-    StageVectors before;
+    stage_vector coefficients[DIM];
+    double total = DBL_MIN, weighted = DBL_MIN;
+    multiply(LEGENDRE, increments, ZERO, coefficients);
+    for (int n = 0; n < DIM; n++) {
+        const stage_vector c = coefficients[n];
+        const double size = lane_fmax(fabs(start[n]), fabs(start[n] + c[0]));
+        const double allowed = lane_fmax(task->atol + task->rtol*size, SMALLEST);
+        const double top = c[TOP]*c[TOP], low = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + SMALLEST;
+        const double quotient = top/(allowed*allowed*low);
+        total += quotient*low;
+        weighted += quotient*top;
+    }
+    return total*(1.0/DIM)*rough_exp2(ERROR_POWER*(rough_log2(weighted) - rough_log2(total)));
+}
+
+/* A step that is predicted by the polynomial of a step of `length` and starts at `origin`, a part
+   of it. */
+typedef struct {
+    const double *polynomial;
+    double length, origin;
+    double largest_error;       /* a step with a larger squared error is not completed */
+} Prediction;
+
+/* Increments h b k of all stages by fixed-point iteration; NaN where it does not converge. The
+   error is estimated, unless steps are fixed. */
+static inline void solve_stages(
+    const Task *task, const State *start, const Prediction *prediction, double h,
+    const double *params, stage_vector *increments, StepResult *result)
+{
+    stage_vector parameters[PARAMETERS + 1], basis[STAGES], before[DIM], z[DIM], k[DIM];
     const stage_vector t = start->t + h*NODES, weights = h*WEIGHTS;
-    const double ratio = h/length;
+    const double ratio = h/prediction->length, origin = prediction->origin;
     /* known one by one, so that terms of parameters alone are computed once, not in each iteration */
 #pragma GCC unroll 64
     for (int p = 0; p < PARAMETERS; p++) {
         parameters[p] = splat_stages(params[p]);
     }
-    stage_vector x[STAGES];
-    for (int k = 0; k < TOP; k++) {
-        x[k] = ((2*origin - 1) + (2*ratio)*NODES)*((2*k + 1)/(k + 1.0));
-    }
-    for (int n = 0; n < DIM; n++) {
-        increments->vector[n] = (ratio*WEIGHTS)*legendre_sum(polynomial + n*STAGES, x);
-    }
-    const double limit = task->fixed_h ? 0 : CLOSE*CLOSE;
+    legendre_polynomials((2*origin - 1) + (2*ratio)*NODES, ratio*WEIGHTS, basis);
+    multiply(basis, prediction->polynomial, ZERO, increments);
+    const int is_fixed = task->fixed_h != 0;
+    const double limit = is_fixed ? 0 : CLOSE*CLOSE;
     double inverse[DIM], previous = INFINITY, square = 0;   /* reciprocals of the tolerances */
     for (int n = 0; n < DIM; n++) {
         inverse[n] = 1/(task->atol + task->rtol*fabs(start->z[n]) + SMALLEST);
     }
-    for (int iteration = 1;; iteration++) {
+    int iteration = 0, is_last = 0, is_estimated = is_fixed;
+    for (;;) {
         multiply(RATIOS, increments, start->z, z);
         stage_derivatives(t, z, parameters, k);
+        iteration++;
         for (int n = 0; n < DIM; n++) {
-            before.vector[n] = increments->vector[n];
-            increments->vector[n] = weights*k[n];
+            before[n] = increments[n];
+            increments[n] = weights*k[n];
         }
-        for (int n = 0; n < DIM && iteration == 1 && task->fixed_h; n++) {
-            inverse[n] = 1/(DBL_EPSILON*size_of(start->z[n], increments->vector[n]));
+        /* this was known before the iteration began: the processor need not wait for its results */
+        if (is_last) {
+            break;
+        }
+        for (int n = 0; n < DIM && iteration == 1 && is_fixed; n++) {
+            inverse[n] = 1/(DBL_EPSILON*size_of(start->z[n], increments[n]));
         }
         stage_vector squares = splat_stages(0);
         for (int n = 0; n < DIM; n++) {
-            const stage_vector change =
-                (increments->vector[n] - before.vector[n])*inverse[n];
+            const stage_vector change = (increments[n] - before[n])*inverse[n];
             squares += change*change;
         }
         const double change = sum_of(squares);
-        result->evaluations = STAGES*iteration;
         if (iteration > 1) {
             square = lane_fmax(change/previous, square/4);      /* of the contraction */
-            result->contraction = square;
-            if (change*square <= limit) {
-                return;
-            }
-            if (change >= previous
-                    && change < rounding_change(start->z, increments, inverse)) {
-                return;
+            is_last = change*(square*square) <= limit;
+            if (change*square <= limit || (change >= previous
+                    && change < rounding_change(start->z, increments, inverse))) {
+                break;
             }
         }
         /* with fixed steps changes may grow at first; others are shortened at once */
-        if (!(change < (task->fixed_h ? INFINITY : 16*previous)) || iteration == MAX_ITERATIONS) {
-            increments->vector[0] = splat_stages(NAN);
-            return;
+        if (!(change < (is_fixed ? INFINITY : 16*previous)) || iteration == MAX_ITERATIONS) {
+            increments[0] = splat_stages(NAN);
+            break;
+        }
+        if (iteration == EARLY && !is_fixed) {
+            is_estimated = 1;
+            result->squared_error = squared_error_norm(task, start->z, increments);
+            if (result->squared_error > prediction->largest_error) {
+                break;
+            }
         }
         previous = change;
     }
-}
-
-/* Squared norm of the error. The top coefficient of a component decreases with the power STAGES of
-   h, and its ratio to the lowest ones with TOP; their product with ERROR_POWER decreases as the
-   local error, with 2*STAGES + 1. */
-static double squared_error_norm(const Task *task, const State *start, const State *end)
-{
-    double total = 0, weighted = 0;
-    for (int n = 0; n < DIM; n++) {
-        const double *c = end->polynomial + n*STAGES;
-        const double size = lane_fmax(fabs(start->z[n]), fabs(end->z[n]));
-        const double error = c[TOP]/lane_fmax(task->atol + task->rtol*size, SMALLEST);
-        const double square = error*error;
-        total += square;
-        weighted += square*(c[TOP]*c[TOP]/(c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + DBL_MIN));
+    if (!is_estimated || (square > SLOW && is_last)) {
+        result->squared_error = squared_error_norm(task, start->z, increments);
     }
-    const double decrease = lane_log2(weighted + DBL_MIN) - lane_log2(total + DBL_MIN);
-    return total*(1.0/DIM)*lane_exp2(ERROR_POWER*decrease);
+    result->contraction = square;
+    result->evaluations = STAGES*iteration;
 }
 
-/* The state after h, from a prediction as above. */
-static void collocate(
-    const Task *task, const State *start, const double *polynomial, double length, double origin,
-    double h, const double *params, State *end, StepResult *result)
+/* The state after h, from a prediction. */
+static inline void collocate(
+    const Task *task, const State *start, const Prediction *prediction, double h,
+    const double *params, State *end, StepResult *result)
 {
-    static const double zero[DIM];
-    StageVectors increments;
-    stage_vector coefficients[DIM];
-    solve_stages(task, start, polynomial, length, origin, h, params, &increments, result);
-    multiply(LEGENDRE, &increments, zero, coefficients);
+    stage_vector increments[DIM], coefficients[DIM];
+    solve_stages(task, start, prediction, h, params, increments, result);
+    multiply(LEGENDRE, increments, ZERO, coefficients);
     for (int n = 0; n < DIM; n++) {
         move_component(start, end, n, coefficients[n][0]);   /* P_0 is 1: the sum of the increments */
     }
     memcpy(end->polynomial, coefficients, sizeof coefficients);
     end->length[0] = h;
+    end->origin[0] = 1;
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
 }
 
-/* The state after h; with step control also the norm of the estimated error. */
+/* The state after h; with step control also the norm of the estimated error. A step whose error is
+   too large ends early. */
 static __attribute__((noinline)) void step(
     const Task *task, const State *restrict start, double h, const double *restrict params,
     State *restrict end, StepResult *restrict result)
 {
+    const Prediction prediction = {
+        .polynomial = start->polynomial,
+        .length = start->length[0],
+        .origin = start->origin[0],
+        .largest_error = 1,
+    };
     result->jacobians = 0;
-    collocate(task, start, start->polynomial, start->length[0], 1, h, params, end, result);
-    if (!task->fixed_h) {
-        result->squared_error = squared_error_norm(task, start, end);
-    }
+    collocate(task, start, &prediction, h, params, end, result);
 }
 
 /* The state after a part h of a step, which ends at `full`. Returns the evaluations. */
@@ -227,25 +264,29 @@ static __attribute__((noinline)) double step_within(
     for (int j = 0; j < POLYNOMIAL_DIM; j++) {
         polynomial[j] = full->polynomial[j]*(j < STAGES*(DIM - VARIATIONS) ? 1 : factor);
     }
-    collocate(task, start, polynomial, full->length[0], 0, h, params, end, &result);
+    const Prediction prediction = {
+        .polynomial = polynomial, .length = full->length[0], .largest_error = INFINITY
+    };
+    collocate(task, start, &prediction, h, params, end, &result);
     return result.evaluations;
 }
 
-/* Factor of h after an error of this norm: predictive control after an accepted step
+/* Factor of h after an error of this norm: predictive control after accepted steps
    (K. Gustafsson, ACM Transactions on Mathematical Software 20 (1994) 496-517), the plain rule
-   after a rejected one. The iteration should contract, too. */
+   after a rejected one, and no growth after the next. The iteration should contract, too. */
 static double step_factor(
     const StepResult *result, mask accepted, double h, const State *start, double *previous_error)
 {
-    const double share = 1.0/(2*STAGES + 1), error = 0.5*lane_log2(result->squared_error + 1e-75);
+    const double share = 1.0/(2*STAGES + 1), error = 0.5*rough_log2(result->squared_error + SMALLEST);
+    const int after_rejection = start->origin[0] == 0;
     double exponent = -share*error;
     if (accepted) {
-        const double trend = lane_log2(h/start->length[0]) + share*(*previous_error - error);
-        exponent += lane_fmin(trend, 0);
+        const double trend = rough_log2(h/start->length[0]) + share*(*previous_error - error);
+        exponent += after_rejection ? 0 : lane_fmin(trend, 0);
         *previous_error = error;
     }
-    const double contraction = 0.5*lane_log2(result->contraction + 1e-75);
-    exponent = lane_fmin(exponent, log2(CONTRACTION/SAFETY) - contraction);
-    exponent = lane_fmax(exponent, log2(SHRINK/SAFETY));
-    return SAFETY*lane_exp2(lane_fmin(exponent, log2(GROW/SAFETY)));
+    const double contraction = 0.5*rough_log2(result->contraction + SMALLEST);
+    const double factor = lane_fmin(
+        SAFETY*rough_exp2(exponent), CONTRACTION*rough_exp2(-contraction));
+    return lane_fmax(lane_fmin(factor, accepted && after_rejection ? 1 : GROW), SHRINK);
 }
