@@ -4,6 +4,7 @@ import ctypes
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite, ulp
+from struct import Struct
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -103,6 +104,7 @@ class Prepared:
         self._batch, self._problem = batch, problem
         buffer = ctypes.c_double * len(problem.start)
         self._start, self._end = buffer(), buffer()
+        self._unpack = Struct(f"{len(problem.start)}d").unpack_from  # faster than a tuple
         self._defaults, self._has_defaults = problem.form.params, True
         address = batch.motions["params"].ctypes.data
         self._params = (ctypes.c_double * len(self._defaults)).from_address(address)
@@ -151,7 +153,8 @@ class Prepared:
         try:
             start, end = t_span
             values = list(y0)
-            are_real = REAL.issuperset(map(type, values)) and {type(start), type(end)} <= REAL
+            are_real = type(start) in REAL and type(end) in REAL
+            are_real = are_real and REAL.issuperset(map(type, values))
             if are_real:
                 self._start[:] = values  # type: ignore[assignment]
         except (TypeError, ValueError, OverflowError):
@@ -177,7 +180,7 @@ class Prepared:
             self._checked(self._start)
         while STATUSES[code] is None:
             code = self._single(self._task, start, end, None, self._to)
-        y, status = tuple(self._end), STATUSES[code]
+        y, status = self._unpack(self._end), STATUSES[code]
         if status is Status.EVENT:  # the only events are limits of coordinates
             status = Status.OUTSIDE_DOMAIN
         if status is not Status.FINISHED:

@@ -28,7 +28,7 @@ SYSTEMS = {
 }
 STARTS, DURATION, ERRORS = 20, 5.0, (1e-3, 1e-6, 1e-9, 1e-12)
 RATIOS, COLUMNS = ("parallel", "heyoka"), ("median", "smallest")
-METHODS = {"explicit": ("verner853", "verner98"), "parallel": ("gauss8",)}
+METHODS = {"explicit": ("verner853", "verner98"), "parallel": ("gauss4", "gauss8")}
 
 
 def random_starts(module: GeneratedModule, largest: tuple[float, float]) -> Array:
