@@ -36,6 +36,21 @@ static inline void move_component(const State *start, State *end, int n, real ch
     add_to_component(end, n, change);
 }
 
+/* 1 - sin^2 - cos^2 of an angle. Of compensated sums the result is that of the whole state, without
+   rounding errors: these are not random, and a motion would drift. */
+static inline real unit_defect(const State *state, int sine)
+{
+    const real s = state->z[sine], c = state->z[sine + 1];
+#if COMPENSATED
+    /* upper halves, whose squares are exact */
+    const real u = (s + 0x1.8p27) - 0x1.8p27, v = (c + 0x1.8p27) - 0x1.8p27;
+    const real rest = (s - u)*(s + u) + (c - v)*(c + v);
+    return (1.0 - u*u - v*v) - (rest + 2*(s*state->z_low[sine] + c*state->z_low[sine + 1]));
+#else
+    return 1.0 - (s*s + c*c);
+#endif
+}
+
 /* Restore sin^2 + cos^2 = 1: by the series of 1/sqrt(1 - d) where d is small, as it nearly always
    is, after a division elsewhere. */
 static inline void normalise_angles(State *state)
@@ -47,9 +62,8 @@ static inline void normalise_angles(State *state)
             const real length = lane_sqrt(square, is_large);
             state->z[SINE[a]] = s = select(is_large, s/length, s);
             state->z[SINE[a] + 1] = c = select(is_large, c/length, c);
-            square = s*s + c*c;
         }
-        const real d = 1.0 - square, excess = d*(0.5 + d*(0.375 + d*0.3125));
+        const real d = unit_defect(state, SINE[a]), excess = d*(0.5 + d*(0.375 + d*0.3125));
         add_to_component(state, SINE[a], s*excess);
         add_to_component(state, SINE[a] + 1, c*excess);
     }
