@@ -144,7 +144,7 @@ def test_every_method_form_and_backend_is_charted() -> None:
     assert {method for method, _, backend in found if backend == "scipy"} == {*SCIPY}
     assert ("gauss2", "hamiltonian", "compiled") in found
     assert ("gauss2", "rational", "compiled") not in found  # no Jacobian
-    assert len(found) == len(list(combinations(dp))) == 15 * 3 * 2 + 7 * 2 * 2 + 6 * 3
+    assert len(found) == len(list(combinations(dp))) == 15 * 3 * 2 + 8 * 2 * 2 + 6 * 3
 
 
 def test_runs_with_a_large_error_are_left_out(truth: Reference) -> None:

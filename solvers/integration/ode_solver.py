@@ -6,8 +6,8 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
 from solvers.equations.quantities import positive, real_number, real_numbers
+from solvers.integration.attempts import Accepted, Attempts, Point, Rejected
 from solvers.integration.problem import shortest_step
-from solvers.integration.python_loop import Accepted, Attempts, Point, Rejected
 from solvers.integration.subnormal import warn_if_flushed
 from solvers.integration.validation import tolerances
 from solvers.runge_kutta.catalogue import load

@@ -1,114 +1,24 @@
 """Integration in Python by the methods of `solvers.runge_kutta`; compiled loops agree with it."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from solvers.integration import scipy_loop
+from solvers.integration.attempts import FAILURES, Accepted, Attempts, Orders, Point, Rejected
 from solvers.integration.inputs import segments
 from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
-from solvers.integration.solution import Array, Status
+from solvers.integration.solution import Status
 from solvers.integration.stop_flag import StopFlag
-from solvers.runge_kutta.newton import Stages
-from solvers.runge_kutta.parallel_stages import Polynomial
+from solvers.runge_kutta.order_choice import OrderChoice
 from solvers.runge_kutta.step_control import Controller
-from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Step, Stepper
+from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
 from solvers.runge_kutta.tableau import Tableau
 
 #: Most successive failures of a step, each of which divides its size by four.
 MOST_FAILURES = 25
-#: Failures of a step that a smaller step may avoid.
-FAILURES = (NotFiniteError, NoConvergenceError)
-
-
-@dataclass(frozen=True)
-class Point:
-    """A time in s, with the state and its derivative."""
-
-    t: float
-    y: Array
-    derivative: Array
-    last: Polynomial | Stages | None = None  # of the step that ends here
-
-
-@dataclass(frozen=True)
-class Accepted:
-    """A step with a sufficiently small error; `norm` is that of its error."""
-
-    attempts: "Attempts"
-    start: Point
-    end: Point
-    norm: float
-    step: Step
-
-    def state(self, t: float) -> Array:
-        """The state at a time within the step, by a shorter step from its start."""
-        if t == self.end.t:
-            return self.end.y
-        start, polynomial = self.start, self.step.polynomial
-        guess = polynomial.within() if polynomial else start.last
-        step = self.attempts.stepper.step
-        y = step(start.t, start.y, t - start.t, start.derivative, guess).y
-        return self.attempts.normalise(y)
-
-    @property
-    def rough(self) -> Callable[[float], Array] | None:
-        """States within the step, with a lower order and without evaluations, if it has them."""
-        start, polynomial = self.start, self.step.polynomial
-        return (lambda t: start.y + polynomial.change(t - start.t)) if polynomial else None
-
-    def states(self, times: Array) -> Array:
-        """The states at several times, in columns."""
-        return np.stack([self.state(float(t)) for t in times], axis=1)
-
-
-@dataclass(frozen=True)
-class Rejected:
-    """A step that failed, or whose error is too large.
-
-    `h` is the next step size to try; `last` predicts its stages, unless those of the last step do.
-    """
-
-    h: float
-    failure: ArithmeticError | None = None
-    last: Polynomial | None = None
-
-
-@dataclass(frozen=True)
-class Attempts:
-    """Attempts at steps of one method; `normalise` is applied to every new state."""
-
-    stepper: Stepper
-    controller: Controller | None
-    normalise: Callable[[Array], Array] = lambda y: y
-
-    def attempt(self, start: Point, t: float, h: float, *, is_last: bool) -> Accepted | Rejected:
-        """Try the step from `start` to `t`, of size `h`; the last step needs no derivative."""
-        controller = self.controller
-        try:
-            step = self.stepper.step(start.t, start.y, t - start.t, start.derivative, start.last)
-            norm = controller.norm(step.error, start.y, step.y) if controller else 0.0
-            y, derivative = self.normalise(step.y), step.derivative
-            if not np.isfinite(y).all() or not np.isfinite(norm):
-                raise NotFiniteError(f"the state at t = {t} or its error is not finite")
-            if controller and norm > 1:
-                last = step.polynomial.after_rejection() if step.polynomial else None
-                return Rejected(h * controller.factor(norm, h, step.contraction), last=last)
-            if derivative is None:  # after the last step and a polynomial it is not needed
-                needed = not is_last and step.polynomial is None
-                derivative = self.stepper.derivative(t, y) if needed else start.derivative
-        except FAILURES as failure:
-            return Rejected(h / 4, failure)
-        return Accepted(self, start, Point(t, y, derivative, step.last), norm, step)
-
-    def first_step_size(self, start: Point, end: float, shortest: float) -> float:
-        """The first step size of steps that are controlled."""
-        assert self.controller is not None
-        guess = self.controller.initial_step
-        rhs, duration = self.stepper.derivative, end - start.t
-        return max(guess(rhs, start.t, start.y, start.derivative, duration), 2 * shortest)
 
 
 def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> None:
@@ -120,29 +30,38 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> Non
     if not isinstance(problem.method, Tableau):
         scipy_loop.run(problem, outcome, stop)
         return
-    controller = None
-    if problem.h is None:
-        controller = Controller.of(problem.method, problem.rtol, problem.atol)
     recorder, h, status = Recorder(problem, outcome), problem.h, Status.FINISHED
+    members, tolerances = problem.method.members, (problem.rtol, problem.atol)
+    controllers = [None if h else Controller.of(method, *tolerances) for method in members]
+    choice = OrderChoice(len(members))
     for part in segments(problem, lambda: recorder.y, outcome.history):
-        form = part.form
-        stepper = Stepper(problem.method, form.rhs, form.jacobian, problem.rtol, problem.atol)
-        attempts = Attempts(stepper, controller, form.normalised)
+        orders = Orders(_attempts(part, members, controllers), choice)
         try:
-            status, h = _run(part, outcome, recorder, attempts, h, stop)
+            status, h = _run(part, outcome, recorder, orders, h, stop)
         finally:
-            outcome.nfev += stepper.nfev
-            outcome.njev += stepper.njev
+            outcome.nfev += sum(attempts.stepper.nfev for attempts in orders.members)
+            outcome.njev += sum(attempts.stepper.njev for attempts in orders.members)
         if status is not Status.FINISHED:
             break
     outcome.end_with(status, problem)
+
+
+def _attempts(
+    problem: Problem, members: Sequence[Tableau], controllers: Sequence[Controller | None]
+) -> list[Attempts]:
+    """Attempts by each method of a part of a motion; the controllers are those of all parts."""
+    form, tolerances = problem.form, (problem.rtol, problem.atol)
+    return [
+        Attempts(Stepper(method, form.rhs, form.jacobian, *tolerances), controller, form.normalised)
+        for method, controller in zip(members, controllers, strict=True)
+    ]
 
 
 def _run(
     problem: Problem,
     outcome: Outcome,
     recorder: Recorder,
-    attempts: Attempts,
+    orders: Orders,
     h: float | None,
     stop: StopFlag,
 ) -> tuple[Status, float | None]:
@@ -150,7 +69,7 @@ def _run(
 
     Return the status, and the size of the next step.
     """
-    begin, end = problem.span
+    (begin, end), attempts = problem.span, orders.attempts
     if begin == end:
         return Status.FINISHED, h
     y = problem.form.from_ordinary(begin, recorder.y)
@@ -171,6 +90,7 @@ def _run(
         t = _step_end(problem, point.t, h, outcome.steps - first)
         if abs(t - point.t) < shortest and t != end:
             return Status.STEP_TOO_SMALL, h
+        attempts = orders.attempts
         trial, stops = _step(attempts, recorder, point, t, is_last=t == end)
         if isinstance(trial, Rejected):
             outcome.rejected, h = outcome.rejected + 1, trial.h
@@ -179,13 +99,14 @@ def _run(
             if trial.failure and (attempts.controller is None or failures > MOST_FAILURES):
                 unsolved = isinstance(trial.failure, NoConvergenceError)
                 return Status.NO_CONVERGENCE if unsolved else Status.NOT_FINITE, h
+            if trial.failure:
+                orders.choice.lower()
             continue
         outcome.steps, failures = outcome.steps + 1, 0
         if stops:
             return Status.EVENT, h
         point = trial.end
-        if attempts.controller:
-            h *= attempts.controller.factor(trial.norm, h, trial.step.contraction)
+        h *= orders.factor(trial, h)
     return Status.FINISHED, h
 
 

@@ -34,7 +34,7 @@ class Status(Enum):
     INTERRUPTED = "the integration was interrupted; resume from the last state"
     UNSTABLE = "the fixed step size is too large: small deviations grow exponentially"
     NO_CONVERGENCE = (
-        "the stage equations of the next step could not be solved: reduce h, or let method radau5 "
+        "the stage equations of the next step could not be solved: reduce h, or let method radau "
         "control the steps, without h"
     )
     OUTSIDE_DOMAIN = "a coordinate that must be positive fell to 0"

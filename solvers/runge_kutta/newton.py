@@ -10,18 +10,17 @@ section IV.8). The stages contain A itself: T and M decide only how fast the ite
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.runge_kutta.blocks import Blocks
+from solvers.runge_kutta.lagrange import lagrange, lagrange_factors
 from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
 Solve = Callable[[Array], Array]
 
-#: Eigenvectors with a larger condition number are not used.
-LARGEST_CONDITION = 1e8
 #: A Jacobian is kept for the next step while an iteration reduces the error to this part.
 KEPT_RATE = 1e-3
 #: Error of the stages of a controlled step, relative to the tolerance.
@@ -39,55 +38,9 @@ class UnsolvedError(ArithmeticError):
     """Stage equations that were not solved."""
 
 
-@dataclass(frozen=True)
-class Blocks:
-    """A = T M T⁻¹ with a block diagonal matrix M; real eigenvalues come first."""
-
-    T: Array
-    inverse: Array
-    M: Array
-    sizes: tuple[int, ...]
-
-    @classmethod
-    def of(cls, A: Array) -> "Blocks":
-        """The blocks of A: A itself is the only one if its eigenvectors are (nearly) dependent."""
-        values, vectors = np.linalg.eig(A)
-        columns, sizes = [], []
-        for j in sorted(range(len(A)), key=lambda j: (values[j].imag != 0, values[j].real)):
-            if values[j].imag >= 0:  # the other one of a pair is its conjugate
-                parts = [vectors[:, j].real, vectors[:, j].imag][: 1 + (values[j].imag > 0)]
-                columns += parts
-                sizes.append(len(parts))
-        T = np.stack(columns, axis=1)
-        if not np.linalg.cond(T) < LARGEST_CONDITION:
-            return cls(np.eye(len(A)), np.eye(len(A)), A, (len(A),))
-        inverse = np.linalg.inv(T)
-        return cls(T, inverse, inverse @ A @ T, tuple(sizes))
-
-    def slices(self) -> Iterator[slice]:
-        """Rows of each block."""
-        ends = accumulate(self.sizes)
-        return (slice(end - size, end) for end, size in zip(ends, self.sizes, strict=True))
-
-
 def max_iterations(stages: int) -> int:
     """Most iterations of a controlled step."""
     return 7 + 2 * max(stages - 3, 0)
-
-
-def lagrange_factors(c: Array) -> Array:
-    """Reciprocal denominators of the Lagrange polynomials; 0 if nodes coincide."""
-    differences = c[:, np.newaxis] - c + np.eye(len(c))
-    if not differences.all():
-        return np.zeros(len(c))
-    return np.asarray(1 / differences.prod(axis=1))
-
-
-def lagrange(c: Array, x: Array) -> Array:
-    """Values of the Lagrange polynomials of the nodes c at each of `x`, in rows."""
-    differences = np.tile(x[:, np.newaxis, np.newaxis] - c, (1, len(c), 1))
-    differences[:, range(len(c)), range(len(c))] = 1
-    return np.asarray(lagrange_factors(c) * differences.prod(axis=2))
 
 
 @dataclass(frozen=True)
@@ -95,15 +48,17 @@ class Stages:
     """Solved stages of a step of size h, with the point at which the Jacobian was evaluated."""
 
     h: float
+    c: Array  # the nodes
     k: Array  # of shape (stages, state)
     t: float
     y: Array
     rate: float  # part of the error that an iteration leaves
+    contraction: float = 0.0  # the mean of the last two rates; 0 if one iteration sufficed
 
     @classmethod
-    def constant(cls, t: float, y: Array, h: float, derivative: Array, stages: int) -> "Stages":
+    def constant(cls, t: float, y: Array, h: float, derivative: Array, c: Array) -> "Stages":
         """Those before the first step."""
-        return cls(h, np.tile(derivative, (stages, 1)), t, y, 1.0)
+        return cls(h, c, np.tile(derivative, (len(c), 1)), t, y, 1.0)
 
 
 @dataclass(frozen=True)
@@ -145,21 +100,22 @@ class Newton:
         """
         guess = np.tile(derivative, (len(self.c), 1))
         if self._has_polynomial:
-            guess = self._extrapolated(1.0, start.h / last.h, last.k)
+            guess = self._extrapolated(1.0, start.h / last.h, last.c, last.k)
         points = [(start.t, start.y)]
         if last.rate <= KEPT_RATE:
             points.insert(0, (last.t, last.y))
         for t, y in points:
             self.njev += int(t == start.t)
             try:
-                k, rate = self._iterate(start, guess, *self._linearised(t, y, start.h), last.rate)
+                linearised = self._linearised(t, y, start.h)
+                k, rates = self._iterate(start, guess, *linearised, last.rate)
             except UnsolvedError:
                 if self.is_controlled and t == start.t:
                     raise
             else:
-                return Stages(start.h, k, t, y, rate)
+                return Stages(start.h, self.c, k, t, y, *rates)
         k = self._continue(start, derivative)
-        return Stages(start.h, k, start.t, start.y, 1.0)
+        return Stages(start.h, self.c, k, start.t, start.y, 1.0)
 
     def filter(self, stages: Stages) -> Solve:
         """The product with (I - h g J)⁻¹, where g is the real eigenvalue of A."""
@@ -194,9 +150,9 @@ class Newton:
 
     def _iterate(
         self, start: Start, k: Array, change: Solve, largest: float, rate: float
-    ) -> tuple[Array, float]:
-        """Solved k, and the part of the error that the last iteration left."""
-        previous, rate = np.inf, float(np.sqrt(rate))
+    ) -> tuple[Array, tuple[float, float]]:
+        """Solved k, the part of the error that the last iteration left, and the contraction."""
+        previous, rate, contraction = np.inf, float(np.sqrt(rate)), 0.0
         limit = max_iterations(len(k)) if self.is_controlled else MAX_FIXED_ITERATIONS
         for iteration in range(limit):
             with _failures_reported():
@@ -204,13 +160,14 @@ class Newton:
             k = k + step
             size = self._size(start, k, step)
             if iteration:
-                rate = size / previous
+                last_rate, rate = rate, size / previous
+                contraction = rate if iteration == 1 else float(np.sqrt(rate * last_rate))
             if self.is_controlled:
                 is_solved = size == 0 or (rate < 1 and size * rate < SHARE * (1 - rate))
             else:
                 is_solved = _is_rounding(size, previous, abs(start.h) * largest)
             if is_solved:
-                return k, min(rate, 1.0)
+                return k, (min(rate, 1.0), contraction)
             if not np.isfinite(size) or (iteration and rate >= 1):
                 break
             previous = size
@@ -248,9 +205,12 @@ class Newton:
         rows = [np.kron(a, J) for a, J in zip(self.A[:, np.newaxis], slopes, strict=True)]
         return np.eye(k.size) - np.vstack(rows), float(np.abs(slopes).max())
 
-    def _extrapolated(self, begin: float, ratio: float, k: Array) -> Array:
-        """Derivatives at the nodes of a step of `ratio` times the size, by the polynomial of k."""
-        return np.asarray(lagrange(self.c, begin + ratio * self.c) @ k)
+    def _extrapolated(self, begin: float, ratio: float, c: Array, k: Array) -> Array:
+        """Derivatives at the nodes of a step of `ratio` times the size.
+
+        They are those of the polynomial with the derivatives k at the nodes c of another step.
+        """
+        return np.asarray(lagrange(c, begin + ratio * self.c) @ k)
 
     def _continue(self, start: Start, derivative: Array) -> Array:
         """Follow the solution from that of a short step to that of the whole step.
@@ -262,7 +222,7 @@ class Newton:
             aim = min(part + advance, 1.0)
             guess = k
             if part and self._has_polynomial:
-                guess = self._extrapolated(0.0, aim / part, k)
+                guess = self._extrapolated(0.0, aim / part, self.c, k)
             try:
                 k = self._iterate_fully(Start(start.t, start.y, aim * start.h), guess)
             except UnsolvedError:

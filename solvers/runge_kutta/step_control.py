@@ -74,6 +74,10 @@ class Controller:
         self._previous = floor
         return min(GROW, max(SHRINK, factor))
 
+    def forget(self) -> None:
+        """Forget the last step, since another method made it."""
+        self._previous = 1.0
+
     def initial_step(
         self, rhs: Rhs, t: float, y: Array, derivative: Array, duration: float
     ) -> float:
@@ -138,6 +142,10 @@ class RadauController(Controller):
         largest = self.rtol if self.rtol > 0 else min(float(np.min(self.atol)), 1.0)
         allowed = np.maximum(self.atol + self.rtol * np.maximum(np.abs(y), np.abs(end)), 1e-75)
         return _rms(error[0], ESTIMATE_SHARE * largest ** tolerance_power(self.order) * allowed)
+
+    def forget(self) -> None:
+        """Forget the last step, since another method made it."""
+        self._previous, self._last_h = 1.0, 0.0
 
     def factor(self, norm: float, h: float = 0.0, contraction: float = 0.0) -> float:
         """The factor of the step size, from `SHRINK` to `GROW`, 1 instead of a small growth.

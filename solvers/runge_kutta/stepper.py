@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.io.suggestion import shortened
-from solvers.runge_kutta.newton import Newton, Stages, Start, UnsolvedError, lagrange
+from solvers.runge_kutta.lagrange import lagrange
+from solvers.runge_kutta.newton import Newton, Stages, Start, UnsolvedError
 from solvers.runge_kutta.parallel_stages import NoFixedPointError, ParallelStages, Polynomial
 from solvers.runge_kutta.tableau import Tableau
 
@@ -165,7 +166,7 @@ class Stepper:
         return k
 
     def _implicit(self, newton: Newton, start: Start, first: Array, last: Stages | None) -> Step:
-        last = last or Stages.constant(start.t, start.y, start.h, first, len(self._b))
+        last = last or Stages.constant(start.t, start.y, start.h, first, newton.c)
         try:
             stages = newton.solve(start, first, last)
         except UnsolvedError as failure:
@@ -174,7 +175,7 @@ class Stepper:
         error = np.zeros((1, len(end)))
         if self._tableau.is_radau and newton.is_controlled:
             error[0] = self._defect(newton, start, first, stages)
-        return Step(end, error, stages=stages)
+        return Step(end, error, contraction=stages.contraction, stages=stages)
 
     def _defect(self, newton: Newton, start: Start, first: Array, stages: Stages) -> Array:
         """The error, by the difference of the polynomial's derivative at the start from `first`.

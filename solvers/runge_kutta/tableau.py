@@ -42,6 +42,8 @@ class Tableau:
     b_low: tuple[Number, ...] = ()  # of another one, of lower order, for a combined error estimate
     #: how implicit stages are solved: "newton", or "fixed-point" for equations that are not stiff
     iteration: str = "newton"
+    #: methods of lower order, in decreasing order, to which controlled steps may change
+    lower: tuple["Tableau", ...] = ()
 
     @classmethod
     def explicit(
@@ -139,6 +141,11 @@ class Tableau:
     def needs_jacobian(self) -> bool:
         """Whether the stages are solved by Newton's method."""
         return not self.is_explicit and not self.is_parallel
+
+    @property
+    def members(self) -> tuple["Tableau", ...]:
+        """The methods of controlled steps: this one, and those of lower order."""
+        return (self, *self.lower)
 
     @property
     def estimates_error(self) -> bool:

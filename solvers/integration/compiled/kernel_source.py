@@ -11,7 +11,8 @@ import numpy as np
 
 from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
 from solvers.integration.problem import SHORTEST
-from solvers.runge_kutta.newton import Blocks, lagrange, lagrange_factors
+from solvers.runge_kutta.blocks import Blocks
+from solvers.runge_kutta.lagrange import lagrange, lagrange_factors
 from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.parallel_stages import (
     bernstein_matrix,
@@ -72,6 +73,7 @@ EQUATIONS = """\
 
 CONSTANTS = """\
 /* {title} */
+#define VARIES_ORDER {varies_order}
 enum {{ STAGES = {stages}, IS_FSAL = {is_fsal}, IS_EXPLICIT = {is_explicit} }};
 enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
 """
@@ -183,11 +185,12 @@ COEFFICIENTS = """\
 }},"""
 
 IMPLICIT = """\
-enum {{ FACTORS = {squares}*DIM*DIM }};
+enum {{ METHOD_COUNT = {count}, FACTORS = {squares}*DIM*DIM }};
 {coefficients_h}
 static const Method METHODS[] = {{
 {methods}
 }};
+{order_choice_h}
 {linear_h}
 {linearisation_h}
 {simplified_newton_h}
@@ -198,8 +201,8 @@ static const Method METHODS[] = {{
 
 #: Handwritten files of implicit methods.
 IMPLICIT_FILES = (
-    *("coefficients", "linear", "linearisation", "simplified_newton", "predictor", "full_newton"),
-    *("newton", "implicit"),
+    *("coefficients", "order_choice", "linear", "linearisation", "simplified_newton"),
+    *("predictor", "full_newton", "newton", "implicit"),
 )
 
 STAGE = """\
@@ -238,6 +241,7 @@ class Equations:
             "ORIGINS": int(tableau.is_parallel),
             "JACOBIANS": int(tableau.needs_jacobian),
             "JACOBIAN_DIM": tableau.needs_jacobian * self.state,
+            "VARIABLE_ORDERS": int(bool(tableau.lower)),
             "VARIATIONS": variations,
             "SCALES": int(variations > 0),
             "MAX_EVENTS": MAX_EVENTS,
@@ -284,6 +288,7 @@ def _source(name: str) -> str:
 def _constants(tableau: Tableau) -> str:
     return CONSTANTS.format(
         title=tableau.title,
+        varies_order=int(bool(tableau.lower)),
         stages=tableau.stages,
         is_fsal=int(tableau.is_fsal),
         is_explicit=int(tableau.is_explicit),
@@ -342,8 +347,9 @@ def _explicit(tableau: Tableau) -> str:
 def _implicit(tableau: Tableau) -> str:
     sizes = Blocks.of(np.array(tableau.A, float)).sizes
     return IMPLICIT.format(
+        count=len(tableau.members),
         squares=sum(size**2 for size in sizes),
-        methods=_coefficients(tableau),
+        methods="\n".join(map(_coefficients, tableau.members)),
         **{f"{name}_h": _source(f"{name}.h") for name in IMPLICIT_FILES},
     )
 

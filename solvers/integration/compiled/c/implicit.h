@@ -67,7 +67,7 @@ static __attribute__((noinline)) void step(
     const Task *task, const State *restrict start, double h, const double *restrict params,
     State *restrict end, StepResult *restrict result)
 {
-    const Method *method = &METHODS[0];
+    const Method *method = method_of_step(start);
     double k[STAGES][DIM], derivative[DIM];
     result->evaluations = 1;
     result->jacobians = 0;
@@ -91,11 +91,13 @@ static __attribute__((noinline)) void step(
 static double step_factor(
     const StepResult *result, mask accepted, double h, const State *start, double *previous_error)
 {
-    const double share = 1.0/(ERROR_ORDER + 1), error = 0.5*lane_log2(result->squared_error + 1e-75);
+    const Method *method = method_of_step(start);
+    const double share = 1.0/(method->stages + 1);
+    const double error = 0.5*lane_log2(result->squared_error + 1e-75);
     double exponent = -share*error;
     if (accepted) {
         const double trend = lane_log2(h/start->length[0]) + share*(*previous_error - error);
-        exponent += lane_fmin(trend, 0);
+        exponent += method == method_of_last_step(start) ? lane_fmin(trend, 0) : 0;
         *previous_error = lane_fmax(error, log2(LEAST_ERROR));
     }
     exponent = lane_fmin(lane_fmax(exponent, log2(SHRINK/SAFETY)), log2(GROW/SAFETY));

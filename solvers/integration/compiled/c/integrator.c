@@ -133,6 +133,9 @@ static void fail_step(Motion *motion, WithinStep *within, int lane, double h)
     LANE(motion->h, lane) = (within->mode == ADVANCE ? h : within->full_h)/4;
     LANE(motion->reductions, lane) += 1;
     within->mode = ADVANCE;
+#if VARIES_ORDER
+    lower_order(&motion->state);
+#endif
 }
 
 #if INTERPOLATES
@@ -377,6 +380,9 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
         if (advancing & ~*failed & ~*accepted) {
             keep_polynomial(state, end);
         }
+#endif
+#if VARIES_ORDER
+        choose_order(state, result.contraction, factor, end);
 #endif
     }
     normalise_angles(end);

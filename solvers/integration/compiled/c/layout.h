@@ -15,6 +15,9 @@ typedef struct {
     real jacobian_t[JACOBIANS]; /* point at which the Jacobian was evaluated */
     real jacobian_z[JACOBIAN_DIM];
     real rate[JACOBIANS];       /* part of the error that an iteration with it leaves */
+    real order[VARIABLE_ORDERS];        /* index of the method of the next step, see order_choice.h */
+    real last_order[VARIABLE_ORDERS];   /* the same of `polynomial` */
+    real contraction[VARIABLE_ORDERS];  /* of Newton's iteration, in the last steps */
     real scale[SCALES];         /* exponent of the power of two taken out of the variation */
 } State;
 

@@ -25,7 +25,7 @@ static void solve_stages(
             memcpy(k[i], derivative, sizeof k[i]);
         }
         if (has_polynomial) {
-            extrapolate(method, 1.0, h/start->length[0], last, method, k);
+            extrapolate(method_of_last_step(start), 1.0, h/start->length[0], last, method, k);
         }
         end->rate[0] = start->rate[0];
         if (iterate(method, task, start, h, params, end->jacobian_t[0], end->jacobian_z, k,

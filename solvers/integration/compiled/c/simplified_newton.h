@@ -80,8 +80,9 @@ static int is_rounding(double change, double previous, double steepest)
     return change <= CLOSE || (change < CLOSE*(100 + steepest) && change >= previous/2);
 }
 
-/* Iterate with the Jacobian of a point; `rate` is the part of the error that an iteration leaves.
-   Returns whether it converges, early where it does not. */
+/* Iterate with the Jacobian of a point; `rate` is the part of the error that an iteration leaves, and
+   the contraction the mean of its last two values. Returns whether it converges, early where it does
+   not. */
 static int iterate(
     const Method *method, const Task *task, const State *start, double h, const double *params,
     double t, const double *z, double (*k)[DIM], double *rate, StepResult *result)
@@ -93,6 +94,7 @@ static int iterate(
     }
     /* not known before the second change: less certain than in the last step */
     *rate = sqrt(*rate);
+    result->contraction = 0.0;
     for (int iteration = 1; iteration <= limit; iteration++) {
         residuals(method, start, h, params, (const double (*)[DIM])k, states, change);
         result->evaluations += method->stages;
@@ -103,7 +105,9 @@ static int iterate(
                               (const double (*)[DIM])change)
             : scaled_change(method, task, start->z, h, (const double (*)[DIM])change);
         if (iteration > 1) {
+            const double last_rate = *rate;
             *rate = size/previous;
+            result->contraction = iteration == 2 ? *rate : sqrt(*rate*last_rate);
         }
         if (task->fixed_h ? is_rounding(size, previous, fabs(h)*linearisation.largest)
                           : size == 0 || (*rate < 1 && size**rate < SHARE*(1 - *rate))) {

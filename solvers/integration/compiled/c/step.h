@@ -109,7 +109,7 @@ typedef struct {
     real squared_error;     /* squared norm of the estimated error, relative to the tolerances */
     real evaluations;       /* of the right-hand side */
     real jacobians;         /* evaluations of the Jacobian */
-    real contraction;       /* of a fixed-point iteration, by each of its evaluations */
+    real contraction;       /* of the iteration of the stages, by each of its evaluations */
 } StepResult;
 
 /* Mean square of `values`, relative to the tolerances at states x and y. */

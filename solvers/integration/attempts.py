@@ -1,0 +1,128 @@
+"""Attempts at steps of the methods of `solvers.runge_kutta`."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.integration.solution import Array
+from solvers.runge_kutta.newton import Stages
+from solvers.runge_kutta.order_choice import OrderChoice
+from solvers.runge_kutta.parallel_stages import Polynomial
+from solvers.runge_kutta.step_control import Controller
+from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Step, Stepper
+
+#: Failures of a step that a smaller step may avoid.
+FAILURES = (NotFiniteError, NoConvergenceError)
+
+
+@dataclass(frozen=True)
+class Point:
+    """A time in s, with the state and its derivative."""
+
+    t: float
+    y: Array
+    derivative: Array
+    last: Polynomial | Stages | None = None  # of the step that ends here
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A step with a sufficiently small error; `norm` is that of its error."""
+
+    attempts: "Attempts"
+    start: Point
+    end: Point
+    norm: float
+    step: Step
+
+    def state(self, t: float) -> Array:
+        """The state at a time within the step, by a shorter step from its start."""
+        if t == self.end.t:
+            return self.end.y
+        start, polynomial = self.start, self.step.polynomial
+        guess = polynomial.within() if polynomial else start.last
+        step = self.attempts.stepper.step
+        y = step(start.t, start.y, t - start.t, start.derivative, guess).y
+        return self.attempts.normalise(y)
+
+    @property
+    def rough(self) -> Callable[[float], Array] | None:
+        """States within the step, with a lower order and without evaluations, if it has them."""
+        start, polynomial = self.start, self.step.polynomial
+        return (lambda t: start.y + polynomial.change(t - start.t)) if polynomial else None
+
+    def states(self, times: Array) -> Array:
+        """The states at several times, in columns."""
+        return np.stack([self.state(float(t)) for t in times], axis=1)
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A step that failed, or whose error is too large.
+
+    `h` is the next step size to try; `last` predicts its stages, unless those of the last step do.
+    """
+
+    h: float
+    failure: ArithmeticError | None = None
+    last: Polynomial | None = None
+
+
+@dataclass(frozen=True)
+class Attempts:
+    """Attempts at steps of one method; `normalise` is applied to every new state."""
+
+    stepper: Stepper
+    controller: Controller | None
+    normalise: Callable[[Array], Array] = lambda y: y
+
+    def attempt(self, start: Point, t: float, h: float, *, is_last: bool) -> Accepted | Rejected:
+        """Try the step from `start` to `t`, of size `h`; the last step needs no derivative."""
+        controller = self.controller
+        try:
+            step = self.stepper.step(start.t, start.y, t - start.t, start.derivative, start.last)
+            norm = controller.norm(step.error, start.y, step.y) if controller else 0.0
+            y, derivative = self.normalise(step.y), step.derivative
+            if not np.isfinite(y).all() or not np.isfinite(norm):
+                raise NotFiniteError(f"the state at t = {t} or its error is not finite")
+            if controller and norm > 1:
+                last = step.polynomial.after_rejection() if step.polynomial else None
+                return Rejected(h * controller.factor(norm, h, step.contraction), last=last)
+            if derivative is None:  # after the last step and a polynomial it is not needed
+                needed = not is_last and step.polynomial is None
+                derivative = self.stepper.derivative(t, y) if needed else start.derivative
+        except FAILURES as failure:
+            return Rejected(h / 4, failure)
+        return Accepted(self, start, Point(t, y, derivative, step.last), norm, step)
+
+    def first_step_size(self, start: Point, end: float, shortest: float) -> float:
+        """The first step size of steps that are controlled."""
+        assert self.controller is not None
+        guess = self.controller.initial_step
+        rhs, duration = self.stepper.derivative, end - start.t
+        return max(guess(rhs, start.t, start.y, start.derivative, duration), 2 * shortest)
+
+
+@dataclass(frozen=True)
+class Orders:
+    """Attempts by methods of decreasing order, and the choice between them."""
+
+    members: Sequence[Attempts]
+    choice: OrderChoice
+
+    @property
+    def attempts(self) -> Attempts:
+        """Those by the method of the next step."""
+        return self.members[self.choice.index]
+
+    def factor(self, trial: Accepted, h: float) -> float:
+        """The factor of the step size after an accepted step; it decides on the next method."""
+        controller = trial.attempts.controller
+        if controller is None:
+            return 1.0
+        if self.choice.index != self.choice.last:
+            controller.forget()
+        factor = controller.factor(trial.norm, h, trial.step.contraction)
+        self.choice.advance(trial.step.contraction, factor)
+        return factor
