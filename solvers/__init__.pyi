@@ -4,6 +4,9 @@ from solvers.app.scenes import load_scene as load_scene
 from solvers.app.scenes import load_sweep as load_sweep
 from solvers.app.scenes import run_scene as run_scene
 from solvers.app.scenes import sweep as sweep
+from solvers.equations.equilibria import equilibria as equilibria
+from solvers.equations.linear_system import LinearSystem as LinearSystem
+from solvers.equations.linear_system import linearise as linearise
 from solvers.integration.ensemble import ensemble as ensemble
 from solvers.integration.ensemble_solution import Ensemble as Ensemble
 from solvers.integration.events import Event as Event

@@ -8,7 +8,7 @@ Lifshitz, Mechanics, § 5 and § 40; C. Lanczos, The Variational Principles of
 Mechanics, chapter VI, for time as a coordinate).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TypeAlias
@@ -16,9 +16,11 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.formulas.switching import switching_functions
+from derive.mechanics.equilibria import equilibria
 from derive.mechanics.independence import check_independence
 from derive.mechanics.linearisation import Energies, Linearisation
 from derive.mechanics.reduction import collected, gathered, reduced
+from derive.mechanics.state_space import Formula, Point, StateSpace, state_space
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.symbols import TIME
 from derive.system.system import System, as_system
@@ -294,6 +296,74 @@ class Derivation:
         if equilibrium is None:
             return self._default_linearisation
         return self._energies.linearised(tuple(map(formula, equilibrium)))
+
+    def state_space(
+        self,
+        at: Mapping[str, Formula] | None = None,
+        outputs: Sequence[Formula] | None = None,
+    ) -> StateSpace:
+        """A, B, C and D about any point, as functions of parameters.
+
+        Parameters
+        ----------
+        at : mapping of str to sympy.Expr, number or str, optional
+            Coordinates, velocities, inputs and the time ``t`` of the point, by name. Coordinates
+            that are left out are those of the system's equilibrium, or 0, others are 0.
+        outputs : sequence of sympy.Expr, number or str, optional
+            Functions of state, inputs, parameters and time; by default the components of the state.
+
+        Returns
+        -------
+        StateSpace
+
+        Raises
+        ------
+        SystemDefinitionError
+            When a name is unknown, or the equations are not finite there.
+
+        Examples
+        --------
+        >>> from derive import load
+        >>> hanging = Derivation(load("single_pendulum")).state_space(outputs=["l*sin(theta)"])
+        >>> hanging.C
+        Matrix([[l, 0]])
+        """
+        point = Point.of(self.system, at or {})
+        return state_space(point, self.mass_matrix, self.forcing, outputs)
+
+    def equilibria(self, at: Mapping[str, Formula] | None = None) -> list[dict[sp.Symbol, sp.Expr]]:
+        """All equilibria in closed form, as functions of parameters and inputs.
+
+        Parameters
+        ----------
+        at : mapping of str to sympy.Expr, number or str, optional
+            Inputs, by name, that have values; the others remain symbols.
+
+        Returns
+        -------
+        list of dict of sympy.Symbol to sympy.Expr
+            Coordinates, angles within one turn; they exist where they are real. A coordinate on
+            which no force depends is its own symbol.
+
+        Raises
+        ------
+        SystemDefinitionError
+            When no closed form is found; `solvers.equilibria` finds equilibria in numbers.
+
+        Examples
+        --------
+        >>> from derive import load
+        >>> for equilibrium in Derivation(load("rotating_hoop")).equilibria():
+        ...     print(equilibrium)
+        {theta: 0}
+        {theta: pi}
+        {theta: -acos(g/(Omega**2*R)) + 2*pi}
+        {theta: acos(g/(Omega**2*R))}
+        """
+        point = Point.of(self.system, at or {})
+        moving = {*self.system.qdot}
+        values = {s: x for s, x in point.values.items() if s in moving or s.name in (at or {})}
+        return equilibria(Point(self.system, values), self.forcing)
 
     @cached_property
     def _default_linearisation(self) -> Linearisation:

@@ -1,0 +1,223 @@
+"""All equilibria in a box: boxes without one are excluded by intervals, then Newton's method."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.equations.intervals import FUNCTIONS, Interval, bounds_of
+from solvers.equations.linear_system import LinearSystem, linearise, with_inputs
+from solvers.equations.module import GeneratedModule, depends_on_time, with_functions
+from solvers.equations.quantities import Values, real_numbers
+from solvers.io.suggestion import did_you_mean, shortened
+
+Array = NDArray[np.float64]
+
+#: How often a box is halved in each direction, and most boxes.
+HALVINGS, MOST_BOXES = 18, 50_000
+#: Most steps of Newton's method; its last step, and accelerations, relative to the box.
+MOST_STEPS, CONVERGED = 60, 1e-9
+#: Equilibria that are closer, relative to the box, count as one.
+CLOSE = 1e-4
+
+
+def equilibria(
+    module: GeneratedModule,
+    params: Values,
+    box: Mapping[str, object] | None = None,
+    *,
+    inputs: Values | None = None,
+) -> list[LinearSystem]:
+    """All equilibria in a box, linearised.
+
+    Boxes in which intervals of the accelerations do not contain 0 have no equilibrium. The others
+    are halved until they are small, and Newton's method starts in each, so that no equilibrium is
+    missed, also where several are about to merge.
+
+    Parameters
+    ----------
+    module : module
+        A generated module, whose equations do not depend on time.
+    params : array_like of shape (parameters,), or mapping of str to float
+        In the order of ``module.PARAMETERS``, or by name.
+    box : mapping of str to (float, float) or float, optional
+        The range of each coordinate, or its value where it is fixed. An angle that is left out can
+        have all values from -π to π; other coordinates are necessary.
+    inputs : array_like of shape (inputs,), or mapping of str to float, optional
+        Constant inputs, in place of those in `params`.
+
+    Returns
+    -------
+    list of LinearSystem
+        In the order of coordinates. Their ``stability`` and ``modes`` follow from their matrices.
+        Equilibria with a distance below 1e-4 of the box count as one. A point at which the
+        equations are singular, such as the pole of spherical coordinates, is none.
+
+    Raises
+    ------
+    ValueError
+        When an argument is invalid, the equations depend on time or contain other functions than
+        intervals are known of; when equilibria are not isolated.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> from solvers import equilibria
+    >>> for equilibrium in equilibria(dp, dp.DEFAULTS):
+    ...     print(equilibrium.y[:2].round(4) + 0.0, equilibrium.stability)
+    [0. 0.] neutral
+    [0.     3.1416] unstable
+    [3.1416 0.    ] unstable
+    [3.1416 3.1416] unstable
+    """
+    if depends_on_time(module):
+        raise ValueError(f"the equations of {module.SYSTEM} depend on time: it has no equilibria")
+    low, high = _ranges(module, {} if box is None else box)
+    constants = with_inputs(module, params, inputs)
+    search = _Search(module, constants, low, high)
+    roots: list[Array] = []
+    for start in search.candidates():
+        root = search.newton(start)
+        if root is not None and all(not search.are_close(root, other) for other in roots):
+            roots.append(root)
+    roots.sort(key=lambda root: np.round(root, 6).tolist())
+    return [linearise(module, [*root, *0 * low], constants) for root in roots]
+
+
+@dataclass(frozen=True)
+class _Search:
+    """A search for coordinates in a box at which accelerations at rest are 0."""
+
+    module: GeneratedModule
+    params: Sequence[float]
+    low: Array
+    high: Array
+
+    @cached_property
+    def free(self) -> NDArray[np.bool_]:
+        """The coordinates that are not fixed."""
+        return self.high > self.low
+
+    @cached_property
+    def width(self) -> Array:
+        return np.where(self.free, self.high - self.low, 1.0)
+
+    @cached_property
+    def scale(self) -> float:
+        """The size of accelerations in the box, in the units of each."""
+        points = self.low + np.random.default_rng(0).random((64, len(self.low))) * self.width
+        states = np.concatenate([points, 0 * points], axis=1).T
+        with np.errstate(all="ignore"):
+            values = self.module.rhs_many(0.0, states, self.params)[len(self.low) :]
+        return float(np.nanmax(np.abs(values), initial=1e-300))
+
+    def candidates(self) -> Array:
+        """Points near which there may be an equilibrium, in rows."""
+        low, high = self.low[np.newaxis], self.high[np.newaxis]
+        rhs = with_functions(self.module.rhs, FUNCTIONS)
+        for _, k in product(range(HALVINGS), np.flatnonzero(self.free)):
+            middle = (low[:, k] + high[:, k]) / 2
+            low, high = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
+            high[::2, k] = low[1::2, k] = middle
+            possible = self._may_vanish(rhs, low, high)
+            low, high = low[possible], high[possible]
+            if len(low) > MOST_BOXES:
+                raise ValueError(
+                    f"equilibria of {self.module.SYSTEM} are not isolated in this box, or it is "
+                    "too large: give a number in box for coordinates on which no force depends, "
+                    "such as box={'x': 0.0}, or smaller ranges"
+                )
+        centres = (low + high) / 2
+        cells = np.round((centres - self.low) / self.width / CLOSE)
+        return np.asarray(centres[np.unique(cells, axis=0, return_index=True)[1]])
+
+    def _may_vanish(
+        self, rhs: Callable[..., Sequence[Any]], low: Array, high: Array
+    ) -> NDArray[np.bool_]:
+        """Boxes, in rows, in which the range of every acceleration contains 0."""
+        n = low.shape[1]
+        state = [*(Interval(*bounds) for bounds in zip(low.T, high.T, strict=True)), *[0.0] * n]
+        try:
+            with np.errstate(all="ignore"):
+                accelerations = rhs(0.0, state, self.params)[n:]
+        except (TypeError, AttributeError) as error:
+            known = ", ".join(FUNCTIONS)
+            raise ValueError(
+                f"the range of the equations of {self.module.SYSTEM} is not known: their functions "
+                f"must be among {known}"
+            ) from error
+        possible = np.ones(len(low), bool)
+        for acceleration in accelerations:
+            least, largest = bounds_of(acceleration)
+            possible &= ~(least > 0) & ~(largest < 0)
+        return possible
+
+    def newton(self, start: Array) -> Array | None:
+        """The equilibrium that Newton's method reaches; None if it leaves the box."""
+        n, q = len(start), start.copy()
+        for _ in range(MOST_STEPS):
+            state = [*q.tolist(), *[0.0] * n]
+            try:
+                acceleration = np.array(self.module.rhs(0.0, state, self.params)[n:])
+                jacobian = np.array(self.module.jacobian(0.0, state, self.params))
+            except (ArithmeticError, ValueError):
+                return None
+            by_free = jacobian[n:, :n][:, self.free]
+            if not (np.isfinite(acceleration).all() and np.isfinite(by_free).all()):
+                return None
+            step = np.zeros(n)
+            step[self.free] = np.linalg.lstsq(by_free, -acceleration, rcond=1e-14)[0]
+            is_root = np.abs(acceleration).max(initial=0.0) <= CONVERGED * self.scale
+            q = q + np.clip(step, -self.width, self.width)
+            if is_root and (np.abs(step) <= CONVERGED * self.width).all():
+                break
+        if not is_root:
+            return None
+        margin = CLOSE * self.width
+        if (q < self.low - margin).any() or (q > self.high + margin).any():
+            return None
+        return self._in_one_turn(q)
+
+    def _in_one_turn(self, q: Array) -> Array:
+        """An angle at the start of a range that includes a whole turn is that at its end."""
+        turn = np.where(_angles(self.module), 2 * np.pi, np.inf)
+        margin = CLOSE * self.width
+        return q + np.where((q < self.low + margin) & (q + turn < self.high + margin), turn, 0.0)
+
+    def are_close(self, a: Array, b: Array) -> bool:
+        return bool((np.abs(a - b) <= CLOSE * self.width).all())
+
+
+def _angles(module: GeneratedModule) -> list[bool]:
+    """Whether forces depend on a coordinate by its sine and cosine."""
+    rational = module.STATES.get("rational", ())
+    return [f"sin_{name}" in rational for name in module.COORDINATES]
+
+
+def _ranges(module: GeneratedModule, box: Mapping[str, object]) -> tuple[Array, Array]:
+    """Lower and upper ends of all coordinates."""
+    names = module.COORDINATES
+    for name in box:
+        if name not in names:
+            hint = did_you_mean(str(name), names)
+            raise ValueError(f"box has {name!r}{hint}; coordinates are {', '.join(names)}")
+    ranges = []
+    for name in names:
+        unit = module.UNITS[name]
+        if name not in box and unit != "rad":
+            raise ValueError(
+                f"box lacks {name}: give its range, {name!r}: (low, high) in {unit}, or a number "
+                "where it is fixed"
+            )
+        ends = real_numbers(f"box[{name!r}]", box.get(name, (-np.pi, np.pi)), unit)
+        if ends.shape not in ((), (2,)) or (ends.ndim and not ends[0] < ends[1]):
+            raise ValueError(
+                f"box[{name!r}] = {shortened(box[name])} must be a pair (low, high) or a number"
+            )
+        ranges.append(np.broadcast_to(ends, 2))
+    low, high = np.array(ranges).T
+    return low.copy(), high.copy()

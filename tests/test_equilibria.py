@@ -1,0 +1,150 @@
+"""Equilibria: all of them, in closed form or in a box, with their stability and frequencies."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from cart_pole import F, cart_pole, x
+from numpy.testing import assert_allclose
+
+from derive import Derivation, load
+from derive.system.parts import SystemDefinitionError
+from solvers import build, equilibria
+from solvers import load as module_of
+from solvers.equations.intervals import FUNCTIONS, Interval
+
+cart = build(cart_pole)
+hoop = module_of("rotating_hoop")
+#: The angular velocity at which a bead at the bottom of a hoop of 1 m becomes unstable.
+CRITICAL = math.sqrt(9.81)
+
+
+def test_a_double_pendulum_has_four() -> None:
+    closed = Derivation(load("double_pendulum")).equilibria()
+    angles = {tuple(map(float, equilibrium.values())) for equilibrium in closed}
+    assert angles == {(a, b) for a in (0, math.pi) for b in (0, math.pi)}
+    found = equilibria(module_of("double_pendulum"), {})
+    assert_allclose([e.y[:2] for e in found], sorted(angles), atol=1e-9)
+    assert [e.stability for e in found] == ["neutral", "unstable", "unstable", "unstable"]
+
+
+def test_three_pendulums_on_a_cart_have_eight_for_every_position() -> None:
+    found = Derivation(load("cart_3")).equilibria()
+    assert len(found) == 8
+    position = next(q for q in found[0] if q.name == "x")
+    assert all(equilibrium[position] == position for equilibrium in found)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.999, 1.001, 1.5, 10.0])
+def test_a_pitchfork_on_a_rotating_hoop_is_found(ratio: float) -> None:
+    Omega = ratio * CRITICAL
+    found = equilibria(hoop, {"Omega": Omega, "R": 1.0})
+    angles = [float(e.y[0]) for e in found]
+    if ratio < 1:
+        assert_allclose(angles, [0.0, np.pi], atol=1e-7)
+        assert [e.stability for e in found] == ["neutral", "unstable"]
+        return
+    tilted = math.acos(9.81 / Omega**2)
+    assert_allclose(angles, [-tilted, 0.0, tilted, np.pi], atol=1e-7)
+    assert [e.stability for e in found] == ["neutral", "unstable", "neutral", "unstable"]
+    expected = Omega * math.sin(tilted) / (2 * math.pi)
+    assert found[2].modes[0].frequency == pytest.approx(expected, rel=1e-6)
+
+
+def test_the_pitchfork_has_a_closed_form() -> None:
+    (angle,) = load("rotating_hoop").q
+    found = [equilibrium[angle] for equilibrium in Derivation(load("rotating_hoop")).equilibria()]
+    names = {s.name: s for s in load("rotating_hoop").params}
+    tilted = sp.acos(names["g"] / (names["Omega"] ** 2 * names["R"]))
+    assert {*found} == {sp.S.Zero, sp.pi, tilted, 2 * sp.pi - tilted}
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 30.0, 100.0])
+def test_indices_on_a_torus_add_up_to_zero(stiffness: float) -> None:
+    """Poincaré and Hopf: no equilibrium is missing. The bobs, far apart, never meet."""
+    found = equilibria(module_of("coupled_pendulums"), {"k": stiffness, "d": 3.0, "l": 1.0})
+    indices = [np.sign(np.linalg.det(e.A[2:, :2])) for e in found]
+    assert len(found) >= 4
+    assert sum(indices) == 0
+    assert max(np.abs(e.rate).max() for e in found) < 1e-8
+
+
+def test_equilibria_of_other_systems_are_known() -> None:
+    saddles = [(-math.sqrt(3) / 2, -0.5), (0, 0), (0, 1), (math.sqrt(3) / 2, -0.5)]
+    found = equilibria(module_of("henon_heiles"), {}, {"x": (-2, 2), "y": (-2, 2)})
+    assert_allclose([e.y[:2] for e in found], saddles, atol=1e-9)
+    assert equilibria(module_of("henon_heiles"), {}, {"x": (0.1, 0.5), "y": (-2, 2)}) == []
+    spring = module_of("elastic_pendulum")
+    m, k, length, g = (spring.DEFAULTS[spring.PARAMETERS.index(p)] for p in "mklg")
+    found = equilibria(spring, {}, {"r": (0.05, 5)})
+    assert_allclose(
+        [e.y[:2] for e in found],
+        [(length - m * g / k, math.pi), (length + m * g / k, 0)],
+        atol=1e-9,
+    )
+
+
+def test_inputs_move_equilibria() -> None:
+    """A torque T cos θ on the pole: m g l sin θ + T cos θ = 0."""
+    found = equilibria(cart, {}, {"x": 0.0}, inputs={"T": 0.1})
+    tilt = math.atan(0.1 / (0.2 * 9.81 * 0.3))
+    assert_allclose([e.y[1] for e in found], [-tilt, math.pi - tilt], atol=1e-9)
+    assert [e.stability for e in found] == ["unstable", "neutral"]
+    closed = Derivation(cart_pole).equilibria({"F": 0})
+    values = {
+        s: sp.Float(str(v))
+        for s, v in zip(cart_pole.params, (0.5, 0.2, 0.3, 0.1, 9.81, 0, 0.1), strict=True)
+    }
+    angles = sorted(float(e[cart_pole.q[1]].subs(values)) for e in closed)
+    assert_allclose(angles, [-tilt, math.pi - tilt], atol=1e-9)
+    assert all(equilibrium[x] == x for equilibrium in closed)
+    assert equilibria(cart, {}, {"x": 0.0}, inputs={"F": 0.1}) == []
+    assert Derivation(cart_pole).equilibria() == []
+    assert F in cart_pole.u
+
+
+def test_invalid_searches_are_refused() -> None:
+    invalid: list[tuple[Any, dict[str, Any], Any, str]] = [
+        (cart, {}, {}, "box lacks x: give its range"),
+        (cart, {}, {"x": (1, 0)}, r"box\['x'\] = .1, 0. must be a pair"),
+        (cart, {}, {"x": 0, "y": 1}, "box has 'y'"),
+        (cart, {}, {"x": (0, np.nan)}, "must be a finite real number in m"),
+        (cart, {}, {"x": (-1, 1)}, "not isolated"),
+        (module_of("driven_pendulum"), {}, {}, "depend on time"),
+    ]
+    for module, params, box, message in invalid:
+        with pytest.raises(ValueError, match=message):
+            equilibria(module, params, box)
+    with pytest.raises(SystemDefinitionError, match=r"no closed form .*solvers\.equilibria"):
+        Derivation(load("coupled_pendulums")).equilibria()
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_intervals_contain_all_values_and_little_more(name: str) -> None:
+    generator = np.random.default_rng(3)
+    ends = np.sort(generator.uniform(0.01, 9, (2, 400)) * (1 if name in ("log", "sqrt") else -1), 0)
+    if name == "tan":
+        ends[1] = np.minimum(ends[1], ends[0] + 0.3)
+    values = FUNCTIONS[name](Interval(*ends))
+    exact = np.vectorize(getattr(math, name))
+    inner = exact(np.linspace(*ends, 101))
+    assert (values.low <= inner.min(axis=0)).all()
+    assert (values.high >= inner.max(axis=0)).all()
+    if name != "tan":
+        width = np.abs(inner).max(axis=0) + 1e-3
+        assert (values.high - inner.max(axis=0) <= 0.02 * width).all()
+        assert (inner.min(axis=0) - values.low <= 0.02 * width).all()
+
+
+def test_intervals_of_arithmetic_contain_all_values() -> None:
+    generator = np.random.default_rng(4)
+    a, b = (np.sort(generator.uniform(-3, 3, (2, 300)), 0) for _ in range(2))
+    for u, v in ((a[0], b[1]), (a[1], b[0]), (a.mean(0), b.mean(0))):
+        p, q = Interval(*a), Interval(*b)
+        for interval, value in (
+            (p + q, u + v), (p - q, u - v), (p * q, u * v), (p / q, u / v),
+            (2.0 - p, 2 - u), (1.0 / q, 1 / v), (p * 3.0 - 1.0, 3 * u - 1), (-p, -u),
+        ):  # fmt: skip
+            assert ((interval.low <= value) & (value <= interval.high)).all()
