@@ -9,6 +9,7 @@ from handwritten import handwritten
 from scipy.special import ellipk, ellipkinc
 from sympy import Poly, Rational, Symbol
 
+import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
@@ -182,3 +183,22 @@ def test_bernstein_coefficients_give_the_integral_of_legendre_polynomials() -> N
     assert values[:, 0] == pytest.approx(x, abs=1e-15)
     assert values[:, 1] == pytest.approx(x**2 - x, abs=1e-15)
     assert values[:, 2] == pytest.approx(2 * x**3 - 3 * x**2 + x, abs=1e-15)
+
+
+@pytest.mark.parametrize("method", ["gauss4", "gauss8"])
+def test_an_event_at_the_start_is_not_counted_and_hides_no_return(method: str) -> None:
+    # the motion starts at the event, where rounding errors decide its sign, and may turn back
+    rng, returns = np.random.default_rng(1), 0
+    for _ in range(150):
+        angle, speed = rng.uniform(-3, 3), rng.choice([-1, 1]) * rng.uniform(0.1, 3)
+        event = Event(dp, "theta1", float(angle))
+        found, exact = (
+            integrate(
+                dp, (0, 0.2), (angle, 0.3, speed, 0.0), dp.DEFAULTS, method=name, rtol=tol,
+                atol=tol, events=event,
+            ).t_events[0]
+            for name, tol in ((method, 1e-8), ("verner98", 1e-10))
+        )  # fmt: skip
+        assert found == pytest.approx(exact, abs=1e-7)
+        returns += len(exact)
+    assert 5 < returns < 100

@@ -174,12 +174,12 @@ static int substep(Lanes *lanes, WithinStep *within, double h)
 static int bracket_crossings(Lanes *lanes, WithinStep *within, int e, double before, double after)
 {
     const Event *event = &lanes->task->events[e];
-    double coefficients[STAGES + 1], parts[MAX_ROOTS];
+    double coefficients[STAGES + 1], parts[MAX_ROOTS + 1];
     event_polynomial(event, &lanes->motion.state, &lanes->end, before, coefficients);
     const int roots = separate_roots(coefficients, parts), count = roots > 1 ? roots - 1 : 0;
     const double h = within->full_h;
     Bracket bracket = {.event = e, .near_value = before};
-    if (before == 0 && roots > 0) {    /* the event at the start is not in this step, others are */
+    if (before == 0 && roots > 1) {    /* the event at the start is not in this step, others are */
         bracket.near_value = copysign(DBL_MIN, first_sign(coefficients));
     }
     for (int k = 0; k <= count; k++) {

@@ -129,11 +129,12 @@ static int isolate_roots(const double *coefficients, double *roots)
 }
 
 /* A part of the interval between every two roots, where the value is largest of some: its sign
-   decides whether there are roots on both sides. Returns the number of roots. */
+   decides whether there are roots on both sides. Returns the number of roots, with one at the start:
+   there rounding errors decide the sign of the value. */
 static int separate_roots(const double *coefficients, double *parts)
 {
-    double roots[MAX_ROOTS];
-    const int count = isolate_roots(coefficients, roots);
+    double roots[MAX_ROOTS + 1] = {0};
+    const int first = coefficients[0] == 0, count = first + isolate_roots(coefficients, roots + first);
     for (int k = 0; k + 1 < count; k++) {
         double largest = -1;
         for (int i = 1; i < SAMPLES; i++) {
