@@ -58,6 +58,10 @@ class Notation:
         """A call of ``select`` or of a mathematical function, by its name in C99."""
         return f"{function}({', '.join(arguments)})"
 
+    def switch(self, index: int, value: str) -> str:
+        """A switching function, or its sign if that is given with the parameters."""
+        return f"({value})"
+
     def component(self, vector: str, index: int) -> str:
         """The component of a vector, from 0 on."""
         return f"{vector}[{index}]"
@@ -168,6 +172,8 @@ class Assignments:
                 return notation.literal(value), ATOM
             case op.Call(operands, function=function):
                 return notation.call(function, *map(self._text, operands)), ATOM
+            case op.Switch((value,), index=index):
+                return notation.switch(index, self._text(value)), ATOM
             case op.Component((solution,), index=index):
                 return notation.component(self._text(solution), index), ATOM
             case op.Quotient((*above, below)):

@@ -13,7 +13,7 @@ from derive.codegen.functions import Contents, Function
 #: Place of the digest of all files of a system, by which files that belong together are known.
 DIGEST = "@digest@"
 #: Names that generated functions use themselves.
-RESERVED = ("t", "y", "state", "params", "result")
+RESERVED = ("t", "y", "state", "params", "signs", "result")
 
 
 class Backend(Notation, ABC):

@@ -21,14 +21,24 @@ Choice = Callable[[Node, Node], Node]
 
 
 class Choices:
-    """Nodes of functions in `CHOICES`; `translate` gives those of their parts."""
+    """Nodes of functions in `CHOICES`; `translate` gives those of their parts.
 
-    def __init__(self, graph: Graph, translate: Callable[[sp.Expr], Node]) -> None:
+    A choice by the sign of one of the `switching` functions refers to it by its index.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        translate: Callable[[sp.Expr], Node],
+        switching: Sequence[sp.Expr] = (),
+    ) -> None:
         self._graph, self._translate = graph, translate
+        self._switching, self._switches = switching, dict[Node, Node]()
 
     def __call__(self, expression: sp.Expr) -> Node:
         """The node of a function in `CHOICES`."""
         graph, select = self._graph, self._select
+        self._find_switches()
         if isinstance(expression, sp.DiracDelta):
             return graph.node(0)
         if isinstance(expression, sp.Piecewise):
@@ -45,7 +55,20 @@ class Choices:
             return reduce(lambda a, b: select(b - a, b, a), rest, first)
         return reduce(lambda a, b: select(b - a, a, b), rest, first)
 
+    def _find_switches(self) -> None:
+        """Find the nodes of switching functions, once."""
+        switching, self._switching = self._switching, ()
+        for index, expression in enumerate(switching):
+            value = self._translate(expression)  # which may contain those before it
+            coefficient, rest = value.scaled()
+            if rest is not None:
+                switch = self._graph.switch(index, value)
+                self._switches[rest] = switch if coefficient > 0 else -switch
+
     def _select(self, number: Node, positive: Node, other: Node) -> Node:
+        coefficient, rest = number.scaled()
+        if rest is not None and rest in self._switches:
+            number = self._graph.sum([(self._switches[rest], 1 if coefficient > 0 else -1)])
         return self._graph.call("select", number, positive, other)
 
     def _pieces(self, pieces: Sequence[tuple[sp.Expr, Boolean]]) -> Node:

@@ -48,7 +48,9 @@ class Differentiation:
                 rate = self(exponent, leaf)
                 if rate.is_number(0):
                     return by_base
-                return by_base + node * graph.call("log", base) * rate
+                # where the base is 0, so is the power
+                positive = graph.call("select", base, base, graph.node(1))
+                return by_base + node * graph.call("log", positive) * rate
             case Call(function, arguments):
                 variables = X[: len(arguments)]
                 known = {x.name: value for x, value in zip(variables, arguments, strict=True)}

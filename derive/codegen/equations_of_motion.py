@@ -28,7 +28,7 @@ class EquationsOfMotion:
     def __init__(self, derivation: Derivation) -> None:
         self._derivation, self._system = derivation, derivation.system
         self._graph = Graph()
-        self._node = Translation(self._graph)
+        self._node = Translation(self._graph, switching=derivation.switching_functions)
         self._derivative = Differentiation(self._graph)
         self._n = range(len(self._system.q))
         self._q, self._qdot, self._p = (

@@ -31,6 +31,10 @@ def _reactions(derivation: Derivation) -> str:
     return ", ".join(symbol.name for symbol in derivation.system.reactions)
 
 
+def _switches(derivation: Derivation) -> str:
+    return ", ".join(map(str, derivation.switching_functions))
+
+
 def _is_small(derivation: Derivation) -> bool:
     # of a large system, n² entries of n terms each are too much text
     return len(derivation.system.q) < LARGE
@@ -63,6 +67,15 @@ SPECS = (
         "Derivatives of `rhs` with respect to the parameters, without inputs.",
         "Entry [i][j] is the derivative of rhs[i] with respect to parameter j.",
         exists=_is_small),
+    FunctionSpec("switches", "lagrangian", "2 switches",
+        "Switching functions {}, at whose zeros forces have kinks or jumps.",
+        "The functions, then their rates of change along the motion.",
+        _switches, lambda derivation: bool(derivation.switching_functions)),
+    FunctionSpec("switches_rational", "rational", "2 switches",
+        "`switches` of the rational state.",
+        "The functions, then their rates of change along the motion.",
+        exists=lambda derivation: bool(derivation.switching_functions)
+        and bool(EquationsOfMotion(derivation).angles)),
     FunctionSpec("energy", "lagrangian", "",
         "{}.",
         "Energy in J.", _energy),
@@ -134,6 +147,7 @@ class Function:
     state: tuple[str, ...]  # components of the state that it takes, in order
     shape: tuple[int, ...]  # of the result; () is a single number
     lowering: Lowering  # its outputs are the result, flat in C order
+    takes_signs: bool = False  # of switching functions, after the parameters
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -174,6 +188,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     """Everything that is generated for a derivation, or `only` the functions of these names."""
     system, states = derivation.system, _states(derivation)
     sizes = {"q": len(system.q), "masses": len(system.masses), "axes": system.dimension}
+    sizes |= {"switches": len(derivation.switching_functions)}
     sizes |= {"state": 2 * len(system.q), "reactions": len(system.reactions), "2": 2}
     # a function whose result has an axis of no entries does not exist
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
@@ -187,7 +202,11 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
             detail, lowering = spec.detail(derivation), _lowering(spec, derivation)
             texts = spec.summary.format(detail), spec.returns.format(detail)
             state, shape = states.get(spec.form, ()), tuple(sizes[axis] for axis in axes)
-            functions.append(Function(system, spec.name, *texts, spec.form, state, shape, lowering))
+            takes_signs = bool(derivation.switching_functions)
+            one = Function(
+                system, spec.name, *texts, spec.form, state, shape, lowering, takes_signs
+            )
+            functions.append(one)
     return Contents(derivation, states, tuple(functions))
 
 

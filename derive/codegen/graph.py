@@ -32,6 +32,7 @@ from derive.codegen.node import (
     Rewritten,
     Solution,
     Sum,
+    Switch,
     operands,
 )
 
@@ -98,6 +99,10 @@ class Graph:
                         return self.call(function, s, a, inner)
                 arguments = (s, a, b)
         return self._intern(Call, function, arguments)
+
+    def switch(self, index: int, value: Node) -> Node:
+        """The switching function of this index."""
+        return self._intern(Switch, index, value)
 
     def factorised(self, upper: Iterable[Node]) -> Factorised:
         """The factorisation of a symmetric matrix, given by its upper triangle row by row."""

@@ -43,7 +43,8 @@ class HamiltonianForm(EquationsOfMotion):
     def _at_velocities(self) -> Translation:
         """Translation of expressions of (q, q̇), with w in place of q̇."""
         names = (qdot.name for qdot in self._system.qdot)
-        return Translation(self._graph, dict(zip(names, self._velocities, strict=True)))
+        velocities = dict(zip(names, self._velocities, strict=True))
+        return Translation(self._graph, velocities, self._derivation.switching_functions)
 
     @property
     def rhs_hamiltonian(self) -> list[Node]:

@@ -9,6 +9,7 @@ import sympy as sp
 from derive.codegen.equations_of_motion import EquationsOfMotion
 from derive.codegen.node import Node
 from derive.codegen.rational import rationalised
+from derive.system.symbols import TIME
 
 HALF = Fraction(1, 2)
 
@@ -56,6 +57,23 @@ class LagrangianForm(EquationsOfMotion):
     def rhs(self) -> list[Node]:
         """The rates q̇ and q̈ of M q̈ = f."""
         return [*self._qdot, *self._accelerations]
+
+    @property
+    def switches(self) -> list[Node]:
+        """Switching functions, then their rates of change along the motion."""
+        values = self._nodes(self._derivation.switching_functions)
+        state, rates = (*self._system.q, *self._system.qdot, TIME), list[Node]()
+        changes = [*self._qdot, *self._accelerations, self._graph.node(1)]
+        for value in values:
+            pairs = zip(state, changes, strict=True)
+            terms = ((self._derivative(value, s.name) * change, 1) for s, change in pairs)
+            rates.append(self._graph.sum(terms))
+        return [*values, *rates]
+
+    @property
+    def switches_rational(self) -> list[Node]:
+        """The same, of the rational state."""
+        return rationalised(self.switches, [q.name for q in self.angles])
 
     @property
     def reactions(self) -> list[Node]:

@@ -26,6 +26,7 @@ from derive.codegen.node import (
     Rewritten,
     Solution,
     Sum,
+    Switch,
     Terms,
     operands,
 )
@@ -73,6 +74,11 @@ class Lowering:
         return self.functions - {"select"}
 
     @property
+    def has_switches(self) -> bool:
+        """Whether a result depends on the signs of switching functions."""
+        return any(isinstance(o, op.Switch) for o in self.used)
+
+    @property
     def cost(self) -> tuple[int, int]:
         """Arithmetic operations and calls: their number, and how many are of parameters alone."""
         costs = [(op.cost(o), o.constant) for o in self.used]
@@ -98,6 +104,8 @@ class Lowering:
                 return self._lower(inner)
             case Call(function, arguments):
                 return self._add(op.Call, map(self._lower, arguments), function)
+            case Switch(index, value):
+                return self._add(op.Switch, [self._lower(value)], index)
             case Factorised(upper):
                 return self._add(op.Factorised, map(self._lower, upper))
             case Solution():

@@ -117,6 +117,14 @@ class Call(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Switch(Node):
+    """The switching function of this index, for which its sign may stand."""
+
+    index: int
+    value: Node
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Let(Node):
     """A named value: sums and products are not merged with it."""
 
@@ -161,7 +169,7 @@ def operands(node: Node) -> tuple[Node, ...]:
             return tuple(part for part, _ in pairs)
         case Call(_, arguments):
             return arguments
-        case Let(value):
+        case Let(value) | Switch(value=value):
             return (value,)
         case Rewritten(value, short):
             return (value, short)

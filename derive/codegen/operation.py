@@ -49,6 +49,13 @@ class Call(Operation):
     function: str
 
 
+@dataclass(frozen=True, slots=True)
+class Switch(Operation):
+    """A switching function, for which its sign may stand."""
+
+    index: int
+
+
 class Factorised(Operation):
     """A factorised symmetric matrix; the operands are its upper triangle, row by row."""
 

@@ -21,6 +21,7 @@ from derive.codegen.node import (
     Product,
     Rewritten,
     Sum,
+    Switch,
     operands,
 )
 
@@ -109,6 +110,8 @@ class _Rewriting:
                 return graph.irrational(value)
             case Let(value):
                 return graph.let(self.node(value))
+            case Switch(index, value):
+                return graph.switch(index, self.node(value))
             case Rewritten(value, short):
                 return graph.rewritten(self.node(value), self.node(short))
             case Call(function, arguments):

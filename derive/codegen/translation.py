@@ -1,6 +1,6 @@
 """SymPy expressions as nodes of a graph."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
 
@@ -24,12 +24,20 @@ class UnsupportedFunctionError(ValueError):
 
 
 class Translation:
-    """Nodes of SymPy expressions; a symbol becomes the `known` node of its name, or a leaf."""
+    """Nodes of SymPy expressions; a symbol becomes the `known` node of its name, or a leaf.
 
-    def __init__(self, graph: Graph, known: Mapping[str, Node] = MappingProxyType({})) -> None:
+    Choices by the signs of `switching` functions refer to these by their indices.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        known: Mapping[str, Node] = MappingProxyType({}),
+        switching: Sequence[sp.Expr] = (),
+    ) -> None:
         self.graph, self._known = graph, known
         self._nodes: dict[sp.Expr, Node] = {}
-        self._choice = Choices(graph, self)
+        self._choice = Choices(graph, self, switching)
 
     def __call__(self, expression: sp.Expr) -> Node:
         """The node of an expression of symbols, real numbers and `FUNCTIONS`."""

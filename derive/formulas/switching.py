@@ -18,7 +18,7 @@ def switching_functions(
 ) -> tuple[sp.Expr, ...]:
     """The switching functions of expressions that depend on `variables`, in a definite order.
 
-    Of two that differ in their sign alone there is one.
+    Of two that differ in their sign alone there is one. It comes after those in its own formula.
     """
     found: dict[sp.Expr, None] = {}
     for expression in expressions:
@@ -26,7 +26,7 @@ def switching_functions(
             for number in _decisive(part):
                 if number.free_symbols & {*variables} and -number not in found:
                     found[number] = None
-    return tuple(found)
+    return tuple(sorted(found, key=lambda number: len(number.atoms(*CHOICES))))
 
 
 def _decisive(part: sp.Expr) -> Iterator[sp.Expr]:

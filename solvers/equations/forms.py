@@ -10,7 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.equations.module import GeneratedModule, function, has_function, named, state_names
+from solvers.equations.module import (
+    GeneratedModule,
+    function,
+    has_function,
+    named,
+    state_names,
+    switching_functions,
+)
 
 Array = NDArray[np.float64]
 
@@ -35,11 +42,12 @@ class Form:
         name: str,
         params: Sequence[Any],
         feedback: Callable[[float, Array], Array] | None = None,
+        signs: Sequence[float] = (),
     ) -> None:
         if name not in module.FORMS:
             raise ValueError(f"form {name!r}: {module.SYSTEM} has {', '.join(module.FORMS)}")
         self.name, self.module, self.params = name, module, tuple(params)
-        self.feedback = feedback
+        self.feedback, self.signs = feedback, tuple(signs)
         self.function, jacobian = function(module, named("rhs", name)), named("jacobian", name)
         self._jacobian = function(module, jacobian) if has_function(module, jacobian) else None
         self.state: tuple[str, ...] = module.STATES[name]
@@ -99,9 +107,25 @@ class Form:
     def _params_at(self, t: float, z: Array) -> Sequence[Any]:
         """The parameters, the last of which may be inputs that depend on time and state."""
         if self.feedback is None:
-            return self.params
+            return (*self.params, *self.signs)
         values = self.feedback(t, z)
-        return (*self.params[: -len(values)], *values)
+        return (*self.params[: -len(values)], *values, *self.signs)
+
+    @property
+    def switching_count(self) -> int:
+        """Number of functions at whose zeros forces have kinks or jumps."""
+        return len(switching_functions(self.module))
+
+    def with_signs(self, signs: Sequence[float] | Array) -> "Form":
+        """The form with the signs of switching functions held; their values decide if empty."""
+        return Form(self.module, self.name, self.params, self.feedback, [*map(float, signs)])
+
+    def switches(self, t: float, y: Array) -> tuple[Array, Array]:
+        """Switching functions and their rates of change at an ordinary state."""
+        state = y[: len(self.module.STATE)]
+        params = self._params_at(t, state)
+        values, rates = self._value(function(self.module, "switches"), t, state, params)
+        return values, rates
 
     def _feedback_jacobian(self, t: float, z: Array) -> Array:
         """∂u/∂z, shape (inputs, state), by differences."""

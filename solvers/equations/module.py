@@ -44,6 +44,8 @@ class GeneratedModule(Protocol):
     @property
     def PARAMETERS(self) -> tuple[str, ...]: ...
     @property
+    def SWITCHES(self) -> tuple[str, ...]: ...  # if forces have kinks or jumps
+    @property
     def INPUTS(self) -> tuple[str, ...]: ...  # the last parameters, if the system has inputs
     @property
     def DEFAULTS(self) -> tuple[float, ...]: ...
@@ -108,6 +110,11 @@ def with_functions(
 def named(stem: str, form: str) -> str:
     """The name of a function in a form: ``rhs`` in Lagrange's form, else ``rhs_rational`` etc."""
     return stem if form == "lagrangian" else f"{stem}_{form}"
+
+
+def switching_functions(module: GeneratedModule) -> tuple[str, ...]:
+    """The functions at whose zeros forces have kinks or jumps."""
+    return module.SWITCHES if has_function(module, "switches") else ()
 
 
 def inputs(module: GeneratedModule) -> tuple[str, ...]:

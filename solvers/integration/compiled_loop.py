@@ -10,7 +10,9 @@ from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
 from solvers.integration.events import Event
 from solvers.integration.inputs import segments
 from solvers.integration.problem import Outcome, Problem
+from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Status
+from solvers.integration.switching import first_part, next_part
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.tableau import Tableau
 
@@ -20,8 +22,11 @@ ROW_CAPACITY, EVENT_CAPACITY = 4096, 64
 TIME_LIMIT = 0.05
 
 
-def obstacle(problem: Problem) -> str:
-    """The reason why no compiled loop can solve the problem; empty if one can."""
+def obstacle(problem: Problem, *, switches: bool = False) -> str:
+    """The reason why no compiled loop can solve the problem; empty if one can.
+
+    With `switches`, steps end where switching functions are 0.
+    """
     if not isinstance(problem.method, Tableau):
         return "the method is SciPy's"
     if problem.atol.ndim:
@@ -35,6 +40,11 @@ def obstacle(problem: Problem) -> str:
         return f"there are more than {MAX_EVENTS} events"
     if header(problem.form.module) is None:
         return "there is no C header beside the module"
+    count = problem.form.switching_count if switches else 0
+    if count and problem.method.is_parallel:
+        return "forces have kinks or jumps, at which parallel stages do not end steps"
+    if count and len(problem.all_events) + count > MAX_EVENTS:
+        return f"there are more than {MAX_EVENTS} events and switching functions"
     for event in problem.all_events:
         if not isinstance(event, Event):
             return "an event is a Python function; use solvers.integration.events.Event"
@@ -44,14 +54,19 @@ def obstacle(problem: Problem) -> str:
     return ""
 
 
-def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
+def select(
+    problem: Problem, *, lanes: bool, switches: bool = False
+) -> tuple[Problem, Kernel | None]:
     """The problem in the form to integrate, and its compiled loop; None if it runs in Python.
+
+    With `switches`, steps end where switching functions are 0.
 
     Raises `ValueError` or `NoCompilerError` when it must be compiled and cannot; warns when no
     compiler could, and it runs in Python.
     """
     must_compile = problem.backend == "compiled"
-    reason = "it is to run in Python" if problem.backend == "python" else obstacle(problem)
+    reason = "it is to run in Python" if problem.backend == "python" else ""
+    reason = reason or obstacle(problem, switches=switches)
     if reason and must_compile:
         raise ValueError(f"no compiled loop can solve this problem: {reason}")
     if reason and lanes and problem.backend is None and isinstance(problem.method, Tableau):
@@ -61,7 +76,7 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     is_free = problem.options.form is None and not load(problem.options.method).needs_jacobian
     compilable = problem.with_form(fastest_form(problem.form.module)) if is_free else problem
     try:
-        return compilable, loop(compilable, lanes=lanes)
+        return compilable, loop(compilable, lanes=lanes, switches=switches)
     except NoCompilerError as error:
         if must_compile:
             raise
@@ -69,10 +84,12 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
         return problem, None
 
 
-def loop(problem: Problem, *, lanes: bool = False) -> Kernel:
-    """The compiled loop for the problem."""
+def loop(problem: Problem, *, lanes: bool = False, switches: bool = False) -> Kernel:
+    """The compiled loop for the problem; with `switches`, that for `run`."""
     form, method, compensated = problem.form, problem.options.method, problem.options.compensated
-    return kernel(form.module, form.name, method, lanes=lanes, compensated=compensated)
+    switches = switches and form.switching_count > 0
+    options = {"lanes": lanes, "switches": switches, "compensated": compensated}
+    return kernel(form.module, form.name, method, **options)
 
 
 def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
@@ -80,23 +97,28 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     samples = problem.samples
     outcome.backend = f"compiled by {program.library.compiler}"
     capacity = ROW_CAPACITY if samples is None else len(samples)
-    batch, status = None, None
-    for part in segments(problem, lambda: outcome.end[1], outcome.history):
-        if batch is None:
-            batch = Batch(program, part, capacity=capacity, occurrences=EVENT_CAPACITY, pauses=True)
-        else:
-            batch.resume(part)
-        status = None
-        while status is None:
-            batch.restart(TIME_LIMIT)
-            try:
-                batch.run()
-            finally:  # an interruption arrives when C returns: collect its results first
-                status = STATUSES[batch.motions["status"][0]]
-                _collect(batch, problem, outcome)
+    batch, status = None, Status.FINISHED
+    for segment in segments(problem, lambda: outcome.end[1], outcome.history):
+        part, status = first_part(segment, outcome)
+        while part is not None:
+            if batch is None:
+                room = EVENT_CAPACITY
+                batch = Batch(program, part, capacity=capacity, occurrences=room, pauses=True)
+            else:
+                batch.resume(part)
+            running = None
+            while running is None:
+                batch.restart(TIME_LIMIT)
+                try:
+                    batch.run()
+                finally:  # an interruption arrives when C returns: collect its results first
+                    running = STATUSES[batch.motions["status"][0]]
+                    _collect(batch, part, outcome)
+            part, status = next_part(part, outcome, running)
         if status is not Status.FINISHED:
             break
-    assert status is not None
+    if batch is None:  # there is no motion
+        Recorder(problem, outcome)
     outcome.end_with(status, problem)
 
 

@@ -11,6 +11,7 @@ from solvers.equations.forms import Form
 from solvers.equations.quantities import Values
 from solvers.integration.inputs import Controller, Held, History, Schedule
 from solvers.integration.solution import Array, Status
+from solvers.integration.switching import Switch
 from solvers.runge_kutta.tableau import Tableau
 
 #: The shortest step, in units of the spacing of floating-point times.
@@ -61,12 +62,16 @@ class Problem:
     def with_form(self, name: str) -> "Problem":
         """The same problem in another form with the same ordinary state."""
         form = self.form
-        return replace(self, form=Form(form.module, name, form.params, form.feedback))
+        return self.with_form_of(Form(form.module, name, form.params, form.feedback, form.signs))
+
+    def with_form_of(self, form: Form) -> "Problem":
+        """The same problem with another form, or other signs of switching functions."""
+        return replace(self, form=form)
 
     def with_params(self, params: Sequence[Any]) -> "Problem":
         """The same problem with other parameters: numbers, or arrays for several motions."""
         form = self.form
-        return replace(self, form=Form(form.module, form.name, params, form.feedback))
+        return self.with_form_of(Form(form.module, form.name, params, form.feedback, form.signs))
 
     def with_inputs(self, values: Array) -> "Problem":
         """The same problem with other inputs, the last parameters."""
@@ -79,8 +84,13 @@ class Problem:
 
     @property
     def all_events(self) -> list[EventFunction]:
-        """The requested events, followed by the limits of coordinates."""
-        return [*self.events, *self.limits]
+        """The requested events, followed by the limits of coordinates and by switches."""
+        return [*self.events, *self.limits, *self.switches]
+
+    @property
+    def switches(self) -> list[Switch]:
+        """Events that end steps where switching functions, whose signs are held, are 0."""
+        return [Switch(self.form, k) for k in range(len(self.form.signs))]
 
     @property
     def backend(self) -> str | None:
@@ -115,17 +125,21 @@ class Outcome:
     steps: int = 0
     rejected: int = 0
     backend: str = "python"
+    sliding: str = ""  # the switching function that stays 0
+    brief_parts: int = 0  # successive parts between switches that took next to no time
     history: History = field(default_factory=History)  # of held inputs
 
     @classmethod
     def at_start(cls, problem: Problem) -> "Outcome":
         """The outcome before the first step."""
-        events = problem.all_events
+        switches = problem.form.switching_count  # whose signs are held from the first step on
+        events = range(len(problem.events) + len(problem.limits) + switches)
         return cls((problem.span[0], problem.start), [[] for _ in events], [[] for _ in events])
 
     def end_with(self, status: Status, problem: Problem) -> None:
         """Set the status; an event that ends the motion may be one of its limits."""
-        is_limit = status is Status.EVENT and any(self.t_events[len(problem.events) :])
+        limits = self.t_events[len(problem.events) :][: len(problem.limits)]
+        is_limit = status is Status.EVENT and any(limits)
         self.status = Status.OUTSIDE_DOMAIN if is_limit else status
 
     def rows(self) -> tuple[Array, Array]:

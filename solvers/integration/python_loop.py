@@ -12,6 +12,7 @@ from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Status
 from solvers.integration.stop_flag import StopFlag
+from solvers.integration.switching import first_part, next_part
 from solvers.runge_kutta.order_choice import OrderChoice
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
@@ -34,13 +35,17 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> Non
     members, tolerances = problem.method.members, (problem.rtol, problem.atol)
     controllers = [None if h else Controller.of(method, *tolerances) for method in members]
     choice = OrderChoice(len(members))
-    for part in segments(problem, lambda: recorder.y, outcome.history):
-        orders = Orders(_attempts(part, members, controllers), choice)
-        try:
-            status, h = _run(part, outcome, recorder, orders, h, stop)
-        finally:
-            outcome.nfev += sum(attempts.stepper.nfev for attempts in orders.members)
-            outcome.njev += sum(attempts.stepper.njev for attempts in orders.members)
+    for segment in segments(problem, lambda: recorder.y, outcome.history):
+        part, status = first_part(segment, outcome)
+        while part is not None:
+            recorder.restart(part)
+            orders = Orders(_attempts(part, members, controllers), choice)
+            try:
+                status, h = _run(part, outcome, recorder, orders, h, stop)
+            finally:
+                outcome.nfev += sum(attempts.stepper.nfev for attempts in orders.members)
+                outcome.njev += sum(attempts.stepper.njev for attempts in orders.members)
+            part, status = next_part(part, outcome, status)
         if status is not Status.FINISHED:
             break
     outcome.end_with(status, problem)

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from solvers.integration.events import Event
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array
+from solvers.integration.switching import Switch
 
 #: Attempts to find two crossings in a step; a polynomial that vanishes twice at both of its ends.
 PROBES, BUMP = 2, Polynomial([0, 0, 1, -2, 1])
@@ -34,6 +35,15 @@ class Recorder:
         self._ascending = None if self.samples is None else self._direction * self.samples
         if self.samples is None or (len(self.samples) and self.samples[0] == self.t):
             self._sample(np.array([self.t]), self.y[:, np.newaxis])
+        self._evaluate_events()
+
+    def restart(self, problem: Problem) -> None:
+        """Go on from the last state with the signs that the problem holds."""
+        if problem.switches:
+            self.events = problem.all_events
+            self._evaluate_events()
+
+    def _evaluate_events(self) -> None:
         self._values = [event(self.t, self.y.copy()) for event in self.events]
 
     def _sample(self, t: Array, y: Array) -> None:
@@ -97,10 +107,10 @@ class Recorder:
         Values and velocities at the ends give a cubic polynomial; at its extremum, and then at that
         of the polynomial of degree 4 through the value there, the event is evaluated.
         """
-        if not isinstance(event, Event) or f"{event.name}_dot" not in event.module.STATE:
+        if not isinstance(event, Event | Switch) or not event.has_rate:
             return []
-        k, h = event.module.STATE.index(f"{event.name}_dot"), end - self.t
-        u, v = (h * float(y[k]) for y in (self.y, ordinary(end)))
+        h, states = end - self.t, {self.t: self.y, end: ordinary(end)}
+        u, v = (h * event.rate(t, y) for t, y in states.items())
         is_dip = before * u < 0 < after * v and before * after > 0
         if not is_dip or not v * before - u * after < -2 * u * v:
             return []

@@ -51,7 +51,7 @@ enum {{
 
 /* Indices of parameters, and of the components of states. */
 {indices}
-{numbers}{calls}{select}
+{numbers}{calls}{select}{switch}
 {functions}
 
 #endif
@@ -200,6 +200,17 @@ static inline void {system}_solve(const {system}_real *matrix, {system}_real *x,
 """
 
 
+SWITCH = """
+/* A switching function. With HOLONOMIC_SIGNS, `params` ends with a sign of each, which decides in
+   place of its value. */
+#ifdef HOLONOMIC_SIGNS
+#define {guard}_SWITCH(k, x) ((void)(x), params[{guard}_PARAMETERS + (k)])
+#else
+#define {guard}_SWITCH(k, x) (x)
+#endif
+"""
+
+
 @dataclass(frozen=True)
 class CNotation(Notation):
     """Literals and calls of the number type of a system's header."""
@@ -210,6 +221,9 @@ class CNotation(Notation):
         digits = super().decimal(value)
         sign = "-" * digits.startswith("-")
         return f"{sign}{self.system.upper()}_NUMBER({digits.removeprefix('-')})"
+
+    def switch(self, index: int, value: str) -> str:
+        return f"{self.system.upper()}_SWITCH({index}, {value})"
 
     def call(self, function: str, *arguments: str) -> str:
         return f"{self.system}_{super().call(function, *arguments)}"
@@ -260,6 +274,7 @@ class CBackend(Backend):
         numbers = NUMBERS if f"{guard}_NUMBER(" in functions else ""
         called = {name for f in contents.functions for name in f.lowering.library_functions}
         calls = "\n".join(_call(system.name, name) for name in sorted(called))
+        has_switches = any(f.lowering.has_switches for f in contents.functions)
         has_choices = any("select" in f.lowering.functions for f in contents.functions)
         return HEADER.format(
             digest=DIGEST,
@@ -275,6 +290,7 @@ class CBackend(Backend):
             numbers=numbers.format(system=system.name, guard=guard),
             calls=CALLS.format(calls=calls) if called else "",
             select=SELECT.format(system=system.name) if has_choices else "",
+            switch=SWITCH.format(guard=guard) if has_switches else "",
             functions=functions,
         )
 

@@ -155,6 +155,9 @@ class PythonBackend(Backend):
         # a coordinate or parameter may have the name of the state
         return "y_" if name == "y" else name
 
+    def switch(self, index: int, value: str) -> str:
+        return f"(signs[{index}] if signs else {value})"
+
     def comment(self, text: str) -> str:
         return f"    # {text}"
 
@@ -209,10 +212,13 @@ class PythonBackend(Backend):
         """Lines that unpack the arguments, each converted to a `value`."""
         used = function.lowering.inputs
         for argument, names in function.arguments("y").items():
-            if used.intersection(names):
-                targets = ", ".join(self.name(name) if name in used else "_" for name in names)
-                comma = "," if len(names) == 1 else ""
-                yield f"    {targets}{comma} = {value.format(argument)}"
+            takes_signs = argument == "params" and function.takes_signs
+            uses_signs = takes_signs and function.lowering.has_switches
+            if used.intersection(names) or uses_signs:
+                targets = [self.name(name) if name in used else "_" for name in names]
+                targets += ["*signs" if uses_signs else "*_"] if takes_signs else []
+                comma = "," if len(targets) == 1 else ""
+                yield f"    {', '.join(targets)}{comma} = {value.format(argument)}"
 
 
 #: Python's floats: arithmetic on NumPy's scalars takes three times as long.
@@ -239,6 +245,7 @@ def _imports_of_many(function: Function) -> str:
 def _constants(contents: Contents) -> str:
     system, functions = contents.system, contents.functions
     parameters = [symbol.name for symbol in system.params]
+    switching = contents.derivation.switching_functions
     with_rhs = {f.form for f in functions if f.name.startswith("rhs")}
     forms = [form for form in contents.states if form in with_rhs]
     used = {*parameters, *(name for state in contents.states.values() for name in state)}
@@ -253,6 +260,7 @@ def _constants(contents: Contents) -> str:
             float(p.default) for p in system.parameters_and_inputs
         ),
         "POSITIVE": _literal(s.name for s in (*system.params, *system.q) if s.is_positive),
+        **({"SWITCHES": _literal(map(str, switching))} if switching else {}),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),
         "OPERATIONS": _dict({f.name: repr(f.lowering.cost) for f in functions}),

@@ -16,6 +16,7 @@ from solvers.integration.compiled.native import equations
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import SHORTEST, Problem
 from solvers.integration.solution import Status
+from solvers.integration.switching import Switch
 from solvers.runge_kutta.catalogue import load
 
 Array = NDArray[np.float64]
@@ -25,7 +26,8 @@ class Kernel:
     """The compiled program for one form of a module's equations and one method.
 
     With `lanes` it runs many motions at once, where right-hand side and method allow it; else it
-    also has the function `single`, for a motion from start to end. If `compensated`, the state's
+    also has the function `single`, for a motion from start to end. With `switches`, the signs of
+    switching functions follow the parameters, and are held. If `compensated`, the state's
     rounding errors are carried along; if `reproducible`, every compiler gives the same bits.
     """
 
@@ -36,10 +38,11 @@ class Kernel:
         method: str,
         *,
         lanes: bool = False,
+        switches: bool = False,
         compensated: bool = False,
         reproducible: bool = False,
     ) -> None:
-        tableau, source = load(method), equations(module, form)
+        tableau, source = load(method), equations(module, form, switches=switches)
         vectors = lanes and source.vectorises and tableau.is_explicit
         # a single motion is rescaled in Python instead
         variations = source.ordinary // 2 if lanes and form == "variational" else 0
@@ -86,7 +89,7 @@ class Batch:
         self.motions["t"], self.motions["t_end"] = problem.span
         self.motions["min_h"] = SHORTEST * np.spacing(np.abs(problem.span).max())
         self.motions["z"], self.motions["turns"] = form.from_ordinary_many(problem.span[0], starts)
-        for k, parameter in enumerate(form.params):
+        for k, parameter in enumerate((*form.params, *form.signs)):
             self.motions["params"][:, k] = parameter
         self.rows = np.zeros((n, capacity), kernel.row)
         self.event_rows = np.zeros((n, len(events), occurrences), kernel.row)
@@ -115,11 +118,12 @@ class Batch:
     def resume(self, problem: Problem) -> None:
         """Let motions that are new or finished go on to the end of `problem`, with its params."""
         motions, new = self.motions, STATUSES.index(None)
-        goes_on = np.isin(motions["status"], (new, STATUSES.index(Status.FINISHED)))
+        ends = (Status.FINISHED, Status.EVENT) if problem.switches else (Status.FINISHED,)
+        goes_on = np.isin(motions["status"], (new, *map(STATUSES.index, ends)))
         motions["status"][goes_on] = new
         motions["t_end"][goes_on] = problem.span[1]
         motions["min_h"][goes_on] = SHORTEST * np.spacing(np.abs(problem.span).max())
-        for k, parameter in enumerate(problem.form.params):
+        for k, parameter in enumerate((*problem.form.params, *problem.form.signs)):
             motions["params"][:, k] = parameter
 
     def restart(self, time_limit: float = 0.0) -> None:
@@ -164,8 +168,10 @@ class Batch:
         return self.motions["jacobians"].astype(np.int64)
 
 
-def _event(form: Form, event: Event, pauses: bool) -> tuple[float | int, ...]:
+def _event(form: Form, event: Event | Switch, pauses: bool) -> tuple[float | int, ...]:
     """An event as a record of type ``Event`` in ``c/layout.h``."""
+    if isinstance(event, Switch):
+        return (0.0, 0.0, 0.0, 0, event.index, -1, 0, 1, 0, 0, 0, 1)
     # a motion that pauses has room for every occurrence
     extremes_only = isinstance(event, Extremum) and not pauses
     component = form.locate(event.name)
@@ -175,4 +181,11 @@ def _event(form: Form, event: Event, pauses: bool) -> tuple[float | int, ...]:
     rate = form.locate_rate(event.name)
     angle = event.value, np.sin(event.value), np.cos(event.value)
     flags = event.direction, int(event.terminal), int(extremes_only)
-    return (*angle, *map(int, component), -1 if rate is None else rate, *flags, *map(int, extremum))
+    return (
+        *angle,
+        *map(int, component),
+        -1 if rate is None else rate,
+        *flags,
+        *map(int, extremum),
+        0,
+    )

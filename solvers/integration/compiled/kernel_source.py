@@ -66,9 +66,21 @@ static void to_ordinary(
 
 EQUATIONS = """\
 #define HOLONOMIC_REAL real
-{header}
+{signs}{header}
 #define RHS {rhs}
 #define JACOBIAN {jacobian}
+#define SWITCHING {switching}
+#define HAS_SWITCHES {has_switches}
+"""
+
+#: Switching functions of a state with momenta.
+SWITCHING_OF_MOMENTA = """
+static void switching_of_momenta(real t, const real *z, const real *params, real *result)
+{{
+    real y[{state}];
+    {system}_lagrangian_state(t, z, params, y);
+    {system}_switches(t, y, params, result);
+}}
 """
 
 CONSTANTS = """\
@@ -227,6 +239,23 @@ class Equations:
     from_ordinary: Sequence[str]  # statements: state z and turns from the ordinary state y
     to_ordinary: Sequence[str]  # and y from these
     vectorises: bool  # the right-hand side calls no function: its numbers may be vectors
+    switches: int = 0  # switching functions, whose signs are held after the parameters
+
+    @property
+    def switching(self) -> str:
+        """The name of the function of switching functions and their rates."""
+        system, _, form = self.rhs.partition("_rhs")
+        if form == "_hamiltonian":
+            return "switching_of_momenta"
+        return f"{system}_switches{'_rational' if self.angles else ''}"
+
+    @property
+    def switching_of_momenta(self) -> str:
+        """Its definition, if the state contains momenta."""
+        system, _, form = self.rhs.partition("_rhs")
+        if not self.switches or form != "_hamiltonian":
+            return ""
+        return SWITCHING_OF_MOMENTA.format(system=system, state=self.state)
 
     def sizes(self, tableau: Tableau, *, compensated: bool, variations: int) -> dict[str, int]:
         """Numbers of components of the arrays in ``layout.h``."""
@@ -235,7 +264,8 @@ class Equations:
             "LOW_DIM": compensated * self.state,
             "FSAL_DIM": tableau.is_fsal * self.state,
             "ANGLES": len(self.angles),
-            "PARAMETERS": self.parameters,
+            "PARAMETERS": self.parameters + self.switches,
+            "SWITCHES": self.switches,
             "POLYNOMIAL_DIM": (not tableau.is_explicit) * tableau.stages * self.state,
             "LENGTHS": int(not tableau.is_explicit),
             "ORIGINS": int(tableau.is_parallel),
@@ -298,9 +328,15 @@ def _constants(tableau: Tableau) -> str:
 
 
 def _equations(equations: Equations, tableau: Tableau) -> str:
-    names = {"header": equations.header, "rhs": equations.rhs}
     if not tableau.is_parallel:
-        return EQUATIONS.format(jacobian=equations.jacobian, **names)
+        return EQUATIONS.format(
+            jacobian=equations.jacobian,
+            signs="#define HOLONOMIC_SIGNS\n" if equations.switches else "",
+            switching=equations.switching,
+            has_switches=int(equations.switches > 0),
+            rhs=equations.rhs,
+            header=equations.header + equations.switching_of_momenta,
+        )
     # functions that convert states of a single motion take numbers, not vectors
     converts = any("_state(" in line for line in equations.from_ordinary)
     vectors = equations.vectorises and not converts

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule, header, named
+from solvers.equations.module import GeneratedModule, header, named, switching_functions
 from solvers.integration.compiled.compiler import Library, build
 from solvers.integration.compiled.kernel_source import Equations
 
@@ -35,8 +35,8 @@ class NativeRhs:
     library: Library
 
 
-def equations(module: GeneratedModule, form: str) -> Equations:
-    """One form of a generated module in C."""
+def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> Equations:
+    """One form of a generated module in C; its switching functions have signs if `switches`."""
     path, name = header(module), module.SYSTEM
     if path is None:
         raise ValueError(f"{name}.h is missing: write it with holonomic derive {name}")
@@ -69,6 +69,7 @@ def equations(module: GeneratedModule, form: str) -> Equations:
         from_ordinary=from_ordinary,
         to_ordinary=to_ordinary,
         vectorises=named("rhs", form) not in module.CALLS_FUNCTIONS,
+        switches=len(switching_functions(module)) if switches else 0,
     )
 
 

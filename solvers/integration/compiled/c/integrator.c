@@ -68,7 +68,8 @@ static void evaluate_events(Lanes *lanes)
 {
     const Task *task = lanes->task;
     for (int e = 0; e < task->event_count; e++) {
-        const real value = event_value(&task->events[e], &lanes->motion.state);
+        const real value = event_value(&task->events[e], &lanes->motion.state,
+                                       lanes->motion.params);
         lanes->before[e] = select(lanes->loaded, value, lanes->before[e]);
     }
     lanes->loaded = (mask){0};
@@ -163,7 +164,8 @@ static int substep(Lanes *lanes, WithinStep *within, double h)
     const int is_finite = state_within(lanes, within, h, &state);
     read_lane(&state, STATE_SIZE, 0, numbers);
     if (within->mode == LOCATE) {
-        value = event_value(&task->events[within->bracket->event], &state);
+        value = event_value(&task->events[within->bracket->event], &state,
+                            lanes->motion.params);
     }
     use_substep(task, within, h, numbers, value);
     return is_finite;
@@ -189,7 +191,7 @@ static int bracket_crossings(Lanes *lanes, WithinStep *within, int e, double bef
             if (!state_within(lanes, within, bracket.far, &state)) {
                 return 0;
             }
-            bracket.far_value = event_value(event, &state);
+            bracket.far_value = event_value(event, &state, lanes->motion.params);
             read_lane(&state, STATE_SIZE, 0, bracket.far_state);
         } else {
             bracket.far_value = after;
@@ -212,11 +214,13 @@ static int bracket_crossings(Lanes *lanes, WithinStep *within, int e, double bef
 /* Whether an event with equal signs at both ends of the step may occur twice in it. */
 static inline mask dips(const Lanes *lanes, int e)
 {
-    const int64_t rate = lanes->task->events[e].rate_index;
-    if (rate < 0) {
+    const Event *event = &lanes->task->events[e];
+    const real *params = lanes->motion.params;
+    if (!has_rate(event)) {
         return (mask){0};
     }
-    const real u = lanes->h*lanes->motion.state.z[rate], v = lanes->h*lanes->end.z[rate];
+    const real u = lanes->h*event_rate(event, &lanes->motion.state, params);
+    const real v = lanes->h*event_rate(event, &lanes->end, params);
     return may_dip(lanes->before[e], u, lanes->after[e], v);
 }
 #endif
@@ -259,9 +263,11 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
             Bracket bracket = {.event = e, .near_value = before, .far = h, .far_value = after};
             memcpy(bracket.far_state, within->full_end, sizeof bracket.far_state);
             if (!crossed) {
-                const int64_t rate = task->events[e].rate_index;
-                const double u = bracket.near_slope = h*LANE(motion->state.z[rate], lane);
-                const double v = bracket.far_slope = h*LANE(lanes->end.z[rate], lane);
+                const Event *event = &task->events[e];
+                const real start_rate = event_rate(event, &motion->state, motion->params);
+                const real end_rate = event_rate(event, &lanes->end, motion->params);
+                const double u = bracket.near_slope = h*LANE(start_rate, lane);
+                const double v = bracket.far_slope = h*LANE(end_rate, lane);
                 bracket.probes = PROBES;
                 bracket.aim = h*cubic_extremum(before, u, after, v);
             }
@@ -396,7 +402,7 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     motion->reductions = select(*accepted, splat(0.0), motion->reductions);
     mask attention = *failed | last | ~advancing | less_than(lane_fabs(motion->h), motion->min_h);
     for (int e = 0; e < task->event_count; e++) {
-        lanes->after[e] = event_value(&task->events[e], end);
+        lanes->after[e] = event_value(&task->events[e], end, motion->params);
         attention |= *accepted & has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
 #if !INTERPOLATES
         attention |= *accepted & dips(lanes, e);

@@ -67,6 +67,7 @@ typedef struct {
     int64_t extremes_only;      /* whether only the rows of smallest and largest value are kept */
     int64_t extremum_is_angle;  /* component whose extremes are kept, as above */
     int64_t extremum_index;
+    int64_t is_switch;          /* whether `index` counts switching functions, see motion.h */
 } Event;
 
 typedef struct {

@@ -66,10 +66,49 @@ static void record_event(const Task *task, Trajectory *trajectory, int event, co
     }
 }
 
+#if HAS_SWITCHES
+/* A switching function, or its rate of change, whose sign is held at the end of the parameters. At
+   0 it has this sign. */
+static real switching_function(int64_t index, const State *state, const real *params)
+{
+    real values[2*SWITCHES];
+    SWITCHING(state->t, state->z, params, values);
+    const real least = lane_copysign(splat(DBL_MIN), params[PARAMETERS - SWITCHES + index]);
+    return select(less_than(lane_fabs(values[index]), splat(DBL_MIN)), least, values[index]);
+}
+
+static real switching_rate(int64_t index, const State *state, const real *params)
+{
+    real values[2*SWITCHES];
+    SWITCHING(state->t, state->z, params, values);
+    return values[SWITCHES + index];
+}
+#endif
+
+/* The rate of change of an event's value, if `has_rate`. */
+static inline int has_rate(const Event *event) { return event->rate_index >= 0 || event->is_switch; }
+
+static inline real event_rate(const Event *event, const State *state, const real *params)
+{
+#if HAS_SWITCHES
+    if (event->is_switch) {
+        return switching_rate(event->index, state, params);
+    }
+#endif
+    (void)params;
+    return state->z[event->rate_index];
+}
+
 /* A function whose sign changes at the event. Far from it an angle need not be exact. */
-static real event_value(const Event *event, const State *state)
+static real event_value(const Event *event, const State *state, const real *params)
 {
     const int64_t i = event->index;
+#if HAS_SWITCHES
+    if (event->is_switch) {
+        return switching_function(i, state, params);
+    }
+#endif
+    (void)params;
     if (!event->is_angle) {
         return state->z[i] - event->value;
     }
