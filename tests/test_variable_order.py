@@ -144,7 +144,7 @@ def test_it_needs_about_as_many_evaluations_as_the_best_order(van_der_pol: Modul
         options = {"rtol": tolerance, "atol": tolerance, "t_eval": [2000.0]}
         least = min(integrate(van_der_pol, *run, method=name, **options).nfev for name in FIXED)
         gains.append(least / integrate(van_der_pol, *run, method="radau", **options).nfev)
-    assert min(gains) > 0.7  # radau3 and radau7 need over three times the least at some
+    assert min(gains) > 0.6  # radau3 and radau7 need over three times the least at some
     assert max(gains) > 1.15
 
 
