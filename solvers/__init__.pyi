@@ -13,11 +13,14 @@ from solvers.integration.events import Event as Event
 from solvers.integration.events import Extremum as Extremum
 from solvers.integration.inputs import Held as Held
 from solvers.integration.integrate import integrate as integrate
+from solvers.integration.lyapunov_spectrum import lyapunov_spectrum as lyapunov_spectrum
 from solvers.integration.ode_solver import ode_solver as ode_solver
+from solvers.integration.periodic_orbit import periodic_orbit as periodic_orbit
 from solvers.integration.prepare import prepare as prepare
 from solvers.integration.solution import Solution as Solution
 from solvers.integration.solution import Status as Status
 from solvers.integration.stop_flag import StopFlag as StopFlag
+from solvers.integration.transition_matrix import transition_matrix as transition_matrix
 from solvers.io.figures import panels as panels
 from solvers.io.figures import save as save
 from solvers.scenes.run import SceneResult as SceneResult

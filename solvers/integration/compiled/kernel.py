@@ -115,8 +115,11 @@ class Batch:
             stop=self.stop.ctypes.data,
         )
 
-    def resume(self, problem: Problem) -> None:
-        """Let motions that are new or finished go on to the end of `problem`, with its params."""
+    def resume(self, problem: Problem, starts: Array | None = None) -> None:
+        """Let motions that are new or finished go on to the end of `problem`, with its params.
+
+        `starts` are ordinary states in rows from which they go on, instead of those they reached.
+        """
         motions, new = self.motions, STATUSES.index(None)
         ends = (Status.FINISHED, Status.EVENT) if problem.switches else (Status.FINISHED,)
         goes_on = np.isin(motions["status"], (new, *map(STATUSES.index, ends)))
@@ -125,6 +128,10 @@ class Batch:
         motions["min_h"][goes_on] = SHORTEST * np.spacing(np.abs(problem.span).max())
         for k, parameter in enumerate((*problem.form.params, *problem.form.signs)):
             motions["params"][:, k] = parameter
+        if starts is not None:
+            states = self.form.from_ordinary_many(problem.span[0], starts)
+            motions["z"], motions["turns"] = states
+            motions["scale"] = 0
 
     def restart(self, time_limit: float = 0.0) -> None:
         """Let the next `run` start with the first motion, and return after `time_limit` seconds."""

@@ -1,0 +1,96 @@
+"""A motion, and linear perturbations of its state that follow the variational equations."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import Values
+from solvers.integration import compiled_loop, python_loop, validation
+from solvers.integration.compiled.kernel import Batch
+from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.prepare import NotFinishedError
+from solvers.integration.problem import Options, Outcome, Problem
+from solvers.integration.solution import Array, Status
+
+METHOD = "verner98"
+
+
+class Tangents:
+    """A motion with perturbations, advanced from time to time.
+
+    Parameters
+    ----------
+    module, t_span, y0, params, rtol, atol
+        As in `integrate`; the tolerances apply to the perturbations, too.
+    changes : array_like of shape (state, n)
+        Perturbations of the initial state, in columns.
+
+    Attributes
+    ----------
+    t : float
+        Time in s reached.
+    y : ndarray of shape (state,)
+        Coordinates and velocities there.
+    changes : ndarray of shape (state, n)
+        The perturbations there, which may be changed.
+
+    Raises
+    ------
+    ValueError
+        When an argument is invalid, or `module` has no variational form.
+    """
+
+    def __init__(
+        self,
+        module: GeneratedModule,
+        t_span: ArrayLike,
+        y0: Values,
+        params: Values,
+        changes: Array,
+        *,
+        rtol: float,
+        atol: float,
+    ) -> None:
+        options = Options(METHOD, "variational", rtol, atol)
+        problem = validation.problem_at_rest(module, t_span, options, params)
+        self._problem, self._program = compiled_loop.select(problem, lanes=True)
+        self._batch: Batch | None = None
+        self.t, self.changes = problem.span[0], changes
+        self.y = validation.initial_state(module, y0)
+
+    def advance(self, t: float) -> None:
+        """Move to time `t` in s; `NotFinishedError` where the motion does not get there."""
+        part = replace(self._problem, span=(self.t, t))
+        starts = np.array([[*self.y, *change] for change in self.changes.T])
+        if self._program is None:
+            ends = self._in_python(part, starts)
+        else:
+            if self._batch is None:
+                self._batch = Batch(self._program, part, starts)
+            else:
+                self._batch.resume(part, starts)
+            self._batch.restart()
+            self._batch.run()
+            ends = self._batch.ordinary(self._batch.motions)
+            for motion, end in zip(self._batch.motions, ends, strict=True):
+                self._check(STATUSES[motion["status"]], float(motion["t"]), end)
+        n = len(self.y)
+        self.t, self.y, self.changes = t, ends[0, :n].copy(), ends[:, n:].T.copy()
+
+    def _in_python(self, part: Problem, starts: Array) -> Array:
+        ends = []
+        for start in starts:
+            outcome = Outcome.at_start(problem := replace(part, start=start))
+            python_loop.run(problem, outcome)
+            self._check(outcome.status, *outcome.end)
+            ends.append(outcome.end[1])
+        return np.array(ends)
+
+    def _check(self, status: Status | None, t: float, end: Array) -> None:
+        if status is Status.EVENT:  # the only events are limits of coordinates
+            status = Status.OUTSIDE_DOMAIN
+        if status is not Status.FINISHED:
+            assert status is not None
+            raise NotFinishedError(status, t, tuple(end[: len(self.y)].tolist()))

@@ -1,0 +1,159 @@
+"""Transition matrices, periodic orbits and Lyapunov spectra, beside closed forms."""
+
+from collections.abc import Mapping
+from types import ModuleType
+
+import numpy as np
+import pytest
+from scipy.special import ellipk
+
+import generated.double_pendulum as dp
+import generated.driven_pendulum as driven
+import generated.elastic_pendulum as ep
+import generated.single_pendulum as sp
+import generated.swinging_atwood as atwood
+from solvers.equations.normal_modes import Modes
+from solvers.integration.integrate import integrate
+from solvers.integration.lyapunov_spectrum import lyapunov_spectrum
+from solvers.integration.periodic_orbit import NoPeriodicOrbitError, periodic_orbit
+from solvers.integration.prepare import NotFinishedError
+from solvers.integration.solution import Status
+from solvers.integration.tangents import Tangents
+from solvers.integration.transition_matrix import transition_matrix
+
+DAMPED = {"a": 0.3, "Omega": 6.0, "c": 0.3}
+
+
+def _by_differences(
+    module: ModuleType, end: float, y0: np.ndarray, params: Mapping[str, float]
+) -> np.ndarray:
+    """The transition matrix by fourth-order differences of whole motions."""
+    columns = []
+    for change in 1e-3 * np.eye(len(y0)):
+        ends = [
+            integrate(
+                module, (0, end), y0 + k * change, params, method="gauss8", rtol=1e-14, atol=1e-14
+            ).y[:, -1]
+            for k in (-2, -1, 1, 2)
+        ]  # fmt: skip
+        columns.append((ends[0] - 8 * ends[1] + 8 * ends[2] - ends[3]) / (12 * change.sum()))
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize(
+    ("module", "y0", "params"),
+    [
+        (dp, [1.0, 1.5, 0.2, -0.3], {"m2": 0.5}),
+        (ep, [1.2, 0.3, 0.0, 0.5], {"k": 40.0}),
+        (driven, [0.5, 0.1], DAMPED),
+    ],
+)
+def test_a_transition_matrix_is_the_derivative_by_the_start(
+    module: ModuleType, y0: list[float], params: Mapping[str, float]
+) -> None:
+    found = transition_matrix(module, (0, 1.5), y0, params)
+    exact = _by_differences(module, 1.5, np.array(y0), params)
+    assert np.abs(found.matrix - exact).max() < 1e-8 * np.abs(exact).max()
+
+
+def test_transition_matrices_multiply() -> None:
+    whole = transition_matrix(dp, (0, 2), [2.0, 1.0, 0.0, 0.0], {})
+    first = transition_matrix(dp, (0, 1.3), [2.0, 1.0, 0.0, 0.0], {})
+    second = transition_matrix(dp, (1.3, 2), first.y, {})
+    assert second.y == pytest.approx(whole.y, abs=1e-10)
+    assert np.abs(second.matrix @ first.matrix - whole.matrix).max() < 1e-9
+
+
+def test_a_motion_that_stops_has_no_transition_matrix() -> None:
+    with pytest.raises(NotFinishedError) as raised:  # the thread's length becomes 0
+        transition_matrix(atwood, (0, 10), {"r": 1.0, "theta": 0.0, "r_dot": -30.0}, {})
+    assert raised.value.status is Status.OUTSIDE_DOMAIN
+    assert raised.value.t < 0.1
+
+
+def test_compiled_and_python_tangents_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    ends = []
+    for compiled in (True, False):
+        two, fine = np.eye(4)[:, :2], {"rtol": 1e-11, "atol": 1e-11}
+        motion = Tangents(dp, (0, 1), [1.0, 2.0, 0.0, 0.0], {}, two, **fine)
+        if not compiled:
+            motion._program = None
+        motion.advance(0.4)
+        motion.changes = motion.changes[:, ::-1]
+        motion.advance(1.0)
+        ends.append(np.column_stack([motion.y, motion.changes]))
+    assert np.abs(ends[0] - ends[1]).max() < 1e-8
+
+
+def test_the_period_of_a_pendulum_is_an_elliptic_integral() -> None:
+    orbit = periodic_orbit(sp, {"theta": 1.0}, 2.1, {"l": 1.0})
+    energy = sp.energy(0.0, orbit.y.tolist(), (1.0, 1.0, 9.81)) + 9.81
+    modulus = energy / (2 * 9.81)
+    assert orbit.y[0] == pytest.approx(1.0, abs=0.1)  # the nearest member of the family
+    assert orbit.period == pytest.approx(4 * ellipk(modulus) / np.sqrt(9.81), rel=1e-11)
+    assert orbit.multipliers == pytest.approx([1.0, 1.0], abs=1e-5)
+
+
+def test_a_rotation_returns_after_a_whole_turn() -> None:
+    orbit = periodic_orbit(sp, {"theta": 0.0, "theta_dot": 8.0}, 1.0, {"l": 1.0})
+    energy = sp.energy(0.0, orbit.y.tolist(), (1.0, 1.0, 9.81)) + 9.81
+    square = 2 * 9.81 / energy
+    assert orbit.period == pytest.approx(2 * ellipk(square) * np.sqrt(2 / energy), rel=1e-11)
+
+
+def test_orbits_are_born_at_normal_modes() -> None:
+    modes = Modes.at_rest(dp, dp.DEFAULTS)
+    for frequency, shape in zip(modes.frequencies, modes.shapes.T, strict=True):
+        start = 0.02 * shape / np.abs(shape).max()
+        orbit = periodic_orbit(dp, [*start, 0.0, 0.0], 2 * np.pi / frequency, {})
+        assert orbit.defect < 1e-10
+        assert np.abs(orbit.y[:2]).max() > 0.01  # not the equilibrium
+        assert orbit.period == pytest.approx(2 * np.pi / frequency, rel=1e-3)
+        assert np.abs(orbit.multipliers) == pytest.approx([1.0] * 4, abs=1e-4)
+
+
+def test_floquet_multipliers_of_a_driven_pendulum_multiply_to_liouvilles_factor() -> None:
+    period = 4 * np.pi / 6
+    orbit = periodic_orbit(driven, {"theta": 1.0}, period, DAMPED)
+    assert orbit.period == period
+    again = integrate(driven, (0, 5 * period), orbit.y, DAMPED, rtol=1e-12, atol=1e-12).y[:, -1]
+    turns = np.round((again - orbit.y)[0] / (2 * np.pi)) * 2 * np.pi
+    assert again - orbit.y == pytest.approx([turns, 0.0], abs=1e-8)
+    # m l^2 = 1, so that the friction c = 0.3 contracts areas by exp(-0.3 t)
+    assert np.prod(orbit.multipliers).real == pytest.approx(np.exp(-0.3 * period), rel=1e-9)
+
+
+def test_no_orbit_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(NoPeriodicOrbitError, match="equilibrium"):
+        periodic_orbit(sp, {"theta": 1e-9}, 2.0, {"l": 1.0})
+    with monkeypatch.context() as patch:
+        patch.setattr("solvers.integration.periodic_orbit.MAX_ITERATIONS", 1)
+        with pytest.raises(NoPeriodicOrbitError, match=r"still changes by .* better guess"):
+            periodic_orbit(sp, {"theta": 1.0}, 2.0, {"l": 1.0})
+    with pytest.raises(ValueError, match=r"period = 0.9 s is not one of driven_pendulum"):
+        periodic_orbit(driven, {"theta": 1.0}, 0.9, DAMPED)
+    with pytest.raises(ValueError, match="period = -1"):
+        periodic_orbit(sp, {"theta": 1.0}, -1.0, {})
+
+
+def test_exponents_of_a_system_without_friction_come_in_pairs() -> None:
+    found = lyapunov_spectrum(dp, [np.pi / 2, np.pi, 0.0, 0.0], {}, 1000.0)
+    assert abs(found.exponents.sum()) < 1e-7
+    assert found.exponents[0] == pytest.approx(-found.exponents[3], abs=0.01)
+    assert found.exponents[0] == pytest.approx(0.9, abs=5 * found.errors[0])
+    assert np.abs(found.exponents[1:3]).max() < 0.02
+
+
+def test_exponents_at_an_equilibrium_are_those_of_its_linearisation() -> None:
+    # upright pendulum: theta'' = g/l theta
+    found = lyapunov_spectrum(sp, {"theta": np.pi}, {"l": 1.0}, 10.0, interval=0.5)
+    assert found.exponents == pytest.approx([np.sqrt(9.81), -np.sqrt(9.81)], abs=0.2)
+    # friction makes them add up to its coefficient
+    fine = {"rtol": 1e-12, "atol": 1e-12}
+    damped = lyapunov_spectrum(driven, {"theta": 1.0}, DAMPED, 100.0, **fine)
+    assert damped.exponents.sum() == pytest.approx(-0.3, abs=1e-9)
+
+
+def test_a_spectrum_needs_enough_intervals() -> None:
+    with pytest.raises(ValueError, match=r"duration = 10 s must be at least 20 intervals of 2.0 s"):
+        lyapunov_spectrum(dp, {"theta1": 1.0, "theta2": 1.0}, {}, 10)
