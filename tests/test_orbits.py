@@ -5,13 +5,16 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+import sympy as sp
 from scipy.special import ellipk
 
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.elastic_pendulum as ep
-import generated.single_pendulum as sp
+import generated.single_pendulum as single
 import generated.swinging_atwood as atwood
+from derive import Coordinate, PointMass, System
+from solvers.app.modules import build
 from solvers.equations.normal_modes import Modes
 from solvers.integration.integrate import integrate
 from solvers.integration.lyapunov_spectrum import lyapunov_spectrum
@@ -71,6 +74,16 @@ def test_a_motion_that_stops_has_no_transition_matrix() -> None:
     assert raised.value.t < 0.1
 
 
+def test_forces_with_kinks_have_no_transition_matrix() -> None:
+    x = sp.Symbol("x", real=True)
+    system = System(
+        "two_springs", "", [Coordinate(x, "m", "position")], [], [PointMass(1, (x, 0))],
+        sp.Max(0, x) ** 2, forces=(-x,),
+    )  # fmt: skip
+    with pytest.raises(ValueError, match="two_springs have kinks or jumps"):
+        transition_matrix(build(system), (0, 1), {"x": 1.0}, {})
+
+
 def test_compiled_and_python_tangents_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     ends = []
     for compiled in (True, False):
@@ -86,8 +99,8 @@ def test_compiled_and_python_tangents_agree(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_the_period_of_a_pendulum_is_an_elliptic_integral() -> None:
-    orbit = periodic_orbit(sp, {"theta": 1.0}, 2.1, {"l": 1.0})
-    energy = sp.energy(0.0, orbit.y.tolist(), (1.0, 1.0, 9.81)) + 9.81
+    orbit = periodic_orbit(single, {"theta": 1.0}, 2.1, {"l": 1.0})
+    energy = single.energy(0.0, orbit.y.tolist(), (1.0, 1.0, 9.81)) + 9.81
     modulus = energy / (2 * 9.81)
     assert orbit.y[0] == pytest.approx(1.0, abs=0.1)  # the nearest member of the family
     assert orbit.period == pytest.approx(4 * ellipk(modulus) / np.sqrt(9.81), rel=1e-11)
@@ -95,8 +108,8 @@ def test_the_period_of_a_pendulum_is_an_elliptic_integral() -> None:
 
 
 def test_a_rotation_returns_after_a_whole_turn() -> None:
-    orbit = periodic_orbit(sp, {"theta": 0.0, "theta_dot": 8.0}, 1.0, {"l": 1.0})
-    energy = sp.energy(0.0, orbit.y.tolist(), (1.0, 1.0, 9.81)) + 9.81
+    orbit = periodic_orbit(single, {"theta": 0.0, "theta_dot": 8.0}, 1.0, {"l": 1.0})
+    energy = single.energy(0.0, orbit.y.tolist(), (1.0, 1.0, 9.81)) + 9.81
     square = 2 * 9.81 / energy
     assert orbit.period == pytest.approx(2 * ellipk(square) * np.sqrt(2 / energy), rel=1e-11)
 
@@ -125,15 +138,15 @@ def test_floquet_multipliers_of_a_driven_pendulum_multiply_to_liouvilles_factor(
 
 def test_no_orbit_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(NoPeriodicOrbitError, match="equilibrium"):
-        periodic_orbit(sp, {"theta": 1e-9}, 2.0, {"l": 1.0})
+        periodic_orbit(single, {"theta": 1e-9}, 2.0, {"l": 1.0})
     with monkeypatch.context() as patch:
         patch.setattr("solvers.integration.periodic_orbit.MAX_ITERATIONS", 1)
-        with pytest.raises(NoPeriodicOrbitError, match=r"still changes by .* better guess"):
-            periodic_orbit(sp, {"theta": 1.0}, 2.0, {"l": 1.0})
+        with pytest.raises(NoPeriodicOrbitError, match=r"still changes.*better guess"):
+            periodic_orbit(single, {"theta": 1.0}, 2.0, {"l": 1.0})
     with pytest.raises(ValueError, match=r"period = 0.9 s is not one of driven_pendulum"):
         periodic_orbit(driven, {"theta": 1.0}, 0.9, DAMPED)
     with pytest.raises(ValueError, match="period = -1"):
-        periodic_orbit(sp, {"theta": 1.0}, -1.0, {})
+        periodic_orbit(single, {"theta": 1.0}, -1.0, {})
 
 
 def test_exponents_of_a_system_without_friction_come_in_pairs() -> None:
@@ -146,7 +159,7 @@ def test_exponents_of_a_system_without_friction_come_in_pairs() -> None:
 
 def test_exponents_at_an_equilibrium_are_those_of_its_linearisation() -> None:
     # upright pendulum: theta'' = g/l theta
-    found = lyapunov_spectrum(sp, {"theta": np.pi}, {"l": 1.0}, 10.0, interval=0.5)
+    found = lyapunov_spectrum(single, {"theta": np.pi}, {"l": 1.0}, 10.0, interval=0.5)
     assert found.exponents == pytest.approx([np.sqrt(9.81), -np.sqrt(9.81)], abs=0.2)
     # friction makes them add up to its coefficient
     fine = {"rtol": 1e-12, "atol": 1e-12}

@@ -39,7 +39,7 @@ class Tangents:
     Raises
     ------
     ValueError
-        When an argument is invalid, or `module` has no variational form.
+        When an argument is invalid, `module` has no variational form, or its forces have kinks.
     """
 
     def __init__(
@@ -55,6 +55,11 @@ class Tangents:
     ) -> None:
         options = Options(METHOD, "variational", rtol, atol)
         problem = validation.problem_at_rest(module, t_span, options, params)
+        if problem.form.switching_count:
+            raise ValueError(
+                f"forces of {module.SYSTEM} have kinks or jumps, where the variational equations do "
+                "not hold: replace abs, sign, min, max and Piecewise by smooth functions"
+            )
         self._problem, self._program = compiled_loop.select(problem, lanes=True)
         self._batch: Batch | None = None
         self.t, self.changes = problem.span[0], changes
