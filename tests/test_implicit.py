@@ -20,6 +20,7 @@ from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form
 from solvers.integration import compiled_loop
 from solvers.integration.compiled import kernel_source
+from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event
@@ -315,7 +316,7 @@ def test_mistakes_increase_the_work(
     assert {*used} == {right for right, _ in MISTAKES[mistake]}
 
 
-@pytest.mark.parametrize("name", kernel_source.IMPLICIT_FILES)
+@pytest.mark.parametrize("name", IMPLICIT_FILES)
 def test_no_function_is_called_for_a_maximum(name: str) -> None:
     # calls of fmax without AVX, among AVX instructions, took up to nine tenths of a fixed step
     assert not re.search(r"\bfm(ax|in)\(", kernel_source._source(f"{name}.h"))

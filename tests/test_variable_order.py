@@ -9,6 +9,7 @@ import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
 from solvers.integration import python_loop
 from solvers.integration.compiled import kernel_source
+from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.integrate import integrate
@@ -110,7 +111,7 @@ def test_python_and_c_choose_the_same_orders(
 ) -> None:
     source, (right, wrong) = kernel_source._source, MISTAKES[mistake]
     if right:
-        assert any(right in source(f"{name}.h") for name in kernel_source.IMPLICIT_FILES)
+        assert any(right in source(f"{name}.h") for name in IMPLICIT_FILES)
         monkeypatch.setattr(kernel_source, "_source", lambda f: source(f).replace(right, wrong))
     same = []
     for run, expected, reference in references:

@@ -4,15 +4,13 @@ It consists of the module's generated header, the method's stages written out fr
 tableau, and the handwritten files in the folder ``c``.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
+from solvers.integration.compiled.implicit_source import IMPLICIT_FILES, implicit
 from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
+from solvers.integration.compiled.literals import real, row
 from solvers.integration.problem import SHORTEST
-from solvers.runge_kutta.blocks import Blocks
-from solvers.runge_kutta.lagrange import lagrange, lagrange_factors
 from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.parallel_stages import (
     bernstein_matrix,
@@ -20,7 +18,6 @@ from solvers.runge_kutta.parallel_stages import (
     legendre_matrix,
     symplectic_ratios,
 )
-from solvers.runge_kutta.step_control import tolerance_power
 from solvers.runge_kutta.tableau import Tableau
 
 PROGRAM = """\
@@ -181,42 +178,6 @@ static inline void stages(
 {rows}    (void)t; (void)z; (void)h; (void)stage; (void)k; (void)params;
 }}"""
 
-#: One of `METHODS`, a structure in ``coefficients.h``.
-COEFFICIENTS = """\
-{{ /* {title} */
-    {stages}, {blocks}, {{{sizes}}},
-    {A},
-    {T},
-    {inverse},
-    {M},
-    {b},
-    {c},
-    {lagrange},
-    {at_start},
-    {error_power},
-}},"""
-
-IMPLICIT = """\
-enum {{ METHOD_COUNT = {count}, FACTORS = {squares}*DIM*DIM }};
-{coefficients_h}
-static const Method METHODS[] = {{
-{methods}
-}};
-{order_choice_h}
-{linear_h}
-{linearisation_h}
-{simplified_newton_h}
-{predictor_h}
-{full_newton_h}
-{newton_h}
-{implicit_h}"""
-
-#: Handwritten files of implicit methods.
-IMPLICIT_FILES = (
-    *("coefficients", "order_choice", "linear", "linearisation", "simplified_newton"),
-    *("predictor", "full_newton", "newton", "implicit"),
-)
-
 STAGE = """\
     for (int n = 0; n < DIM; n++) {{
         stage[n] = z[n] + {sum};
@@ -358,13 +319,13 @@ def _parallel(tableau: Tableau) -> str:
         "bernstein": bernstein_matrix(tableau.stages),
     }
     columns = {
-        name: ",\n".join(f"    {{{', '.join(map(_real, column))}}}" for column in matrix.T)
+        name: ",\n".join(f"    {row(column)}" for column in matrix.T)
         for name, matrix in matrices.items()
     }
     return PARALLEL.format(
-        nodes=", ".join(map(_real, tableau.c)),
-        weights=", ".join(map(_real, tableau.b)),
-        error_power=_real(error_power(tableau.stages)),
+        nodes=", ".join(map(real, tableau.c)),
+        weights=", ".join(map(real, tableau.b)),
+        error_power=real(error_power(tableau.stages)),
         parallel_h=_source("parallel.h"),
         roots_h=_source("roots.h"),
         **columns,
@@ -373,49 +334,19 @@ def _parallel(tableau: Tableau) -> str:
 
 def _explicit(tableau: Tableau) -> str:
     rows = [
-        STAGE.format(sum=_sum(row), c=_real(c), i=i)
-        for i, (row, c) in enumerate(zip(tableau.A, tableau.c, strict=True))
+        STAGE.format(sum=_sum(weights), c=real(c), i=i)
+        for i, (weights, c) in enumerate(zip(tableau.A, tableau.c, strict=True))
         if i
     ]
     return EXPLICIT.format(rows="".join(rows))
-
-
-def _implicit(tableau: Tableau) -> str:
-    sizes = Blocks.of(np.array(tableau.A, float)).sizes
-    return IMPLICIT.format(
-        count=len(tableau.members),
-        squares=sum(size**2 for size in sizes),
-        methods="\n".join(map(_coefficients, tableau.members)),
-        **{f"{name}_h": _source(f"{name}.h") for name in IMPLICIT_FILES},
-    )
-
-
-def _coefficients(tableau: Tableau) -> str:
-    A, c = np.array(tableau.A, float), np.array(tableau.c, float)
-    blocks = Blocks.of(A)
-    matrices = {"A": A, "T": blocks.T, "inverse": blocks.inverse, "M": blocks.M}
-    vectors = {
-        "b": tableau.b,
-        "c": tableau.c,
-        "lagrange": lagrange_factors(c),
-        "at_start": lagrange(c, np.zeros(1))[0],
-    }
-    return COEFFICIENTS.format(
-        title=tableau.title,
-        stages=tableau.stages,
-        blocks=len(blocks.sizes),
-        sizes=", ".join(map(str, blocks.sizes)),
-        error_power=_real(tolerance_power(tableau.stages)),
-        **{name: f"{{{', '.join(map(_row, rows))}}}" for name, rows in matrices.items()},
-        **{name: _row(numbers) for name, numbers in vectors.items()},
-    )
 
 
 def _method(tableau: Tableau) -> str:
     if tableau.is_parallel:
         return _parallel(tableau)
     if not tableau.is_explicit:
-        return _implicit(tableau)
+        files = {name: _source(f"{name}.h") for name in IMPLICIT_FILES}
+        return implicit(tableau, files)
     first, second, *_ = *tableau.error_weights, (), ()
     sums = {"increment": tableau.b, "estimate": first, "second_estimate": second}
     return METHOD.format(
@@ -427,13 +358,5 @@ def _method(tableau: Tableau) -> str:
 
 def _sum(weights: Sequence[Number]) -> str:
     """Σ h w k, with all products but the last one independent of the last stage."""
-    terms = [f"(h*{_real(w)})*k[{j}][n]" for j, w in enumerate(weights) if w != 0]
+    terms = [f"(h*{real(w)})*k[{j}][n]" for j, w in enumerate(weights) if w != 0]
     return "\n            + ".join(terms) or "0.0*h"
-
-
-def _row(numbers: Iterable[Number]) -> str:
-    return f"{{{', '.join(map(_real, numbers))}}}"
-
-
-def _real(number: Number) -> str:
-    return f"({float(number)!r})"
