@@ -17,6 +17,8 @@ from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
 from solvers.integration.solution import Status
 from solvers.runge_kutta.parallel_stages import bernstein_matrix
+from solvers.studies.benchmarks.events import CROSSINGS
+from solvers.studies.benchmarks.motions import END, START
 
 #: Degree of the motions y(t) that one step of gauss8 gives exactly.
 DEGREE = 8
@@ -202,3 +204,11 @@ def test_an_event_at_the_start_is_not_counted_and_hides_no_return(method: str) -
         assert found == pytest.approx(exact, abs=1e-7)
         returns += len(exact)
     assert 5 < returns < 100
+
+
+def test_crossings_of_the_benchmark_are_those_of_another_method() -> None:
+    options = {"method": "verner98", "rtol": 1e-14, "atol": 1e-14}
+    for (name, value), exact in CROSSINGS.items():
+        event = Event(dp, name, value)
+        found = integrate(dp, (0, END), START, dp.DEFAULTS, events=event, **options).t_events[0]
+        assert found == pytest.approx(exact, abs=1e-12)

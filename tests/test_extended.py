@@ -33,6 +33,7 @@ from solvers.integration.compiled.extended import (
 from solvers.integration.compiled.extended_source import DIGITS, DOUBLE, NumberType, Sequential
 from solvers.integration.solution import Status
 from solvers.references.taylor import taylor
+from solvers.studies.benchmarks.precision import FINAL
 
 #: The start of the report's scene, and states in its chaotic motion by Taylor series of 70 digits:
 #: after 20 s an error of the start is ten million times as large.
@@ -52,6 +53,10 @@ STATES = {
     ),
 }
 FINE = {"double-double": 1e-27, "long double": 1e-19, "quadruple": 1e-24}
+
+
+def test_the_benchmark_has_the_same_states() -> None:
+    assert all(FINAL[end] == pytest.approx(STATES[end], abs=1e-14) for end in STATES)
 
 
 def after(end: int, precision: str, rtol: float) -> float:
