@@ -57,8 +57,8 @@ class Tangents:
         problem = validation.problem_at_rest(module, t_span, options, params)
         if problem.form.switching_count:
             raise ValueError(
-                f"forces of {module.SYSTEM} have kinks or jumps, where variational equations do not "
-                "hold: replace abs, sign, min, max and Piecewise by smooth functions"
+                f"forces of {module.SYSTEM} have kinks or jumps, where variational equations do "
+                "not hold: replace abs, sign, min, max and Piecewise by smooth functions"
             )
         self._problem, self._program = compiled_loop.select(problem, lanes=True)
         self._batch: Batch | None = None
