@@ -194,6 +194,20 @@ def test_kinks_of_time_and_of_nested_functions_are_switches(backend: str) -> Non
     assert abs(ends[0] - ends[1]).max() < 1e-10
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_steps_cross_kinks_of_roots_and_powers(backend: str) -> None:
+    # contact by Hertz: with a held sign, the power has no value before and behind the contact
+    potential = 20 * sp.Max(0, x - a) ** sp.Rational(5, 2) + sp.Abs(x) ** sp.Rational(5, 2)
+    root = sp.Piecewise((sp.sqrt(x + 1), x > -1), (0, True))
+    module = oscillator("hertz", potential, force=root)
+    assert switching_functions(module) == ()
+    options = {"rtol": 1e-12, "atol": 1e-13, "backend": backend}
+    motion = integrate(module, (0, 20), (-1.5, 0.0), module.DEFAULTS, **options)
+    assert motion.status is Status.FINISHED
+    other = integrate(module, (0, 20), (-1.5, 0.0), module.DEFAULTS, method="tsit54", **options)
+    assert abs(motion.y[:, -1] - other.y[:, -1]).max() < 1e-6
+
+
 def test_functions_that_switch_each_other_do_not_hang() -> None:
     y = sp.Symbol("y", real=True)
     coordinates = [Coordinate(x, "m", "position"), Coordinate(y, "m", "position")]

@@ -13,10 +13,10 @@ from sympy.core.relational import Relational
 CHOICES = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Heaviside, sp.DiracDelta, sp.Piecewise)
 
 
-def switching_functions(
+def decisive_numbers(
     expressions: Iterable[sp.Basic], variables: Collection[sp.Symbol]
 ) -> tuple[sp.Expr, ...]:
-    """The switching functions of expressions that depend on `variables`, in a definite order.
+    """Numbers that depend on `variables`, whose signs decide between branches of expressions.
 
     Of two that differ in their sign alone there is one. It comes after those in its own formula.
     """
@@ -27,6 +27,29 @@ def switching_functions(
                 if number.free_symbols & {*variables} and -number not in found:
                     found[number] = None
     return tuple(sorted(found, key=lambda number: len(number.atoms(*CHOICES))))
+
+
+def switching_functions(
+    expressions: Collection[sp.Basic], variables: Collection[sp.Symbol]
+) -> tuple[sp.Expr, ...]:
+    """The decisive numbers beyond whose zeros expressions are smooth with their signs held.
+
+    Omitted are those on which roots, powers and logarithms depend, such as x of abs(x)**1.5: with
+    its sign held, there is no value beyond the zero.
+    """
+    choices = {part for expression in expressions for part in expression.atoms(*CHOICES)}
+    wholes = {whole for expression in expressions for whole in _partial(expression)}
+    wholes |= {part for part in choices if isinstance(part, sp.Piecewise) and any(_partial(part))}
+    parts = {part for whole in wholes for part in whole.atoms(*CHOICES)}
+    omitted = {number for part in parts for number in _decisive(part)}
+    numbers = decisive_numbers(expressions, variables)
+    return tuple(number for number in numbers if not {number, -number} & omitted)
+
+
+def _partial(expression: sp.Basic) -> Iterator[sp.Expr]:
+    """Parts that have no real value for some arguments."""
+    yield from expression.atoms(sp.log)
+    yield from (power for power in expression.atoms(sp.Pow) if not power.exp.is_Integer)
 
 
 def _decisive(part: sp.Expr) -> Iterator[sp.Expr]:

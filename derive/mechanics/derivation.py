@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.switching import switching_functions
+from derive.formulas.switching import decisive_numbers, switching_functions
 from derive.mechanics.equilibria import equilibria
 from derive.mechanics.independence import check_independence
 from derive.mechanics.linearisation import Energies, Linearisation
@@ -169,10 +169,18 @@ class Derivation:
     @cached_property
     def switching_functions(self) -> tuple[sp.Expr, ...]:
         """Functions of (q, q̇, t) at whose zeros forces have a kink or a jump."""
-        system = self.system
-        positions = (r for mass in system.masses for _, motion in mass.motions for r in motion)
-        expressions = (*positions, self.potential_energy, *system.applied)
-        return switching_functions(expressions, (*system.q, *system.qdot, TIME))
+        return switching_functions(self._formulas, (*self.system.q, *self.system.qdot, TIME))
+
+    @cached_property
+    def decisive_numbers(self) -> tuple[sp.Expr, ...]:
+        """Switching functions, and others on which roots, powers and logarithms depend."""
+        return decisive_numbers(self._formulas, (*self.system.q, *self.system.qdot, TIME))
+
+    @property
+    def _formulas(self) -> tuple[sp.Expr, ...]:
+        masses = self.system.masses
+        positions = (r for mass in masses for _, motion in mass.motions for r in motion)
+        return (*positions, self.potential_energy, *self.system.applied)
 
     @cached_property
     def lagrangian(self) -> sp.Expr:

@@ -22,7 +22,7 @@ LARGEST_INVERSE, LARGEST_DIAGONAL = 3, 7
 #: Factors of coordinates at states, tried until the Lagrangian is real: a thread limits
 #: coordinates from above, a wheel's axis from below.
 SIZES = (sp.S.One, sp.Rational(1, 20), sp.Integer(5))
-#: Factors of all variables, by which switching functions change their signs.
+#: Factors of all variables, by which decisive numbers change their signs.
 SCALES = tuple(sp.Integer(10) ** power for power in (0, 1, -1, 2, -2, 3, -3))
 
 
@@ -102,8 +102,8 @@ class Model:
 
     @property
     def _further_states(self) -> list[State]:
-        """Larger or smaller states at which switching functions have signs not met before."""
-        functions, states = self.derivation.switching_functions, list[State]()
+        """Larger or smaller states at which decisive numbers have signs not met before."""
+        functions, states = self.derivation.decisive_numbers, list[State]()
         met = set[tuple[int, bool]]()
         for scale in SCALES if functions else ():
             for index in range(STATES):

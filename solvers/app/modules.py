@@ -138,7 +138,9 @@ def specialiser(
         from derive.system import catalogue
 
         system = _systems.get(module.__name__) or catalogue.load(name)
-        return texts(Derivation(specialised(system, values)), functions)
+        # where forces have kinks or jumps, every loop needs their switching functions
+        needed = (*functions, "switches", "switches_rational")
+        return texts(Derivation(specialised(system, values)), needed)
 
     # the name of a module from the cache contains a digest of its system
     version = module.__name__ + generator_text()
