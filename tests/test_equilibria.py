@@ -9,7 +9,7 @@ import sympy as sp
 from cart_pole import F, cart_pole, x
 from numpy.testing import assert_allclose
 
-from derive import Derivation, load
+from derive import Coordinate, Derivation, Parameter, PointMass, System, load
 from derive.system.parts import SystemDefinitionError
 from solvers import build, equilibria
 from solvers import load as module_of
@@ -84,6 +84,19 @@ def test_equilibria_of_other_systems_are_known() -> None:
         [(length - m * g / k, math.pi), (length + m * g / k, 0)],
         atol=1e-9,
     )
+
+
+def test_singular_points_are_no_equilibria() -> None:
+    mass, c = sp.symbols("m c", positive=True)
+    bead = System(
+        "bead", "A bead with a singular potential", [Coordinate(x, "m", "position")],
+        [Parameter(mass, "kg", 1.0, ""), Parameter(c, "N", 4.0, "")],
+        [PointMass(mass, (x, 0))], potential=1 / x + c * x,
+    )  # fmt: skip
+    roots = {equilibrium[x] for equilibrium in Derivation(bead).equilibria()}
+    assert roots == {1 / sp.sqrt(c), -1 / sp.sqrt(c)}
+    found = equilibria(build(bead), {}, {"x": (-1.3, 1.0)})
+    assert_allclose([e.y[0] for e in found], [-0.5, 0.5], atol=1e-9)
 
 
 def test_inputs_move_equilibria() -> None:

@@ -10,6 +10,8 @@ from scipy.integrate import solve_ivp
 
 from derive import with_inputs
 from solvers import Event, Held, build, ensemble, integrate, prepare
+from solvers.equations.forms import Form
+from solvers.integration import accuracy_warnings
 from solvers.integration.solution import Status
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -43,6 +45,7 @@ def piecewise(times: Any, table: Array, end: float, y: Any = START) -> Array:
         ("verner853", "rational", {}),
         ("verner853", "hamiltonian", {}),
         ("dp54", "rational", {}),  # its first stage is the last one of the step before
+        ("dp54", "rational", {"h": 0.002}),
         ("gauss8", "rational", {}),
         ("radau5", "lagrangian", {}),
         ("verner853", "lagrangian", {"h": 0.004}),  # which divides no piece
@@ -60,6 +63,7 @@ def test_held_inputs_cost_no_accuracy(
     motion = integrate(cart, (0, 1.5), START, {}, inputs=held, **chosen)
     assert motion.status is Status.FINISHED
     assert {*TIMES[:-1]} <= {*motion.t.tolist()}
+    assert (np.diff(motion.t) > 0).all()
     expected = piecewise(TIMES, TABLE, 1.5)
     assert_allclose(motion.y[:, -1], expected, atol=2e-9)
     samples = np.array([0.0, 0.2, 0.3, 0.6, 1.5])
@@ -124,6 +128,41 @@ def test_functions_of_the_state_agree_with_formulas(method: str) -> None:
         integrate(cart, (0, 3), START, {}, inputs=inputs, form="rational")
 
 
+def test_the_jacobian_includes_the_feedback() -> None:
+    form = Form(cart, "lagrangian", cart.DEFAULTS, lambda t, y: np.array([-GAINS @ y, y[1] ** 2]))
+    y = np.array([0.3, -0.2, 0.5, 0.7])
+    changes = 1e-6 * np.eye(4)
+    columns = [(form.rhs(0.0, y + dy) - form.rhs(0.0, y - dy)) / 2e-6 for dy in changes]
+    assert_allclose(form.jacobian(0.0, y), np.transpose(columns), atol=1e-7)
+
+
+def test_long_tables_are_held_without_pause_or_with() -> None:
+    table = np.sin(np.arange(10_000))  # more samples than rows that C stores at once
+    held = Held(1e-4, {"F": table})
+    motion = integrate(cart, (0, 1), START, {}, inputs=held)
+    assert len(motion.t) == 10_001
+    assert motion.inputs is not None
+    assert_allclose(motion.inputs[0, :-1], table)
+    last = integrate(cart, (0, 1), START, {}, inputs=held, t_eval=[1.0])
+    assert motion.y[:, -1].tolist() == last.y[:, -1].tolist()
+    called = Held(1e-4, lambda t, y: {"F": table[round(t / 1e-4)]})
+    end = integrate(cart, (0, 0.01), START, {}, inputs=called).y[:, -1]
+    assert end.tolist() == integrate(cart, (0, 0.01), START, {}, inputs=held).y[:, -1].tolist()
+
+
+def test_nothing_is_predicted_with_inputs_that_vary(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> float:
+        raise AssertionError("the variational equations have constant inputs")
+
+    monkeypatch.setattr(accuracy_warnings, "predictable_until", refuse)
+    for inputs in (Held(0.1, feedback), lambda t, y: feedback(t, y)):
+        assert integrate(cart, (0, 1), START, {}, inputs=inputs).success
+    starts = np.array([START, START]).T
+    assert ensemble(cart, (0, 1), starts, {}, inputs=Held(0.1, feedback)).success.all()
+    with pytest.raises(AssertionError, match="constant inputs"):
+        integrate(cart, (0, 1), START, {})
+
+
 def test_constant_inputs_are_parameters() -> None:
     ends = [
         integrate(cart, (0, 1), START, {"F": 2.0, "m": 0.1}).y[:, -1],
@@ -166,6 +205,11 @@ def test_ensembles_take_held_inputs(backend: str) -> None:
     held, times = Held(0.05, feedback), [0.0, 0.35, 1.0]
     event = Event(cart, "theta", -0.1, terminal=True, direction=-1)  # in the third motion
     options: dict[str, Any] = {"t_eval": times, "inputs": held, "backend": backend}
+    for table in (held, Held(TIMES, TABLE)):
+        motions = ensemble(cart, (0, 1), starts, {}, inputs=table, backend=backend)
+        for k, start in enumerate(starts.T):
+            alone = integrate(cart, (0, 1), start, {}, inputs=table)
+            assert_allclose(motions.y[:, k], alone.y[:, -1], atol=1e-7)
     motions = ensemble(cart, (0, 1), starts, {}, events=event, **options)
     assert motions.status.tolist() == [Status.FINISHED, Status.FINISHED, Status.EVENT]
     for k, start in enumerate(starts.T):

@@ -8,7 +8,7 @@ from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
 from solvers.integration.events import Event
-from solvers.integration.inputs import segments
+from solvers.integration.inputs import held_table, segments
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Status
@@ -98,12 +98,17 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     outcome.backend = f"compiled by {program.library.compiler}"
     capacity = ROW_CAPACITY if samples is None else len(samples)
     batch, status = None, Status.FINISHED
-    for segment in segments(problem, lambda: outcome.end[1], outcome.history):
+    # where switching functions end steps, Python changes the inputs
+    table = None if problem.form.switching_count else held_table(problem, outcome.history)
+    parts = iter([problem.with_inputs(table[1][0])]) if table else None
+    for segment in parts or segments(problem, lambda: outcome.end[1], outcome.history):
         part, status = first_part(segment, outcome)
         while part is not None:
             if batch is None:
                 room = EVENT_CAPACITY
                 batch = Batch(program, part, capacity=capacity, occurrences=room, pauses=True)
+                if table:
+                    batch.hold(*table)
             else:
                 batch.resume(part)
             running = None

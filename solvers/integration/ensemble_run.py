@@ -12,7 +12,7 @@ from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.events import Extremum
-from solvers.integration.inputs import History, segments
+from solvers.integration.inputs import History, held_table, segments
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array, Status
 from solvers.integration.stop_flag import StopFlag
@@ -43,7 +43,12 @@ class EnsembleRun:
             return batch.ordinary(batch.motions).T
 
         try:
-            for part in segments(problem, reached, History()):
+            table = held_table(problem, History())
+            if table:
+                batch.resume(problem.with_inputs(table[1][0]))
+                batch.hold(*table)
+                self._run_threads(batch, workers)
+            for part in [] if table else segments(problem, reached, History()):
                 batch.resume(part)
                 self._run_threads(batch, workers)
                 if self.stop.is_set:

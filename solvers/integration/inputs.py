@@ -94,10 +94,18 @@ class Schedule:
             )
         if callable(held.values):
             return cls(module, times, None, held.values)
-        table, period = held.values, np.ndim(held.times) == 0
-        if period and not isinstance(table, Mapping):  # which may hold more samples than needed
-            table = np.asarray(table)[..., : len(times)]
+        table = held.values
+        if not np.ndim(held.times):  # there may be more samples than the time span needs
+            table = _first_samples(table, len(times))
         return cls(module, times, given("values", module, table, times.shape), None)
+
+    def pieces(self, span: tuple[float, float]) -> tuple[int, Array, Array]:
+        """The first sample that matters in a time span, and the times between which each does."""
+        (begin, end), times = span, self.times
+        first = int(np.searchsorted(times, begin, "right")) - 1
+        last = max(int(np.searchsorted(times, end, "left")), first + 1)
+        switches = np.concatenate([[begin], times[first + 1 : last], [end]])
+        return first, switches[:-1], switches[1:]
 
     def at(self, sample: int, t: float, y: Array) -> Array:
         """The inputs from a sample at time `t` with state `y` on."""
@@ -131,15 +139,34 @@ def segments(
     if schedule is None:
         yield problem
         return
-    (begin, end), times = problem.span, schedule.times
-    first = int(np.searchsorted(times, begin, "right")) - 1
-    last = max(int(np.searchsorted(times, end, "left")), first + 1)
-    for k in range(first, last):
-        span = (max(float(times[k]), begin), float(times[k + 1]) if k + 1 < last else end)
-        values = schedule.at(k, span[0], state())
-        history.times.append(span[0])
+    first, begins, ends = schedule.pieces(problem.span)
+    for k, (begin, end) in enumerate(zip(begins.tolist(), ends.tolist(), strict=True), first):
+        values = schedule.at(k, begin, state())
+        history.times.append(begin)
         history.values.append(values)
-        yield replace(problem.with_inputs(values), span=span)
+        yield replace(problem.with_inputs(values), span=(begin, end))
+
+
+def held_table(problem: "Problem", history: History) -> tuple[Array, Array] | None:
+    """Times at which held inputs end, and these inputs in rows, for a loop that changes them.
+
+    None without a table, as of a controller.
+    """
+    schedule = problem.schedule
+    if schedule is None or schedule.table is None:
+        return None
+    first, begins, ends = schedule.pieces(problem.span)
+    values = schedule.table.T[first : first + len(ends)]
+    history.times += begins.tolist()
+    history.values += [*values]
+    return ends, values
+
+
+def _first_samples(table: Any, count: int) -> Any:
+    if isinstance(table, Mapping):
+        return {name: _first_samples(values, count) for name, values in table.items()}
+    array = real_numbers("values", table)
+    return array[..., :count] if array.ndim else table
 
 
 def controlled(module: GeneratedModule, controller: Controller, t: float, y: Array) -> Array:

@@ -121,6 +121,7 @@ class Batch:
         `starts` are ordinary states in rows from which they go on, instead of those they reached.
         """
         motions, new = self.motions, STATUSES.index(None)
+        motions["held"] = 0
         ends = (Status.FINISHED, Status.EVENT) if problem.switches else (Status.FINISHED,)
         goes_on = np.isin(motions["status"], (new, *map(STATUSES.index, ends)))
         motions["status"][goes_on] = new
@@ -132,6 +133,14 @@ class Batch:
             states = self.form.from_ordinary_many(problem.span[0], starts)
             motions["z"], motions["turns"] = states
             motions["scale"] = 0
+
+    def hold(self, ends: Array, values: Array) -> None:
+        """Let motions change their inputs at the ends of `values`, of shape (values, inputs)."""
+        self._holds = (np.ascontiguousarray(ends), np.ascontiguousarray(values))
+        self.task.holds, self.task.inputs = values.shape
+        self.task.first_input = len(self.form.params) - values.shape[1]
+        self.task.hold_ends, self.task.hold_values = (part.ctypes.data for part in self._holds)
+        self.motions["t_end"] = ends[0]
 
     def restart(self, time_limit: float = 0.0) -> None:
         """Let the next `run` start with the first motion, and return after `time_limit` seconds."""

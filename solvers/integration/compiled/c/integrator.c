@@ -333,6 +333,24 @@ static int is_full(const Task *task, const Trajectory *trajectory)
     return full && task->pauses;
 }
 
+/* Let the motion of a lane resume with the next held inputs; returns whether there are any. */
+static int change_inputs(Lanes *lanes, int lane)
+{
+    const Task *task = lanes->task;
+    Motion *motion = &lanes->motion;
+    const int64_t held = (int64_t)LANE(motion->held, lane) + 1;
+    if (held >= task->holds) {
+        return 0;
+    }
+    for (int64_t u = 0; u < task->inputs; u++) {
+        LANE(motion->params[task->first_input + u], lane) = task->hold_values[held*task->inputs + u];
+    }
+    LANE(motion->held, lane) = (double)held;
+    LANE(motion->t_end, lane) = task->hold_ends[held];
+    MASK_LANE(lanes->starting, lane) = -1;
+    return 1;
+}
+
 /* After a step, store a lane's motion if it ends or pauses, and load the next one; returns whether
    the lane becomes idle. */
 static int finish_step(Lanes *lanes, int lane, int returning)
@@ -340,10 +358,15 @@ static int finish_step(Lanes *lanes, int lane, int returning)
     WithinStep *within = &lanes->within[lane];
     Trajectory *trajectory = within->trajectory;
     const int advances = within->mode == ADVANCE;
-    const enum Status now = advances ? status(lanes, lane) : RUNNING;
+    enum Status now = advances ? status(lanes, lane) : RUNNING;
+    if (now == FINISHED && change_inputs(lanes, lane)) {
+        now = RUNNING;
+    }
     if (advances && (now != RUNNING || returning || is_full(lanes->task, trajectory))) {
         read_lane(&lanes->motion, MOTION_SIZE, lane, trajectory->motion);
-        trajectory->status = now;
+        const int waits = now == RUNNING && MASK_LANE(lanes->starting, lane);
+        trajectory->status = waits ? WAITING : now;
+        MASK_LANE(lanes->starting, lane) = 0;
         within->mode = IDLE;
         if (!returning) {
             load_motion(lanes, lane);

@@ -32,7 +32,8 @@ typedef struct {
     real evaluations;           /* of the right-hand side, by steps */
     real jacobians;             /* evaluations of the Jacobian */
     real reductions;            /* consecutive failures, each of which shortens the step */
-    real t_end;
+    real t_end;                 /* or the end of the inputs in params, if these are held */
+    real held;                  /* number of times that held inputs have changed */
     real min_h;                 /* shortest step */
     real params[PARAMETERS];
 } Motion;
@@ -89,6 +90,11 @@ typedef struct {
     int64_t pauses;             /* whether a motion pauses when its rows are full */
     double time_limit;          /* seconds of processor time after which run() returns, or 0 */
     const volatile int64_t *stop;   /* run() returns once this is not 0 */
+    int64_t holds;              /* number of values that held inputs have, one after the other */
+    int64_t first_input;        /* index of the first input in params, and number of inputs */
+    int64_t inputs;
+    const double *hold_ends;    /* time at which each value ends */
+    const double *hold_values;  /* values of all inputs, one after the other */
 } Task;
 
 /* Sizes for the comparison with Python's structures. */
