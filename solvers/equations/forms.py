@@ -5,6 +5,7 @@ contain a linear perturbation of the state.
 """
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,12 @@ class Form:
         self.angle_columns = [(k, index[sine]) for k, sine in sines if sine in index]
         parts = enumerate(self.ordinary)
         self.shared_columns = [(k, index[part]) for k, part in parts if part in index]
+
+    def with_params(self, params: Sequence[Any]) -> "Form":
+        """The same form with other parameters."""
+        form = copy(self)
+        form.params = tuple(params)
+        return form
 
     @property
     def angles(self) -> list[tuple[int, int]]:

@@ -3,13 +3,14 @@
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from math import isfinite
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule, inputs
-from solvers.equations.quantities import Values, positive, quantities, real_numbers
+from solvers.equations.quantities import REAL, Values, positive, quantities, real_numbers
 from solvers.integration.solution import Array
 from solvers.io.suggestion import shortened
 
@@ -182,6 +183,9 @@ def given(what: str, module: GeneratedModule, values: Any, shape: tuple[int, ...
             f"{module.SYSTEM} has no inputs, but {what} = {shortened(values)}: leave it out, or "
             "declare them, System(..., inputs=[Input(...)])"
         )
+    is_row = not shape and type(values) is tuple and len(values) == len(names)
+    if is_row and REAL.issuperset(map(type, values)) and all(map(isfinite, values)):
+        return np.array(values, float)  # at once, since controllers are called often
     if len(names) == 1 and not isinstance(values, Mapping) and np.shape(values) in ((), shape):
         values = [values]  # a single input may be a number
     array = quantities(module, what, names, values, dict.fromkeys(names, 0.0))

@@ -70,8 +70,7 @@ class Problem:
 
     def with_params(self, params: Sequence[Any]) -> "Problem":
         """The same problem with other parameters: numbers, or arrays for several motions."""
-        form = self.form
-        return self.with_form_of(Form(form.module, form.name, params, form.feedback, form.signs))
+        return self.with_form_of(self.form.with_params(params))
 
     def with_inputs(self, values: Array) -> "Problem":
         """The same problem with other inputs, the last parameters."""

@@ -123,7 +123,9 @@ class Batch:
         motions, new = self.motions, STATUSES.index(None)
         motions["held"] = 0
         ends = (Status.FINISHED, Status.EVENT) if problem.switches else (Status.FINISHED,)
-        goes_on = np.isin(motions["status"], (new, *map(STATUSES.index, ends)))
+        goes_on = motions["status"] == new
+        for end in ends:
+            goes_on |= motions["status"] == STATUSES.index(end)
         motions["status"][goes_on] = new
         motions["t_end"][goes_on] = problem.span[1]
         motions["min_h"][goes_on] = SHORTEST * np.spacing(np.abs(problem.span).max())
