@@ -9,7 +9,7 @@ import sympy as sp
 from cart_pole import F, cart_pole, x
 from numpy.testing import assert_allclose
 
-from derive import Coordinate, Derivation, Parameter, PointMass, System, load
+from derive import Coordinate, Derivation, Parameter, PointMass, System, load, with_inputs
 from derive.system.parts import SystemDefinitionError
 from solvers import build, equilibria
 from solvers import load as module_of
@@ -97,6 +97,19 @@ def test_singular_points_are_no_equilibria() -> None:
     assert roots == {1 / sp.sqrt(c), -1 / sp.sqrt(c)}
     found = equilibria(build(bead), {}, {"x": (-1.3, 1.0)})
     assert_allclose([e.y[0] for e in found], [-0.5, 0.5], atol=1e-9)
+
+
+def test_saturated_feedback_has_equilibria_on_both_branches() -> None:
+    """Where the torque is saturated: m g l sin θ ± 0.1 cos θ = 0."""
+    feedback = {"F": "cosh(x_dot) - 1", "T": "max(-0.1, min(0.1, 2*theta))"}
+    closed = build(with_inputs(cart_pole, feedback))
+    tilt = math.pi - math.atan(0.1 / (0.2 * 9.81 * 0.3))
+    found = equilibria(closed, {}, {"x": 0.0})
+    assert_allclose([e.y[1] for e in found], [-tilt, 0.0, tilt], atol=1e-9)
+    assert found[1].A[3, 1] > found[0].A[3, 1]
+    unknown = build(with_inputs(cart_pole, {"T": "atan2(2, theta)"}))
+    with pytest.raises(ValueError, match="their functions must be among sin, cos"):
+        equilibria(unknown, {}, {"x": 0.0})
 
 
 def test_inputs_move_equilibria() -> None:

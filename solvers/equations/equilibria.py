@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.intervals import FUNCTIONS, Interval, bounds_of
+from solvers.equations.intervals import FUNCTIONS, Interval, bounds_of, select
 from solvers.equations.linear_system import LinearSystem, linearise, with_inputs
 from solvers.equations.module import GeneratedModule, depends_on_time, with_functions
 from solvers.equations.quantities import Values, real_numbers
@@ -118,7 +118,7 @@ class _Search:
     def candidates(self) -> Array:
         """Points near which there may be an equilibrium, in rows."""
         low, high = self.low[np.newaxis], self.high[np.newaxis]
-        rhs = with_functions(self.module.rhs, FUNCTIONS)
+        rhs = with_functions(self.module.rhs, {**FUNCTIONS, "select": select})
         for _, k in product(range(HALVINGS), np.flatnonzero(self.free)):
             middle = (low[:, k] + high[:, k]) / 2
             low, high = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)

@@ -106,6 +106,23 @@ def _increasing(function: Callable[[Array], Array]) -> Callable[[Interval | floa
     return bounded
 
 
+def _cosh(x: "Interval | float") -> Interval:
+    low, high = bounds_of(x)
+    ends = np.cosh(low), np.cosh(high)
+    result = _outward(np.minimum(*ends), np.maximum(*ends))
+    return Interval(np.where((low <= 0) & (high >= 0), 1.0, result.low), result.high)
+
+
+def select(
+    condition: "Interval | float", chosen: "Interval | float", other: "Interval | float"
+) -> Interval:
+    """`chosen` where the condition is positive, `other` where it is negative, else both."""
+    low, high = bounds_of(condition)
+    (a, b), (c, d) = bounds_of(chosen), bounds_of(other)
+    least = np.where(low > 0, a, np.where(high < 0, c, np.minimum(a, c)))
+    return Interval(least, np.where(low > 0, b, np.where(high < 0, d, np.maximum(b, d))))
+
+
 #: NumPy's names where they differ.
 NAMES = {"atan": "arctan"}
 #: Functions of generated code, by name.
@@ -113,6 +130,7 @@ FUNCTIONS: dict[str, Callable[[Any], Interval]] = {
     "sin": _sin,
     "cos": _cos,
     "tan": _tan,
+    "cosh": _cosh,
     **{
         name: _increasing(getattr(np, NAMES.get(name, name)))
         for name in ("exp", "log", "sqrt", "sinh", "tanh", "atan")
