@@ -161,9 +161,10 @@ def test_a_perturbation_changes_the_last_digits_only() -> None:
 AT_REST = (("10*state[0] + params[0] - params[1]", 0.0), ("10*(state[0] + 0.5)", -0.5))
 
 
+@pytest.mark.parametrize("precision", ["double-double", "long double"])
 @pytest.mark.parametrize(("rate", "start"), AT_REST)
 def test_a_perturbation_changes_start_and_parameters(
-    rate: str, start: float, tmp_path: Path
+    rate: str, start: float, precision: str, tmp_path: Path
 ) -> None:
     (tmp_path / "hand.h").write_text(
         "static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,\n"
@@ -171,7 +172,7 @@ def test_a_perturbation_changes_start_and_parameters(
         f"{{ result[0] = {rate}; (void)t; (void)params; }}\n"
     )
     module = handwritten("hand", ("y",), ("p", "q"), __file__=str(tmp_path / "hand.py"))
-    arguments = module, (1.25, 1.25), (start,), [0, 4], "long double", 1e-18
+    arguments = module, (1.25, 1.25), (start,), [0, 4], precision, 1e-18
     ends = [integrate_extended(*arguments, perturbation=seed)[1, 0] for seed in range(5)]
     assert ends[0] == start
     assert len(set(ends)) > 1
