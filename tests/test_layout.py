@@ -22,7 +22,7 @@ def load() -> Kernel:
 def test_every_member_of_the_header_is_read() -> None:
     assert [name for _, name, _ in members("Row")] == ["t", "z", "turns", "scale"]
     assert members("Motion")[: len(members("State"))] == members("State")
-    assert len(members("Event")) == 12
+    assert len(members("Event")) == 11
     kernel = load()
     assert kernel.trajectory["z"].shape == kernel.trajectory["z_low"].shape == (6,)
     assert kernel.row["turns"].shape == (2,)

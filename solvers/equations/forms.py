@@ -79,12 +79,6 @@ class Form:
             return True, angles.index(k)
         return (False, columns[k]) if k in columns else None
 
-    def locate_rate(self, component: str) -> int | None:
-        """Index of the derivative of an ordinary component, where that is in the state, too."""
-        rate = f"{component}_dot"
-        place = self.locate(rate) if rate in self.ordinary else None
-        return place and place[1]
-
     @property
     def has_jacobian(self) -> bool:
         """Whether implicit methods can integrate this form."""

@@ -1,11 +1,12 @@
 """Attempts at steps of the methods of `solvers.runge_kutta`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from solvers.integration.solution import Array
+from solvers.runge_kutta.continuous_extension import bernstein_values
 from solvers.runge_kutta.newton import Stages
 from solvers.runge_kutta.order_choice import OrderChoice
 from solvers.runge_kutta.parallel_stages import Polynomial
@@ -46,11 +47,27 @@ class Accepted:
         y = step(start.t, start.y, t - start.t, start.derivative, guess).y
         return self.attempts.normalise(y)
 
-    @property
-    def rough(self) -> Callable[[float], Array] | None:
-        """States within the step, with a lower order and without evaluations, if it has them."""
-        start, polynomial = self.start, self.step.polynomial
-        return (lambda t: start.y + polynomial.change(t - start.t)) if polynomial else None
+    def curves(self) -> Iterator[Callable[[Array], Array]]:
+        """States at several times, in columns, by polynomials that are more accurate each."""
+        start, step, extension = self.start, self.step, self.attempts.stepper.extension
+        t, y, h = start.t, start.y, self.end.t - start.t
+        if step.polynomial:
+            polynomial = step.polynomial
+            yield lambda times: y[:, np.newaxis] + polynomial.change(times - t)
+            return
+        k = step.stages.k if step.stages else step.k
+        assert k is not None
+
+        def curve(coefficients: Array) -> Callable[[Array], Array]:
+            degree = len(coefficients) - 1
+            return lambda times: (
+                (y + h * (bernstein_values(degree, (times - t) / h) @ coefficients)).T
+            )
+
+        yield curve(extension.natural @ k)
+        if extension.rounds:
+            derivative = self.attempts.stepper.derivative
+            yield curve(extension.extend(derivative, t, y, h, k))
 
     def states(self, times: Array) -> Array:
         """The states at several times, in columns."""

@@ -63,15 +63,6 @@ class Event:
         """Components of the state that it needs."""
         return (self.name,)
 
-    @property
-    def has_rate(self) -> bool:
-        """Whether its rate of change is a component of the state."""
-        return f"{self.name}_dot" in self.module.STATE
-
-    def rate(self, t: float, y: Sequence[float] | NDArray[np.float64]) -> float:
-        """The rate of change."""
-        return float(y[self.module.STATE.index(f"{self.name}_dot")])
-
     def __call__(self, t: float, y: Sequence[float] | NDArray[np.float64]) -> float:
         """The component minus the value."""
         return float(y[self.module.STATE.index(self.name)]) - self.value

@@ -71,11 +71,10 @@ def integrate(
         Times in s of the states to return; by default the start and every step's end.
         States between steps are as accurate as the method.
     events : callable or sequence of callables, optional
-        ``event(t, y)`` changes its sign where the event occurs. Of a function one change of sign
-        is located in a step; of an `Event` of a coordinate also two, and with ``gauss4`` and
-        ``gauss8`` all of every event. Optional attributes are ``terminal`` (true: the integration
-        ends there) and ``direction`` (1: upwards only, -1: downwards only). An
-        `solvers.integration.events.Event` runs in compiled loops, too.
+        ``event(t, y)`` changes its sign where the event occurs. All changes within a step are
+        located, unless the value between them is smaller than its error. Optional attributes are
+        ``terminal`` (true: the integration ends there) and ``direction`` (1: upwards only, -1:
+        downwards only). An `solvers.integration.events.Event` runs in compiled loops, too.
     energy : bool, optional
         Whether to return the energy at these times.
     max_steps : int, optional

@@ -1,24 +1,23 @@
 """Record the samples and events of the steps of an integration."""
 
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Iterable
 
 import numpy as np
-from numpy.polynomial import Polynomial
-from numpy.polynomial.chebyshev import chebfit, chebpts1, chebroots, chebtrim
 from scipy.optimize import brentq
 
-from solvers.integration.events import Event
+from solvers.integration.crossings import (
+    NODES,
+    ROUGH_NODES,
+    Extremum,
+    approach,
+    may_recur,
+    separate_crossings,
+)
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array
-from solvers.integration.switching import Switch
 
-#: Attempts to find two crossings in a step; a polynomial that vanishes twice at both of its ends.
-PROBES, BUMP = 2, Polynomial([0, 0, 1, -2, 1])
-#: Degree of the polynomial of an event in a long step, and its relative rounding errors.
-DEGREE, EPSILON = 24, 1e-13
-#: Roots, in [-1, 1], whose distance or imaginary part is smaller count as a real double root.
-CLOSE = 1e-6
+#: States at several times of a step, in columns.
+Curve = Callable[[Array], Array]
 
 
 class Recorder:
@@ -55,30 +54,25 @@ class Recorder:
         self,
         end: float,
         state: Callable[[float], Array],
-        states: Callable[[Array], Array],
-        rough: Callable[[float], Array] | None = None,
+        states: Curve,
+        curves: Iterable[Curve],
     ) -> bool:
         """Record the step that ends at `end`; return whether an event ends the run.
 
         `state` gives the state at a time within the step, in the form of the problem, `states`
         those at several times in columns; where they raise `ArithmeticError`, nothing is recorded.
-        `rough` gives states approximately, where steps are long.
+        `curves` are approximations of these, each better than the one before.
         """
         t = self.t
 
-        def ordinary(time: float, state: Callable[[float], Array] = state) -> Array:
+        def ordinary(time: float) -> Array:
             if time == t:
                 return self.y.copy()
             return self.form.to_ordinary(time, state(time), self.y, time - t)
 
         values = [event(end, ordinary(end)) for event in self.events]
-        if rough:
-            curve = partial(ordinary, state=rough)
-            parts = [[*_parts(event, t, end, curve), end] for event in self.events]
-        else:
-            ends = zip(self.events, self._values, values, strict=True)
-            parts = [[*self._dips(event, x, y, end, ordinary), end] for event, x, y in ends]
-        roots = self._roots(t, parts, values, ordinary)
+        extrema = self._extrema(end, values, curves) if self.events else []
+        roots = self._roots(end, values, extrema, ordinary)
         stops = bool(roots) and _is_terminal(self.events[roots[-1][0]])
         until = roots[-1][1] if stops else end
         y, occurrences = ordinary(until), [(k, root, ordinary(root)) for k, root in roots]
@@ -94,38 +88,34 @@ class Recorder:
         self.t, self.y = self._outcome.end = until, y
         return stops
 
-    def _dips(
-        self,
-        event: EventFunction,
-        before: float,
-        after: float,
-        end: float,
-        ordinary: Callable[[float], Array],
-    ) -> list[float]:
-        """A time at which the event of a coordinate has another sign than at both ends of the step.
+    def _extrema(
+        self, end: float, values: list[float], curves: Iterable[Curve]
+    ) -> list[list[Extremum]]:
+        """Extrema of each event between which it occurs at most once in the step."""
+        begin, h, events = self.t, end - self.t, range(len(self.events))
+        approximations = iter(curves)
+        curve = next(approximations)
 
-        Values and velocities at the ends give a cubic polynomial; at its extremum, and then at that
-        of the polynomial of degree 4 through the value there, the event is evaluated.
-        """
-        if not isinstance(event, Event | Switch) or not event.has_rate:
-            return []
-        h, states = end - self.t, {self.t: self.y, end: ordinary(end)}
-        u, v = (h * event.rate(t, y) for t, y in states.items())
-        is_dip = before * u < 0 < after * v and before * after > 0
-        if not is_dip or not v * before - u * after < -2 * u * v:
-            return []
-        curve = Polynomial(
-            [before, u, 3 * (after - before) - 2 * u - v, u + v - 2 * (after - before)]
-        )
-        for _ in range(PROBES):
-            slope = curve.deriv()
-            part = float(brentq(slope, 0, 1))
-            time = self.t + part * h
-            value = event(time, ordinary(time))
-            if value * before < 0:
-                return [time]
-            curve += (value - curve(part)) * (BUMP / BUMP(part))
-        return []
+        def along(curve: Curve, k: int, parts: Array) -> Array:
+            times = begin + parts * h
+            states = self.form.to_ordinary(times, curve(times), self.y, times - begin)
+            pairs = zip(times.tolist(), states.T, strict=True)
+            return np.array([self.events[k](time, y.copy()) for time, y in pairs])
+
+        recurring = []
+        for k in events:
+            inside = along(curve, k, ROUGH_NODES[1:-1])
+            rough = np.array([self._values[k], *inside, values[k]])
+            if np.isfinite(rough).all() and may_recur(rough):
+                recurring.append(k)
+        extrema: list[list[Extremum]] = [[] for _ in events]
+        if recurring:
+            *_, curve = curve, *approximations
+        for k in recurring:
+            better = along(curve, k, NODES)
+            if np.isfinite(better).all():
+                extrema[k] = separate_crossings(self._values[k], better, values[k])
+        return extrema
 
     def _due(self, until: float) -> Array:
         """The times up to `until` to record that are not recorded yet."""
@@ -136,50 +126,34 @@ class Recorder:
 
     def _roots(
         self,
-        t: float,
-        parts: list[list[float]],
+        end: float,
         values: list[float],
+        extrema: list[list[Extremum]],
         ordinary: Callable[[float], Array],
     ) -> list[tuple[int, float]]:
-        """The events of a step and their times, in order, up to the first that is terminal.
+        """The events of a step and their times, in order, up to the first that is terminal."""
+        t, h, crossings = self.t, end - self.t, []
+        for k, event in enumerate(self.events):
+            begin, before = t, self._values[k]
 
-        Each event occurs at most once between successive times of its `parts`, the last of which is
-        the end of the step.
-        """
-        crossings = []
-        for k, (before, last) in enumerate(zip(self._values, values, strict=True)):
-            event, begin = self.events[k], t
-            for end in parts[k]:
-                after = last if end == parts[k][-1] else event(end, ordinary(end))
+            def value(part: float, event: EventFunction = event) -> float:
+                return event(t + part * h, ordinary(t + part * h))
+
+            for extremum in [*extrema[k], None]:
+                time, after = end, values[k]
+                if extremum:
+                    part, after = approach(extremum, (begin - t) / h, before, value)
+                    time = t + part * h
                 crossed = before != 0 and np.sign(before) != np.sign(after)
+                if extremum and after == 0:
+                    continue  # which side it is on is decided by the next extremum
                 if crossed and np.sign(after - before) * getattr(event, "direction", 0) >= 0:
-                    root = _root(event, ordinary, begin, end)
+                    root = _root(event, ordinary, begin, time)
                     crossings.append((abs(root - t), k, root))
-                before, begin = after, end
+                before, begin = after, time
         crossings.sort()
         terminal = [n for n, (_, k, _) in enumerate(crossings, 1) if _is_terminal(self.events[k])]
         return [(k, root) for _, k, root in crossings[: terminal[0] if terminal else None]]
-
-
-def _parts(
-    event: EventFunction, t: float, end: float, state: Callable[[float], Array]
-) -> list[float]:
-    """Times between the roots of an event in a step, by interpolation along states of the step.
-
-    After an event at the start, also one before the first root.
-    """
-    nodes = chebpts1(DEGREE + 1)
-    times = t + (nodes + 1) / 2 * (end - t)
-    values = np.array([event(float(time), state(float(time))) for time in times])
-    if np.isfinite(values).all():
-        roots = chebroots(chebtrim(chebfit(nodes, values, DEGREE), EPSILON * np.abs(values).max()))
-        real = np.sort(roots[np.abs(roots.imag) < CLOSE].real)
-        real = real[(real > -1 + CLOSE) & (real < 1 - CLOSE)]
-        starts_at_event = event(t, state(t)) == 0
-        ends = np.concatenate([[-1.0], real]) if starts_at_event else real
-        between = (ends[1:] + ends[:-1]) / 2
-        return [float(t + (x + 1) / 2 * (end - t)) for x in between]
-    return []
 
 
 def _is_terminal(event: EventFunction) -> bool:

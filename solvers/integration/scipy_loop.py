@@ -41,7 +41,8 @@ def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag)
         if solver.status == "failed":
             return Status.STEP_TOO_SMALL
         outcome.steps += 1
-        if recorder.advance(solver.t, *_states_within(problem, solver)):
+        state, states = _states_within(problem, solver)
+        if recorder.advance(solver.t, state, states, [states]):
             return Status.EVENT
     return Status.FINISHED
 

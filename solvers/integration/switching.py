@@ -36,19 +36,12 @@ class Switch:
     form: Form  # with the signs that are held
     index: int
     terminal: ClassVar[bool] = True
-    has_rate: ClassVar[bool] = True
 
     def __call__(self, t: float, y: Array) -> float:
         """The switching function at an ordinary state."""
-        return self._row(0, t, y) or TINY * self.form.signs[self.index]
-
-    def rate(self, t: float, y: Array) -> float:
-        """Its rate of change."""
-        return self._row(1, t, y)
-
-    def _row(self, row: int, t: float, y: Array) -> float:
         try:
-            return float(self.form.switches(t, y)[row][self.index])
+            value = float(self.form.switches(t, y)[0][self.index])
+            return value or TINY * self.form.signs[self.index]
         except ArithmeticError as error:
             raise NotFiniteError(f"a switching function at t = {t}: {error}") from error
 

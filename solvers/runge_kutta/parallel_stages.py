@@ -121,8 +121,11 @@ class Polynomial:
         x = 2 * (self.origin + ratio * c) - 1
         return ratio * np.asarray(legval(x, self.coefficients), float).T
 
-    def change(self, h: float) -> Array:
-        """The change of y over the first part of the step, of size `h`, with a lower order."""
+    def change(self, h: Array) -> Array:
+        """The changes of y, in columns, over first parts of the step, of sizes `h`.
+
+        They have a lower order than the step.
+        """
         integral = legint(self.coefficients, lbnd=-1, scl=0.5)
         return np.asarray(legval(2 * h / self.h - 1, integral), float)
 

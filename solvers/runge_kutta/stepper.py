@@ -5,12 +5,14 @@ order and need no further coefficients.
 """
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.io.suggestion import shortened
+from solvers.runge_kutta.continuous_extension import ContinuousExtension
 from solvers.runge_kutta.lagrange import lagrange
 from solvers.runge_kutta.newton import Newton, Stages, Start, UnsolvedError
 from solvers.runge_kutta.parallel_stages import NoFixedPointError, ParallelStages, Polynomial
@@ -42,6 +44,7 @@ class Step(NamedTuple):
     polynomial: Polynomial | None = None  # of a method with parallel stages
     contraction: float = 0.0  # of its iteration
     stages: Stages | None = None  # of a method that solves them by Newton's iteration
+    k: Array | None = None  # derivatives at the stages of another method
 
     @property
     def last(self) -> Polynomial | Stages | None:
@@ -97,6 +100,11 @@ class Stepper:
         """Evaluations of the Jacobian."""
         return self._newton.njev if self._newton else 0
 
+    @cached_property
+    def extension(self) -> ContinuousExtension:
+        """The continuous extension of its steps."""
+        return ContinuousExtension.of(self._tableau)
+
     def _slopes(self, t: float, y: Array) -> Array:
         assert self._jacobian is not None
         return evaluated("Jacobian", self._jacobian, t, y, (len(y), len(y)))
@@ -132,7 +140,7 @@ class Stepper:
         k = self._explicit(t, y, h, first)
         end = y + h * (self._b @ k)
         error = h * (self._error_weights @ k) if self._tableau.b_hat else np.zeros((1, len(y)))
-        return Step(end, error, k[-1] if self._tableau.is_fsal else None)
+        return Step(end, error, k[-1] if self._tableau.is_fsal else None, k=k)
 
     def _parallel(
         self,

@@ -189,21 +189,13 @@ class Batch:
 def _event(form: Form, event: Event | Switch, pauses: bool) -> tuple[float | int, ...]:
     """An event as a record of type ``Event`` in ``c/layout.h``."""
     if isinstance(event, Switch):
-        return (0.0, 0.0, 0.0, 0, event.index, -1, 0, 1, 0, 0, 0, 1)
+        return (0.0, 0.0, 0.0, 0, event.index, 0, 1, 0, 0, 0, 1)
     # a motion that pauses has room for every occurrence
     extremes_only = isinstance(event, Extremum) and not pauses
     component = form.locate(event.name)
     extremum = form.locate(event.coordinate) if isinstance(event, Extremum) else (False, 0)
     assert component is not None
     assert extremum is not None
-    rate = form.locate_rate(event.name)
     angle = event.value, np.sin(event.value), np.cos(event.value)
     flags = event.direction, int(event.terminal), int(extremes_only)
-    return (
-        *angle,
-        *map(int, component),
-        -1 if rate is None else rate,
-        *flags,
-        *map(int, extremum),
-        0,
-    )
+    return (*angle, *map(int, component), *flags, *map(int, extremum), 0)

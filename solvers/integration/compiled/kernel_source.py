@@ -4,16 +4,16 @@ It consists of the module's generated header, the method's stages written out fr
 tableau, and the handwritten files in the folder ``c``.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from solvers.integration.compiled.implicit_source import IMPLICIT_FILES, implicit
 from solvers.integration.compiled.layout import MAX_EVENTS, SOURCES, declarations
 from solvers.integration.compiled.literals import real, row
 from solvers.integration.problem import SHORTEST
+from solvers.runge_kutta.continuous_extension import ContinuousExtension, elevated
 from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.parallel_stages import (
-    bernstein_matrix,
     error_power,
     legendre_matrix,
     symplectic_ratios,
@@ -35,7 +35,7 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 {step_h}
 {method}
 {motion_h}
-{dip_h}
+{extension}
 {within_step_h}
 {integrator_c}
 {probe_h}
@@ -156,12 +156,28 @@ static const stage_vector RATIOS[STAGES] = {{
 }};
 static const stage_vector NODES = {{{nodes}}}, WEIGHTS = {{{weights}}};
 static const double ERROR_POWER = {error_power};
-static const double BERNSTEIN[STAGES][STAGES + 1] = {{
-{bernstein}
+{parallel_h}"""
+
+#: Matrices of the continuous extension: columns of the first and last, rows of
+#: others. Each method of a family has a natural extension.
+EXTENSION = """\
+enum {{ DEGREE = {degree}, ROUNDS = {rounds}, EXTENSION_NODES = {nodes} }};
+static const int STAGES_OF[] = {{{stages}}};
+static const double NATURAL[][STAGES][DEGREE + 1] = {{
+{natural}
 }};
-{parallel_h}
-{roots_h}
-"""
+static const double EXTENSION_C[EXTENSION_NODES] = {{{c}}};
+static const double FIRST[EXTENSION_NODES][STAGES] = {{
+{first}
+}};
+static const double INTEGRALS[EXTENSION_NODES][EXTENSION_NODES] = {{
+{integrals}
+}};
+static const double EXTENDED[EXTENSION_NODES][EXTENSION_NODES + 1] = {{
+{extended}
+}};
+{extension_h}
+{roots_h}"""
 
 WEIGHTED_SUM = """\
 static inline real {name}(real h, real (*k)[DIM], int n)
@@ -257,7 +273,7 @@ def program(
         to_ordinary="\n".join(f"    {line}" for line in equations.to_ordinary),
         single_h=_source("single.h"),
     )
-    files = ("lanes.h", "step.h", "motion.h", "dip.h", "within_step.h", "integrator.c", "probe.h")
+    files = ("lanes.h", "step.h", "motion.h", "within_step.h", "integrator.c", "probe.h")
     return PROGRAM.format(
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
         constants=_constants(tableau),
@@ -267,6 +283,7 @@ def program(
         rate=", ".join(map(str, rates)),
         compensated=int(compensated),
         method=_method(tableau),
+        extension=_extension(tableau),
         single="" if lanes else single,
         **{name.replace(".", "_"): _source(name) for name in files},
     )
@@ -313,22 +330,33 @@ def _equations(equations: Equations, tableau: Tableau) -> str:
 
 def _parallel(tableau: Tableau) -> str:
     """Matrices by their columns."""
-    matrices = {
-        "ratios": symplectic_ratios(tableau),
-        "legendre": legendre_matrix(tableau),
-        "bernstein": bernstein_matrix(tableau.stages),
-    }
-    columns = {
-        name: ",\n".join(f"    {row(column)}" for column in matrix.T)
-        for name, matrix in matrices.items()
-    }
+    ratios, legendre = symplectic_ratios(tableau), legendre_matrix(tableau)
     return PARALLEL.format(
         nodes=", ".join(map(real, tableau.c)),
         weights=", ".join(map(real, tableau.b)),
         error_power=real(error_power(tableau.stages)),
         parallel_h=_source("parallel.h"),
+        ratios=_rows(ratios.T),
+        legendre=_rows(legendre.T),
+    )
+
+
+def _extension(tableau: Tableau) -> str:
+    extension, members = ContinuousExtension.of(tableau), tableau.members
+    degree = max(len(extension.natural) - 1, 3)  # as that of switching functions
+    naturals = [elevated(ContinuousExtension.of(member).natural, degree) for member in members]
+    return EXTENSION.format(
+        degree=degree,
+        stages=", ".join(str(member.stages) for member in members),
+        rounds=extension.rounds,
+        nodes=len(extension.nodes),
+        natural=",\n".join(f"{{{_rows(natural.T)}}}" for natural in naturals),
+        c=", ".join(map(real, extension.nodes)),
+        first=_rows(extension.first),
+        integrals=_rows(extension.integrals),
+        extended=_rows(extension.extended.T),
+        extension_h=_source("extension.h"),
         roots_h=_source("roots.h"),
-        **columns,
     )
 
 
@@ -354,6 +382,10 @@ def _method(tableau: Tableau) -> str:
         solution=_explicit(tableau),
         sums="\n".join(WEIGHTED_SUM.format(name=name, sum=_sum(w)) for name, w in sums.items()),
     )
+
+
+def _rows(matrix: Iterable[Iterable[Number]]) -> str:
+    return ",\n".join(f"    {row(numbers)}" for numbers in matrix)
 
 
 def _sum(weights: Sequence[Number]) -> str:

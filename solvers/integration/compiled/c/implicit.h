@@ -62,6 +62,20 @@ static inline double increment(const Method *method, double h, const double (*k)
     return sum;
 }
 
+/* The method of the step, of those of a family. */
+static inline int member_of(const State *start)
+{
+    return VARIES_ORDER ? (int)start->order[0] : 0;
+}
+
+/* The change of component n that belongs to stage m. */
+static inline double stage_change(
+    const State *end, const StepResult *result, const double *h, int part, int m, int n)
+{
+    (void)result; (void)part;
+    return *h*end->polynomial[m*DIM + n];
+}
+
 /* The state after h; with step control also the norm of the estimated error. */
 static __attribute__((noinline)) void step(
     const Task *task, const State *restrict start, double h, const double *restrict params,

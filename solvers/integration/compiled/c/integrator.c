@@ -20,13 +20,21 @@ static inline real count_turns(const State *start, real h, State *end)
 
 enum { MAX_REDUCTIONS = 25, STEPS_BETWEEN_CHECKS = 64 };
 
+/* Of each event; not set before they are needed, since they are large. */
+typedef struct {
+    real coefficients[MAX_EVENTS][EXTENSION_DEGREE + 1];
+    Bracket brackets[LANES][MAX_BRACKETS];
+} Workspace;
+
 typedef struct {
     Task *task;
+    Workspace *workspace;
     Motion motion;
     State end;
     real h;                                     /* length of the step */
     real before[MAX_EVENTS], after[MAX_EVENTS]; /* event values at its start and end */
     real next_sample;                           /* time of the next sample, or NaN */
+    mask several[MAX_EVENTS];                   /* whether an event may occur several times */
     mask advancing, starting, loaded;           /* starting motions are new; loaded ones resume */
     WithinStep within[LANES];
 } Lanes;
@@ -139,6 +147,24 @@ static void fail_step(Motion *motion, WithinStep *within, int lane, double h)
 #endif
 }
 
+/* Use the end of a substep of a lane; `numbers` are those of its state. */
+static void use_state(
+    Lanes *lanes, int lane, double h, const State *state, const double *numbers)
+{
+    WithinStep *within = &lanes->within[lane];
+    double value = 0, slope = 0;
+    if (within->mode == LOCATE) {
+        const Event *event = &lanes->task->events[within->bracket->event];
+        const real values = event_value(event, state, lanes->motion.params);
+        value = LANE(values, lane);
+        if (within->bracket->tries) {
+            slope = event_slope(event, state, lanes->motion.params, lane);
+            LANE(lanes->motion.evaluations, lane) += 1;
+        }
+    }
+    use_substep(lanes->task, within, h, numbers, value, slope);
+}
+
 #if INTERPOLATES
 /* The state after a part h of the step of the only lane; returns whether it is finite. */
 static int state_within(Lanes *lanes, WithinStep *within, double h, State *state)
@@ -160,70 +186,42 @@ static int substep(Lanes *lanes, WithinStep *within, double h)
 {
     const Task *task = lanes->task;
     State state;
-    double numbers[STATE_SIZE], value = 0;
+    double numbers[STATE_SIZE];
     const int is_finite = state_within(lanes, within, h, &state);
     read_lane(&state, STATE_SIZE, 0, numbers);
-    if (within->mode == LOCATE) {
-        value = event_value(&task->events[within->bracket->event], &state,
-                            lanes->motion.params);
-    }
-    use_substep(task, within, h, numbers, value);
+    use_state(lanes, 0, h, &state, numbers);
     return is_finite;
 }
 
-/* Bracket all crossings of an event within the step of the only lane; returns whether all states are
-   finite. */
-static int bracket_crossings(Lanes *lanes, WithinStep *within, int e, double before, double after)
-{
-    const Event *event = &lanes->task->events[e];
-    double coefficients[STAGES + 1], parts[MAX_ROOTS + 1];
-    event_polynomial(event, &lanes->motion.state, &lanes->end, before, coefficients);
-    const int roots = separate_roots(coefficients, parts), count = roots > 1 ? roots - 1 : 0;
-    const double h = within->full_h;
-    Bracket bracket = {.event = e, .near_value = before};
-    if (before == 0 && roots > 1) {    /* the event at the start is not in this step, others are */
-        bracket.near_value = copysign(DBL_MIN, first_sign(coefficients));
-    }
-    for (int k = 0; k <= count; k++) {
-        State state;
-        bracket.far = k < count ? parts[k]*h : h;
-        if (k < count) {
-            if (!state_within(lanes, within, bracket.far, &state)) {
-                return 0;
-            }
-            bracket.far_value = event_value(event, &state, lanes->motion.params);
-            read_lane(&state, STATE_SIZE, 0, bracket.far_state);
-        } else {
-            bracket.far_value = after;
-            memcpy(bracket.far_state, within->full_end, sizeof bracket.far_state);
-        }
-        if (k < count && bracket.far_value == 0) {
-            continue;       /* which side it is on is decided by the next part */
-        }
-        if (has_crossed(event, bracket.near_value, bracket.far_value)) {
-            add_bracket(within, &bracket);
-        }
-        bracket.near = bracket.far;
-        bracket.near_value = bracket.far_value;
-    }
-    return 1;
-}
 #endif
 
-#if !INTERPOLATES
-/* Whether an event with equal signs at both ends of the step may occur twice in it. */
-static inline mask dips(const Lanes *lanes, int e)
+/* Bracket all crossings of an event within the step of a lane. */
+static void bracket_crossings(const Lanes *lanes, int lane, WithinStep *within, int e)
 {
     const Event *event = &lanes->task->events[e];
-    const real *params = lanes->motion.params;
-    if (!has_rate(event)) {
-        return (mask){0};
+    const double before = LANE(lanes->before[e], lane), after = within->after[e];
+    double coefficients[EXTENSION_DEGREE + 1];
+    Extremum extrema[MAX_ROOTS];
+    Bracket bracket = {.event = e, .is_pending = 1, .tries = MAX_TRIES, .near_value = before};
+    int count = 0;
+    if (MASK_LANE(lanes->several[e], lane)) {
+        read_lane(lanes->workspace->coefficients[e], EXTENSION_DEGREE + 1, lane, coefficients);
+        count = separate_crossings(coefficients, extrema);
     }
-    const real u = lanes->h*event_rate(event, &lanes->motion.state, params);
-    const real v = lanes->h*event_rate(event, &lanes->end, params);
-    return may_dip(lanes->before[e], u, lanes->after[e], v);
+    if (count == 0 && !is_crossed(event, before, after)) {
+        return;     /* an event at the start is not in this step */
+    }
+    for (int k = 0; k < count; k++) {
+        bracket.far = extrema[k].part*within->full_h;
+        bracket.curvature = extrema[k].curvature/(within->full_h*within->full_h);
+        add_bracket(within, &bracket);
+        bracket.near = bracket.far;
+    }
+    bracket.tries = 0;
+    bracket.far = within->full_h;
+    bracket.far_value = after;
+    add_bracket(within, &bracket);
 }
-#endif
 
 /* Evaluate a lane's step; return whether its motion moves to the end of the step. */
 static int process_step(Lanes *lanes, int lane, int accepted, int failed)
@@ -247,36 +245,11 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
         }
         begin_within_step(within, h, end);
         for (int e = 0; e < task->event_count; e++) {
-            const double before = LANE(lanes->before[e], lane);
-            const double after = within->after[e] = LANE(lanes->after[e], lane);
-#if INTERPOLATES
-            if (!bracket_crossings(lanes, within, e, before, after)) {
-                fail_step(motion, within, lane, h);
-                return 0;
-            }
-#else
-            const mask dip = dips(lanes, e);
-            const int crossed = is_crossed(&task->events[e], before, after);
-            if (!crossed && !MASK_LANE(dip, lane)) {
-                continue;
-            }
-            Bracket bracket = {.event = e, .near_value = before, .far = h, .far_value = after};
-            memcpy(bracket.far_state, within->full_end, sizeof bracket.far_state);
-            if (!crossed) {
-                const Event *event = &task->events[e];
-                const real start_rate = event_rate(event, &motion->state, motion->params);
-                const real end_rate = event_rate(event, &lanes->end, motion->params);
-                const double u = bracket.near_slope = h*LANE(start_rate, lane);
-                const double v = bracket.far_slope = h*LANE(end_rate, lane);
-                bracket.probes = PROBES;
-                bracket.aim = h*cubic_extremum(before, u, after, v);
-            }
-            add_bracket(within, &bracket);
-#endif
+            within->after[e] = LANE(lanes->after[e], lane);
+            bracket_crossings(lanes, lane, within, e);
         }
     } else {
-        const Bracket *bracket = within->bracket;
-        use_substep(task, within, h, end, bracket ? LANE(lanes->after[bracket->event], lane) : 0);
+        use_state(lanes, lane, h, &lanes->end, end);
     }
     double next;
     while ((next = next_h(task, within, LANE(motion->state.t, lane),
@@ -376,6 +349,42 @@ static int finish_step(Lanes *lanes, int lane, int returning)
     return advances && within->mode == IDLE;
 }
 
+/* Evaluate the events at the end of a step; returns the lanes in which one may occur. */
+static __attribute__((noinline)) mask events_in_step(Lanes *lanes, const StepResult *result)
+{
+    const Task *task = lanes->task;
+    const State *start = &lanes->motion.state, *end = &lanes->end;
+    Workspace *workspace = lanes->workspace;
+    mask occurring = {0}, several = {0};
+    for (int e = 0; e < task->event_count; e++) {
+        const Event *event = &task->events[e];
+        const real before = lanes->before[e], after = lanes->after[e] =
+            event_value(event, end, lanes->motion.params);
+        const mask moves = less_than(before, splat(0.0)) | less_than(splat(0.0), before);
+        const mask recurs = has_several(event, start, end, result, lanes->h, lanes->motion.params,
+                                        before, after, workspace->coefficients[e]);
+        lanes->several[e] = lanes->advancing & (recurs | ~moves);
+        several |= lanes->several[e];
+        occurring |= has_crossed(event, before, after);
+    }
+    if (!any(several)) {
+        return occurring;
+    }
+    real changes[EXTENSION_NODES][DIM];
+    lanes->motion.evaluations += select(several, splat(ROUNDS*EXTENSION_NODES), splat(0.0));
+    extend(start, end, result, lanes->h, lanes->motion.params, changes);
+    for (int e = 0; e < task->event_count; e++) {
+        const Event *event = &task->events[e];
+        real *coefficients = workspace->coefficients[e];
+        if (ROUNDS > 0 && !event->is_switch) {
+            extended_polynomial(event, start, changes, lanes->before[e], coefficients);
+        }
+        switching_polynomial(event, start, end, lanes->h, lanes->motion.params, lanes->before[e],
+                             lanes->after[e], EXTENSION_DEGREE, coefficients);
+    }
+    return occurring | several;
+}
+
 /* One step in every lane; returns the lanes that need to be processed one by one. */
 static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask *failed)
 {
@@ -424,17 +433,8 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     motion->rejected += select(advancing & ~*accepted, one, splat(0.0));
     motion->reductions = select(*accepted, splat(0.0), motion->reductions);
     mask attention = *failed | last | ~advancing | less_than(lane_fabs(motion->h), motion->min_h);
-    for (int e = 0; e < task->event_count; e++) {
-        lanes->after[e] = event_value(&task->events[e], end, motion->params);
-        attention |= *accepted & has_crossed(&task->events[e], lanes->before[e], lanes->after[e]);
-#if !INTERPOLATES
-        attention |= *accepted & dips(lanes, e);
-#else
-        double coefficients[STAGES + 1];
-        event_polynomial(&task->events[e], state, end, lanes->before[e], coefficients);
-        const int roots = sign_changes(coefficients);
-        attention |= -(mask)(roots > 1 || (roots == 1 && lanes->before[e] == 0));
-#endif
+    if (task->event_count) {
+        attention |= *accepted & events_in_step(lanes, &result);
     }
     attention |= less_than(splat((double)task->max_steps), motion->steps + 2.0);
     if (task->samples < 0) {
@@ -479,11 +479,12 @@ void run(Task *task)
     __builtin_ia32_vzeroupper();
 #endif
     Lanes lanes = {.task = task};
-    Bracket brackets[LANES][MAX_BRACKETS];      /* not set, since they are large */
+    Workspace workspace;
+    lanes.workspace = &workspace;
     clock_t started = 0;
     int returning = 0, busy = 0;
     for (int lane = 0; lane < LANES; lane++) {
-        lanes.within[lane].brackets = brackets[lane];
+        lanes.within[lane].brackets = workspace.brackets[lane];
         load_motion(&lanes, lane);
         update_lane(&lanes, lane);
         busy += lanes.within[lane].mode != IDLE;

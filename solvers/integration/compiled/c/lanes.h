@@ -9,6 +9,8 @@
 enum { LANES = 1 };
 typedef double real;
 typedef int64_t mask;
+typedef double half;
+enum { PARTS = 1 };
 #else
 /* Two registers: the second one hides the latency of the first. */
 #if defined __AVX512F__
@@ -23,9 +25,11 @@ typedef double real __attribute__((vector_size(2*REGISTER)));
 typedef int64_t mask __attribute__((vector_size(2*REGISTER)));
 typedef double half __attribute__((vector_size(REGISTER)));
 typedef int64_t half_mask __attribute__((vector_size(REGISTER)));
+enum { PARTS = 2 };
 #endif
 
-/* One lane of a real or of a mask. */
+/* One register of a real; one lane of a real or of a mask. */
+#define PART(values, part) (((half *)&(values))[part])
 #define LANE(values, lane) (((double *)&(values))[lane])
 #define MASK_LANE(values, lane) (((int64_t *)&(values))[lane])
 
@@ -76,6 +80,12 @@ static inline int any(mask condition)
 #endif
 
 static inline real lane_fabs(real x) { return as_real(as_mask(x) & INT64_MAX); }
+
+#ifdef ONE_LANE
+static inline half half_fabs(half x) { return lane_fabs(x); }
+#else
+static inline half half_fabs(half x) { return (half)((half_mask)x & INT64_MAX); }
+#endif
 
 static inline real lane_copysign(real x, real sign)
 {

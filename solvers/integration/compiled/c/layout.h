@@ -62,7 +62,6 @@ typedef struct {
     double cosine;
     int64_t is_angle;           /* whether `index` counts angles, or else components of z */
     int64_t index;
-    int64_t rate_index;         /* component of z that is its derivative, or -1 */
     int64_t direction;
     int64_t terminal;
     int64_t extremes_only;      /* whether only the rows of smallest and largest value are kept */

@@ -85,20 +85,6 @@ static real switching_rate(int64_t index, const State *state, const real *params
 }
 #endif
 
-/* The rate of change of an event's value, if `has_rate`. */
-static inline int has_rate(const Event *event) { return event->rate_index >= 0 || event->is_switch; }
-
-static inline real event_rate(const Event *event, const State *state, const real *params)
-{
-#if HAS_SWITCHES
-    if (event->is_switch) {
-        return switching_rate(event->index, state, params);
-    }
-#endif
-    (void)params;
-    return state->z[event->rate_index];
-}
-
 /* A function whose sign changes at the event. Far from it an angle need not be exact. */
 static real event_value(const Event *event, const State *state, const real *params)
 {
@@ -118,6 +104,21 @@ static real event_value(const Event *event, const State *state, const real *para
     const real sine = s*event->cosine - c*event->sine;
     const real exact = select(less_than(lane_fabs(sine), splat(5e-16)), splat(0.0), sine);
     return select(less_than(lane_fabs(rough), splat(1.0)), exact, rough);
+}
+
+/* Its derivative, up to a positive factor for an angle. */
+static double event_slope(const Event *event, const State *state, const real *params, int lane)
+{
+    real derivative[DIM];
+#if HAS_SWITCHES
+    if (event->is_switch) {
+        const real rate = switching_rate(event->index, state, params);
+        return ((const double *)&rate)[lane];
+    }
+#endif
+    RHS(state->t, state->z, params, derivative);
+    return event->is_angle ? LANE(state->z[RATE[event->index]], lane)
+                           : LANE(derivative[event->index], lane);
 }
 
 /* Whether the event lies between a value x before a step and a value y after it. */

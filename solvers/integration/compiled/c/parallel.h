@@ -235,6 +235,21 @@ static inline void collocate(
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
 }
 
+/* The method of the step, of those of a family. */
+static inline int member_of(const State *start)
+{
+    (void)start;
+    return 0;
+}
+
+/* The change of component n that belongs to a Legendre polynomial. */
+static inline double stage_change(
+    const State *end, const StepResult *result, const double *h, int part, int m, int n)
+{
+    (void)result; (void)h; (void)part;
+    return end->polynomial[n*STAGES + m];
+}
+
 /* The state after h; with step control also the norm of the estimated error. A step whose error is
    too large ends early. */
 static __attribute__((noinline)) void step(

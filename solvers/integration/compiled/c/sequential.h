@@ -21,6 +21,21 @@ static inline real squared_error_norm(
     return first*first/(first + 0.01*second + 1e-300);
 }
 
+/* The method of the step, of those of a family. */
+static inline int member_of(const State *start)
+{
+    (void)start;
+    return 0;
+}
+
+/* The change of component n that belongs to stage m, in one register of a real. */
+static inline half stage_change(
+    const State *end, const StepResult *result, const real *h, int part, int m, int n)
+{
+    (void)end;
+    return PART(*h, part)*PART(result->k[m][n], part);
+}
+
 /* The state after h; with step control also the norm of the estimated error. */
 static __attribute__((noinline)) void step(
     const Task *task, const State *restrict start, real h, const real *restrict params,
@@ -43,6 +58,9 @@ static __attribute__((noinline)) void step(
         end->derivative[n] = k[STAGES - 1][n];
     }
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
+    if (task->event_count > 0) {
+        memcpy(result->k, k, sizeof k);
+    }
     for (int n = 0; n < DIM && !task->fixed_h; n++) {
         error[0][n] = estimate(h, k, n);
         if (ESTIMATES > 1) {

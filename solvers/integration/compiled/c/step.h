@@ -110,6 +110,7 @@ typedef struct {
     real evaluations;       /* of the right-hand side */
     real jacobians;         /* evaluations of the Jacobian */
     real contraction;       /* of the iteration of the stages, by each of its evaluations */
+    real k[IS_EXPLICIT*STAGES][DIM];    /* derivatives at the stages of an explicit method */
 } StepResult;
 
 /* Mean square of `values`, relative to the tolerances at states x and y. */

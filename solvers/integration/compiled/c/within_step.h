@@ -2,20 +2,18 @@
    states at sample times. Each substep is a step of the same method from the same state, with a
    shorter h. */
 
-enum { MAX_SUBSTEPS = 100, MAX_BRACKETS = (INTERPOLATES ? 8 : 2)*MAX_EVENTS };
+enum { MAX_SUBSTEPS = 100, MAX_TRIES = 10, MAX_BRACKETS = (MAX_ROOTS + 1)*MAX_EVENTS };
 
 typedef enum { IDLE, ADVANCE, LOCATE, SAMPLE } Mode;
 
-/* A crossing of an event between two parts of a step: its value has different signs there. */
+/* A part of a step with at most one crossing of an event. Those of an event are adjacent. */
 typedef struct {
     int event;
+    int is_pending;                         /* not selected yet */
+    int tries;                              /* to find an extremum at its end; then that is closed */
+    double curvature;                       /* second derivative there, by a polynomial */
     double near, near_value;                /* an h before the event */
-    double far, far_value, far_state[STATE_SIZE];   /* and one not before it */
-    /* two crossings are sought where the signs are equal, by this number of attempts */
-    int probes;
-    double aim;                             /* h of the next attempt */
-    double near_slope, far_slope;           /* derivatives times the step */
-    int is_void;                            /* there is no crossing */
+    double far, far_value;                  /* and one not before it */
 } Bracket;
 
 typedef struct {
@@ -28,8 +26,8 @@ typedef struct {
     int terminal;                           /* the event that ends the motion, or -1 */
     Bracket *brackets;                      /* of each event in ascending order */
     int bracket_count;
-    uint64_t pending;                       /* brackets to be reduced, one bit each */
     Bracket *bracket;                       /* the one being reduced, or NULL */
+    double far_state[STATE_SIZE];           /* state at its end */
     int substeps, side;
     double resolution;                      /* difference below which times are equal */
 } WithinStep;
@@ -40,9 +38,6 @@ typedef struct {
 static double next_event_h(const WithinStep *within)
 {
     const Bracket *bracket = within->bracket;
-    if (bracket->probes) {
-        return bracket->aim;
-    }
     const double x = bracket->near, y = bracket->far;
     const double u = bracket->near_value, v = bracket->far_value;
     const double aim = within->substeps < MAX_SUBSTEPS/2 ? (x*v - y*u)/(v - u) : (x + y)/2;
@@ -73,27 +68,27 @@ static double next_sample_h(const Task *task, WithinStep *within, double t, doub
 
 static void add_bracket(WithinStep *within, const Bracket *bracket)
 {
-    if (within->bracket_count < MAX_BRACKETS) {
-        within->pending |= (uint64_t)1 << within->bracket_count;
-        memcpy(&within->brackets[within->bracket_count++], bracket, sizeof *bracket);
-    }
+    memcpy(&within->brackets[within->bracket_count++], bracket, sizeof *bracket);
 }
 
 /* Select a pending bracket, those of terminal events first; 0 if there is none. */
 static int select_bracket(const Task *task, WithinStep *within)
 {
-    int selected = -1;
+    Bracket *selected = NULL;
     for (int k = 0; k < within->bracket_count; k++) {
-        if (within->pending >> k & 1 && (selected < 0
-                || task->events[within->brackets[k].event].terminal
-                    > task->events[within->brackets[selected].event].terminal)) {
-            selected = k;
+        Bracket *bracket = &within->brackets[k];
+        if (bracket->is_pending && (!selected || task->events[bracket->event].terminal
+                                        > task->events[selected->event].terminal)) {
+            selected = bracket;
         }
     }
-    within->bracket = selected < 0 ? NULL : &within->brackets[selected];
-    within->pending &= selected < 0 ? 0 : ~((uint64_t)1 << selected);
+    within->bracket = selected;
+    if (selected) {
+        selected->is_pending = 0;
+        memcpy(within->far_state, within->full_end, sizeof within->far_state);
+    }
     within->substeps = within->side = 0;
-    return selected >= 0;
+    return selected != NULL;
 }
 
 /* Use a located event: it ends the motion or is recorded, unless the motion ends before it. */
@@ -109,9 +104,9 @@ static void use_event(const Task *task, WithinStep *within)
     if (task->events[event].terminal) {
         within->terminal = event;
         within->h = bracket->far;
-        memcpy(within->end, bracket->far_state, sizeof within->end);
+        memcpy(within->end, within->far_state, sizeof within->end);
     } else {
-        record_event(task, within->trajectory, event, bracket->far_state);
+        record_event(task, within->trajectory, event, within->far_state);
     }
 }
 
@@ -122,10 +117,13 @@ static double next_h(const Task *task, WithinStep *within, double t, double t_lo
         if (within->mode == LOCATE) {
             const Bracket *bracket = within->bracket;
             const int is_wide = fabs(bracket->far - bracket->near) > 2*within->resolution;
-            if (is_wide && within->substeps < MAX_SUBSTEPS && !bracket->is_void) {
-                return next_event_h(within);
+            if (bracket->tries) {
+                return bracket->far;
             }
-            if (!bracket->is_void) {
+            if (is_crossed(&task->events[bracket->event], bracket->near_value, bracket->far_value)) {
+                if (is_wide && within->substeps < MAX_SUBSTEPS) {
+                    return next_event_h(within);
+                }
                 use_event(task, within);
             }
         }
@@ -149,52 +147,56 @@ static void begin_within_step(WithinStep *within, double h, const double *end)
     within->full_h = within->h = h;
     memcpy(within->full_end, end, sizeof within->full_end);
     memcpy(within->end, end, sizeof within->end);
-    within->pending = 0;
     within->bracket_count = 0;
     within->bracket = NULL;
     within->terminal = -1;
 }
 
-/* Use the value at an extremum: if its sign differs, there is a crossing on either side. */
-static void use_probe(
-    const Task *task, WithinStep *within, double h, const double *state, double value)
+/* Whether an extremum may have another sign than the value near it. If so, `h` moves towards it. */
+static int approach_extremum(const Bracket *bracket, double value, double slope, double *h)
 {
-    Bracket *bracket = within->bracket;
-    const Event *event = &task->events[bracket->event];
-    const double x = bracket->near_value, y = bracket->far_value, full = within->full_h;
-    if (value*x < 0) {
-        Bracket second;
-        memcpy(&second, bracket, sizeof second);
-        second.probes = bracket->probes = 0;
-        second.near = bracket->far = h;
-        second.near_value = bracket->far_value = value;
-        memcpy(bracket->far_state, state, sizeof bracket->far_state);
-        bracket->is_void = !is_crossed(event, x, value);
-        if (is_crossed(event, value, y)) {
-            add_bracket(within, &second);
-        }
-        return;
+    const double move = -slope/bracket->curvature, aim = *h + move;
+    const int is_inside = (aim - bracket->near)*(bracket[1].far - aim) > 0;
+    /* the extremum is nearer to 0 by half of slope*move, if the curvature is right */
+    if (value*bracket->curvature > 0 && fabs(value) < 2*fabs(slope*move) && is_inside) {
+        *h = aim;
+        return 1;
     }
-    bracket->is_void = --bracket->probes == 0;
-    bracket->aim = full*quartic_extremum(
-        x, bracket->near_slope, y, bracket->far_slope, h/full, value);
+    return 0;
 }
 
-/* Use a substep of length h that ends at `state`, where the event being located has `value`. */
+/* Use the value and its derivative where a bracket may end and the next one start: at an extremum. If
+   the value is 0, the next bracket decides which side it is on. */
+static void close_bracket(WithinStep *within, double h, double value, double slope)
+{
+    Bracket *bracket = within->bracket, *next = bracket + 1;
+    const int has_same_sign = (value < 0) == (bracket->near_value < 0) && value != 0;
+    if (--bracket->tries && has_same_sign
+            && approach_extremum(bracket, value, slope, &bracket->far)) {
+        return;
+    }
+    bracket->tries = 0;
+    bracket->far_value = value != 0 ? value : bracket->near_value;
+    next->near = value != 0 ? h : bracket->near;
+    next->near_value = bracket->far_value;
+}
+
+/* Use a substep of length h that ends at `state`, where the event being located has `value`, and the
+   derivative `slope`. */
 static void use_substep(
-    const Task *task, WithinStep *within, double h, const double *state, double value)
+    const Task *task, WithinStep *within, double h, const double *state, double value,
+    double slope)
 {
     if (within->mode == SAMPLE) {
         append_row(task, within->trajectory, state);
         return;
     }
     Bracket *bracket = within->bracket;
-    if (bracket->probes) {
-        use_probe(task, within, h, state, value);
-        return;
-    }
     within->substeps++;
-    if ((value < 0) == (bracket->near_value < 0) && value != 0) {
+    if (bracket->tries) {
+        close_bracket(within, h, value, slope);
+        memcpy(within->far_state, state, sizeof within->far_state);
+    } else if ((value < 0) == (bracket->near_value < 0) && value != 0) {
         bracket->near = h;
         bracket->near_value = value;
         bracket->far_value *= within->side < 0 ? 0.5 : 1;
@@ -202,7 +204,7 @@ static void use_substep(
     } else {
         bracket->far = h;
         bracket->far_value = value;
-        memcpy(bracket->far_state, state, sizeof bracket->far_state);
+        memcpy(within->far_state, state, sizeof within->far_state);
         bracket->near_value *= within->side > 0 ? 0.5 : 1;
         within->side = 1;
     }

@@ -1,0 +1,160 @@
+"""Continuous extensions: states within a step, from the stages of the step.
+
+With θ^n/γ in place of 1/γ, the order conditions of trees with n nodes are linear equations for
+weights b(θ) of the stages. Those that can be fulfilled give an extension of some order without
+evaluations (M. Zennaro, Mathematics of Computation 46 (1986) 119-133): of collocation methods,
+their polynomial. An integral of the right-hand side along an extension has an order that is larger
+by one (W. H. Enright, K. R. Jackson, S. P. Nørsett, P. G. Thomsen, ACM Transactions on Mathematical
+Software 12 (1986) 193-218); explicit methods repeat this up to their own order.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, cached_property
+from math import comb
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebpts1
+from numpy.polynomial.legendre import leggauss, legvander
+from numpy.typing import NDArray
+
+from solvers.runge_kutta.order_conditions import Tree, density, trees
+from solvers.runge_kutta.parallel_stages import bernstein_matrix
+from solvers.runge_kutta.tableau import Tableau
+
+Array = NDArray[np.float64]
+#: Residuals of order conditions below this, and relative singular values, are rounding errors.
+ROUNDING = 1e-10
+#: Weight of the size of the coefficients, beside that of the errors of the next order.
+DAMPING = 1e-2
+
+
+@dataclass(frozen=True)
+class ContinuousExtension:
+    """Matrices that give the polynomials over a step from derivatives at stages and at nodes.
+
+    Polynomials have Bernstein coefficients on [0, 1], without the state at the start: with the
+    derivatives k of the stages in rows, those of the natural extension are ``h * natural @ k``.
+    Each of the `rounds` that follow evaluates the derivatives f at the nodes, first at the states
+    ``y + h * first @ k``, then at ``y + h * integrals @ f``; the result is ``h * extended @ f``.
+    """
+
+    natural_order: int
+    rounds: int
+    natural: Array  # of shape (degree + 1, stages)
+    nodes: Array
+    integrals: Array  # of the Lagrange polynomials, up to each node
+
+    @classmethod
+    def of(cls, tableau: Tableau) -> "ContinuousExtension":
+        """The extension of a method with stages of its own; that of Gauss methods is known."""
+        return _extension(tableau)
+
+    @cached_property
+    def first(self) -> Array:
+        """Natural weights at the nodes."""
+        return bernstein_values(len(self.natural) - 1, self.nodes) @ self.natural
+
+    @cached_property
+    def extended(self) -> Array:
+        """Bernstein coefficients of the integrals of the Lagrange polynomials of the nodes."""
+        return _integrals_of_lagrange(self.nodes)
+
+    def extend(
+        self, rhs: Callable[[float, Array], Array], t: float, y: Array, h: float, k: Array
+    ) -> Array:
+        """Bernstein coefficients of the extension of the method's order, over h."""
+        times, states = (t + h * self.nodes).tolist(), y + h * (self.first @ k)
+        for _ in range(self.rounds):
+            f = np.array(list(map(rhs, times, states)))
+            states = y + h * (self.integrals @ f)
+        return np.asarray(self.extended @ f)
+
+
+def bernstein_values(degree: int, x: Array) -> Array:
+    """Values of the Bernstein polynomials at each of `x`, in rows."""
+    powers = np.arange(degree + 1)
+    factors = np.array([comb(degree, k) for k in powers], float)
+    x = x[:, np.newaxis]
+    return np.asarray(factors * x**powers * (1 - x) ** (degree - powers))
+
+
+def elevated(coefficients: Array, degree: int) -> Array:
+    """Bernstein coefficients, in columns, of the same polynomials with another degree."""
+    x = (chebpts1(degree + 1) + 1) / 2
+    values = bernstein_values(len(coefficients) - 1, x) @ coefficients
+    return np.asarray(np.linalg.solve(bernstein_values(degree, x), values), float)
+
+
+def _integrals_of_lagrange(nodes: Array) -> Array:
+    n = len(nodes)
+    return np.asarray(bernstein_matrix(n) @ np.linalg.inv(legvander(2 * nodes - 1, n - 1)))
+
+
+@cache
+def _extension(tableau: Tableau) -> ContinuousExtension:
+    if tableau.is_parallel:  # derivatives k are Legendre coefficients
+        natural = bernstein_matrix(tableau.stages)
+        return ContinuousExtension(tableau.stages, 0, natural, np.zeros(1), np.zeros((1, 1)))
+    order, natural = _natural_extension(tableau)
+    rounds = max(tableau.order - order, 1) if tableau.is_explicit else 0
+    nodes = (leggauss(max(order + rounds, 3))[0] + 1) / 2
+    integrals = bernstein_values(len(nodes), nodes) @ _integrals_of_lagrange(nodes)
+    return ContinuousExtension(order, rounds, natural, nodes, integrals)
+
+
+def _natural_extension(tableau: Tableau) -> tuple[int, Array]:
+    """Its order, and the Bernstein coefficients of its weights.
+
+    Weights that the conditions leave free reduce the errors of the next order.
+    """
+    A, b = np.array(tableau.A, float), np.array(tableau.b, float)
+    stage_weights: dict[Tree, Array] = {}
+
+    def at_stages(tree: Tree) -> Array:
+        if tree not in stage_weights:
+            branches = [A @ at_stages(branch) for branch in tree]
+            stage_weights[tree] = np.prod([np.ones(len(b)), *branches], axis=0)
+        return stage_weights[tree]
+
+    def conditions(n: int, powers: int) -> tuple[Array, Array]:
+        """Those of trees with n nodes, for the coefficients of the powers of θ from 1 on."""
+        right = np.zeros((len(trees(n)), powers))
+        right[:, n - 1] = [1 / density(tree) for tree in trees(n)]
+        return np.array([at_stages(tree) for tree in trees(n)]), right
+
+    order, weights, free = 0, np.zeros((len(b), 0)), np.eye(len(b))
+    while True:
+        powers = order + 1
+        parts = [conditions(n, powers) for n in range(1, powers + 1)]
+        left, right = (np.concatenate(part) for part in zip(*parts, strict=True))
+        solved, others = _solve(left, right)
+        if np.abs(left @ solved - right).max() > ROUNDING:
+            break
+        order, weights, free = powers, solved, others
+    if free.shape[1]:
+        weights = np.pad(weights, ((0, 0), (0, 1)))
+        left, right = conditions(order + 1, order + 1)
+        damping = DAMPING * np.abs(left @ free).max()
+        left = np.concatenate([left, damping * np.eye(len(b))])
+        right = np.concatenate([right, np.zeros((len(b), order + 1))])
+        weights += free @ np.linalg.lstsq(left @ free, right - left @ weights)[0]
+        # at the end of the step they are b; the derivative at its start does not change
+        weights[:, 1:] += (b - weights.sum(axis=1))[:, np.newaxis] / order
+    return order, _to_bernstein(weights)
+
+
+def _solve(left: Array, right: Array) -> tuple[Array, Array]:
+    """The smallest solution of equations, and a basis of those with 0 on the right."""
+    scale = np.abs(left).max(axis=1, keepdims=True) + ROUNDING
+    u, sizes, v = np.linalg.svd(left / scale)
+    rank = int((sizes > ROUNDING * sizes[0]).sum())
+    solution = (v[:rank].T / sizes[:rank]) @ (u[:, :rank].T @ (right / scale))
+    return solution, v[rank:].T
+
+
+def _to_bernstein(powers: Array) -> Array:
+    """Bernstein coefficients, in rows, of polynomials without a constant term."""
+    d = powers.shape[1]
+    matrix = [[comb(k, j) / comb(d, j) for j in range(1, d + 1)] for k in range(d + 1)]
+    return np.array(matrix) @ powers.T
