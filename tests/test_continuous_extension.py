@@ -198,3 +198,30 @@ def test_no_crossing_near_an_extremum_is_missed(
         crossed = np.flatnonzero(np.sign(difference[1:]) != np.sign(difference[:-1]))
         fractions = difference[crossed] / (difference[crossed] - difference[crossed + 1])
         assert found == pytest.approx(grid[crossed] + fractions * grid[1], abs=1e-4)
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+@ignore_predictability()
+def test_shallow_dips_are_found_where_polynomials_are_less_accurate(backend: str) -> None:
+    random, end = np.random.default_rng(1), 1.5
+    grid, options = np.linspace(0, end, 6001), {"method": "gauss2", "h": 0.05}
+    pairs = 0
+    for k in range(8):
+        start = np.concatenate([random.uniform(-2, 2, 2), random.normal(0, 2, 2)])
+        run = integrate(dp, (0, end), start, {}, t_eval=grid, form="lagrangian", **options)
+        values = run.y[2 + k % 2]
+        slopes = np.diff(values)
+        extrema = np.flatnonzero(slopes[1:] * slopes[:-1] < 0) + 1
+        # nearer to an end of the step, the polynomial's extremum may be beyond it
+        inside = np.abs(grid[extrema] / 0.05 % 1 - 0.5) < 0.4
+        for place in extrema[inside][:3]:
+            level = values[place] + np.sign(values[place - 1] - values[place]) * 1e-5
+            found = integrate(
+                dp, (0, end), start, {}, events=Event(dp, dp.STATE[2 + k % 2], level),
+                form="lagrangian", backend=backend, **options,
+            ).t_events[0]  # fmt: skip
+            crossed = np.sign(values[1:] - level) != np.sign(values[:-1] - level)
+            # the whole run has as many, which are those of shorter steps
+            assert len(found) == crossed.sum()
+            pairs += 1
+    assert pairs > 6
