@@ -12,22 +12,30 @@ from solvers.integration.compiled.native import equations
 from solvers.runge_kutta.catalogue import load
 
 
-def seconds(run: Callable[[], object]) -> float:
-    """Time of one call."""
+#: Least duration in s of a burst of calls: a call alone, after other programs, would be timed with
+#: caches and branch predictors that hold nothing of it.
+BURST = 2e-4
+
+
+def seconds(run: Callable[[], object], calls: int = 1) -> float:
+    """Mean time of some successive calls."""
     start = time.perf_counter()
-    run()
-    return time.perf_counter() - start
+    for _ in range(calls):
+        run()
+    return (time.perf_counter() - start) / calls
 
 
 def median_times(runs: Mapping[str, Callable[[], object]], duration: float) -> dict[str, float]:
-    """Median time of each, called in turn, five times at least, for `duration` seconds."""
+    """Median time of a call of each, in bursts in turn, five at least, for `duration` seconds."""
     times: dict[str, list[float]] = {name: [] for name in runs}
-    for run in runs.values():
+    calls = {}
+    for name, run in runs.items():
         run()
+        calls[name] = max(1, round(BURST / seconds(run)))
     until = time.perf_counter() + duration
     while time.perf_counter() < until or len(next(iter(times.values()))) < 5:
         for name, run in runs.items():
-            times[name].append(seconds(run))
+            times[name].append(seconds(run, calls[name]))
     return {name: float(np.median(values)) for name, values in times.items()}
 
 
