@@ -11,7 +11,6 @@ from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.native import equations
 from solvers.runge_kutta.catalogue import load
 
-
 #: Least duration in s of a burst of calls: a call alone, after other programs, would be timed with
 #: caches and branch predictors that hold nothing of it.
 BURST = 2e-4
