@@ -15,9 +15,10 @@ from solvers.integration import compiled_loop, memory, validation
 from solvers.integration.accuracy_warnings import ensemble_warnings
 from solvers.integration.ensemble_run import EnsembleRun
 from solvers.integration.ensemble_solution import Ensemble
+from solvers.integration.ensemble_times import EnsembleTimes
 from solvers.integration.events import Event, Extremum
 from solvers.integration.inputs import Controller, Held
-from solvers.integration.problem import Options
+from solvers.integration.problem import EventFunction, Options
 from solvers.integration.solution import Interrupted
 from solvers.integration.step_stability import StepWarning, mark_unstable
 from solvers.integration.stop_flag import StopFlag
@@ -29,7 +30,7 @@ MOST_WORKERS = 1024
 
 def ensemble(
     module: GeneratedModule,
-    t_span: ArrayLike,
+    t_span: ArrayLike | tuple[float, ArrayLike],
     y0: Values,
     params: Values,
     *,
@@ -41,6 +42,7 @@ def ensemble(
     t_eval: ArrayLike | None = None,
     events: Event | Sequence[Event] = (),
     occurrences: int = 1,
+    skip: int | Sequence[int] = 0,
     max_steps: int = 1_000_000,
     backend: str | None = None,
     compensated: bool = False,
@@ -48,25 +50,31 @@ def ensemble(
     stop: StopFlag | None = None,
     inputs: Held | Controller | Values | None = None,
 ) -> Ensemble:
-    """Integrate many motions over the same time span.
+    """Integrate many motions.
 
     The results of a motion depend neither on the other motions nor on `workers`.
 
     Parameters
     ----------
-    module, t_span, method, form, rtol, atol, h, max_steps, backend, compensated
+    module, method, form, rtol, atol, h, max_steps, backend, compensated
         As in `integrate`.
+    t_span : pair of float, or of float and array_like of shape (n,)
+        Start and end time in s; the end may differ from motion to motion.
     y0 : array_like of shape (state, n), or mapping of str to array_like
         As in `integrate`, for each of n motions: ``{"theta1": [0.1, 0.2], "theta2": 0.0}``.
     params : array_like of shape (parameters,) or (parameters, n), or mapping
         As in `integrate`; the same for all motions or different for each.
-    t_eval : array_like of shape (times,), optional
-        Times in s at which states are recorded; none by default.
+    t_eval : array_like of shape (times,) or (n, times), optional
+        Times in s at which states are recorded, the same for all motions or different for each;
+        none by default.
     events : Event or sequence of Event, optional
         Events to locate. Functions, as in `integrate`, are possible in Python only.
     occurrences : int, optional
         How many occurrences of each event to store, counted from the start; with an `Extremum`,
         2 or more.
+    skip : int or sequence of int, optional
+        How many occurrences of each event come before those and are not stored; one number for
+        all events, or one for each. Terminal events cannot be skipped.
     workers : int, optional
         Number of threads; by default one for each processor.
     stop : StopFlag, optional
@@ -109,18 +117,23 @@ def ensemble(
     (20,)
     """
     check_type("stop", stop, StopFlag | None, "a StopFlag")
-    times = () if t_eval is None else t_eval
     options = Options(
-        method, form, rtol, atol, h, times, events, max_steps, backend, compensated, inputs
+        method, form, rtol, atol, h, (), events, max_steps, backend, compensated, inputs
     )
-    problem = validation.problem_at_rest(module, t_span, options)
-    states = validation.state_rows(module, y0, problem.form.name)
+    validation.check_module(module)
+    states = validation.state_rows(module, y0, form or "lagrangian")
+    memory.check_times(t_eval, states.shape[1])
+    times = EnsembleTimes.of(t_span, t_eval, len(states))
+    problem = validation.problem_at_rest(module, times.span, options)
+    if times.differ and problem.schedule:
+        raise ValueError("inputs are held between samples: t_span must be the same for all motions")
     constants = validation.parameter_rows(module, params, len(states))
     if inputs is not None:
         count = len(input_names(module))
         constants[:, -count:] = problem.form.params[-count:]
     extremes = any(isinstance(event, Extremum) for event in problem.events)
     occurrences = validation.count("occurrences", occurrences, 2 if extremes else 1)
+    skipped = _skipped(skip, problem.events)
     processors = len(os.sched_getaffinity(0))
     threads = validation.count(
         "workers", processors if workers is None else workers, 1, MOST_WORKERS
@@ -132,12 +145,12 @@ def ensemble(
     check_condition(module, some, problem.span[0])
     problem, program = compiled_loop.select(problem, lanes=True)
     components = len(problem.start)
-    rows = len(states) * (1 + np.size(times) + len(problem.events) * occurrences)
+    rows = len(states) * (1 + times.samples.shape[1] + len(problem.events) * occurrences)
     remedy = "integrate fewer motions at once, or record fewer times and occurrences"
     memory.check_memory(f"{rows} states of {len(states)} motions", rows, components, remedy)
     loop = f"compiled by {program.library.compiler}" if program else "python"
-    result = Ensemble.empty(problem, len(states), occurrences, loop)
-    run = EnsembleRun(problem, states, constants, result, stop or StopFlag())
+    result = Ensemble.empty(problem, len(states), occurrences, loop, times.samples)
+    run = EnsembleRun(problem, states, constants, times, skipped, result, stop or StopFlag())
     try:
         if program:
             run.run_compiled(program, threads)
@@ -155,3 +168,15 @@ def ensemble(
     for warning in ensemble_warnings(problem, states[good], own, *ends):
         warn(warning, stacklevel=2)
     return result
+
+
+def _skipped(skip: int | Sequence[int], events: Sequence[EventFunction]) -> list[int]:
+    """How many occurrences of each event are not stored."""
+    given = [skip] * len(events) if isinstance(skip, int | np.integer) else [*skip]
+    if len(given) != len(events):
+        raise ValueError(f"skip has {len(given)} numbers for {len(events)} events: give one each")
+    for event, number in zip(events, given, strict=True):
+        validation.count("skip", number, 0)
+        if number and getattr(event, "terminal", False):
+            raise ValueError(f"skip = {number}, but the event is terminal: it ends the motion")
+    return given

@@ -11,6 +11,7 @@ from solvers.integration import python_loop
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.ensemble_solution import Ensemble
+from solvers.integration.ensemble_times import EnsembleTimes
 from solvers.integration.events import Extremum
 from solvers.integration.inputs import History, held_table, segments
 from solvers.integration.problem import EventFunction, Outcome, Problem
@@ -28,6 +29,8 @@ class EnsembleRun:
     problem: Problem
     states: Array  # of shape (n, state)
     params: Array  # of shape (n or 1, parameters)
+    times: EnsembleTimes
+    skip: Sequence[int]  # occurrences of each event that are not stored
     result: Ensemble
     stop: StopFlag
 
@@ -35,8 +38,10 @@ class EnsembleRun:
         """Integrate all motions by a compiled loop in threads."""
         result, states = self.result, self.states
         problem = self.problem.with_params(list(self.params.T))
-        capacity, occurrences = len(result.t_eval), result.t_events.shape[-1]
+        capacity, occurrences = self.times.samples.shape[1], result.t_events.shape[-1]
         batch = Batch(program, problem, states, capacity=capacity, occurrences=occurrences)
+        batch.set_times(self.times.ends, self.times.samples)
+        batch.skip(self.skip)
         batch.task.stop = self.stop.array.ctypes.data
 
         def reached() -> Array:
@@ -49,7 +54,8 @@ class EnsembleRun:
                 batch.hold(*table)
                 self._run_threads(batch, workers)
             for part in [] if table else segments(problem, reached, History()):
-                batch.resume(part)
+                if problem.schedule:
+                    batch.resume(part)
                 self._run_threads(batch, workers)
                 if self.stop.is_set:
                     break
@@ -57,8 +63,9 @@ class EnsembleRun:
             self._collect(batch)
             # as given, not as sine and cosine return them
             result.y[:, result.steps == 0] = states[result.steps == 0].T
-            if capacity and result.t_eval[0] == problem.span[0]:
-                result.samples[:, :, 0] = states.T
+            if capacity:
+                first = self.times.samples[:, 0] == self.times.begin
+                result.samples[:, :, 0] = np.where(first, states.T, result.samples[:, :, 0])
 
     def _run_threads(self, batch: Batch, workers: int) -> None:
         """Run the batch; C releases Python's lock, this thread receives interruptions."""
@@ -88,7 +95,8 @@ class EnsembleRun:
             result.samples[:, motion, k] = batch.ordinary(rows, motion).T
         result.occurred[:] = motions["occurred"][:, :events]
         extremes = batch.extremes_only[:events]
-        stored = np.where(extremes, np.minimum(result.occurred, 2), result.occurred)
+        recorded = np.maximum(result.occurred - np.array(self.skip, np.int64), 0)
+        stored = np.where(extremes, np.minimum(recorded, 2), recorded)
         for event in range(events):
             for motion, k, rows in _blocks(batch.event_rows[:, event], stored[:, event]):
                 result.t_events[motion, event, k] = rows["t"]
@@ -101,7 +109,9 @@ class EnsembleRun:
                 if self.stop.is_set:
                     return
                 params = self.params[k % len(self.params)].tolist()
-                problem = replace(self.problem.with_params(params), start=start)
+                span, samples = (self.times.begin, self.times.end(k)), self.times.samples_of(k)
+                problem = self.problem.with_params(params)
+                problem = replace(problem, start=start, span=span, samples=samples)
                 outcome = Outcome.at_start(problem)
                 try:
                     python_loop.run(problem, outcome, self.stop)
@@ -122,7 +132,9 @@ class EnsembleRun:
         for i, event in enumerate(self.problem.events):
             times, states = outcome.t_events[i], outcome.y_events[i]
             result.occurred[k, i] = len(times)
-            stored = _stored(event, states)[: result.t_events.shape[-1]]
+            skip = self.skip[i]
+            stored = [skip + n for n in _stored(event, states[skip:])]
+            stored = stored[: result.t_events.shape[-1]]
             for column, occurrence in enumerate(stored):
                 result.t_events[k, i, column] = times[occurrence]
                 result.y_events[:, k, i, column] = states[occurrence]

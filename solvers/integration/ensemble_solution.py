@@ -31,19 +31,20 @@ class Ensemble:
     samples : ndarray of shape (state, n, times)
         States at the requested times; NaN after a motion's end.
     t_events : ndarray of shape (n, events, occurrences)
-        Times in s of the first occurrences of each event; NaN where there were fewer.
+        Times in s of the first occurrences of each event, of those not skipped; NaN where there
+        were fewer.
     y_events : ndarray of shape (state, n, events, occurrences)
         States at these times.
     occurred : ndarray of shape (n, events)
-        How often each event occurred.
+        How often each event occurred, skipped occurrences included.
     status : ndarray of shape (n,)
         How each ended, a `Status`.
     steps, rejected, nfev : ndarray of shape (n,)
         As in `Solution`, of each motion.
     run, units
         As in `Solution`.
-    t_eval : ndarray of shape (times,)
-        The requested times in s.
+    t_eval : ndarray of shape (times,) or (n, times)
+        The requested times in s; a row for each motion where these differ.
 
     Examples
     --------
@@ -70,16 +71,17 @@ class Ensemble:
     t_eval: Array
 
     @classmethod
-    def empty(cls, problem: Problem, n: int, occurrences: int, backend: str) -> "Ensemble":
-        """An ensemble of `n` motions of `problem` without results."""
-        t_eval, state, events = problem.samples, len(problem.units), len(problem.events)
-        assert t_eval is not None
+    def empty(
+        cls, problem: Problem, n: int, occurrences: int, backend: str, t_eval: Array
+    ) -> "Ensemble":
+        """An ensemble of `n` motions of `problem` without results; `t_eval` has 1 or n rows."""
+        state, events = len(problem.units), len(problem.events)
         unknown = partial(np.full, fill_value=np.nan)
         return cls(
             t=unknown(n),
             y=unknown((n, state)).T,  # in memory the states of a motion are adjacent
             growth=unknown(n),
-            samples=np.moveaxis(unknown((n, state, len(t_eval))), 1, 0),
+            samples=np.moveaxis(unknown((n, state, t_eval.shape[1])), 1, 0),
             t_events=unknown((n, events, occurrences)),
             y_events=np.moveaxis(unknown((n, events, occurrences, state)), -1, 0),
             occurred=np.zeros((n, events), np.int64),
@@ -89,7 +91,7 @@ class Ensemble:
             nfev=np.zeros(n, np.int64),
             run=f"{problem.description}, {backend}",
             units=problem.units,
-            t_eval=t_eval,
+            t_eval=t_eval if len(t_eval) > 1 else t_eval[0],
         )
 
     @property
@@ -103,7 +105,7 @@ class Ensemble:
         ends = "".join(f", {number} {name}" for name, number in counts.items() if number)
         return (
             f"Ensemble: {counted(n, 'motion')}{ends}\n"
-            f"  {counted(len(self.t_eval), 'time')}, {counted(events, 'event')}, "
+            f"  {counted(self.samples.shape[2], 'time')}, {counted(events, 'event')}, "
             f"{counted(self.steps.sum(), 'step')}, {self.rejected.sum()} rejected\n"
             f"  {self.run}\n"
             f"  state: {', '.join(self.units)}"
@@ -120,6 +122,7 @@ class Ensemble:
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset``; its dimensions are component, motion, time, event, occurrence."""
         events = ("motion", "event", "occurrence")
+        times = ("motion", "time")[-self.t_eval.ndim :]
         table = {k: ("motion", v) for k, v in self.to_table().items() if k not in self.units}
         variables = table | {
             "y": (("component", "motion"), self.y),
@@ -131,6 +134,6 @@ class Ensemble:
         coordinates = {
             "component": list(self.units),
             "unit": ("component", list(self.units.values())),
-            "time": ("time", self.t_eval, {"units": "s"}),
+            "time": (times, self.t_eval, {"units": "s"}),
         }
         return dataset(variables, coordinates, {"run": self.run})

@@ -1,6 +1,7 @@
 """Compiled loops: many motions of one form by one method, called from Python."""
 
 import ctypes
+from collections.abc import Sequence
 from functools import cache
 from typing import Any, cast
 
@@ -136,6 +137,19 @@ class Batch:
             motions["z"], motions["turns"] = states
             motions["scale"] = 0
 
+    def set_times(self, ends: Array, samples: Array) -> None:
+        """Give motions their own ends and sample times, in rows; one row is for all motions."""
+        self.motions["t_end"] = ends
+        latest = np.maximum(np.abs(self.motions["t"]), np.abs(ends))
+        self.motions["min_h"] = SHORTEST * np.spacing(latest)
+        self._times = np.ascontiguousarray(samples)
+        self.task.samples, self.task.times = samples.shape[1], self._times.ctypes.data
+        self.task.own_times = samples.shape[1] if len(samples) > 1 else 0
+
+    def skip(self, numbers: Sequence[int]) -> None:
+        """Leave out the first occurrences of each event, these many."""
+        self._events["skip"][: len(numbers)] = numbers
+
     def hold(self, ends: Array, values: Array) -> None:
         """Let motions change their inputs at the ends of `values`, of shape (values, inputs)."""
         self._holds = (np.ascontiguousarray(ends), np.ascontiguousarray(values))
@@ -189,7 +203,7 @@ class Batch:
 def _event(form: Form, event: Event | Switch, pauses: bool) -> tuple[float | int, ...]:
     """An event as a record of type ``Event`` in ``c/layout.h``."""
     if isinstance(event, Switch):
-        return (0.0, 0.0, 0.0, 0, event.index, 0, 1, 0, 0, 0, 1)
+        return (0.0, 0.0, 0.0, 0, event.index, 0, 1, 0, 0, 0, 0, 1)
     # a motion that pauses has room for every occurrence
     extremes_only = isinstance(event, Extremum) and not pauses
     component = form.locate(event.name)
@@ -197,5 +211,5 @@ def _event(form: Form, event: Event | Switch, pauses: bool) -> tuple[float | int
     assert component is not None
     assert extremum is not None
     angle = event.value, np.sin(event.value), np.cos(event.value)
-    flags = event.direction, int(event.terminal), int(extremes_only)
+    flags = event.direction, int(event.terminal), int(extremes_only), 0
     return (*angle, *map(int, component), *flags, *map(int, extremum), 0)

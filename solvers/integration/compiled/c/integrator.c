@@ -67,7 +67,7 @@ static void update_lane(Lanes *lanes, int lane)
     const Task *task = lanes->task;
     const WithinStep *within = &lanes->within[lane];
     const int has_sample = within->mode == ADVANCE && within->trajectory->rows < task->samples;
-    LANE(lanes->next_sample, lane) = has_sample ? task->times[within->trajectory->rows] : NAN;
+    LANE(lanes->next_sample, lane) = has_sample ? next_sample_time(task, within->trajectory) : NAN;
     MASK_LANE(lanes->advancing, lane) = within->mode == ADVANCE ? -1 : 0;
 }
 
@@ -117,7 +117,8 @@ static void start_motions(Lanes *lanes)
     for (int lane = 0; lane < LANES; lane++) {
         WithinStep *within = &lanes->within[lane];
         const int is_sample = MASK_LANE(new, lane) && (task->samples < 0
-            || (task->samples > 0 && task->times[0] == LANE(state->t, lane)));
+            || (task->samples > 0
+                && next_sample_time(task, within->trajectory) == LANE(state->t, lane)));
         if (is_sample) {
             double start[STATE_SIZE];
             read_lane(state, STATE_SIZE, lane, start);

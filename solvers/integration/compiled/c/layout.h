@@ -65,6 +65,7 @@ typedef struct {
     int64_t direction;
     int64_t terminal;
     int64_t extremes_only;      /* whether only the rows of smallest and largest value are kept */
+    int64_t skip;               /* number of occurrences that come first and are not recorded */
     int64_t extremum_is_angle;  /* component whose extremes are kept, as above */
     int64_t extremum_index;
     int64_t is_switch;          /* whether `index` counts switching functions, see motion.h */
@@ -80,6 +81,7 @@ typedef struct {
     int64_t max_steps;
     int64_t samples;            /* number of sample times, or -1 for the end of every step */
     const double *times;
+    int64_t own_times;          /* `samples` if each motion has its own times, one row each; else 0 */
     int64_t capacity;           /* rows of each trajectory */
     Row *rows;
     int64_t event_count;

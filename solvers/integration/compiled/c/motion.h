@@ -24,6 +24,12 @@ static void write_row(Row *row, const double *state)
     memcpy(row->scale, state + offsetof(State, scale)/sizeof(real), sizeof row->scale);
 }
 
+/* Time of the next sample of a motion. */
+static inline double next_sample_time(const Task *task, const Trajectory *trajectory)
+{
+    return task->times[(trajectory - task->trajectories)*task->own_times + trajectory->rows];
+}
+
 static void append_row(const Task *task, Trajectory *trajectory, const double *state)
 {
     const int64_t motion = trajectory - task->trajectories;
@@ -58,7 +64,10 @@ static void record_event(const Task *task, Trajectory *trajectory, int event, co
 {
     const int64_t series = (trajectory - task->trajectories)*task->event_count + event;
     Row *rows = task->event_rows + series*task->event_capacity;
-    const int64_t row = trajectory->occurred[event]++;
+    const int64_t row = trajectory->occurred[event]++ - task->events[event].skip;
+    if (row < 0) {
+        return;
+    }
     if (task->events[event].extremes_only) {
         update_extremes(&task->events[event], rows, row == 0, state);
     } else if (row < task->event_capacity) {

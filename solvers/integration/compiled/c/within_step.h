@@ -51,7 +51,7 @@ static double next_sample_h(const Task *task, WithinStep *within, double t, doub
 {
     Trajectory *trajectory = within->trajectory;
     while (trajectory->rows < task->samples) {
-        const double h = (task->times[trajectory->rows] - t) - t_low;
+        const double h = (next_sample_time(task, trajectory) - t) - t_low;
         if (fabs(h) > fabs(within->h) + within->resolution) {
             return 0;
         }
