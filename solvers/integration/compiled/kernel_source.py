@@ -36,10 +36,14 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 {method}
 {motion_h}
 {extension}
-{within_step_h}
-{integrator_c}
-{probe_h}
+{loop}
 {single}"""
+
+#: Handwritten files of the loop over steps, in their order.
+LOOP_FILES = (
+    *("within_step.h", "motions.h", "event_brackets.h", "process_step.h", "finish_step.h"),
+    *("advance.h", "integrator.c", "probe.h"),
+)
 
 #: Conversion between ordinary states and those of the form, for single motions.
 SINGLE = """\
@@ -156,7 +160,9 @@ static const stage_vector RATIOS[STAGES] = {{
 }};
 static const stage_vector NODES = {{{nodes}}}, WEIGHTS = {{{weights}}};
 static const double ERROR_POWER = {error_power};
-{parallel_h}"""
+{files}"""
+
+PARALLEL_FILES = ("stage_vectors.h", "parallel_stages.h", "parallel.h")
 
 #: Matrices of the continuous extension: columns of the first and last, rows of
 #: others. Each method of a family has a natural extension.
@@ -273,7 +279,7 @@ def program(
         to_ordinary="\n".join(f"    {line}" for line in equations.to_ordinary),
         single_h=_source("single.h"),
     )
-    files = ("lanes.h", "step.h", "motion.h", "within_step.h", "integrator.c", "probe.h")
+    files = ("lanes.h", "step.h", "motion.h")
     return PROGRAM.format(
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
         constants=_constants(tableau),
@@ -284,6 +290,7 @@ def program(
         compensated=int(compensated),
         method=_method(tableau),
         extension=_extension(tableau),
+        loop="\n".join(map(_source, LOOP_FILES)),
         single="" if lanes else single,
         **{name.replace(".", "_"): _source(name) for name in files},
     )
@@ -335,7 +342,7 @@ def _parallel(tableau: Tableau) -> str:
         nodes=", ".join(map(real, tableau.c)),
         weights=", ".join(map(real, tableau.b)),
         error_power=real(error_power(tableau.stages)),
-        parallel_h=_source("parallel.h"),
+        files="\n".join(map(_source, PARALLEL_FILES)),
         ratios=_rows(ratios.T),
         legendre=_rows(legendre.T),
     )

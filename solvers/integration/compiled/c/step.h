@@ -104,6 +104,20 @@ static inline real approximate_angle(const State *state, int a)
     return select(less_than(c, splat(0.0)), lane_copysign(splat(PI), s) - acute, acute);
 }
 
+/* An angle changes by about its mean velocity times h; the rest is whole turns. Returns 0, or NaN
+   where they cannot be counted. */
+static inline real count_turns(const State *start, real h, State *end)
+{
+    real check = splat(0.0);
+    for (int a = 0; a < ANGLES; a++) {
+        const real change = h*(start->z[RATE[a]] + end->z[RATE[a]])*0.5;
+        const real excess = approximate_angle(start, a) + change - approximate_angle(end, a);
+        end->turns[a] = start->turns[a] + lane_round(excess*(0.5/PI));
+        check += excess - excess;
+    }
+    return check;
+}
+
 /* Results of a step besides the state at its end. */
 typedef struct {
     real squared_error;     /* squared norm of the estimated error, relative to the tolerances */

@@ -1,0 +1,65 @@
+/* Events within a step: where they may occur, and parts of it in which each occurs at most once. */
+
+/* Evaluate the events at the end of a step; returns the lanes in which one may occur. */
+static __attribute__((noinline)) mask events_in_step(Lanes *lanes, const StepResult *result)
+{
+    const Task *task = lanes->task;
+    const State *start = &lanes->motion.state, *end = &lanes->end;
+    Workspace *workspace = lanes->workspace;
+    mask occurring = {0}, several = {0};
+    for (int e = 0; e < task->event_count; e++) {
+        const Event *event = &task->events[e];
+        const real before = lanes->before[e], after = lanes->after[e] =
+            event_value(event, end, lanes->motion.params);
+        const mask moves = less_than(before, splat(0.0)) | less_than(splat(0.0), before);
+        const mask recurs = has_several(event, start, end, result, lanes->h, lanes->motion.params,
+                                        before, after, workspace->coefficients[e]);
+        lanes->several[e] = lanes->advancing & (recurs | ~moves);
+        several |= lanes->several[e];
+        occurring |= has_crossed(event, before, after);
+    }
+    if (!any(several)) {
+        return occurring;
+    }
+    real changes[EXTENSION_NODES][DIM];
+    lanes->motion.evaluations += select(several, splat(ROUNDS*EXTENSION_NODES), splat(0.0));
+    extend(start, end, result, lanes->h, lanes->motion.params, changes);
+    for (int e = 0; e < task->event_count; e++) {
+        const Event *event = &task->events[e];
+        real *coefficients = workspace->coefficients[e];
+        if (ROUNDS > 0 && !event->is_switch) {
+            extended_polynomial(event, start, changes, lanes->before[e], coefficients);
+        }
+        switching_polynomial(event, start, end, lanes->h, lanes->motion.params, lanes->before[e],
+                             lanes->after[e], EXTENSION_DEGREE, coefficients);
+    }
+    return occurring | several;
+}
+
+/* Bracket all crossings of an event within the step of a lane. */
+static void bracket_crossings(const Lanes *lanes, int lane, WithinStep *within, int e)
+{
+    const Event *event = &lanes->task->events[e];
+    const double before = LANE(lanes->before[e], lane), after = within->after[e];
+    double coefficients[EXTENSION_DEGREE + 1];
+    Extremum extrema[MAX_ROOTS];
+    Bracket bracket = {.event = e, .is_pending = 1, .tries = MAX_TRIES, .near_value = before};
+    int count = 0;
+    if (MASK_LANE(lanes->several[e], lane)) {
+        read_lane(lanes->workspace->coefficients[e], EXTENSION_DEGREE + 1, lane, coefficients);
+        count = separate_crossings(coefficients, extrema);
+    }
+    if (count == 0 && !is_crossed(event, before, after)) {
+        return;     /* an event at the start is not in this step */
+    }
+    for (int k = 0; k < count; k++) {
+        bracket.far = extrema[k].part*within->full_h;
+        bracket.curvature = extrema[k].curvature/(within->full_h*within->full_h);
+        add_bracket(within, &bracket);
+        bracket.near = bracket.far;
+    }
+    bracket.tries = 0;
+    bracket.far = within->full_h;
+    bracket.far_value = after;
+    add_bracket(within, &bracket);
+}

@@ -1,0 +1,112 @@
+/* A step of one lane: its events and samples, or its failure. */
+
+/* Shorten the step of a lane after a failure of the step, of size h, or within it. */
+static void fail_step(Motion *motion, WithinStep *within, int lane, double h)
+{
+    if (within->mode != ADVANCE) {
+        discard_step(within);
+    }
+    LANE(motion->h, lane) = (within->mode == ADVANCE ? h : within->full_h)/4;
+    LANE(motion->reductions, lane) += 1;
+    within->mode = ADVANCE;
+#if VARIES_ORDER
+    lower_order(&motion->state);
+#endif
+}
+
+/* Use the end of a substep of a lane; `numbers` are those of its state. */
+static void use_state(
+    Lanes *lanes, int lane, double h, const State *state, const double *numbers)
+{
+    WithinStep *within = &lanes->within[lane];
+    double value = 0, slope = 0;
+    if (within->mode == LOCATE) {
+        const Event *event = &lanes->task->events[within->bracket->event];
+        const real values = event_value(event, state, lanes->motion.params);
+        value = LANE(values, lane);
+        if (within->bracket->tries) {
+            slope = event_slope(event, state, lanes->motion.params, lane);
+            LANE(lanes->motion.evaluations, lane) += 1;
+        }
+    }
+    use_substep(lanes->task, within, h, numbers, value, slope);
+}
+
+#if INTERPOLATES
+/* The state after a part h of the step of the only lane; returns whether it is finite. */
+static int state_within(Lanes *lanes, WithinStep *within, double h, State *state)
+{
+    Motion *motion = &lanes->motion;
+    const State *start = &motion->state, *full = (const State *)within->full_end;
+    double check = 0;
+    *state = *start;
+    motion->evaluations += step_within(lanes->task, start, full, h, motion->params, state);
+    for (int n = 0; n < DIM; n++) {
+        check += state->z[n] - state->z[n];
+    }
+    normalise_angles(state);
+    rescale_variation(start, state);
+    return check + count_turns(start, h, state) == 0;
+}
+
+static int substep(Lanes *lanes, WithinStep *within, double h)
+{
+    const Task *task = lanes->task;
+    State state;
+    double numbers[STATE_SIZE];
+    const int is_finite = state_within(lanes, within, h, &state);
+    read_lane(&state, STATE_SIZE, 0, numbers);
+    use_state(lanes, 0, h, &state, numbers);
+    return is_finite;
+}
+
+#endif
+
+/* Evaluate a lane's step; return whether its motion moves to the end of the step. */
+static int process_step(Lanes *lanes, int lane, int accepted, int failed)
+{
+    const Task *task = lanes->task;
+    Motion *motion = &lanes->motion;
+    WithinStep *within = &lanes->within[lane];
+    if (within->mode == IDLE) {
+        return 0;
+    }
+    double end[STATE_SIZE];
+    read_lane(&lanes->end, STATE_SIZE, lane, end);
+    const double h = LANE(lanes->h, lane);
+    if (failed) {
+        fail_step(motion, within, lane, h);
+        return 0;
+    }
+    if (within->mode == ADVANCE) {
+        if (!accepted) {
+            return 0;
+        }
+        begin_within_step(within, h, end);
+        for (int e = 0; e < task->event_count; e++) {
+            within->after[e] = LANE(lanes->after[e], lane);
+            bracket_crossings(lanes, lane, within, e);
+        }
+    } else {
+        use_state(lanes, lane, h, &lanes->end, end);
+    }
+    double next;
+    while ((next = next_h(task, within, LANE(motion->state.t, lane),
+                          LANE(motion->state.t_low, lane))) != 0) {
+#if INTERPOLATES
+        if (!substep(lanes, within, next)) {
+            fail_step(motion, within, lane, h);
+            return 0;
+        }
+#else
+        LANE(lanes->h, lane) = next;
+        return 0;
+#endif
+    }
+    within->mode = ADVANCE;
+    write_lane(&lanes->end, STATE_SIZE, lane, within->end);
+    for (int e = 0; e < task->event_count; e++) {
+        LANE(lanes->after[e], lane) = within->after[e];
+    }
+    return 1;
+}
