@@ -17,13 +17,16 @@ import sympy as sp
 
 from derive.formulas.switching import decisive_numbers, switching_functions
 from derive.mechanics.equilibria import equilibria
+from derive.mechanics.identifiability import Identifiability, identifiability
 from derive.mechanics.independence import check_independence
 from derive.mechanics.linearisation import Energies, Linearisation
+from derive.mechanics.outputs import outputs as output_formulas
 from derive.mechanics.reduction import collected, gathered, reduced
 from derive.mechanics.state_space import Formula, Point, StateSpace, state_space
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.symbols import TIME
 from derive.system.system import System, as_system
+from solvers.io.suggestion import did_you_mean
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
 HALF = sp.Rational(1, 2)
@@ -338,6 +341,49 @@ class Derivation:
         """
         point = Point.of(self.system, at or {})
         return state_space(point, self.mass_matrix, self.forcing, outputs)
+
+    def identifiable(
+        self,
+        unknown: Sequence[str] | None = None,
+        outputs: Sequence[Formula] | None = None,
+    ) -> Identifiability:
+        """Which parameters a measurement of outputs determines, decided from the equations.
+
+        Parameters
+        ----------
+        unknown : sequence of str, optional
+            Names of the unknown parameters; by default all. The start of a motion is unknown, too.
+        outputs : sequence of sympy.Expr, number or str, optional
+            Measured functions of state, parameters and time, or names: components of the state,
+            ``energy``, and positions of the masses, ``x1``, ``y1``, ``x2`` ...; by default the
+            coordinates.
+
+        Returns
+        -------
+        Identifiability
+
+        Raises
+        ------
+        SystemDefinitionError
+            When a name is unknown.
+
+        Examples
+        --------
+        >>> from derive import load
+        >>> print(Derivation(load("double_pendulum")).identifiable(outputs=["x1", "y1"]))
+        l1, l2, g: determined
+        m1, m2: only as m2/m1; give one of them a value
+        """
+        known = {part.symbol.name: part.symbol for part in self.system.parameters}
+        for name in unknown or ():
+            if name not in known:
+                raise SystemDefinitionError(
+                    f"system {self.system.name!r} has no parameter {name[:50]!r}"
+                    f"{did_you_mean(name, known)}; known are {', '.join(known)}"
+                )
+        symbols = [known[name] for name in (known if unknown is None else unknown)]
+        formulas = self.system.q if outputs is None else output_formulas(self, outputs)
+        return identifiability(self.system, self.mass_matrix, self.forcing, formulas, symbols)
 
     def equilibria(self, at: Mapping[str, Formula] | None = None) -> list[dict[sp.Symbol, sp.Expr]]:
         """All equilibria in closed form, as functions of parameters and inputs.
