@@ -8,6 +8,7 @@ __all__ = [
     "double_bar_pendulum",
     "double_pendulum",
     "driven_pendulum",
+    "duffing",
     "elastic_pendulum",
     "foucault_pendulum",
     "henon_heiles",
