@@ -15,7 +15,10 @@ from solvers.integration.inputs import Held as Held
 from solvers.integration.integrate import integrate as integrate
 from solvers.integration.lyapunov_spectrum import lyapunov_spectrum as lyapunov_spectrum
 from solvers.integration.ode_solver import ode_solver as ode_solver
-from solvers.integration.periodic_orbit import periodic_orbit as periodic_orbit
+from solvers.integration.orbits.normal_mode import backbone_slope as backbone_slope
+from solvers.integration.orbits.normal_mode import normal_mode_orbit as normal_mode_orbit
+from solvers.integration.orbits.orbit_family import orbit_family as orbit_family
+from solvers.integration.orbits.periodic_orbit import periodic_orbit as periodic_orbit
 from solvers.integration.prepare import prepare as prepare
 from solvers.integration.solution import Solution as Solution
 from solvers.integration.solution import Status as Status

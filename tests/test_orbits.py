@@ -18,7 +18,7 @@ from solvers.app.modules import build
 from solvers.equations.normal_modes import Modes
 from solvers.integration.integrate import integrate
 from solvers.integration.lyapunov_spectrum import lyapunov_spectrum
-from solvers.integration.periodic_orbit import NoPeriodicOrbitError, periodic_orbit
+from solvers.integration.orbits.periodic_orbit import NoPeriodicOrbitError, periodic_orbit
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.solution import Status
 from solvers.integration.tangents import Tangents
@@ -140,7 +140,7 @@ def test_no_orbit_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(NoPeriodicOrbitError, match="equilibrium"):
         periodic_orbit(single, {"theta": 1e-9}, 2.0, {"l": 1.0})
     with monkeypatch.context() as patch:
-        patch.setattr("solvers.integration.periodic_orbit.MAX_ITERATIONS", 1)
+        patch.setattr("solvers.integration.orbits.newton.MAX_ITERATIONS", 1)
         with pytest.raises(NoPeriodicOrbitError, match=r"still changes.*better guess"):
             periodic_orbit(single, {"theta": 1.0}, 2.0, {"l": 1.0})
     with pytest.raises(ValueError, match=r"period = 0.9 s is not one of driven_pendulum"):

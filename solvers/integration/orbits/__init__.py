@@ -1,0 +1,1 @@
+"""Periodic orbits: Newton's method, Floquet multipliers, families and their special points."""

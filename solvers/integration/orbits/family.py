@@ -1,0 +1,122 @@
+"""A family of periodic orbits, and its special points."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.equations.module import GeneratedModule
+from solvers.integration.orbits.orbit import PeriodicOrbit
+from solvers.integration.solution import Array
+
+#: Name of the quantity that varies along a family of a conservative system.
+ENERGY = "energy"
+
+
+@dataclass(frozen=True)
+class SpecialOrbit:
+    """An orbit at which the stability or the course of a family changes.
+
+    Attributes
+    ----------
+    kind : str
+        ``turning point``: the parameter, or the energy, is extreme; ``branch point``: another
+        family crosses; ``period doubling``: a family of twice the period branches off;
+        ``Neimark-Sacker``: a torus does.
+    orbit : PeriodicOrbit
+        The orbit.
+    index : int
+        Position in the family: it lies between the orbits ``index`` and ``index + 1``.
+    direction : ndarray of shape (state + 2,) or None
+        Direction along the family that branches off, if any: that of the start, the period and the
+        parameter in the units of `orbit_family`'s steps.
+    """
+
+    kind: str
+    orbit: PeriodicOrbit
+    index: int
+    direction: Array | None = field(repr=False)
+
+
+@dataclass(frozen=True, repr=False)
+class OrbitFamily:
+    """Periodic orbits along a curve.
+
+    Attributes
+    ----------
+    module : module
+        The generated module.
+    parameter : str
+        Name of the parameter that varies, or ``energy``.
+    orbits : list of PeriodicOrbit
+        In their order along the curve.
+    special : list of SpecialOrbit
+        Special points, in the same order.
+    ends : pair of str
+        Why the family ends at its first and its last orbit.
+    """
+
+    module: GeneratedModule
+    parameter: str
+    orbits: list[PeriodicOrbit]
+    special: list[SpecialOrbit]
+    ends: tuple[str, str]
+
+    @property
+    def values(self) -> Array:
+        """The parameter, or the energy in J, shape (orbits,)."""
+        return np.array([value(self.module, self.parameter, orbit) for orbit in self.orbits])
+
+    @property
+    def y(self) -> Array:
+        """States at t = 0, shape (state, orbits)."""
+        return np.array([orbit.y for orbit in self.orbits]).T
+
+    @property
+    def period(self) -> Array:
+        """Periods in s, shape (orbits,)."""
+        return np.array([orbit.period for orbit in self.orbits])
+
+    @property
+    def energy(self) -> Array:
+        """Energies in J at t = 0, shape (orbits,)."""
+        return np.array([orbit.energy for orbit in self.orbits])
+
+    @property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Floquet multipliers, shape (state, orbits)."""
+        return np.array([orbit.multipliers for orbit in self.orbits]).T
+
+    @property
+    def stability(self) -> list[str]:
+        """The stability of each orbit."""
+        return [orbit.stability for orbit in self.orbits]
+
+    def to_table(self) -> dict[str, Sequence[object]]:
+        """Columns by name, as ``pandas.DataFrame`` takes them."""
+        states = dict(zip(self.module.STATE, self.y, strict=True))
+        varies = {} if self.parameter == ENERGY else {self.parameter: self.values}
+        multipliers = {f"multiplier_{k + 1}": row for k, row in enumerate(self.multipliers)}
+        numbers = {"period": self.period, "energy": self.energy, **varies}
+        return {**states, **numbers, **multipliers, "stability": self.stability}
+
+    def __repr__(self) -> str:
+        names = [f"{point.kind} at {self._value(point.orbit):.12g}" for point in self.special]
+        first, last = (self._value(orbit) for orbit in (self.orbits[0], self.orbits[-1]))
+        lines = [
+            f"{len(self.orbits)} periodic orbits of {self.module.SYSTEM}, {self.parameter} from "
+            f"{first:.12g} ({self.ends[0]}) to {last:.12g} ({self.ends[1]})",
+            *names,
+        ]
+        return "\n  ".join(lines)
+
+    def _value(self, orbit: PeriodicOrbit) -> float:
+        return value(self.module, self.parameter, orbit)
+
+
+def value(module: GeneratedModule, parameter: str, orbit: PeriodicOrbit) -> float:
+    """The parameter of an orbit, or its energy."""
+    if parameter == ENERGY:
+        return orbit.energy
+    return orbit.params[module.PARAMETERS.index(parameter)]

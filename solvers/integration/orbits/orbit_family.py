@@ -1,0 +1,181 @@
+"""Continuation: families of periodic orbits in a parameter, or in the energy."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import positive, real_numbers
+from solvers.integration import validation
+from solvers.integration.orbits.curve import UNIQUE, Curve, Node
+from solvers.integration.orbits.family import ENERGY, OrbitFamily, SpecialOrbit
+from solvers.integration.orbits.nature import Nature
+from solvers.integration.orbits.orbit import PeriodicOrbit
+from solvers.integration.orbits.shooting import PeriodOf, Point, Shooting
+from solvers.integration.orbits.special_points import crossing_direction, doubling_direction
+from solvers.integration.orbits.symmetry import Reversal, angles
+from solvers.integration.orbits.walk import Limits, Walk, walk
+from solvers.integration.solution import Array
+from solvers.io.arguments import check_type
+from solvers.io.suggestion import did_you_mean
+
+#: Longest period relative to that of the start.
+LONGEST = 10.0
+#: Directions in which a family can branch off, by the kind of the special orbit.
+DIRECTIONS = {"branch point": crossing_direction, "period doubling": doubling_direction}
+
+
+def orbit_family(
+    module: GeneratedModule,
+    start: PeriodicOrbit | SpecialOrbit,
+    parameter: str = ENERGY,
+    bounds: ArrayLike = (-inf, inf),
+    *,
+    direction: int = 0,
+    period: PeriodOf | None = None,
+    max_orbits: int = 200,
+    max_period: float | None = None,
+    max_step: float = 0.1,
+    rtol: float = 1e-12,
+    atol: float = 1e-12,
+) -> OrbitFamily:
+    """The family of periodic orbits through one of them, with its special points.
+
+    The family is a curve in the space of start, period and parameter. From each orbit, Newton's
+    method leads to the next one in the plane at the end of a step along the tangent, so that the
+    curve may turn back (H. B. Keller, in: Applications of Bifurcation Theory, ed. P. H. Rabinowitz,
+    1977, 359-384). Orbits of a conservative system form families of different energies without
+    any parameter.
+
+    Parameters
+    ----------
+    module, rtol, atol
+        As in `integrate`.
+    start : PeriodicOrbit or SpecialOrbit
+        An orbit, as `periodic_orbit` returns it, with its parameters and its symmetry. From a
+        branch point or a period doubling of another family, the family that branches off.
+    parameter : str, optional
+        The parameter that varies, or ``energy`` of a conservative system. If a parameter of a
+        conservative system varies, all orbits have the same period.
+    bounds : pair of float, optional
+        Smallest and largest value of the parameter, or of the energy in J; the family ends there.
+    direction : {0, 1, -1}, optional
+        Whether the family is followed to both sides, or from the start to larger values, or to
+        smaller ones.
+    period : callable, optional
+        The period in s as a function of the parameters, a mapping by name, for systems that depend
+        on time with a parameter: ``lambda p: 2 * pi / p["Omega"]``.
+    max_orbits : int, optional
+        Most orbits to each side.
+    max_period : float, optional
+        Longest period in s, by default `LONGEST` times that of the start.
+    max_step : float, optional
+        Largest distance between orbits, in rad and 1 m of coordinates, in these per radian of the
+        period for velocities, and relative to the period and the parameter of the start. Steps are
+        shorter where the curve bends.
+
+    Returns
+    -------
+    OrbitFamily
+        Orbits, special points, and why the family ends. Two special points of one kind between
+        successive orbits are not noticed.
+
+    Raises
+    ------
+    ValueError
+        When an argument is invalid, or the equations have a solution in more than one direction,
+        as with another conserved quantity.
+
+    Examples
+    --------
+    >>> import generated.henon_heiles as hh
+    >>> from solvers import Event, orbit_family, periodic_orbit
+    >>> section = Event(hh, "x", 0.0, direction=1)
+    >>> orbit = periodic_orbit(hh, {"x": 0.0, "y": 0.0, "x_dot": 0.2, "y_dot": 0.1}, section, {})
+    >>> family = orbit_family(hh, orbit, bounds=(0.001, 0.1))
+    >>> family.ends
+    ('bound', 'bound')
+    """
+    names = (ENERGY, *module.PARAMETERS)
+    if parameter not in names:
+        hint = did_you_mean(str(parameter), names)
+        raise ValueError(f"parameter = {parameter!r}{hint} must be one of {', '.join(names)}")
+    check_type("start", start, PeriodicOrbit | SpecialOrbit, "an orbit, as of periodic_orbit")
+    if direction not in (0, 1, -1):
+        raise ValueError(f"direction = {direction!r} must be 0, 1 or -1")
+    orbit = start if isinstance(start, PeriodicOrbit) else start.orbit
+    params = np.array(orbit.params)
+    reversal = Reversal.of(module, orbit.symmetry, orbit.y, params) if orbit.symmetry else None
+    index = None if parameter == ENERGY else module.PARAMETERS.index(parameter)
+    shooting = Shooting(
+        module, Nature.of(module, orbit.y, params, index), rtol, atol, reversal, index, period
+    )
+    first = _first(shooting, start)
+    low, high = real_numbers("bounds", bounds, finite=False).tolist()
+    if not low <= first.value <= high:
+        raise ValueError(f"bounds = ({low}, {high}) exclude the start, {parameter} = {first.value}")
+    limits = Limits(
+        low,
+        high,
+        positive("max_period", LONGEST * orbit.period if max_period is None else max_period),
+        validation.count("max_orbits", max_orbits, 1),
+        positive("max_step", max_step),
+    )
+    ahead = walk(first.curve, first, limits) if direction >= 0 else Walk([], end="start")
+    back = replace(first, tangent=-first.tangent, reference=-first.reference)
+    behind = walk(first.curve, back, limits) if direction <= 0 else Walk([], end="start")
+    return _family(module, parameter, behind, first, ahead)
+
+
+def _first(shooting: Shooting, start: PeriodicOrbit | SpecialOrbit) -> Node:
+    """The first node, whose tangent leads to larger values."""
+    orbit = start if isinstance(start, PeriodicOrbit) else start.orbit
+    point = Point(orbit.y, orbit.period, np.array(orbit.params))
+    if isinstance(start, SpecialOrbit) and start.kind == "period doubling":
+        point = replace(point, period=2 * orbit.period)
+    shooting.check_period(point)
+    if shooting.parameter is None and not shooting.nature.is_conservative:
+        raise ValueError(
+            f"{shooting.module.SYSTEM} does not conserve its energy: give a parameter, one of "
+            f"{', '.join(shooting.module.PARAMETERS)}"
+        )
+    shot = shooting(point)
+    curve = Curve(replace(shooting, advance=shot.advance), _scales(shooting, point))
+    if isinstance(start, SpecialOrbit):
+        assert start.direction is not None
+        node = curve.node(point, shot, start.direction)
+        return replace(node, tangent=start.direction)
+    node = curve.node(point, shot, np.zeros(len(point.y) + 2))
+    if node.uniqueness < UNIQUE:
+        raise ValueError(
+            f"periodic orbits near y = {orbit.y} are more than one family: another quantity is "
+            "conserved, or families cross there"
+        )
+    sign = -1.0 if node.rate_of_value < 0 else 1.0
+    return replace(node, tangent=sign * node.tangent, reference=sign * node.tangent)
+
+
+def _scales(shooting: Shooting, point: Point) -> Array:
+    """Units of the start, the period and the parameter in which distances are measured."""
+    module, n = shooting.module, len(shooting.module.COORDINATES)
+    is_angle = angles(module)[:n] > 0
+    sizes = np.where(is_angle, 1.0, np.maximum(1.0, np.abs(point.y[:n])))
+    value = 0.0 if shooting.parameter is None else abs(point.params[shooting.parameter])
+    return np.array([*sizes, *(2 * np.pi / point.period * sizes), point.period, value or 1.0])
+
+
+def _family(
+    module: GeneratedModule, parameter: str, behind: Walk, first: Node, ahead: Walk
+) -> OrbitFamily:
+    nodes = [*behind.nodes[::-1], first, *ahead.nodes]
+    # the special nodes between each node and the next
+    special = [entries[::-1] for entries in behind.special[::-1]] + ahead.special
+    points = [
+        SpecialOrbit(kind, node.orbit, k, DIRECTIONS[kind](node) if kind in DIRECTIONS else None)
+        for k, entries in enumerate(special)
+        for kind, node in entries
+    ]
+    ends = behind.end, ahead.end
+    return OrbitFamily(module, parameter, [node.orbit for node in nodes], points, ends)

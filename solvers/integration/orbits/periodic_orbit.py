@@ -1,0 +1,132 @@
+"""Periodic motions near a guess."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+
+from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import Values, positive
+from solvers.integration import validation
+from solvers.integration.events import Event
+from solvers.integration.integrate import integrate
+from solvers.integration.orbits.nature import Nature
+from solvers.integration.orbits.newton import NoPeriodicOrbitError, solve
+from solvers.integration.orbits.orbit import PeriodicOrbit
+from solvers.integration.orbits.shooting import SMALL, Point, Shooting
+from solvers.integration.orbits.symmetry import Reversal
+from solvers.integration.solution import Array, Solution
+
+#: Time in s after which a motion that has not come back to a section never does.
+LONGEST = 1e3
+
+
+def periodic_orbit(
+    module: GeneratedModule,
+    y0: Values,
+    period: float | Event,
+    params: Values,
+    *,
+    returns: int = 1,
+    symmetry: Sequence[str] = (),
+    rtol: float = 1e-12,
+    atol: float = 1e-12,
+) -> PeriodicOrbit:
+    """The periodic motion nearest to a guess, by Newton's method.
+
+    Of a family of orbits, as those of different energies of a conservative system, the result is
+    the member to which each step of Newton's method, the shortest that solves the linear equations,
+    leads. Angles may turn by whole turns in a period.
+
+    Parameters
+    ----------
+    module, params, rtol, atol
+        As in `integrate`.
+    y0 : array_like of shape (state,), or mapping of str to float
+        Guess of the state at t = 0.
+    period : float or Event
+        Guess of the period in s. If the system depends on time, it is the exact period: that of the
+        system, or a multiple. An event is a section: the orbit starts on it where the motion from
+        `y0` first meets it, and the guess is the time until its return.
+    returns : int, optional
+        How many crossings of the section make a period.
+    symmetry : sequence of str, optional
+        Names of half of the components of the state that are 0 at t = 0 and after half the period,
+        such as all velocities of an orbit between two points of rest; angles may be at any half
+        turn. Only half the period is integrated. The equations must stay the same if time is
+        reversed and these components change their signs.
+
+    Returns
+    -------
+    PeriodicOrbit
+        The orbit, its monodromy matrix and Floquet multipliers.
+
+    Raises
+    ------
+    ValueError
+        When an argument is invalid, or `module` has no variational form.
+    NoPeriodicOrbitError
+        When the iteration does not converge.
+    solvers.integration.prepare.NotFinishedError
+        When a motion does not last for a period.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> from solvers import Event, periodic_orbit
+    >>> orbit = periodic_orbit(dp, {"theta1": 0.5, "theta2": 0.7}, 3.7, {}, symmetry=dp.STATE[2:])
+    >>> orbit.defect < 1e-11, orbit.stability
+    (True, 'neutral')
+    >>> section = Event(dp, "theta1", 0.0, direction=1)
+    >>> bool(abs(periodic_orbit(dp, orbit.y, section, {}).y[0]) < 1e-9)
+    True
+    """
+    y, constants = validation.initial_state(module, y0), validation.parameters(module, params)
+    nature = Nature.of(module, y, constants)
+    shooting = Shooting(module, nature, rtol, atol)
+    fixed = np.empty((0, len(y) + 2))
+    if isinstance(period, Event):
+        y, duration = _returned(module, y, period, constants, returns)
+        fixed = np.eye(len(y), len(y) + 2)[[module.STATE.index(period.name)]]
+    else:
+        duration = positive("period", period)
+    if symmetry:
+        reversal = Reversal.of(module, symmetry, y, constants)
+        y[reversal.changed] = reversal.nearest(y)
+        shooting = Shooting(module, nature, rtol, atol, reversal)
+    point = Point(y, duration, constants)
+    shooting.check_period(point)
+    point, shot = solve(shooting, point, fixed)
+    if shooting.nature.is_autonomous and np.abs(shooting.rate(point)).max() < SMALL:
+        raise NoPeriodicOrbitError(f"{point.y} is an equilibrium: give a better guess")
+    return PeriodicOrbit.of(shooting, point, shot)
+
+
+def _returned(
+    module: GeneratedModule, y0: Array, section: Event, params: Array, returns: int
+) -> tuple[Array, float]:
+    """The state at which a motion first meets a section, and the time until its return."""
+    section = replace(section, terminal=True)
+    motion = partial(integrate, module, (0.0, LONGEST), params=params, events=section, t_eval=())
+    y, duration, count = y0, 0.0, validation.count("returns", returns, 1)
+    with catch_warnings():
+        simplefilter("ignore", UserWarning)  # of motions that do not meet the section
+        if section(0.0, y0) != 0:
+            y = _end(motion(y0=y0), section)[1]
+            y[module.STATE.index(section.name)] = section.value
+        state = y
+        for _ in range(count):
+            t, state = _end(motion(y0=state), section)
+            duration += t
+    return y, duration
+
+
+def _end(motion: Solution, section: Event) -> tuple[float, Array]:
+    if not len(motion.t_events[0]):
+        raise NoPeriodicOrbitError(
+            f"the motion does not meet {section.name} = {section.value} again "
+            f"({motion.status.value}): choose another section or start"
+        )
+    return float(motion.t_events[0][0]), motion.y_events[0][0].copy()

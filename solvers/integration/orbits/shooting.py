@@ -1,0 +1,176 @@
+"""The equations of a periodic orbit by shooting, and their derivatives."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.equations.module import GeneratedModule, function
+from solvers.equations.quantities import positive
+from solvers.integration.orbits.nature import Nature
+from solvers.integration.orbits.symmetry import Reversal, angles
+from solvers.integration.solution import Array
+from solvers.integration.transition_matrix import transition_matrix
+
+#: Relative step of differences of the energy and of the period, of which a few digits suffice.
+STEP = 1e-5
+#: Largest relative change of the equations after a period.
+SMALL = 1e-6
+TINY = float(np.finfo(float).tiny)
+PeriodOf = Callable[[Mapping[str, float]], float]
+
+
+@dataclass(frozen=True)
+class Point:
+    """The start of a motion, its duration in s, and all parameters."""
+
+    y: Array
+    period: float
+    params: Array
+
+
+@dataclass(frozen=True)
+class Shot:
+    """The conditions of a periodic orbit at a point, and their derivatives.
+
+    Columns of derivatives are those by the start, the period, and the parameter that varies.
+
+    Attributes
+    ----------
+    residual : ndarray of shape (state,)
+        0 for a periodic orbit.
+    rows : ndarray of shape (state, state + 2)
+        Derivatives of `residual`.
+    change : ndarray of shape (state, state + 2)
+        Derivatives of the change of the state in a period; they are `rows`, unless half a period
+        suffices.
+    advance : ndarray of shape (state,)
+        Whole turns of angles in a period, in rad.
+    """
+
+    residual: Array
+    rows: Array
+    change: Array
+    advance: Array
+
+    @property
+    def monodromy(self) -> Array:
+        """The transition matrix over a period."""
+        n = len(self.residual)
+        return np.asarray(self.change[:, :n] + np.eye(n))
+
+
+@dataclass(frozen=True)
+class Shooting:
+    """The conditions of periodic orbits of a system.
+
+    Attributes
+    ----------
+    nature : Nature
+        Of the equations, for all values of the parameter that varies.
+    reversal : Reversal, optional
+        The symmetry of orbits that are integrated over half a period.
+    parameter : int, optional
+        Index of the parameter that varies.
+    period_of : callable, optional
+        The period as a function of all parameters by name, if the system depends on time and the
+        period on the parameter.
+    advance : ndarray of shape (state,), optional
+        Whole turns of angles in a period, in rad; by default those of each motion.
+    """
+
+    module: GeneratedModule
+    nature: Nature
+    rtol: float
+    atol: float
+    reversal: Reversal | None = None
+    parameter: int | None = None
+    period_of: PeriodOf | None = None
+    advance: Array | None = None
+
+    def unknowns(self, point: Point) -> Array:
+        """Which columns are unknown."""
+        varies = self.parameter is not None
+        keeps_period = varies and self.nature.is_conservative
+        has_free_period = self.nature.is_autonomous and not keeps_period
+        return np.array([True] * len(point.y) + [has_free_period, varies])
+
+    def moved(self, point: Point, change: Array) -> Point:
+        """The point after a change of all columns."""
+        n, params = len(point.y), point.params.copy()
+        if self.parameter is not None:
+            params[self.parameter] += change[n + 1]
+        y, period = point.y + change[:n], self._period(params, point.period + change[n])
+        if self.reversal is not None:  # without rounding errors
+            y[self.reversal.changed] = self.reversal.nearest(point.y)
+        return Point(y, period, params)
+
+    def _period(self, params: Array, period: float) -> float:
+        if self.period_of is None:
+            return float(period)
+        by_name = dict(zip(self.module.PARAMETERS, params.tolist(), strict=True))
+        return positive("period", self.period_of(by_name))
+
+    def check_period(self, point: Point) -> None:
+        """`ValueError` if equations that depend on time differ after the period."""
+        begin, end = (self.rate(point, t) for t in (0.0, point.period))
+        if np.abs(end - begin).max() > SMALL * np.abs(begin).max():
+            raise ValueError(
+                f"period = {point.period} s is not one of {self.module.SYSTEM}: its equations "
+                "differ after it"
+            )
+
+    def rate(self, point: Point, t: float = 0.0, y: Array | None = None) -> Array:
+        """The rate of change of a state, by default the start."""
+        state = point.y if y is None else y
+        return np.array(self.module.rhs(t, state.tolist(), point.params.tolist()))
+
+    def __call__(self, point: Point) -> Shot:
+        """Integrate from a point, and state the conditions."""
+        share = 1.0 if self.reversal is None else 0.5
+        duration = share * point.period
+        motion = transition_matrix(
+            self.module, (0.0, duration), point.y, point.params, rtol=self.rtol, atol=self.atol
+        )
+        rate = self.rate(point, duration, motion.y)
+        by_parameter = np.zeros(len(rate))
+        n, reversal = len(rate), self.reversal
+        by_end = np.column_stack([motion.matrix, share * rate, by_parameter])
+        identity = np.eye(n, n + 2)
+        if reversal is None:
+            difference = motion.y - point.y
+            whole = angles(self.module) * 2 * np.pi * np.round(difference / (2 * np.pi))
+            advance = whole if self.advance is None else self.advance
+            return Shot(difference - advance, by_end - identity, by_end - identity, advance)
+        changed = reversal.changed
+        start, end = reversal.nearest(point.y), reversal.nearest(motion.y)
+        whole = np.zeros(n)
+        whole[changed] = 2 * (end - start)
+        advance = whole if self.advance is None else self.advance
+        residual = [motion.y[changed] - start - advance[changed] / 2, point.y[changed] - start]
+        rows = np.concatenate([by_end[changed], identity[changed]])
+        monodromy = reversal.monodromy(motion.matrix)
+        by_parameter = reversal.by_parameter(motion.matrix, by_parameter)
+        change = np.column_stack([monodromy, self.rate(point), by_parameter]) - identity
+        return Shot(np.concatenate(residual), rows, change, advance)
+
+    def energy(self, point: Point) -> float:
+        """The energy in J at the start."""
+        return float(function(self.module, "energy")(0.0, point.y.tolist(), point.params.tolist()))
+
+    def energy_gradient(self, point: Point) -> Array:
+        """Derivatives of the energy by the start."""
+        steps = STEP * np.maximum(np.abs(point.y), 1.0)
+        shifts, energy = np.diag(steps), function(self.module, "energy_many")
+        states = [(point.y + sign * shifts).T for sign in (1, -1)]
+        ahead, behind = (energy(0.0, state, point.params) for state in states)
+        return np.asarray((ahead - behind) / (2 * steps))
+
+    def unfolding(self, point: Point) -> Array:
+        """A unit vector along the gradient of the energy.
+
+        The equations of an orbit of a family are consistent in the limit only: a part along the
+        gradient stays free, and vanishes (F. J. Muñoz-Almaraz et al., Physica D 181 (2003) 1-38).
+        """
+        gradient = self.energy_gradient(point)
+        return np.asarray(gradient / max(float(np.linalg.norm(gradient)), TINY))

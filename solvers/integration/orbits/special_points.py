@@ -1,0 +1,79 @@
+"""Special points of a curve of periodic orbits: roots of functions of an orbit.
+
+Yu. A. Kuznetsov, Elements of Applied Bifurcation Theory, 2004, section 10.2.
+"""
+
+from collections.abc import Callable
+from itertools import combinations
+
+import numpy as np
+
+from solvers.integration.orbits.curve import Node
+from solvers.integration.solution import Array
+
+#: Largest distance from the unit circle of a pair of multipliers, and smallest imaginary part.
+CLOSE = 1e-6
+
+
+def turning_point(node: Node) -> float:
+    """The derivative of the parameter, or of the energy, along the curve."""
+    return node.rate_of_value
+
+
+def branch_point(node: Node) -> float:
+    """The determinant of the equations over a period and a vector near the tangent."""
+    curve, free = node.curve, node.curve.shooting.unknowns(node.point)
+    equations = curve.equations(node.point, node.shot.change, half=False)
+    row = np.zeros(equations.shape[1])
+    row[: free.sum()] = node.reference[free]
+    return float(np.linalg.det(np.vstack([equations, row])))
+
+
+def crossing_direction(node: Node) -> Array:
+    """The direction of the family that crosses at a branch point."""
+    curve, free = node.curve, node.curve.shooting.unknowns(node.point)
+    equations = curve.equations(node.point, node.shot.change, half=False)
+    null = np.linalg.svd(equations)[2][-2:, : free.sum()]
+    row = node.reference[free]
+    # of both null vectors, the combination orthogonal to the family
+    a, b = null @ row
+    direction = np.zeros(len(free))
+    direction[free] = b * null[0] - a * null[1]
+    return np.asarray(direction / np.linalg.norm(direction))
+
+
+def doubling_direction(node: Node) -> Array:
+    """The perturbation with the multiplier -1, along which a family of twice the period starts."""
+    n, scales = len(node.point.y), node.curve.scales
+    values, vectors = np.linalg.eig(node.shot.monodromy)
+    direction = np.zeros(n + 2)
+    direction[:n] = vectors[:, np.argmin(np.abs(values + 1))].real / scales[:n]
+    return np.asarray(direction / np.linalg.norm(direction))
+
+
+def period_doubling(node: Node) -> float:
+    """The determinant of the monodromy matrix plus 1."""
+    return float(np.linalg.det(node.reduced + np.eye(len(node.reduced))))
+
+
+def neimark_sacker(node: Node) -> float:
+    """The product, over all pairs of multipliers, of their product minus 1."""
+    if node.curve.shooting.nature.is_conservative:
+        return 1.0  # pairs stay on the unit circle until they meet
+    pairs = combinations(np.linalg.eigvals(node.reduced), 2)
+    return float(np.prod([a * b - 1 for a, b in pairs]).real)
+
+
+#: Functions that change their sign at special points, by their kinds.
+FUNCTIONS: dict[str, Callable[[Node], float]] = {
+    "turning point": turning_point,
+    "branch point": branch_point,
+    "period doubling": period_doubling,
+    "Neimark-Sacker": neimark_sacker,
+}
+
+
+def is_torus(node: Node) -> bool:
+    """Whether a pair of complex multipliers is on the unit circle."""
+    values = np.linalg.eigvals(node.reduced)
+    return bool(np.any((np.abs(np.abs(values) - 1) < CLOSE) & (np.abs(values.imag) > CLOSE)))
