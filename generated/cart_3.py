@@ -62,6 +62,27 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_theta2_dot [rad/s]
     delta_theta3_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    x [m]
+    sin_theta1 [1]
+    cos_theta1 [1]
+    sin_theta2 [1]
+    cos_theta2 [1]
+    sin_theta3 [1]
+    cos_theta3 [1]
+    x_dot [m/s]
+    theta1_dot [rad/s]
+    theta2_dot [rad/s]
+    theta3_dot [rad/s]
+    delta_x [m]
+    delta_theta1 [rad]
+    delta_theta2 [rad]
+    delta_theta3 [rad]
+    delta_x_dot [m/s]
+    delta_theta1_dot [rad/s]
+    delta_theta2_dot [rad/s]
+    delta_theta3_dot [rad/s]
+
 Parameters params:
     m0 [kg] > 0, default 1.0: mass
     m1 [kg] > 0, default 1.0: mass
@@ -133,7 +154,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "7bb10b0ad1dda483"
+DIGEST = "82df38007386ccb2"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x",
@@ -145,7 +166,7 @@ STATE = (
     "theta2_dot",
     "theta3_dot",
 )
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": (
         "x",
@@ -201,6 +222,27 @@ STATES = {
         "delta_theta2_dot",
         "delta_theta3_dot",
     ),
+    "sensitivity": (
+        "x",
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "sin_theta3",
+        "cos_theta3",
+        "x_dot",
+        "theta1_dot",
+        "theta2_dot",
+        "theta3_dot",
+        "delta_x",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta3",
+        "delta_x_dot",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+        "delta_theta3_dot",
+    ),
 }
 PARAMETERS: tuple[str, ...] = ("m0", "m1", "m2", "m3", "l1", "l2", "l3", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
@@ -216,27 +258,26 @@ CALLS_FUNCTIONS = (
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (131, 13),
-    "jacobian": (399, 14),
-    "parameter_jacobian": (452, 14),
+    "jacobian": (396, 14),
+    "parameter_jacobian": (418, 15),
     "energy": (66, 15),
     "mass_matrix": (27, 12),
     "positions": (20, 0),
     "hamiltonian_state": (53, 7),
     "rhs_hamiltonian": (138, 14),
     "jacobian_hamiltonian": (453, 14),
-    "parameter_jacobian_hamiltonian": (644, 23),
     "energy_hamiltonian": (111, 11),
     "lagrangian_state": (98, 9),
     "rational_state": (6, 0),
     "rhs_rational": (134, 13),
-    "rhs_variational": (279, 13),
+    "rhs_variational": (280, 13),
+    "rhs_sensitivity": (438, 38),
     "equilibrium": (0, 0),
     "linear": (15, 15),
 }
@@ -455,7 +496,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    399 operations, 14 of them on parameters alone.
+    396 operations, 14 of them on parameters alone.
 
     Parameters
     ----------
@@ -541,24 +582,24 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x41 = x11*(x24 + x8*x34 - x27*x33)
     x42 = c2*x14
     x43 = x20 + x5*x34 - cos_theta3*x33 - x6*x41
-    x44 = x4*x16 + x5*x18 + c5*cos_theta1 - (x33*x40 + x41*x42 + x43*x3)
-    x45 = x44 + x37*x21 + x38*x12
-    x46 = (x39 + x45*x31)/x32
+    x44 = x33*x40 + x41*x42 + x43*x3 - (x4*x16 + x5*x18 + c5*cos_theta1)
+    x45 = x44 - x37*x21 - x38*x12
+    x46 = (x39 - x45*x31)/x32
     x47 = x6*x19
     x48 = x9*x41
     x49 = x47 + x48
     x50 = c2*sin_theta2
-    x51 = x4*x23 + x6*x18 + c7*cos_theta2 - (x34*x42 + x33*x50 + x43*x10)
-    x52 = x51 + x49*x7
-    x53 = c2*(cos_theta2*x19 + sin_theta2*x41) - x49*x26 + x52*x28
-    x54 = c2*(x14*x41 - x4*x19) + x49*x21 - x52*x12
-    x55 = (x53 + x54*x31)/x32
+    x51 = x34*x42 + x33*x50 + x43*x10 - (x4*x23 + x6*x18 + c7*cos_theta2)
+    x52 = x51 - x49*x7
+    x53 = c2*(cos_theta2*x19 + sin_theta2*x41) - x49*x26 - x52*x28
+    x54 = c2*(x4*x19 - x14*x41) - x49*x21 - x52*x12
+    x55 = (x53 - x54*x31)/x32
     x56 = l3*x17
-    x57 = x35 + x47 + g*cos_theta3 - (x36 + sin_theta3*x33 - x48)
-    x58 = x9*x43 - x6*x56 - x6*x57
-    x59 = cos_theta3*x56 + sin_theta3*x43 + cos_theta3*x57 + x58*x28
-    x60 = x2*x43 - x5*x56 - x5*x57 - x58*x12
-    x61 = m3*(x59 + x60*x31)/x32
+    x57 = x36 + sin_theta3*x33 - x48 - (x35 + x47 + g*cos_theta3)
+    x58 = x6*x56 - x9*x43 - x6*x57
+    x59 = cos_theta3*x56 + sin_theta3*x43 - cos_theta3*x57 - x58*x28
+    x60 = x5*x56 - x2*x43 - x5*x57 - x58*x12
+    x61 = m3*(x59 - x60*x31)/x32
     x62 = x42 - x2*x7
     x63 = x2*x21 + x62*x12
     x64 = (x40 - x2*x26 - x62*x28 + x63*x31)*x0/x32
@@ -570,15 +611,15 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x70 = x2 - x66
     x71 = c4*theta3_dot
     x72 = (sin_theta3 + x65 + x70*x31)*x71/x32
-    x73 = x13*(x45 + x29*x46)
-    x74 = x13*(x54 + x29*x55)
-    x75 = x13*(m3*x60 + x29*x61)
+    x73 = x13*(x45 - x29*x46)
+    x74 = x13*(x54 - x29*x55)
+    x75 = x13*(m3*x60 - x29*x61)
     x76 = x13*(x63*x0 + x29*x64)
     x77 = x13*(x67*x68 + x29*x69)
     x78 = x13*(x70*x71 + x29*x72)
-    x79 = x11*(x38 + x8*x73 - x27*x46)
-    x80 = x11*(x52 + x27*x55 - x8*x74)
-    x81 = x11*(m3*x58 + x27*x61 - x8*x75)
+    x79 = x11*(x27*x46 + x8*x73 - x38)
+    x80 = x11*(x27*x55 + x8*x74 - x52)
+    x81 = x11*(x27*x61 + x8*x75 - m3*x58)
     x82 = x11*(x62*x0 + x8*x76 - x27*x64)
     x83 = x11*(c12*x6*x9*theta2_dot + x27*x69 - x8*x77)
     x84 = x11*(x9*x71 + x27*x72 - x8*x78)
@@ -593,9 +634,9 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         (0.0, x46, x55, x61, 0.0, 2.0*x64, 2.0*x69, 2.0*x72),
         (
             0.0,
-            -c10*x73,
-            -c10*x74,
-            -c10*x75,
+            c10*x73,
+            c10*x74,
+            c10*x75,
             0.0,
             -2.0*c10*x76,
             -2.0*c10*x77,
@@ -603,7 +644,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         ),
         (
             0.0,
-            c11*x79,
+            -c11*x79,
             -c11*x80,
             -c11*x81,
             0.0,
@@ -613,9 +654,9 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         ),
         (
             0.0,
-            c13*(x37 + x5*x73 - cos_theta3*x46 - x6*x79),
-            c13*(x49 + x5*x74 + x6*x80 - cos_theta3*x55),
-            -c13*(x57 + cos_theta3*x61 - x5*x75 - x6*x81),
+            c13*(x37 + x6*x79 - cos_theta3*x46 - x5*x73),
+            c13*(x49 + x6*x80 - cos_theta3*x55 - x5*x74),
+            c13*(x57 + x6*x81 - cos_theta3*x61 - x5*x75),
             0.0,
             x85,
             x86,
@@ -697,24 +738,24 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x41 = x11*(x24 + x8*x34 - x27*x33)
     x42 = c2*x14
     x43 = x20 + x5*x34 - cos_theta3*x33 - x6*x41
-    x44 = x4*x16 + x5*x18 + c5*cos_theta1 - (x33*x40 + x41*x42 + x43*x3)
-    x45 = x44 + x37*x21 + x38*x12
-    x46 = (x39 + x45*x31)/x32
+    x44 = x33*x40 + x41*x42 + x43*x3 - (x4*x16 + x5*x18 + c5*cos_theta1)
+    x45 = x44 - x37*x21 - x38*x12
+    x46 = (x39 - x45*x31)/x32
     x47 = x6*x19
     x48 = x9*x41
     x49 = x47 + x48
     x50 = c2*sin_theta2
-    x51 = x4*x23 + x6*x18 + c7*cos_theta2 - (x34*x42 + x33*x50 + x43*x10)
-    x52 = x51 + x49*x7
-    x53 = c2*(cos_theta2*x19 + sin_theta2*x41) - x49*x26 + x52*x28
-    x54 = c2*(x14*x41 - x4*x19) + x49*x21 - x52*x12
-    x55 = (x53 + x54*x31)/x32
+    x51 = x34*x42 + x33*x50 + x43*x10 - (x4*x23 + x6*x18 + c7*cos_theta2)
+    x52 = x51 - x49*x7
+    x53 = c2*(cos_theta2*x19 + sin_theta2*x41) - x49*x26 - x52*x28
+    x54 = c2*(x4*x19 - x14*x41) - x49*x21 - x52*x12
+    x55 = (x53 - x54*x31)/x32
     x56 = l3*x17
-    x57 = x35 + x47 + g*cos_theta3 - (x36 + sin_theta3*x33 - x48)
-    x58 = x9*x43 - x6*x56 - x6*x57
-    x59 = cos_theta3*x56 + sin_theta3*x43 + cos_theta3*x57 + x58*x28
-    x60 = x2*x43 - x5*x56 - x5*x57 - x58*x12
-    x61 = m3*(x59 + x60*x31)/x32
+    x57 = x36 + sin_theta3*x33 - x48 - (x35 + x47 + g*cos_theta3)
+    x58 = x6*x56 - x9*x43 - x6*x57
+    x59 = cos_theta3*x56 + sin_theta3*x43 - cos_theta3*x57 - x58*x28
+    x60 = x5*x56 - x2*x43 - x5*x57 - x58*x12
+    x61 = m3*(x59 - x60*x31)/x32
     x62 = x42 - x2*x7
     x63 = x2*x21 + x62*x12
     x64 = (x40 - x2*x26 - x62*x28 + x63*x31)*x0/x32
@@ -726,15 +767,15 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x70 = x2 - x66
     x71 = c4*theta3_dot
     x72 = (sin_theta3 + x65 + x70*x31)*x71/x32
-    x73 = x13*(x45 + x29*x46)
-    x74 = x13*(x54 + x29*x55)
-    x75 = x13*(m3*x60 + x29*x61)
+    x73 = x13*(x45 - x29*x46)
+    x74 = x13*(x54 - x29*x55)
+    x75 = x13*(m3*x60 - x29*x61)
     x76 = x13*(x63*x0 + x29*x64)
     x77 = x13*(x67*x68 + x29*x69)
     x78 = x13*(x70*x71 + x29*x72)
-    x79 = x11*(x38 + x8*x73 - x27*x46)
-    x80 = x11*(x52 + x27*x55 - x8*x74)
-    x81 = x11*(m3*x58 + x27*x61 - x8*x75)
+    x79 = x11*(x27*x46 + x8*x73 - x38)
+    x80 = x11*(x27*x55 + x8*x74 - x52)
+    x81 = x11*(x27*x61 + x8*x75 - m3*x58)
     x82 = x11*(x62*x0 + x8*x76 - x27*x64)
     x83 = x11*(c12*x6*x9*theta2_dot + x27*x69 - x8*x77)
     x84 = x11*(x9*x71 + x27*x72 - x8*x78)
@@ -785,15 +826,15 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         2.0*x69,
         2.0*x72,
         0.0,
-        -c10*x73,
-        -c10*x74,
-        -c10*x75,
+        c10*x73,
+        c10*x74,
+        c10*x75,
         0.0,
         -2.0*c10*x76,
         -2.0*c10*x77,
         -2.0*c10*x78,
         0.0,
-        c11*x79,
+        -c11*x79,
         -c11*x80,
         -c11*x81,
         0.0,
@@ -801,9 +842,9 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -2.0*c11*x83,
         -2.0*c11*x84,
         0.0,
-        c13*(x37 + x5*x73 - cos_theta3*x46 - x6*x79),
-        c13*(x49 + x5*x74 + x6*x80 - cos_theta3*x55),
-        -c13*(x57 + cos_theta3*x61 - x5*x75 - x6*x81),
+        c13*(x37 + x6*x79 - cos_theta3*x46 - x5*x73),
+        c13*(x49 + x6*x80 - cos_theta3*x55 - x5*x74),
+        c13*(x57 + x6*x81 - cos_theta3*x61 - x5*x75),
         0.0,
         x85,
         x86,
@@ -814,7 +855,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    452 operations, 14 of them on parameters alone.
+    418 operations, 15 of them on parameters alone.
 
     Parameters
     ----------
@@ -846,9 +887,10 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c8 = c1*g
     c9 = m0 + c0
     c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = 1.0/l3
-    c13 = 1.0/m3
+    c11 = c1*c10
+    c12 = 1.0/l2
+    c13 = c3*c12
+    c14 = 1.0/l3
     # intermediate terms
     sin_theta1 = sin(theta1)
     x0 = theta1_dot*theta1_dot
@@ -871,134 +913,125 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x12 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
     x13 = x12*x0
     x14 = x8*x4
-    x15 = c6*x13 - c5*x14 - c7*sin_theta2
-    x16 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x17 = m3*x16
-    x18 = x15 - x10*x17
-    x19 = c3*cos_theta2
-    x20 = x19 - cos_theta3*x17
-    x21 = 1.0/(m2 + m3*x8*x8)
-    x22 = x20*x21
-    x23 = x12*x2
-    x24 = x6*x4
-    x25 = c4*x23 + c5*x24 + c8*sin_theta1
-    x26 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x27 = m3*x26
-    x28 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x29 = c3*x28
-    x30 = x29 - x26*x17
-    x31 = x21*x30
-    x32 = x25 + x10*x27 + x18*x31
-    x33 = c1*cos_theta1
-    x34 = x33 - cos_theta3*x27 - x30*x22
-    x35 = 1.0/(c0 + m3*x6*x6 - x30*x31)
-    x36 = x34*x35
-    x37 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x18*x22 + x32*x36
-    x38 = c9 + m3*sin_theta3*sin_theta3 - x20*x22 - x34*x36
-    x39 = x37/x38
-    x40 = x39/x38
-    x41 = l1*x1
-    x42 = x35*(x32 + x34*x39)
-    x43 = x39 - cos_theta1*x42
-    x44 = g*sin_theta1
-    x45 = x42 - cos_theta1*x39
-    x46 = x44 - x45
-    x47 = (x41 - x43 + x46*x36)/x38
-    x48 = x41 + l2*x3
-    x49 = x21*(x18 + x30*x42 - x20*x39)
-    x50 = x43 + cos_theta2*x49
-    x51 = l1*x13
-    x52 = g*sin_theta2
-    x53 = x28*x42 - (x49 + cos_theta2*x39)
-    x54 = x51 - x52 - (-x53)
-    x55 = l2*x23
-    x56 = x45 - x28*x49
-    x57 = x44 + x55 + (-x56) + x54*x31
-    x58 = (x48 - x50 - x54*x22 + x57*x36)/x38
-    x59 = x16*x49 + (cos_theta3*x39 - x26*x42)
-    x60 = x10 - x59
-    x61 = x10 - (x60 + x59)
-    x62 = x48 + l3*x5 - (x50 + cos_theta3*x60) - cos_theta3*x61
-    x63 = x52 - (x51 - l3*x14) + (x16*x60 - x53) + x16*x61
-    x64 = x44 + (x55 + l3*x24) + (x26*x60 - x56) + x26*x61 - x63*x31
-    x65 = (x62 + x63*x22 + x64*x36)/x38
-    x66 = c10*x42
-    x67 = x7 + x26*x66
-    x68 = c3*(x13 + x28*x66) - x67*x17
-    x69 = c10*(x25 + (x33*x39 + x29*x49 + x60*x27 - 2.0*c1*x42))
-    x70 = x69 + x67*x27 + x68*x31
-    x71 = c1*(x1 + cos_theta1*x66) - x67*x11 - x68*x22 + x70*x36
-    x72 = x71/x38
-    x73 = c11*x49
-    x74 = x9 - x16*x73
-    x75 = c11*(x15 - (x19*x39 + 2.0*c3*x49 + x60*x17 - x29*x42))
-    x76 = x75 - x74*x17
-    x77 = c3*(x23 + x28*x73) + x74*x27 + x76*x31
-    x78 = c3*(x3 - cos_theta2*x73) - x74*x11 - x76*x22 + x77*x36
-    x79 = x78/x38
-    x80 = c12*x60
-    x81 = c12*(x10 - (2.0*x60 + x59))
-    x82 = x14 + x16*x80 + x16*x81
-    x83 = x24 + x26*x80 + x26*x81 - x82*x31
-    x84 = x5 - cos_theta3*x80 - cos_theta3*x81 + x82*x22 + x83*x36
-    x85 = m3*x84/x38
-    x86 = c3*sin_theta2 - sin_theta3*x17
-    x87 = c1*sin_theta1 - sin_theta3*x27 - x86*x31
-    x88 = (sin_theta3*x11 + x86*x22 + x87*x36)/x38
-    x89 = x40*x36
-    x90 = x35*(x46 + x34*x47)
-    x91 = x35*(x57 + x34*x58)
-    x92 = x35*(x64 + x34*x65)
-    x93 = x35*(x70 + x34*x72)
-    x94 = x35*(x77 + x34*x79)
-    x95 = x35*(m3*x83 + x34*x85)
-    x96 = x35*(x87 + x34*x88)
-    x97 = x21*(x20*x40 - x30*x89)
-    x98 = x21*(x20*x47 - x30*x90)
-    x99 = x21*(x54 + x30*x91 - x20*x58)
-    x100 = x21*(x63 + x20*x65 - x30*x92)
-    x101 = x21*(x68 + x30*x93 - x20*x72)
-    x102 = x21*(x76 + x30*x94 - x20*x79)
-    x103 = x21*(m3*x82 + x20*x85 - x30*x95)
-    x104 = x21*(x86 + x20*x88 - x30*x96)
-    x105 = c12*(c13*x61 + x26*x92 + x16*x100 - cos_theta3*x65)
-    x106 = c12*(sin_theta3 + cos_theta3*x88 - x26*x96 - x16*x104)
+    x15 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x16 = m3*x15
+    x17 = c6*x13 - c5*x14 - c7*sin_theta2 - x10*x16
+    x18 = c3*cos_theta2 - x15*x11
+    x19 = 1.0/(m2 + m3*x8*x8)
+    x20 = x18*x19
+    x21 = x12*x2
+    x22 = x6*x4
+    x23 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x24 = m3*x23
+    x25 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x26 = c3*x25 - x23*x16
+    x27 = x19*x26
+    x28 = c4*x21 + c5*x22 + c8*sin_theta1 + x10*x24 + x17*x27
+    x29 = c1*cos_theta1 - x23*x11 - x26*x20
+    x30 = 1.0/(c0 + m3*x6*x6 - x26*x27)
+    x31 = x29*x30
+    x32 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x17*x20 + x28*x31
+    x33 = c9 + m3*sin_theta3*sin_theta3 - x18*x20 - x29*x31
+    x34 = x32/x33
+    x35 = x34/x33
+    x36 = l1*x1
+    x37 = x30*(x28 + x29*x34)
+    x38 = x34 - cos_theta1*x37
+    x39 = g*sin_theta1
+    x40 = x37 - cos_theta1*x34
+    x41 = x39 - x40
+    x42 = (x36 - x38 + x41*x31)/x33
+    x43 = x19*(x17 + x26*x37 - x18*x34)
+    x44 = cos_theta2*x43 + x38
+    x45 = x36 + l2*x3
+    x46 = l1*x13
+    x47 = g*sin_theta2
+    x48 = x25*x37 - (x43 + cos_theta2*x34)
+    x49 = -(x46 - x47 + x48)
+    x50 = l2*x21
+    x51 = x25*x43 - x40
+    x52 = x39 + x50 + x51 - x49*x27
+    x53 = (x44 - x45 - x49*x20 - x52*x31)/x33
+    x54 = x10 + x23*x37 - cos_theta3*x34 - x15*x43
+    x55 = x47 - (x46 - l3*x14) + x15*x54 - x48
+    x56 = x39 + (x50 + l3*x22) + x23*x54 + x51 - x55*x27
+    x57 = cos_theta3*x54 + x44 - (x45 + l3*x5) - x55*x20 - x56*x31
+    x58 = x57/x33
+    x59 = c10*x37
+    x60 = x7 + x23*x59
+    x61 = c3*(x13 + x25*x59) - x60*x16
+    x62 = c11*x37 - x60*x24 - x61*x27
+    x63 = c1*(x1 + cos_theta1*x59) - x60*x11 - x61*x20 - x62*x31
+    x64 = x63/x33
+    x65 = c12*x43
+    x66 = x9 - x15*x65
+    x67 = c13*x43 + x66*x16
+    x68 = c3*(x21 + x25*x65) + x66*x24 - x67*x27
+    x69 = c3*(x3 - cos_theta2*x65) - x66*x11 + x67*x20 + x68*x31
+    x70 = x69/x33
+    x71 = c14*x54
+    x72 = cos_theta3*x71
+    x73 = x15*x71
+    x74 = x73 - (x73 + x14)
+    x75 = x23*x71
+    x76 = x75 - (x75 + x22) - x74*x27
+    x77 = m3*(x72 - (x72 - x5) - x74*x20 - x76*x31)/x33
+    x78 = c3*sin_theta2 - sin_theta3*x16
+    x79 = c1*sin_theta1 - sin_theta3*x24 - x78*x27
+    x80 = (sin_theta3*x11 + x78*x20 + x79*x31)/x33
+    x81 = x35*x31
+    x82 = x30*(x41 + x29*x42)
+    x83 = x30*(x52 - x29*x53)
+    x84 = x30*(x56 - x29*x58)
+    x85 = x30*(x62 - x29*x64)
+    x86 = x30*(x68 + x29*x70)
+    x87 = x30*(m3*x76 - x29*x77)
+    x88 = x30*(x79 + x29*x80)
+    x89 = x19*(x18*x35 - x26*x81)
+    x90 = x19*(x18*x42 - x26*x82)
+    x91 = x19*(x18*x53 + x26*x83 - x49)
+    x92 = x19*(x18*x58 + x26*x84 - x55)
+    x93 = x19*(x18*x64 + x26*x85 - x61)
+    x94 = x19*(x67 + x18*x70 - x26*x86)
+    x95 = x19*(x18*x77 + x26*x87 - m3*x74)
+    x96 = x19*(x78 + x18*x80 - x26*x88)
+    x97 = c14*(sin_theta3 + cos_theta3*x80 - x23*x88 - x15*x96)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-x40, x47, x58, x65, x72, x79, x85, x88),
+        (-x35, x42, -x53, -x58, x64, x70, x77, x80),
         (
-            c10*x89,
-            -c10*x90,
-            -c10*x91,
-            -c10*x92,
-            -c10*x93,
-            -c10*x94,
-            -c10*x95,
-            -c10*x96,
+            c10*x81,
+            -c10*x82,
+            -c10*x83,
+            -c10*x84,
+            c10*x85,
+            -c10*x86,
+            c10*x87,
+            -c10*x88,
         ),
         (
-            c11*x97,
-            -c11*x98,
-            c11*x99,
-            -c11*x100,
-            c11*x101,
-            c11*x102,
-            -c11*x103,
-            -c11*x104,
+            c12*x89,
+            -c12*x90,
+            c12*x91,
+            c12*x92,
+            -c12*x93,
+            -c12*x94,
+            -c12*x95,
+            -c12*x96,
         ),
         (
-            -c12*(x26*x89 + x16*x97 - cos_theta3*x40),
-            c12*(x26*x90 + x16*x98 - cos_theta3*x47),
-            -c12*(cos_theta3*x58 + x16*x99 - x26*x91),
-            x105,
-            c12*(x67 + x26*x93 - cos_theta3*x72 - x16*x101),
-            c12*(x74 + x26*x94 - cos_theta3*x79 - x16*x102),
-            c12*(x81 + x26*x95 + x16*x103 - cos_theta3*x85),
-            -x106,
+            -c14*(x23*x81 + x15*x89 - cos_theta3*x35),
+            c14*(x23*x82 + x15*x90 - cos_theta3*x42),
+            c14*(cos_theta3*x53 + x23*x83 - x15*x91),
+            c14*(cos_theta3*x58 + x23*x84 - x15*x92),
+            c14*(x60 + x15*x93 - cos_theta3*x64 - x23*x85),
+            c14*(x66 + x23*x86 + x15*x94 - cos_theta3*x70),
+            -c14*(x71 + cos_theta3*x77 + x23*x87 - x15*x95),
+            -x97,
         ),
     )
 
@@ -1022,9 +1055,10 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c8 = c1*g
     c9 = m0 + c0
     c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = 1.0/l3
-    c13 = 1.0/m3
+    c11 = c1*c10
+    c12 = 1.0/l2
+    c13 = c3*c12
+    c14 = 1.0/l3
     # intermediate terms
     sin_theta1 = sin(theta1)
     x0 = theta1_dot*theta1_dot
@@ -1047,98 +1081,89 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x12 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
     x13 = x12*x0
     x14 = x8*x4
-    x15 = c6*x13 - c5*x14 - c7*sin_theta2
-    x16 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x17 = m3*x16
-    x18 = x15 - x10*x17
-    x19 = c3*cos_theta2
-    x20 = x19 - cos_theta3*x17
-    x21 = 1.0/(m2 + m3*x8*x8)
-    x22 = x20*x21
-    x23 = x12*x2
-    x24 = x6*x4
-    x25 = c4*x23 + c5*x24 + c8*sin_theta1
-    x26 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x27 = m3*x26
-    x28 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x29 = c3*x28
-    x30 = x29 - x26*x17
-    x31 = x21*x30
-    x32 = x25 + x10*x27 + x18*x31
-    x33 = c1*cos_theta1
-    x34 = x33 - cos_theta3*x27 - x30*x22
-    x35 = 1.0/(c0 + m3*x6*x6 - x30*x31)
-    x36 = x34*x35
-    x37 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x18*x22 + x32*x36
-    x38 = c9 + m3*sin_theta3*sin_theta3 - x20*x22 - x34*x36
-    x39 = x37/x38
-    x40 = x39/x38
-    x41 = l1*x1
-    x42 = x35*(x32 + x34*x39)
-    x43 = x39 - cos_theta1*x42
-    x44 = g*sin_theta1
-    x45 = x42 - cos_theta1*x39
-    x46 = x44 - x45
-    x47 = (x41 - x43 + x46*x36)/x38
-    x48 = x41 + l2*x3
-    x49 = x21*(x18 + x30*x42 - x20*x39)
-    x50 = x43 + cos_theta2*x49
-    x51 = l1*x13
-    x52 = g*sin_theta2
-    x53 = x28*x42 - (x49 + cos_theta2*x39)
-    x54 = x51 - x52 - (-x53)
-    x55 = l2*x23
-    x56 = x45 - x28*x49
-    x57 = x44 + x55 + (-x56) + x54*x31
-    x58 = (x48 - x50 - x54*x22 + x57*x36)/x38
-    x59 = x16*x49 + (cos_theta3*x39 - x26*x42)
-    x60 = x10 - x59
-    x61 = x10 - (x60 + x59)
-    x62 = x48 + l3*x5 - (x50 + cos_theta3*x60) - cos_theta3*x61
-    x63 = x52 - (x51 - l3*x14) + (x16*x60 - x53) + x16*x61
-    x64 = x44 + (x55 + l3*x24) + (x26*x60 - x56) + x26*x61 - x63*x31
-    x65 = (x62 + x63*x22 + x64*x36)/x38
-    x66 = c10*x42
-    x67 = x7 + x26*x66
-    x68 = c3*(x13 + x28*x66) - x67*x17
-    x69 = c10*(x25 + (x33*x39 + x29*x49 + x60*x27 - 2.0*c1*x42))
-    x70 = x69 + x67*x27 + x68*x31
-    x71 = c1*(x1 + cos_theta1*x66) - x67*x11 - x68*x22 + x70*x36
-    x72 = x71/x38
-    x73 = c11*x49
-    x74 = x9 - x16*x73
-    x75 = c11*(x15 - (x19*x39 + 2.0*c3*x49 + x60*x17 - x29*x42))
-    x76 = x75 - x74*x17
-    x77 = c3*(x23 + x28*x73) + x74*x27 + x76*x31
-    x78 = c3*(x3 - cos_theta2*x73) - x74*x11 - x76*x22 + x77*x36
-    x79 = x78/x38
-    x80 = c12*x60
-    x81 = c12*(x10 - (2.0*x60 + x59))
-    x82 = x14 + x16*x80 + x16*x81
-    x83 = x24 + x26*x80 + x26*x81 - x82*x31
-    x84 = x5 - cos_theta3*x80 - cos_theta3*x81 + x82*x22 + x83*x36
-    x85 = m3*x84/x38
-    x86 = c3*sin_theta2 - sin_theta3*x17
-    x87 = c1*sin_theta1 - sin_theta3*x27 - x86*x31
-    x88 = (sin_theta3*x11 + x86*x22 + x87*x36)/x38
-    x89 = x40*x36
-    x90 = x35*(x46 + x34*x47)
-    x91 = x35*(x57 + x34*x58)
-    x92 = x35*(x64 + x34*x65)
-    x93 = x35*(x70 + x34*x72)
-    x94 = x35*(x77 + x34*x79)
-    x95 = x35*(m3*x83 + x34*x85)
-    x96 = x35*(x87 + x34*x88)
-    x97 = x21*(x20*x40 - x30*x89)
-    x98 = x21*(x20*x47 - x30*x90)
-    x99 = x21*(x54 + x30*x91 - x20*x58)
-    x100 = x21*(x63 + x20*x65 - x30*x92)
-    x101 = x21*(x68 + x30*x93 - x20*x72)
-    x102 = x21*(x76 + x30*x94 - x20*x79)
-    x103 = x21*(m3*x82 + x20*x85 - x30*x95)
-    x104 = x21*(x86 + x20*x88 - x30*x96)
-    x105 = c12*(c13*x61 + x26*x92 + x16*x100 - cos_theta3*x65)
-    x106 = c12*(sin_theta3 + cos_theta3*x88 - x26*x96 - x16*x104)
+    x15 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x16 = m3*x15
+    x17 = c6*x13 - c5*x14 - c7*sin_theta2 - x10*x16
+    x18 = c3*cos_theta2 - x15*x11
+    x19 = 1.0/(m2 + m3*x8*x8)
+    x20 = x18*x19
+    x21 = x12*x2
+    x22 = x6*x4
+    x23 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x24 = m3*x23
+    x25 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x26 = c3*x25 - x23*x16
+    x27 = x19*x26
+    x28 = c4*x21 + c5*x22 + c8*sin_theta1 + x10*x24 + x17*x27
+    x29 = c1*cos_theta1 - x23*x11 - x26*x20
+    x30 = 1.0/(c0 + m3*x6*x6 - x26*x27)
+    x31 = x29*x30
+    x32 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x17*x20 + x28*x31
+    x33 = c9 + m3*sin_theta3*sin_theta3 - x18*x20 - x29*x31
+    x34 = x32/x33
+    x35 = x34/x33
+    x36 = l1*x1
+    x37 = x30*(x28 + x29*x34)
+    x38 = x34 - cos_theta1*x37
+    x39 = g*sin_theta1
+    x40 = x37 - cos_theta1*x34
+    x41 = x39 - x40
+    x42 = (x36 - x38 + x41*x31)/x33
+    x43 = x19*(x17 + x26*x37 - x18*x34)
+    x44 = cos_theta2*x43 + x38
+    x45 = x36 + l2*x3
+    x46 = l1*x13
+    x47 = g*sin_theta2
+    x48 = x25*x37 - (x43 + cos_theta2*x34)
+    x49 = -(x46 - x47 + x48)
+    x50 = l2*x21
+    x51 = x25*x43 - x40
+    x52 = x39 + x50 + x51 - x49*x27
+    x53 = (x44 - x45 - x49*x20 - x52*x31)/x33
+    x54 = x10 + x23*x37 - cos_theta3*x34 - x15*x43
+    x55 = x47 - (x46 - l3*x14) + x15*x54 - x48
+    x56 = x39 + (x50 + l3*x22) + x23*x54 + x51 - x55*x27
+    x57 = cos_theta3*x54 + x44 - (x45 + l3*x5) - x55*x20 - x56*x31
+    x58 = x57/x33
+    x59 = c10*x37
+    x60 = x7 + x23*x59
+    x61 = c3*(x13 + x25*x59) - x60*x16
+    x62 = c11*x37 - x60*x24 - x61*x27
+    x63 = c1*(x1 + cos_theta1*x59) - x60*x11 - x61*x20 - x62*x31
+    x64 = x63/x33
+    x65 = c12*x43
+    x66 = x9 - x15*x65
+    x67 = c13*x43 + x66*x16
+    x68 = c3*(x21 + x25*x65) + x66*x24 - x67*x27
+    x69 = c3*(x3 - cos_theta2*x65) - x66*x11 + x67*x20 + x68*x31
+    x70 = x69/x33
+    x71 = c14*x54
+    x72 = cos_theta3*x71
+    x73 = x15*x71
+    x74 = x73 - (x73 + x14)
+    x75 = x23*x71
+    x76 = x75 - (x75 + x22) - x74*x27
+    x77 = m3*(x72 - (x72 - x5) - x74*x20 - x76*x31)/x33
+    x78 = c3*sin_theta2 - sin_theta3*x16
+    x79 = c1*sin_theta1 - sin_theta3*x24 - x78*x27
+    x80 = (sin_theta3*x11 + x78*x20 + x79*x31)/x33
+    x81 = x35*x31
+    x82 = x30*(x41 + x29*x42)
+    x83 = x30*(x52 - x29*x53)
+    x84 = x30*(x56 - x29*x58)
+    x85 = x30*(x62 - x29*x64)
+    x86 = x30*(x68 + x29*x70)
+    x87 = x30*(m3*x76 - x29*x77)
+    x88 = x30*(x79 + x29*x80)
+    x89 = x19*(x18*x35 - x26*x81)
+    x90 = x19*(x18*x42 - x26*x82)
+    x91 = x19*(x18*x53 + x26*x83 - x49)
+    x92 = x19*(x18*x58 + x26*x84 - x55)
+    x93 = x19*(x18*x64 + x26*x85 - x61)
+    x94 = x19*(x67 + x18*x70 - x26*x86)
+    x95 = x19*(x18*x77 + x26*x87 - m3*x74)
+    x96 = x19*(x78 + x18*x80 - x26*x88)
+    x97 = c14*(sin_theta3 + cos_theta3*x80 - x23*x88 - x15*x96)
     # outputs
     return _stacked(
         (8, 8),
@@ -1175,38 +1200,38 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        -x40,
-        x47,
-        x58,
-        x65,
-        x72,
-        x79,
-        x85,
-        x88,
-        c10*x89,
-        -c10*x90,
-        -c10*x91,
-        -c10*x92,
-        -c10*x93,
-        -c10*x94,
-        -c10*x95,
-        -c10*x96,
-        c11*x97,
-        -c11*x98,
-        c11*x99,
-        -c11*x100,
-        c11*x101,
-        c11*x102,
-        -c11*x103,
-        -c11*x104,
-        -c12*(x26*x89 + x16*x97 - cos_theta3*x40),
-        c12*(x26*x90 + x16*x98 - cos_theta3*x47),
-        -c12*(cos_theta3*x58 + x16*x99 - x26*x91),
-        x105,
-        c12*(x67 + x26*x93 - cos_theta3*x72 - x16*x101),
-        c12*(x74 + x26*x94 - cos_theta3*x79 - x16*x102),
-        c12*(x81 + x26*x95 + x16*x103 - cos_theta3*x85),
-        -x106,
+        -x35,
+        x42,
+        -x53,
+        -x58,
+        x64,
+        x70,
+        x77,
+        x80,
+        c10*x81,
+        -c10*x82,
+        -c10*x83,
+        -c10*x84,
+        c10*x85,
+        -c10*x86,
+        c10*x87,
+        -c10*x88,
+        c12*x89,
+        -c12*x90,
+        c12*x91,
+        c12*x92,
+        -c12*x93,
+        -c12*x94,
+        -c12*x95,
+        -c12*x96,
+        -c14*(x23*x81 + x15*x89 - cos_theta3*x35),
+        c14*(x23*x82 + x15*x90 - cos_theta3*x42),
+        c14*(cos_theta3*x53 + x23*x83 - x15*x91),
+        c14*(cos_theta3*x58 + x23*x84 - x15*x92),
+        c14*(x60 + x15*x93 - cos_theta3*x64 - x23*x85),
+        c14*(x66 + x23*x86 + x15*x94 - cos_theta3*x70),
+        -c14*(x71 + cos_theta3*x77 + x23*x87 - x15*x95),
+        -x97,
     )
 
 
@@ -2105,499 +2130,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    644 operations, 23 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 8 floats
-        x in m; theta1, theta2, theta3 in rad; p_x in kg m/s; p_theta1, p_theta2, p_theta3
-        in J s.
-    params : iterable of 8 floats
-        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
-    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l3
-    c1 = 1.0/l2
-    c2 = m2 + m3
-    c3 = 1.0/l1
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = m0 + c4
-    c7 = m3*l3
-    c8 = 1.0/c7
-    c9 = m3*c0
-    c10 = 1.0/m3
-    c11 = l1*g
-    c12 = c5*c3
-    c13 = m3*c3
-    c14 = c5*g
-    c15 = c2*c3
-    c16 = c2*c1
-    c17 = c5*l1
-    c18 = l2*g
-    c19 = m3*c1
-    c20 = c2*g
-    c21 = c2*l2
-    c22 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    x0 = c0*p_theta3
-    cos_theta2 = cos(theta2)
-    sin_theta3 = sin(theta3)
-    sin_theta2 = sin(theta2)
-    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = c1*p_theta2 - x1*x0
-    x3 = c2*cos_theta2
-    x4 = m3*x1
-    x5 = x3 - cos_theta3*x4
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = 1.0/(m2 + m3*x6*x6)
-    x8 = x5*x7
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    x9 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x10 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x11 = c2*x10
-    x12 = x11 - x9*x4
-    x13 = x7*x12
-    x14 = c3*p_theta1 - x9*x0 - x2*x13
-    x15 = c5*cos_theta1
-    x16 = m3*x9
-    x17 = x15 - cos_theta3*x16 - x5*x13
-    x18 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x19 = 1.0/(c4 + m3*x18*x18 - x12*x13)
-    x20 = x17*x19
-    x21 = c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x17*x20
-    x22 = (p_x - cos_theta3*x0 - x2*x8 - x14*x20)/x21
-    x23 = x22/x21
-    x24 = x19*(x14 - x17*x22)
-    x25 = x22 + cos_theta1*x24
-    x26 = x24 + cos_theta1*x22
-    x27 = (x25 - x26*x20)/x21
-    x28 = x12*x24
-    x29 = x7*(x5*x22 + x28 - x2)
-    x30 = x25 - cos_theta2*x29
-    x31 = x10*x24 - (x29 - cos_theta2*x22)
-    x32 = x26 - x10*x29
-    x33 = x32 - x31*x13
-    x34 = (x30 - x31*x8 - x33*x20)/x21
-    x35 = x1*x29
-    x36 = x9*x24
-    x37 = x35 - (cos_theta3*x22 + x36)
-    x38 = c8*p_theta3 + x37
-    x39 = x38 - x37
-    x40 = x31 + x1*x38 - x1*x39
-    x41 = x32 + x9*x38 - x9*x39 - x40*x13
-    x42 = x30 + cos_theta3*x38 - cos_theta3*x39 - x40*x8 - x41*x20
-    x43 = x42/x21
-    x44 = m3*x38
-    x45 = c2*x29
-    x46 = x15*x22 + 2.0*c5*x24 + x9*x44 - x10*x45 - x36*x16
-    x47 = x46 - x28*x13
-    x48 = c3*x17*(x24 - x19*x47)/x21
-    x49 = x3*x22 + x11*x24 + x1*x44 - 2.0*x45 + x35*x4
-    x50 = c1*(x29 + x7*x49)
-    x51 = (x5 - x12*x20)*x50/x21
-    x52 = x9 - x1*x13
-    x53 = 2.0*x38 - x37
-    x54 = c9*(x38 - x53)
-    x55 = (cos_theta3 - x1*x8 - x52*x20)*x54/x21
-    x56 = x23*x20
-    x57 = x19*(x26 - x17*x27)
-    x58 = x19*(x33 - x17*x34)
-    x59 = x19*(x41 - x17*x43)
-    x60 = x19*(c3*x47 - x17*x48)
-    x61 = x19*(x12*x50 - x17*x51)
-    x62 = x19*(x52*x54 - x17*x55)
-    x63 = x7*(x5*x23 - x12*x56)
-    x64 = x7*(x5*x27 + x12*x57)
-    x65 = x7*(x5*x34 + x12*x58 - x31)
-    x66 = x7*(x5*x43 + x12*x59 - x40)
-    x67 = x7*(x5*x48 + x12*x60 - c3*x28)
-    x68 = x7*(c1*x49 + x5*x51 + x12*x61)
-    x69 = x7*(x5*x55 + x12*x62 - x1*x54)
-    x70 = x9*x56 + x1*x63 - cos_theta3*x23
-    x71 = cos_theta3*x27 + x9*x57 - x1*x64
-    x72 = cos_theta3*x34 + x9*x58 - x1*x65
-    x73 = c10*x39 + x1*x66 - cos_theta3*x43 - x9*x59
-    x74 = c3*x36 + x1*x67 - cos_theta3*x48 - x9*x60
-    x75 = c1*x35 + x1*x68 - cos_theta3*x51 - x9*x61
-    x76 = c0*x53 + x1*x69 - cos_theta3*x55 - x9*x62
-    x77 = c5*sin_theta1
-    x78 = x24*x77
-    x79 = x18*x24
-    x80 = m3*x79
-    x81 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x82 = x45*x81
-    x83 = x24*x81
-    x84 = c2*x83
-    x85 = x56*x82 - x63*x84
-    x86 = x22*x77
-    x87 = x18*x44
-    x88 = x24*(sin_theta1*x22)
-    x89 = x88 + c11*sin_theta1
-    x90 = x57*x82 + x64*x84
-    x91 = x71*x80 + x89 + x90 - x27*x78 - x57*x86 - x57*x87
-    x92 = x29*x83
-    x93 = x65*x84 - (x92 - x58*x82)
-    x94 = x72*x80 + x89 + x93 - x34*x78 - x58*x86 - x58*x87
-    x95 = x66*x84 - (x92 - x59*x82)
-    x96 = x38*x79
-    x97 = x73*x80 - (x96 - x59*x87)
-    x98 = x67*x84 - (c15*x92 - x60*x82)
-    x99 = c12*x88 + c13*x96 + c14*sin_theta1 + x98 - x48*x78 - x60*x86 - x60*x87 - x74*x80
-    x100 = x68*x84 + (c16*x92 + x61*x82)
-    x101 = x62*x82 + x69*x84
-    x102 = x55*x78 + x62*x86 + x62*x87 + x76*x80 - c9*x96 - x101
-    x103 = sin_theta2*x45
-    x104 = sin_theta2*x22
-    x105 = c2*x104
-    x106 = x6*x44
-    x107 = x6*x29
-    x108 = m3*x107
-    x109 = -(x23*x103 + x63*x105 + x63*x106 + x70*x108 + x85)
-    x110 = x29*x104
-    x111 = x110 - c18*sin_theta2
-    x112 = x34*x103 + x65*x105 + x65*x106 - x72*x108 - x93 - x111
-    x113 = x38*x107
-    x114 = x73*x108 - (x113 - x66*x106)
-    x115 = -(x48*x103 + x67*x105 + x67*x106 + x74*x108 - x98)
-    x116 = (
-        c16*x110 + c19*x113 + x51*x103 + x68*x105 + x68*x106 + x75*x108 - c20*sin_theta2
-        - x100
-    )
-    x117 = x55*x103 + x69*x105 + x69*x106 + x76*x108 - c9*x113 - x101
-    x118 = x18*x38
-    x119 = x6*x38
-    x120 = sin_theta3*x38
-    x121 = sin_theta3*x22
-    x122 = x56*x118 + x63*x119 + x70*x107 + x23*x120 + x70*x121 - x70*x79
-    x123 = x57*x118 + x71*x107 + x71*x121 - x71*x79 - x64*x119 - x27*x120
-    x124 = x58*x118 + x72*x107 + x72*x121 - x72*x79 - x65*x119 - x34*x120
-    x125 = x38*x121
-    x126 = sin_theta3*x43*x44 + m3*x73*x121 + x114 - x125 - c22*sin_theta3 - x97
-    x127 = c3*x96 + x67*x119 + x74*x107 + x48*x120 + x74*x121 - x60*x118 - x74*x79
-    x128 = c1*x113 + x68*x119 + x75*x107 + x51*x120 + x75*x121 - x61*x118 - x75*x79
-    x129 = (
-        c0*x96 + x69*x119 + x76*x107 + x55*x120 + x76*x121 - x62*x118 - x76*x79 - c0*x113
-        - c0*x125 - g*sin_theta3
-    )
-    # outputs
-    return (
-        (-x23, -x27, -x34, -x43, -x48, x51, -x55, 0.0),
-        (
-            c3*x56,
-            -c3*x57,
-            -c3*x58,
-            -c3*x59,
-            -c3*x60,
-            c3*x61,
-            -c3*x62,
-            0.0,
-        ),
-        (c1*x63, c1*x64, c1*x65, c1*x66, c1*x67, -c1*x68, c1*x69, 0.0),
-        (
-            -c0*x70,
-            c0*x71,
-            c0*x72,
-            -c0*x73,
-            -c0*x74,
-            c0*x75,
-            -c0*x76,
-            0.0,
-        ),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            x23*x78 + x70*x80 + x85 - x56*x86 - x56*x87,
-            -x91,
-            -x94,
-            -(x89 + x95 - x43*x78 - x59*x86 - x97),
-            -x99,
-            -(x51*x78 + x61*x86 + x61*x87 + x75*x80 - x100),
-            x102,
-            -c17*sin_theta1,
-        ),
-        (
-            x109,
-            x71*x108 + x90 - x27*x103 - x64*x105 - x64*x106,
-            -x112,
-            -(x43*x103 + x66*x105 + x114 - x95 - x111),
-            x115,
-            x116,
-            -x117,
-            -c21*sin_theta2,
-        ),
-        (
-            m3*x122,
-            -m3*x123,
-            -m3*x124,
-            x126,
-            m3*x127,
-            -m3*x128,
-            m3*x129,
-            -c7*sin_theta3,
-        ),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (8, 8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l3
-    c1 = 1.0/l2
-    c2 = m2 + m3
-    c3 = 1.0/l1
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = m0 + c4
-    c7 = m3*l3
-    c8 = 1.0/c7
-    c9 = m3*c0
-    c10 = 1.0/m3
-    c11 = l1*g
-    c12 = c5*c3
-    c13 = m3*c3
-    c14 = c5*g
-    c15 = c2*c3
-    c16 = c2*c1
-    c17 = c5*l1
-    c18 = l2*g
-    c19 = m3*c1
-    c20 = c2*g
-    c21 = c2*l2
-    c22 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    x0 = c0*p_theta3
-    cos_theta2 = cos(theta2)
-    sin_theta3 = sin(theta3)
-    sin_theta2 = sin(theta2)
-    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = c1*p_theta2 - x1*x0
-    x3 = c2*cos_theta2
-    x4 = m3*x1
-    x5 = x3 - cos_theta3*x4
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = 1.0/(m2 + m3*x6*x6)
-    x8 = x5*x7
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    x9 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x10 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x11 = c2*x10
-    x12 = x11 - x9*x4
-    x13 = x7*x12
-    x14 = c3*p_theta1 - x9*x0 - x2*x13
-    x15 = c5*cos_theta1
-    x16 = m3*x9
-    x17 = x15 - cos_theta3*x16 - x5*x13
-    x18 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x19 = 1.0/(c4 + m3*x18*x18 - x12*x13)
-    x20 = x17*x19
-    x21 = c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x17*x20
-    x22 = (p_x - cos_theta3*x0 - x2*x8 - x14*x20)/x21
-    x23 = x22/x21
-    x24 = x19*(x14 - x17*x22)
-    x25 = x22 + cos_theta1*x24
-    x26 = x24 + cos_theta1*x22
-    x27 = (x25 - x26*x20)/x21
-    x28 = x12*x24
-    x29 = x7*(x5*x22 + x28 - x2)
-    x30 = x25 - cos_theta2*x29
-    x31 = x10*x24 - (x29 - cos_theta2*x22)
-    x32 = x26 - x10*x29
-    x33 = x32 - x31*x13
-    x34 = (x30 - x31*x8 - x33*x20)/x21
-    x35 = x1*x29
-    x36 = x9*x24
-    x37 = x35 - (cos_theta3*x22 + x36)
-    x38 = c8*p_theta3 + x37
-    x39 = x38 - x37
-    x40 = x31 + x1*x38 - x1*x39
-    x41 = x32 + x9*x38 - x9*x39 - x40*x13
-    x42 = x30 + cos_theta3*x38 - cos_theta3*x39 - x40*x8 - x41*x20
-    x43 = x42/x21
-    x44 = m3*x38
-    x45 = c2*x29
-    x46 = x15*x22 + 2.0*c5*x24 + x9*x44 - x10*x45 - x36*x16
-    x47 = x46 - x28*x13
-    x48 = c3*x17*(x24 - x19*x47)/x21
-    x49 = x3*x22 + x11*x24 + x1*x44 - 2.0*x45 + x35*x4
-    x50 = c1*(x29 + x7*x49)
-    x51 = (x5 - x12*x20)*x50/x21
-    x52 = x9 - x1*x13
-    x53 = 2.0*x38 - x37
-    x54 = c9*(x38 - x53)
-    x55 = (cos_theta3 - x1*x8 - x52*x20)*x54/x21
-    x56 = x23*x20
-    x57 = x19*(x26 - x17*x27)
-    x58 = x19*(x33 - x17*x34)
-    x59 = x19*(x41 - x17*x43)
-    x60 = x19*(c3*x47 - x17*x48)
-    x61 = x19*(x12*x50 - x17*x51)
-    x62 = x19*(x52*x54 - x17*x55)
-    x63 = x7*(x5*x23 - x12*x56)
-    x64 = x7*(x5*x27 + x12*x57)
-    x65 = x7*(x5*x34 + x12*x58 - x31)
-    x66 = x7*(x5*x43 + x12*x59 - x40)
-    x67 = x7*(x5*x48 + x12*x60 - c3*x28)
-    x68 = x7*(c1*x49 + x5*x51 + x12*x61)
-    x69 = x7*(x5*x55 + x12*x62 - x1*x54)
-    x70 = x9*x56 + x1*x63 - cos_theta3*x23
-    x71 = cos_theta3*x27 + x9*x57 - x1*x64
-    x72 = cos_theta3*x34 + x9*x58 - x1*x65
-    x73 = c10*x39 + x1*x66 - cos_theta3*x43 - x9*x59
-    x74 = c3*x36 + x1*x67 - cos_theta3*x48 - x9*x60
-    x75 = c1*x35 + x1*x68 - cos_theta3*x51 - x9*x61
-    x76 = c0*x53 + x1*x69 - cos_theta3*x55 - x9*x62
-    x77 = c5*sin_theta1
-    x78 = x24*x77
-    x79 = x18*x24
-    x80 = m3*x79
-    x81 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x82 = x45*x81
-    x83 = x24*x81
-    x84 = c2*x83
-    x85 = x56*x82 - x63*x84
-    x86 = x22*x77
-    x87 = x18*x44
-    x88 = x24*(sin_theta1*x22)
-    x89 = x88 + c11*sin_theta1
-    x90 = x57*x82 + x64*x84
-    x91 = x71*x80 + x89 + x90 - x27*x78 - x57*x86 - x57*x87
-    x92 = x29*x83
-    x93 = x65*x84 - (x92 - x58*x82)
-    x94 = x72*x80 + x89 + x93 - x34*x78 - x58*x86 - x58*x87
-    x95 = x66*x84 - (x92 - x59*x82)
-    x96 = x38*x79
-    x97 = x73*x80 - (x96 - x59*x87)
-    x98 = x67*x84 - (c15*x92 - x60*x82)
-    x99 = c12*x88 + c13*x96 + c14*sin_theta1 + x98 - x48*x78 - x60*x86 - x60*x87 - x74*x80
-    x100 = x68*x84 + (c16*x92 + x61*x82)
-    x101 = x62*x82 + x69*x84
-    x102 = x55*x78 + x62*x86 + x62*x87 + x76*x80 - c9*x96 - x101
-    x103 = sin_theta2*x45
-    x104 = sin_theta2*x22
-    x105 = c2*x104
-    x106 = x6*x44
-    x107 = x6*x29
-    x108 = m3*x107
-    x109 = -(x23*x103 + x63*x105 + x63*x106 + x70*x108 + x85)
-    x110 = x29*x104
-    x111 = x110 - c18*sin_theta2
-    x112 = x34*x103 + x65*x105 + x65*x106 - x72*x108 - x93 - x111
-    x113 = x38*x107
-    x114 = x73*x108 - (x113 - x66*x106)
-    x115 = -(x48*x103 + x67*x105 + x67*x106 + x74*x108 - x98)
-    x116 = (
-        c16*x110 + c19*x113 + x51*x103 + x68*x105 + x68*x106 + x75*x108 - c20*sin_theta2
-        - x100
-    )
-    x117 = x55*x103 + x69*x105 + x69*x106 + x76*x108 - c9*x113 - x101
-    x118 = x18*x38
-    x119 = x6*x38
-    x120 = sin_theta3*x38
-    x121 = sin_theta3*x22
-    x122 = x56*x118 + x63*x119 + x70*x107 + x23*x120 + x70*x121 - x70*x79
-    x123 = x57*x118 + x71*x107 + x71*x121 - x71*x79 - x64*x119 - x27*x120
-    x124 = x58*x118 + x72*x107 + x72*x121 - x72*x79 - x65*x119 - x34*x120
-    x125 = x38*x121
-    x126 = sin_theta3*x43*x44 + m3*x73*x121 + x114 - x125 - c22*sin_theta3 - x97
-    x127 = c3*x96 + x67*x119 + x74*x107 + x48*x120 + x74*x121 - x60*x118 - x74*x79
-    x128 = c1*x113 + x68*x119 + x75*x107 + x51*x120 + x75*x121 - x61*x118 - x75*x79
-    x129 = (
-        c0*x96 + x69*x119 + x76*x107 + x55*x120 + x76*x121 - x62*x118 - x76*x79 - c0*x113
-        - c0*x125 - g*sin_theta3
-    )
-    # outputs
-    return _stacked(
-        (8, 8),
-        y[0],
-        -x23,
-        -x27,
-        -x34,
-        -x43,
-        -x48,
-        x51,
-        -x55,
-        0.0,
-        c3*x56,
-        -c3*x57,
-        -c3*x58,
-        -c3*x59,
-        -c3*x60,
-        c3*x61,
-        -c3*x62,
-        0.0,
-        c1*x63,
-        c1*x64,
-        c1*x65,
-        c1*x66,
-        c1*x67,
-        -c1*x68,
-        c1*x69,
-        0.0,
-        -c0*x70,
-        c0*x71,
-        c0*x72,
-        -c0*x73,
-        -c0*x74,
-        c0*x75,
-        -c0*x76,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        x23*x78 + x70*x80 + x85 - x56*x86 - x56*x87,
-        -x91,
-        -x94,
-        -(x89 + x95 - x43*x78 - x59*x86 - x97),
-        -x99,
-        -(x51*x78 + x61*x86 + x61*x87 + x75*x80 - x100),
-        x102,
-        -c17*sin_theta1,
-        x109,
-        x71*x108 + x90 - x27*x103 - x64*x105 - x64*x106,
-        -x112,
-        -(x43*x103 + x66*x105 + x114 - x95 - x111),
-        x115,
-        x116,
-        -x117,
-        -c21*sin_theta2,
-        m3*x122,
-        -m3*x123,
-        -m3*x124,
-        x126,
-        m3*x127,
-        -m3*x128,
-        m3*x129,
-        -c7*sin_theta3,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -3055,7 +2587,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    279 operations, 13 of them on parameters alone.
+    280 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -3096,8 +2628,8 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     x1 = c2*sin_theta1
     x2 = theta2_dot*theta2_dot
     x3 = c4*x2
-    x4 = c5*theta3_dot
-    x5 = theta3_dot*x4
+    x4 = theta3_dot*theta3_dot
+    x5 = c5*x4
     x6 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
     x7 = l1*x0
     x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
@@ -3105,69 +2637,67 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     x10 = x6*x7 + x8*x9 - g*sin_theta3
     x11 = m3*cos_theta3
     x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x13 = c6*x0
+    x13 = c6*x12
     x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
     x15 = m3*x14
-    x16 = x12*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15
     x17 = c3*cos_theta2 - x14*x11
-    x18 = 1.0/(m2 + m3*x8*x8)
-    x19 = x17*x18
-    x20 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x19
-    x21 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x22 = m3*x21
-    x23 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x24 = c3*x23 - x21*x15
-    x25 = x18*x24
-    x26 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x22 + x16*x25
-    x27 = c1*cos_theta1 - x21*x11 - x24*x19
-    x28 = 1.0/(c0 + m3*x6*x6 - x24*x25)
-    x29 = x27*x28
-    x30 = c9 + m3*sin_theta3*sin_theta3 - x17*x19 - x27*x29
-    x31 = (x20 + x26*x29)/x30
-    x32 = x28*(x26 + x27*x31)
-    x33 = x18*(x16 + x24*x32 - x17*x31)
-    x34 = x10 + x21*x32 - cos_theta3*x31 - x14*x33
-    x35 = delta_theta3*x5
-    x36 = x33*delta_theta2
-    x37 = c3*sin_theta2
-    x38 = m3*x34
-    x39 = delta_theta3*x38
+    x18 = m3*x8
+    x19 = 1.0/(m2 + x8*x18)
+    x20 = x17*x19
+    x21 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x20
+    x22 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x23 = m3*x22
+    x24 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x25 = c3*x24 - x22*x15
+    x26 = x19*x25
+    x27 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x23 + x16*x26
+    x28 = c1*cos_theta1 - x22*x11 - x25*x20
+    x29 = m3*x6
+    x30 = 1.0/(c0 + x6*x29 - x25*x26)
+    x31 = x28*x30
+    x32 = c9 + m3*sin_theta3*sin_theta3 - x17*x20 - x28*x31
+    x33 = (x21 + x27*x31)/x32
+    x34 = x30*(x27 + x28*x33)
+    x35 = x19*(x16 + x25*x34 - x17*x33)
+    x36 = x10 + x22*x34 - cos_theta3*x33 - x14*x35
+    x37 = c3*delta_theta2
+    x38 = l3*x4
+    x39 = m3*delta_theta3
     x40 = theta1_dot*delta_theta1_dot
     x41 = theta2_dot*delta_theta2_dot
     x42 = c4*x41
-    x43 = delta_theta3_dot*x4
-    x44 = x32*delta_theta1
-    x45 = c1*sin_theta1
-    x46 = (
-        c2*cos_theta1*delta_theta1*x0 + cos_theta2*delta_theta2*x3 + cos_theta3*x35
-        + x36*x37 + sin_theta3*x39 + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
-        - x44*x45
+    x43 = delta_theta3_dot*(c5*theta3_dot)
+    x44 = (
+        c1*delta_theta1*(cos_theta1*x7 - sin_theta1*x34)
+        + (cos_theta2*x9 + sin_theta2*x35)*x37 + (cos_theta3*x38 + sin_theta3*x36)*x39
+        + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
     )
-    x47 = x21*x7
-    x48 = x14*x9
-    x49 = (
-        delta_theta1*x47 + delta_theta2*x48 + x8*x36
-        + delta_theta3*(x6*x32 + sin_theta3*x31 - x8*x33) + 2.0*(l1*x6*x40 + l2*x8*x41)
-        - delta_theta3*(x47 + x48 + g*cos_theta3) - x6*x44
+    x45 = x22*x7
+    x46 = x6*x34
+    x47 = x14*x9
+    x48 = x8*x35
+    x49 = x46 + sin_theta3*x33 - x48 - (x45 + x47 + g*cos_theta3)
+    x50 = (
+        delta_theta1*(x45 - x46) + delta_theta2*(x47 + x48) + delta_theta3*x49
+        + 2.0*(l1*x6*x40 + l2*x8*x41)
     )
-    x50 = x23*x13
     x51 = c3*x12
-    x52 = (
-        delta_theta1*x50 + x14*x35 + delta_theta2*(x32*x51 + x31*x37 + x8*x38)
-        + 2.0*(c6*x12*x40 - x8*x43) - delta_theta2*(x50 + x14*x5 + c7*cos_theta2) - x51*x44
-        - x8*x39
+    x52 = x34*x51 + c3*sin_theta2*x33 + x36*x18 - (c6*x24*x0 + x14*x5 + c7*cos_theta2)
+    x53 = (
+        c3*delta_theta1*(x24*x7 - x12*x34) + delta_theta2*x52 + (x14*x38 - x8*x36)*x39
+        + 2.0*(x40*x13 - x8*x43)
     )
-    x53 = x52 - x49*x15
-    x54 = x23*x3
-    x55 = (
-        delta_theta1*(x54 + x21*x5 + c8*cos_theta1) + x51*x36 + x6*x39
-        + 2.0*(x12*x42 + x6*x43) - delta_theta2*x54 - x21*x35
-        - delta_theta1*(x31*x45 + x33*x51 + x6*x38)
+    x54 = x53 - x50*x15
+    x55 = c1*sin_theta1*x33 + x35*x51 + x36*x29 - (x24*x3 + x22*x5 + c8*cos_theta1)
+    x56 = (
+        delta_theta1*x55 + (x24*x9 - x12*x35)*x37 + (x22*x38 - x6*x36)*x39
+        + 2.0*(-(x12*x42 + x6*x43))
     )
-    x56 = x55 + x49*x22 + x53*x25
-    x57 = (x46 - x49*x11 - x53*x19 + x56*x29)/x30
-    x58 = x28*(x56 + x27*x57)
-    x59 = x18*(x53 + x24*x58 - x17*x57)
+    x57 = x56 - x50*x23 - x54*x26
+    x58 = (x44 - x50*x11 - x54*x20 - x57*x31)/x32
+    x59 = x30*(x57 - x28*x58)
+    x60 = x19*(x17*x58 + x25*x59 - x54)
     # outputs
     return (
         x_dot,
@@ -3177,18 +2707,18 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        x31,
-        -c10*x32,
-        c11*x33,
-        c12*x34,
+        x33,
+        -c10*x34,
+        c11*x35,
+        c12*x36,
         delta_x_dot,
         delta_theta1_dot,
         delta_theta2_dot,
         delta_theta3_dot,
-        x57,
-        -c10*x58,
-        c11*x59,
-        c12*(x49 + x21*x58 - cos_theta3*x57 - x14*x59),
+        x58,
+        c10*x59,
+        -c11*x60,
+        c12*(x50 + x14*x60 - cos_theta3*x58 - x22*x59),
     )
 
 
@@ -3216,8 +2746,8 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x1 = c2*sin_theta1
     x2 = theta2_dot*theta2_dot
     x3 = c4*x2
-    x4 = c5*theta3_dot
-    x5 = theta3_dot*x4
+    x4 = theta3_dot*theta3_dot
+    x5 = c5*x4
     x6 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
     x7 = l1*x0
     x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
@@ -3225,69 +2755,67 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x10 = x6*x7 + x8*x9 - g*sin_theta3
     x11 = m3*cos_theta3
     x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x13 = c6*x0
+    x13 = c6*x12
     x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
     x15 = m3*x14
-    x16 = x12*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15
     x17 = c3*cos_theta2 - x14*x11
-    x18 = 1.0/(m2 + m3*x8*x8)
-    x19 = x17*x18
-    x20 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x19
-    x21 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x22 = m3*x21
-    x23 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x24 = c3*x23 - x21*x15
-    x25 = x18*x24
-    x26 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x22 + x16*x25
-    x27 = c1*cos_theta1 - x21*x11 - x24*x19
-    x28 = 1.0/(c0 + m3*x6*x6 - x24*x25)
-    x29 = x27*x28
-    x30 = c9 + m3*sin_theta3*sin_theta3 - x17*x19 - x27*x29
-    x31 = (x20 + x26*x29)/x30
-    x32 = x28*(x26 + x27*x31)
-    x33 = x18*(x16 + x24*x32 - x17*x31)
-    x34 = x10 + x21*x32 - cos_theta3*x31 - x14*x33
-    x35 = delta_theta3*x5
-    x36 = x33*delta_theta2
-    x37 = c3*sin_theta2
-    x38 = m3*x34
-    x39 = delta_theta3*x38
+    x18 = m3*x8
+    x19 = 1.0/(m2 + x8*x18)
+    x20 = x17*x19
+    x21 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x20
+    x22 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x23 = m3*x22
+    x24 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x25 = c3*x24 - x22*x15
+    x26 = x19*x25
+    x27 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x23 + x16*x26
+    x28 = c1*cos_theta1 - x22*x11 - x25*x20
+    x29 = m3*x6
+    x30 = 1.0/(c0 + x6*x29 - x25*x26)
+    x31 = x28*x30
+    x32 = c9 + m3*sin_theta3*sin_theta3 - x17*x20 - x28*x31
+    x33 = (x21 + x27*x31)/x32
+    x34 = x30*(x27 + x28*x33)
+    x35 = x19*(x16 + x25*x34 - x17*x33)
+    x36 = x10 + x22*x34 - cos_theta3*x33 - x14*x35
+    x37 = c3*delta_theta2
+    x38 = l3*x4
+    x39 = m3*delta_theta3
     x40 = theta1_dot*delta_theta1_dot
     x41 = theta2_dot*delta_theta2_dot
     x42 = c4*x41
-    x43 = delta_theta3_dot*x4
-    x44 = x32*delta_theta1
-    x45 = c1*sin_theta1
-    x46 = (
-        c2*cos_theta1*delta_theta1*x0 + cos_theta2*delta_theta2*x3 + cos_theta3*x35
-        + x36*x37 + sin_theta3*x39 + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
-        - x44*x45
+    x43 = delta_theta3_dot*(c5*theta3_dot)
+    x44 = (
+        c1*delta_theta1*(cos_theta1*x7 - sin_theta1*x34)
+        + (cos_theta2*x9 + sin_theta2*x35)*x37 + (cos_theta3*x38 + sin_theta3*x36)*x39
+        + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
     )
-    x47 = x21*x7
-    x48 = x14*x9
-    x49 = (
-        delta_theta1*x47 + delta_theta2*x48 + x8*x36
-        + delta_theta3*(x6*x32 + sin_theta3*x31 - x8*x33) + 2.0*(l1*x6*x40 + l2*x8*x41)
-        - delta_theta3*(x47 + x48 + g*cos_theta3) - x6*x44
+    x45 = x22*x7
+    x46 = x6*x34
+    x47 = x14*x9
+    x48 = x8*x35
+    x49 = x46 + sin_theta3*x33 - x48 - (x45 + x47 + g*cos_theta3)
+    x50 = (
+        delta_theta1*(x45 - x46) + delta_theta2*(x47 + x48) + delta_theta3*x49
+        + 2.0*(l1*x6*x40 + l2*x8*x41)
     )
-    x50 = x23*x13
     x51 = c3*x12
-    x52 = (
-        delta_theta1*x50 + x14*x35 + delta_theta2*(x32*x51 + x31*x37 + x8*x38)
-        + 2.0*(c6*x12*x40 - x8*x43) - delta_theta2*(x50 + x14*x5 + c7*cos_theta2) - x51*x44
-        - x8*x39
+    x52 = x34*x51 + c3*sin_theta2*x33 + x36*x18 - (c6*x24*x0 + x14*x5 + c7*cos_theta2)
+    x53 = (
+        c3*delta_theta1*(x24*x7 - x12*x34) + delta_theta2*x52 + (x14*x38 - x8*x36)*x39
+        + 2.0*(x40*x13 - x8*x43)
     )
-    x53 = x52 - x49*x15
-    x54 = x23*x3
-    x55 = (
-        delta_theta1*(x54 + x21*x5 + c8*cos_theta1) + x51*x36 + x6*x39
-        + 2.0*(x12*x42 + x6*x43) - delta_theta2*x54 - x21*x35
-        - delta_theta1*(x31*x45 + x33*x51 + x6*x38)
+    x54 = x53 - x50*x15
+    x55 = c1*sin_theta1*x33 + x35*x51 + x36*x29 - (x24*x3 + x22*x5 + c8*cos_theta1)
+    x56 = (
+        delta_theta1*x55 + (x24*x9 - x12*x35)*x37 + (x22*x38 - x6*x36)*x39
+        + 2.0*(-(x12*x42 + x6*x43))
     )
-    x56 = x55 + x49*x22 + x53*x25
-    x57 = (x46 - x49*x11 - x53*x19 + x56*x29)/x30
-    x58 = x28*(x56 + x27*x57)
-    x59 = x18*(x53 + x24*x58 - x17*x57)
+    x57 = x56 - x50*x23 - x54*x26
+    x58 = (x44 - x50*x11 - x54*x20 - x57*x31)/x32
+    x59 = x30*(x57 - x28*x58)
+    x60 = x19*(x17*x58 + x25*x59 - x54)
     # outputs
     return _stacked(
         (19,),
@@ -3299,18 +2827,373 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        x31,
-        -c10*x32,
-        c11*x33,
-        c12*x34,
+        x33,
+        -c10*x34,
+        c11*x35,
+        c12*x36,
         delta_x_dot,
         delta_theta1_dot,
         delta_theta2_dot,
         delta_theta3_dot,
-        x57,
-        -c10*x58,
-        c11*x59,
-        c12*(x49 + x21*x58 - cos_theta3*x57 - x14*x59),
+        x58,
+        c10*x59,
+        -c11*x60,
+        c12*(x50 + x14*x60 - cos_theta3*x58 - x22*x59),
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    438 operations, 38 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 19 floats
+        x in m; sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
+        x_dot in m/s; theta1_dot, theta2_dot, theta3_dot in rad/s; delta_x in m;
+        delta_theta1, delta_theta2, delta_theta3 in rad; delta_x_dot in m/s;
+        delta_theta1_dot, delta_theta2_dot, delta_theta3_dot in rad/s.
+    params : iterable of 16 floats
+        delta_m0, delta_m1, delta_m2, delta_m3 in kg; delta_l1, delta_l2, delta_l3 in m;
+        delta_g in m/s^2; m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    delta_m0, delta_m1, delta_m2, delta_m3, delta_l1, delta_l2, delta_l3, delta_g, m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = m1 + m2
+    c1 = m3 + c0
+    c2 = c1*l1
+    c3 = m2 + m3
+    c4 = c3*l2
+    c5 = m3*l3
+    c6 = c3*l1
+    c7 = c3*g
+    c8 = c1*g
+    c9 = m0 + c0
+    c10 = 1.0/l1
+    c11 = 1.0/l2
+    c12 = 1.0/l3
+    c13 = c1*delta_l1
+    c14 = c3*delta_l2
+    c15 = m3*delta_l3
+    c16 = m3*c12
+    c17 = l3*delta_l1
+    c18 = l3*delta_l2
+    c19 = l1*l3
+    c20 = l2*l3
+    c21 = l3*delta_g
+    c22 = l2*delta_m2
+    c23 = l2*delta_m3
+    c24 = m3*l2
+    c25 = delta_l3*c24
+    c26 = c4*delta_g
+    c27 = l3*c24
+    c28 = l1*c4
+    c29 = c4*delta_l1
+    c30 = l1*delta_m1
+    c31 = l1*delta_m2
+    c32 = l1*delta_m3
+    c33 = c6*delta_l2
+    c34 = m3*l1
+    c35 = delta_l3*c34
+    c36 = c2*delta_g
+    c37 = l3*c34
+    # intermediate terms
+    x0 = theta1_dot*theta1_dot
+    x1 = c2*sin_theta1
+    x2 = theta2_dot*theta2_dot
+    x3 = c4*x2
+    x4 = theta3_dot*theta3_dot
+    x5 = c5*x4
+    x6 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x7 = l1*x0
+    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
+    x9 = l2*x2
+    x10 = x6*x7 + x8*x9 - g*sin_theta3
+    x11 = m3*cos_theta3
+    x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x13 = x12*x0
+    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x15 = m3*x14
+    x16 = c6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x17 = c3*cos_theta2 - x14*x11
+    x18 = m3*x8
+    x19 = 1.0/(m2 + x8*x18)
+    x20 = x17*x19
+    x21 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x20
+    x22 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x23 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x24 = c3*x23 - x22*x15
+    x25 = x19*x24
+    x26 = x12*x3 + x6*x5 + c8*sin_theta1 + m3*x22*x10 + x16*x25
+    x27 = c1*cos_theta1 - x22*x11 - x24*x20
+    x28 = m3*x6
+    x29 = 1.0/(c0 + x6*x28 - x24*x25)
+    x30 = x27*x29
+    x31 = c9 + m3*sin_theta3*sin_theta3 - x17*x20 - x27*x30
+    x32 = (x21 + x26*x30)/x31
+    x33 = x29*(x26 + x27*x32)
+    x34 = c10*x33
+    x35 = x19*(x16 + x24*x33 - x17*x32)
+    x36 = c11*x35
+    x37 = x10 + x22*x33 - cos_theta3*x32 - x14*x35
+    x38 = c12*x37
+    x39 = l3*x4
+    x40 = m3*delta_theta3*(cos_theta3*x39 + sin_theta3*x37)
+    x41 = sin_theta1*x7
+    x42 = x32 - cos_theta1*x33
+    x43 = theta1_dot*delta_theta1_dot
+    x44 = theta2_dot*delta_theta2_dot
+    x45 = theta3_dot*delta_theta3_dot
+    x46 = cos_theta2*x35 + x42
+    x47 = x41 + sin_theta2*x9
+    x48 = delta_m3*(cos_theta3*x37 + x46 - (x47 + sin_theta3*x39))
+    x49 = (
+        c1*delta_theta1*(cos_theta1*x7 - sin_theta1*x33)
+        + c3*delta_theta2*(cos_theta2*x9 + sin_theta2*x35) + x40 + delta_m1*(x41 - x42)
+        + c13*(sin_theta1*x0 + cos_theta1*x34) + c14*(sin_theta2*x2 - cos_theta2*x36)
+        + c15*(sin_theta3*x4 - cos_theta3*x38)
+        + 2.0*(x43*x1 + c4*sin_theta2*x44 + c5*sin_theta3*x45) - delta_m0*x32
+        - delta_m2*(x46 - x47) - x48
+    )
+    x50 = x22*x7
+    x51 = x6*x33
+    x52 = x14*x9
+    x53 = x8*x35
+    x54 = x51 + sin_theta3*x32 - x53 - (x50 + x52 + g*cos_theta3)
+    x55 = (
+        l3*delta_theta1*(x50 - x51) + l3*delta_theta2*(x52 + x53) + l3*delta_theta3*x54
+        + c17*(x6*x0 + x22*x34) + c18*(x8*x2 - x14*x36) + 2.0*(c19*x6*x43 + c20*x8*x44)
+        - delta_l3*x37 - c21*sin_theta3
+    )
+    x56 = c16*x55
+    x57 = x12*x7
+    x58 = g*sin_theta2
+    x59 = x23*x33 - (x35 + cos_theta2*x32)
+    x60 = c28*x12
+    x61 = c3*x12
+    x62 = x33*x61 + c3*sin_theta2*x32 + x37*x18 - (c6*x23*x0 + x14*x5 + c7*cos_theta2)
+    x63 = (
+        c22*(-(x57 - x58 + x59)) + c23*(x58 - (x57 - x8*x39) + x14*x37 - x59) + c14*x35
+        + c25*(x8*x4 + x14*x38) + c26*sin_theta2 + 2.0*(c27*x8*x45 - x43*x60)
+        - c4*delta_theta1*(x23*x7 - x12*x33) - l2*delta_theta2*x62
+        - c24*delta_theta3*(x14*x39 - x8*x37) - c29*(x13 + x23*x34)
+    )
+    x64 = c11*x63 + x14*x56
+    x65 = g*sin_theta1
+    x66 = x33 - cos_theta1*x32
+    x67 = x12*x9
+    x68 = x23*x35 - x66
+    x69 = c1*sin_theta1*x32 + x35*x61 + x37*x28 - (x23*x3 + x22*x5 + c8*cos_theta1)
+    x70 = (
+        c30*(x65 - x66) + c31*(x65 + x67 + x68) + c32*(x65 + (x67 + x6*x39) + x22*x37 + x68)
+        + c33*(x12*x2 + x23*x36) + c35*(x6*x4 + x22*x38) + c36*sin_theta1
+        + 2.0*(x44*x60 + c37*x6*x45) - l1*delta_theta1*x69
+        - c6*delta_theta2*(x23*x9 - x12*x35) - c34*delta_theta3*(x22*x39 - x6*x37) - c13*x33
+    )
+    x71 = c10*x70 + x22*x56 - x64*x25
+    x72 = (x49 - cos_theta3*x56 + x64*x20 + x71*x30)/x31
+    x73 = x29*(x71 + x27*x72)
+    x74 = x19*(x64 + x17*x72 - x24*x73)
+    x75 = c12*(c12*x55 + x22*x73 + x14*x74 - cos_theta3*x72)
+    # outputs
+    return (
+        x_dot,
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        theta3_dot*cos_theta3,
+        -theta3_dot*sin_theta3,
+        x32,
+        -x34,
+        x36,
+        x38,
+        delta_x_dot,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        delta_theta3_dot,
+        x72,
+        -c10*x73,
+        -c11*x74,
+        x75,
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (19, ...)."""
+    # inputs
+    _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y
+    delta_m0, delta_m1, delta_m2, delta_m3, delta_l1, delta_l2, delta_l3, delta_g, m0, m1, m2, m3, l1, l2, l3, g = params
+    # terms of the parameters alone
+    c0 = m1 + m2
+    c1 = m3 + c0
+    c2 = c1*l1
+    c3 = m2 + m3
+    c4 = c3*l2
+    c5 = m3*l3
+    c6 = c3*l1
+    c7 = c3*g
+    c8 = c1*g
+    c9 = m0 + c0
+    c10 = 1.0/l1
+    c11 = 1.0/l2
+    c12 = 1.0/l3
+    c13 = c1*delta_l1
+    c14 = c3*delta_l2
+    c15 = m3*delta_l3
+    c16 = m3*c12
+    c17 = l3*delta_l1
+    c18 = l3*delta_l2
+    c19 = l1*l3
+    c20 = l2*l3
+    c21 = l3*delta_g
+    c22 = l2*delta_m2
+    c23 = l2*delta_m3
+    c24 = m3*l2
+    c25 = delta_l3*c24
+    c26 = c4*delta_g
+    c27 = l3*c24
+    c28 = l1*c4
+    c29 = c4*delta_l1
+    c30 = l1*delta_m1
+    c31 = l1*delta_m2
+    c32 = l1*delta_m3
+    c33 = c6*delta_l2
+    c34 = m3*l1
+    c35 = delta_l3*c34
+    c36 = c2*delta_g
+    c37 = l3*c34
+    # intermediate terms
+    x0 = theta1_dot*theta1_dot
+    x1 = c2*sin_theta1
+    x2 = theta2_dot*theta2_dot
+    x3 = c4*x2
+    x4 = theta3_dot*theta3_dot
+    x5 = c5*x4
+    x6 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x7 = l1*x0
+    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
+    x9 = l2*x2
+    x10 = x6*x7 + x8*x9 - g*sin_theta3
+    x11 = m3*cos_theta3
+    x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x13 = x12*x0
+    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x15 = m3*x14
+    x16 = c6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x17 = c3*cos_theta2 - x14*x11
+    x18 = m3*x8
+    x19 = 1.0/(m2 + x8*x18)
+    x20 = x17*x19
+    x21 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x20
+    x22 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x23 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x24 = c3*x23 - x22*x15
+    x25 = x19*x24
+    x26 = x12*x3 + x6*x5 + c8*sin_theta1 + m3*x22*x10 + x16*x25
+    x27 = c1*cos_theta1 - x22*x11 - x24*x20
+    x28 = m3*x6
+    x29 = 1.0/(c0 + x6*x28 - x24*x25)
+    x30 = x27*x29
+    x31 = c9 + m3*sin_theta3*sin_theta3 - x17*x20 - x27*x30
+    x32 = (x21 + x26*x30)/x31
+    x33 = x29*(x26 + x27*x32)
+    x34 = c10*x33
+    x35 = x19*(x16 + x24*x33 - x17*x32)
+    x36 = c11*x35
+    x37 = x10 + x22*x33 - cos_theta3*x32 - x14*x35
+    x38 = c12*x37
+    x39 = l3*x4
+    x40 = m3*delta_theta3*(cos_theta3*x39 + sin_theta3*x37)
+    x41 = sin_theta1*x7
+    x42 = x32 - cos_theta1*x33
+    x43 = theta1_dot*delta_theta1_dot
+    x44 = theta2_dot*delta_theta2_dot
+    x45 = theta3_dot*delta_theta3_dot
+    x46 = cos_theta2*x35 + x42
+    x47 = x41 + sin_theta2*x9
+    x48 = delta_m3*(cos_theta3*x37 + x46 - (x47 + sin_theta3*x39))
+    x49 = (
+        c1*delta_theta1*(cos_theta1*x7 - sin_theta1*x33)
+        + c3*delta_theta2*(cos_theta2*x9 + sin_theta2*x35) + x40 + delta_m1*(x41 - x42)
+        + c13*(sin_theta1*x0 + cos_theta1*x34) + c14*(sin_theta2*x2 - cos_theta2*x36)
+        + c15*(sin_theta3*x4 - cos_theta3*x38)
+        + 2.0*(x43*x1 + c4*sin_theta2*x44 + c5*sin_theta3*x45) - delta_m0*x32
+        - delta_m2*(x46 - x47) - x48
+    )
+    x50 = x22*x7
+    x51 = x6*x33
+    x52 = x14*x9
+    x53 = x8*x35
+    x54 = x51 + sin_theta3*x32 - x53 - (x50 + x52 + g*cos_theta3)
+    x55 = (
+        l3*delta_theta1*(x50 - x51) + l3*delta_theta2*(x52 + x53) + l3*delta_theta3*x54
+        + c17*(x6*x0 + x22*x34) + c18*(x8*x2 - x14*x36) + 2.0*(c19*x6*x43 + c20*x8*x44)
+        - delta_l3*x37 - c21*sin_theta3
+    )
+    x56 = c16*x55
+    x57 = x12*x7
+    x58 = g*sin_theta2
+    x59 = x23*x33 - (x35 + cos_theta2*x32)
+    x60 = c28*x12
+    x61 = c3*x12
+    x62 = x33*x61 + c3*sin_theta2*x32 + x37*x18 - (c6*x23*x0 + x14*x5 + c7*cos_theta2)
+    x63 = (
+        c22*(-(x57 - x58 + x59)) + c23*(x58 - (x57 - x8*x39) + x14*x37 - x59) + c14*x35
+        + c25*(x8*x4 + x14*x38) + c26*sin_theta2 + 2.0*(c27*x8*x45 - x43*x60)
+        - c4*delta_theta1*(x23*x7 - x12*x33) - l2*delta_theta2*x62
+        - c24*delta_theta3*(x14*x39 - x8*x37) - c29*(x13 + x23*x34)
+    )
+    x64 = c11*x63 + x14*x56
+    x65 = g*sin_theta1
+    x66 = x33 - cos_theta1*x32
+    x67 = x12*x9
+    x68 = x23*x35 - x66
+    x69 = c1*sin_theta1*x32 + x35*x61 + x37*x28 - (x23*x3 + x22*x5 + c8*cos_theta1)
+    x70 = (
+        c30*(x65 - x66) + c31*(x65 + x67 + x68) + c32*(x65 + (x67 + x6*x39) + x22*x37 + x68)
+        + c33*(x12*x2 + x23*x36) + c35*(x6*x4 + x22*x38) + c36*sin_theta1
+        + 2.0*(x44*x60 + c37*x6*x45) - l1*delta_theta1*x69
+        - c6*delta_theta2*(x23*x9 - x12*x35) - c34*delta_theta3*(x22*x39 - x6*x37) - c13*x33
+    )
+    x71 = c10*x70 + x22*x56 - x64*x25
+    x72 = (x49 - cos_theta3*x56 + x64*x20 + x71*x30)/x31
+    x73 = x29*(x71 + x27*x72)
+    x74 = x19*(x64 + x17*x72 - x24*x73)
+    x75 = c12*(c12*x55 + x22*x73 + x14*x74 - cos_theta3*x72)
+    # outputs
+    return _stacked(
+        (19,),
+        y[0],
+        x_dot,
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        theta3_dot*cos_theta3,
+        -theta3_dot*sin_theta3,
+        x32,
+        -x34,
+        x36,
+        x38,
+        delta_x_dot,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        delta_theta3_dot,
+        x72,
+        -c10*x73,
+        -c11*x74,
+        x75,
     )
 
 

@@ -51,6 +51,23 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_theta2_dot [rad/s]
     delta_theta3_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    sin_theta1 [1]
+    cos_theta1 [1]
+    sin_theta2 [1]
+    cos_theta2 [1]
+    sin_theta3 [1]
+    cos_theta3 [1]
+    theta1_dot [rad/s]
+    theta2_dot [rad/s]
+    theta3_dot [rad/s]
+    delta_theta1 [rad]
+    delta_theta2 [rad]
+    delta_theta3 [rad]
+    delta_theta1_dot [rad/s]
+    delta_theta2_dot [rad/s]
+    delta_theta3_dot [rad/s]
+
 Parameters params:
     m1 [kg] > 0, default 1.0: mass of a bob
     m2 [kg] > 0, default 1.0: mass of a bob
@@ -112,10 +129,10 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "f9dc9424ae76fa3b"
+DIGEST = "cff21fb8f1f80954"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": (
         "theta1",
@@ -154,6 +171,23 @@ STATES = {
         "delta_theta2_dot",
         "delta_theta3_dot",
     ),
+    "sensitivity": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "sin_theta3",
+        "cos_theta3",
+        "theta1_dot",
+        "theta2_dot",
+        "theta3_dot",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta3",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+        "delta_theta3_dot",
+    ),
 }
 PARAMETERS: tuple[str, ...] = ("m1", "m2", "m3", "l1", "l2", "l3", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
@@ -169,27 +203,26 @@ CALLS_FUNCTIONS = (
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (91, 11),
-    "jacobian": (256, 12),
-    "parameter_jacobian": (270, 12),
+    "jacobian": (254, 12),
+    "parameter_jacobian": (244, 13),
     "energy": (50, 14),
     "mass_matrix": (20, 11),
     "positions": (19, 0),
     "hamiltonian_state": (34, 6),
     "rhs_hamiltonian": (94, 13),
     "jacobian_hamiltonian": (271, 13),
-    "parameter_jacobian_hamiltonian": (382, 21),
     "energy_hamiltonian": (76, 10),
     "lagrangian_state": (51, 7),
     "rational_state": (6, 0),
     "rhs_rational": (94, 11),
-    "rhs_variational": (193, 11),
+    "rhs_variational": (197, 11),
+    "rhs_sensitivity": (308, 36),
     "equilibrium": (0, 0),
     "linear": (14, 14),
 }
@@ -371,7 +404,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    256 operations, 12 of them on parameters alone.
+    254 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
@@ -393,101 +426,94 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = m2 + m3
-    c2 = c1*l2
+    c2 = l1*c1
     c3 = m3*l3
-    c4 = m1 + m2
-    c5 = (m3 + c4)*g
-    c6 = l1*c1
-    c7 = c1*g
+    c4 = c1*g
+    c5 = c1*l2
+    c6 = m1 + m2
+    c7 = (m3 + c6)*g
     c8 = 1.0/l2
     c9 = m3*l2
     c10 = 1.0/l3
     # intermediate terms
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
-    sin_theta2 = sin(theta2)
-    x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = c2*x1
     cos_theta3 = cos(theta3)
+    sin_theta2 = sin(theta2)
     sin_theta3 = sin(theta3)
-    x3 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x4 = theta3_dot*theta3_dot
-    x5 = c3*x4
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m3*x6
-    x8 = 1.0/(m2 + x6*x7)
-    x9 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x10 = c6*(theta1_dot*theta1_dot)
-    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x12 = l1*theta1_dot
-    x13 = theta1_dot*x12
-    x14 = l2*x1
-    x15 = x11*x13 + x6*x14 - g*sin_theta3
-    x16 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x17 = m3*x16
-    x18 = x9*x10 - x6*x5 - c7*sin_theta2 - x15*x17
-    x19 = m3*x3
-    x20 = c1*x0 - x16*x19
-    x21 = x20*x8
-    x22 = x9*x2 + x11*x5 + c5*sin_theta1 + x15*x19 + x18*x21
-    x23 = m3*x11
-    x24 = c4 + x11*x23 - x20*x21
+    cos_theta2 = cos(theta2)
+    x0 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x1 = m3*x0
+    x2 = 1.0/(m2 + x0*x1)
+    sin_theta1 = sin(theta1)
+    cos_theta1 = cos(theta1)
+    x3 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x4 = c2*(theta1_dot*theta1_dot)
+    x5 = theta3_dot*theta3_dot
+    x6 = c3*x5
+    x7 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x8 = l1*theta1_dot
+    x9 = theta1_dot*x8
+    x10 = theta2_dot*theta2_dot
+    x11 = l2*x10
+    x12 = x7*x9 + x0*x11 - g*sin_theta3
+    x13 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x14 = m3*x13
+    x15 = x3*x4 - x0*x6 - c4*sin_theta2 - x12*x14
+    x16 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x17 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x18 = m3*x17
+    x19 = c1*x16 - x13*x18
+    x20 = c5*x10
+    x21 = x19*x2
+    x22 = x3*x20 + x7*x6 + c7*sin_theta1 + x12*x18 + x15*x21
+    x23 = m3*x7
+    x24 = c6 + x7*x23 - x19*x21
     x25 = x22/x24
-    x26 = x8*(x18 + x20*x25)
-    x27 = c1*x9
-    x28 = x15 + x3*x25 - x16*x26
-    x29 = x0*x2 + x3*x5 + c5*cos_theta1 - (x26*x27 + x28*x23)
-    x30 = x3*x13
-    x31 = x11*x25
+    x26 = x2*(x15 + x19*x25)
+    x27 = c1*x3
+    x28 = x12 + x17*x25 - x13*x26
+    x29 = x26*x27 + x28*x23 - (x16*x20 + x17*x6 + c7*cos_theta1)
+    x30 = x17*x9
+    x31 = x7*x25
     x32 = x30 - x31
-    x33 = c1*(x0*x13 - x9*x25) - x32*x17
-    x34 = (x29 + x32*x19 + x33*x21)/x24
-    x35 = x16*x14
-    x36 = x6*x26
+    x33 = c1*(x16*x9 - x3*x25) - x32*x14
+    x34 = (x29 - x32*x18 - x33*x21)/x24
+    x35 = x13*x11
+    x36 = x0*x26
     x37 = x35 + x36
-    x38 = x0*x10 + x16*x5 + c7*cos_theta2 - (x25*x27 + x28*x7)
-    x39 = x38 + x37*x17
-    x40 = (c1*(x9*x26 - x0*x14) + x37*x19 - x39*x21)/x24
-    x41 = l3*x4
-    x42 = x30 + x35 + g*cos_theta3 - (x31 - x36)
-    x43 = x6*x28 - x16*x41 - x16*x42
-    x44 = m3*(x11*x28 - x3*x41 - x3*x42 - x43*x21)/x24
-    x45 = x27 - x11*x17
-    x46 = (x11*x19 + x45*x21)*x12/x24
-    x47 = x6*x21
-    x48 = l2*theta2_dot*(x27 + x6*x19 - x47*x17)/x24
+    x38 = x25*x27 + x28*x1 - (x16*x4 + x13*x6 + c4*cos_theta2)
+    x39 = x38 - x37*x14
+    x40 = (c1*(x16*x11 - x3*x26) - x37*x18 - x39*x21)/x24
+    x41 = l3*x5
+    x42 = x36 + (x30 + x35 + g*cos_theta3) - x31
+    x43 = x13*x41 - x0*x28 + x13*x42
+    x44 = m3*(x17*x41 - x7*x28 + x17*x42 - x43*x21)/x24
+    x45 = x27 - x7*x14
+    x46 = (x7*x18 + x45*x21)*x8/x24
+    x47 = x0*x21
+    x48 = l2*theta2_dot*(x27 + x0*x18 - x47*x14)/x24
     x49 = c3*theta3_dot
-    x50 = (x11 - x47)*x49/x24
-    x51 = x8*(x33 + x20*x34)
-    x52 = x8*(x39 - x20*x40)
-    x53 = x8*(m3*x43 - x20*x44)
-    x54 = x8*(x45*x12 + x20*x46)
-    x55 = x6*theta2_dot
-    x56 = x8*(c9*x16*x55 - x20*x48)
-    x57 = x8*(x6*x49 - x20*x50)
+    x50 = (x7 - x47)*x49/x24
+    x51 = x2*(x33 - x19*x34)
+    x52 = x2*(x39 - x19*x40)
+    x53 = x2*(m3*x43 - x19*x44)
+    x54 = x2*(x45*x8 + x19*x46)
+    x55 = x0*theta2_dot
+    x56 = x2*(c9*x13*x55 - x19*x48)
+    x57 = x2*(x0*x49 - x19*x50)
     # outputs
     return (
         (0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+        (c0*x34, c0*x40, c0*x44, -2.0*c0*x46, -2.0*c0*x48, -2.0*c0*x50),
+        (c8*x51, c8*x52, c8*x53, 2.0*c8*x54, -2.0*c8*x56, -2.0*c8*x57),
         (
-            -c0*x34,
-            -c0*x40,
-            -c0*x44,
-            -2.0*c0*x46,
-            -2.0*c0*x48,
-            -2.0*c0*x50,
-        ),
-        (c8*x51, -c8*x52, -c8*x53, 2.0*c8*x54, -2.0*c8*x56, -2.0*c8*x57),
-        (
-            c10*(x32 + x3*x34 - x16*x51),
-            c10*(x37 + x3*x40 + x16*x52),
-            c10*(x3*x44 + x16*x53 - x42),
-            2.0*c10*(x11*x12 + x3*x46 - x16*x54),
-            2.0*c10*(l2*x55 + x3*x48 + x16*x56),
-            2.0*c10*(x3*x50 + x16*x57),
+            -c10*(x17*x34 + x13*x51 - x32),
+            -c10*(x17*x40 + x13*x52 - x37),
+            -c10*(x42 + x17*x44 + x13*x53),
+            2.0*c10*(x7*x8 + x17*x46 - x13*x54),
+            2.0*c10*(l2*x55 + x17*x48 + x13*x56),
+            2.0*c10*(x17*x50 + x13*x57),
         ),
     )
 
@@ -502,80 +528,80 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = m2 + m3
-    c2 = c1*l2
+    c2 = l1*c1
     c3 = m3*l3
-    c4 = m1 + m2
-    c5 = (m3 + c4)*g
-    c6 = l1*c1
-    c7 = c1*g
+    c4 = c1*g
+    c5 = c1*l2
+    c6 = m1 + m2
+    c7 = (m3 + c6)*g
     c8 = 1.0/l2
     c9 = m3*l2
     c10 = 1.0/l3
     # intermediate terms
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
-    sin_theta2 = sin(theta2)
-    x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = c2*x1
     cos_theta3 = cos(theta3)
+    sin_theta2 = sin(theta2)
     sin_theta3 = sin(theta3)
-    x3 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x4 = theta3_dot*theta3_dot
-    x5 = c3*x4
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m3*x6
-    x8 = 1.0/(m2 + x6*x7)
-    x9 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x10 = c6*(theta1_dot*theta1_dot)
-    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x12 = l1*theta1_dot
-    x13 = theta1_dot*x12
-    x14 = l2*x1
-    x15 = x11*x13 + x6*x14 - g*sin_theta3
-    x16 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x17 = m3*x16
-    x18 = x9*x10 - x6*x5 - c7*sin_theta2 - x15*x17
-    x19 = m3*x3
-    x20 = c1*x0 - x16*x19
-    x21 = x20*x8
-    x22 = x9*x2 + x11*x5 + c5*sin_theta1 + x15*x19 + x18*x21
-    x23 = m3*x11
-    x24 = c4 + x11*x23 - x20*x21
+    cos_theta2 = cos(theta2)
+    x0 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x1 = m3*x0
+    x2 = 1.0/(m2 + x0*x1)
+    sin_theta1 = sin(theta1)
+    cos_theta1 = cos(theta1)
+    x3 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x4 = c2*(theta1_dot*theta1_dot)
+    x5 = theta3_dot*theta3_dot
+    x6 = c3*x5
+    x7 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x8 = l1*theta1_dot
+    x9 = theta1_dot*x8
+    x10 = theta2_dot*theta2_dot
+    x11 = l2*x10
+    x12 = x7*x9 + x0*x11 - g*sin_theta3
+    x13 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x14 = m3*x13
+    x15 = x3*x4 - x0*x6 - c4*sin_theta2 - x12*x14
+    x16 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x17 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x18 = m3*x17
+    x19 = c1*x16 - x13*x18
+    x20 = c5*x10
+    x21 = x19*x2
+    x22 = x3*x20 + x7*x6 + c7*sin_theta1 + x12*x18 + x15*x21
+    x23 = m3*x7
+    x24 = c6 + x7*x23 - x19*x21
     x25 = x22/x24
-    x26 = x8*(x18 + x20*x25)
-    x27 = c1*x9
-    x28 = x15 + x3*x25 - x16*x26
-    x29 = x0*x2 + x3*x5 + c5*cos_theta1 - (x26*x27 + x28*x23)
-    x30 = x3*x13
-    x31 = x11*x25
+    x26 = x2*(x15 + x19*x25)
+    x27 = c1*x3
+    x28 = x12 + x17*x25 - x13*x26
+    x29 = x26*x27 + x28*x23 - (x16*x20 + x17*x6 + c7*cos_theta1)
+    x30 = x17*x9
+    x31 = x7*x25
     x32 = x30 - x31
-    x33 = c1*(x0*x13 - x9*x25) - x32*x17
-    x34 = (x29 + x32*x19 + x33*x21)/x24
-    x35 = x16*x14
-    x36 = x6*x26
+    x33 = c1*(x16*x9 - x3*x25) - x32*x14
+    x34 = (x29 - x32*x18 - x33*x21)/x24
+    x35 = x13*x11
+    x36 = x0*x26
     x37 = x35 + x36
-    x38 = x0*x10 + x16*x5 + c7*cos_theta2 - (x25*x27 + x28*x7)
-    x39 = x38 + x37*x17
-    x40 = (c1*(x9*x26 - x0*x14) + x37*x19 - x39*x21)/x24
-    x41 = l3*x4
-    x42 = x30 + x35 + g*cos_theta3 - (x31 - x36)
-    x43 = x6*x28 - x16*x41 - x16*x42
-    x44 = m3*(x11*x28 - x3*x41 - x3*x42 - x43*x21)/x24
-    x45 = x27 - x11*x17
-    x46 = (x11*x19 + x45*x21)*x12/x24
-    x47 = x6*x21
-    x48 = l2*theta2_dot*(x27 + x6*x19 - x47*x17)/x24
+    x38 = x25*x27 + x28*x1 - (x16*x4 + x13*x6 + c4*cos_theta2)
+    x39 = x38 - x37*x14
+    x40 = (c1*(x16*x11 - x3*x26) - x37*x18 - x39*x21)/x24
+    x41 = l3*x5
+    x42 = x36 + (x30 + x35 + g*cos_theta3) - x31
+    x43 = x13*x41 - x0*x28 + x13*x42
+    x44 = m3*(x17*x41 - x7*x28 + x17*x42 - x43*x21)/x24
+    x45 = x27 - x7*x14
+    x46 = (x7*x18 + x45*x21)*x8/x24
+    x47 = x0*x21
+    x48 = l2*theta2_dot*(x27 + x0*x18 - x47*x14)/x24
     x49 = c3*theta3_dot
-    x50 = (x11 - x47)*x49/x24
-    x51 = x8*(x33 + x20*x34)
-    x52 = x8*(x39 - x20*x40)
-    x53 = x8*(m3*x43 - x20*x44)
-    x54 = x8*(x45*x12 + x20*x46)
-    x55 = x6*theta2_dot
-    x56 = x8*(c9*x16*x55 - x20*x48)
-    x57 = x8*(x6*x49 - x20*x50)
+    x50 = (x7 - x47)*x49/x24
+    x51 = x2*(x33 - x19*x34)
+    x52 = x2*(x39 - x19*x40)
+    x53 = x2*(m3*x43 - x19*x44)
+    x54 = x2*(x45*x8 + x19*x46)
+    x55 = x0*theta2_dot
+    x56 = x2*(c9*x13*x55 - x19*x48)
+    x57 = x2*(x0*x49 - x19*x50)
     # outputs
     return _stacked(
         (6, 6),
@@ -598,31 +624,31 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         1.0,
-        -c0*x34,
-        -c0*x40,
-        -c0*x44,
+        c0*x34,
+        c0*x40,
+        c0*x44,
         -2.0*c0*x46,
         -2.0*c0*x48,
         -2.0*c0*x50,
         c8*x51,
-        -c8*x52,
-        -c8*x53,
+        c8*x52,
+        c8*x53,
         2.0*c8*x54,
         -2.0*c8*x56,
         -2.0*c8*x57,
-        c10*(x32 + x3*x34 - x16*x51),
-        c10*(x37 + x3*x40 + x16*x52),
-        c10*(x3*x44 + x16*x53 - x42),
-        2.0*c10*(x11*x12 + x3*x46 - x16*x54),
-        2.0*c10*(l2*x55 + x3*x48 + x16*x56),
-        2.0*c10*(x3*x50 + x16*x57),
+        -c10*(x17*x34 + x13*x51 - x32),
+        -c10*(x17*x40 + x13*x52 - x37),
+        -c10*(x42 + x17*x44 + x13*x53),
+        2.0*c10*(x7*x8 + x17*x46 - x13*x54),
+        2.0*c10*(l2*x55 + x17*x48 + x13*x56),
+        2.0*c10*(x17*x50 + x13*x57),
     )
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    270 operations, 12 of them on parameters alone.
+    244 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -651,9 +677,10 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c6 = g*c5
     c7 = l1*c1
     c8 = c1*g
-    c9 = 1.0/l2
-    c10 = 1.0/l3
-    c11 = 1.0/m3
+    c9 = c5*c0
+    c10 = 1.0/l2
+    c11 = c1*c10
+    c12 = 1.0/l3
     # intermediate terms
     sin_theta1 = sin(theta1)
     x0 = g*sin_theta1
@@ -668,82 +695,84 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x4 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
     x5 = theta3_dot*theta3_dot
     x6 = x4*x5
-    x7 = c2*x3 + c3*x6 + c6*sin_theta1
-    x8 = theta1_dot*theta1_dot
-    x9 = x4*x8
-    x10 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x11 = x10*x2
-    x12 = l1*x9 + l2*x11 - g*sin_theta3
-    x13 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x14 = m3*x13
-    x15 = x1*x8
-    x16 = x10*x5
-    x17 = c7*x15 - c3*x16 - c8*sin_theta2
-    x18 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x19 = m3*x18
-    x20 = x17 - x12*x19
-    x21 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x22 = c1*x21
-    x23 = x22 - x18*x14
-    x24 = 1.0/(m2 + m3*x10*x10)
-    x25 = x23*x24
-    x26 = c4 + m3*x4*x4 - x23*x25
-    x27 = (x7 + x12*x14 + x20*x25)/x26
-    x28 = (x0 - x27)/x26
-    x29 = l2*x3
-    x30 = x24*(x20 + x23*x27)
-    x31 = x21*x30
-    x32 = x27 - x31
-    x33 = l1*x15
-    x34 = g*sin_theta2
-    x35 = x21*x27
-    x36 = x30 - x35
-    x37 = x33 - x34 - x36
-    x38 = (x0 + x29 - x32 + x37*x25)/x26
-    x39 = x13*x27
-    x40 = x18*x30
-    x41 = x39 - x40
-    x42 = x12 + x41
-    x43 = x13*x42
-    x44 = x12 - (x42 - x41)
-    x45 = x18*x42
-    x46 = x34 - (x33 - l3*x16) + (x36 + x45) + x18*x44
-    x47 = x0 + (x29 + l3*x6) + (x43 - x32) + x13*x44 - x46*x25
-    x48 = x47/x26
-    x49 = x9 + c0*x39
-    x50 = c0*(x7 + (x22*x30 + x42*x14 - 2.0*c5*x27)) + x49*x14
-    x51 = c1*(x15 + c0*x35) - x49*x19
-    x52 = (x50 + x51*x25)/x26
-    x53 = x11 - c9*x40
-    x54 = c9*(x17 - (2.0*c1*x30 + x42*x19 - x22*x27)) - x53*x19
-    x55 = (c1*(x3 + c9*x31) + x53*x14 + x54*x25)/x26
-    x56 = c10*(x12 - (2.0*x42 - x41))
-    x57 = x16 + c10*x45 + x18*x56
-    x58 = m3*(x6 + c10*x43 + x13*x56 - x57*x25)/x26
-    x59 = c1*sin_theta2 - sin_theta3*x19
-    x60 = (c5*sin_theta1 - sin_theta3*x14 - x59*x25)/x26
-    x61 = x28*x25
-    x62 = x24*(x37 + x23*x38)
-    x63 = x24*(x46 - x23*x48)
-    x64 = x24*(x51 + x23*x52)
-    x65 = x24*(x54 + x23*x55)
-    x66 = x24*(m3*x57 - x23*x58)
-    x67 = x24*(x59 - x23*x60)
+    x7 = theta1_dot*theta1_dot
+    x8 = x4*x7
+    x9 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x10 = x9*x2
+    x11 = l1*x8 + l2*x10 - g*sin_theta3
+    x12 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x13 = m3*x12
+    x14 = x1*x7
+    x15 = x9*x5
+    x16 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x17 = m3*x16
+    x18 = c7*x14 - c3*x15 - c8*sin_theta2 - x11*x17
+    x19 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x20 = c1*x19 - x16*x13
+    x21 = 1.0/(m2 + m3*x9*x9)
+    x22 = x20*x21
+    x23 = c2*x3 + c3*x6 + c6*sin_theta1 + x11*x13 + x18*x22
+    x24 = c4 + m3*x4*x4 - x20*x22
+    x25 = x23/x24
+    x26 = (x0 - x25)/x24
+    x27 = l2*x3
+    x28 = x21*(x18 + x20*x25)
+    x29 = x19*x28
+    x30 = x25 - x29
+    x31 = l1*x14
+    x32 = g*sin_theta2
+    x33 = x19*x25
+    x34 = x28 - x33
+    x35 = x31 - x32 - x34
+    x36 = (x0 + x27 - x30 + x35*x22)/x24
+    x37 = x12*x25
+    x38 = x16*x28
+    x39 = x11 + x37 - x38
+    x40 = x32 - (x31 - l3*x15) + x16*x39 + x34
+    x41 = (x0 + (x27 + l3*x6) + x12*x39 - x30 - x40*x22)/x24
+    x42 = x8 + c0*x37
+    x43 = c1*(x14 + c0*x33) - x42*x17
+    x44 = (c9*x25 - x42*x13 - x43*x22)/x24
+    x45 = x10 - c10*x38
+    x46 = c11*x28 + x45*x17
+    x47 = (c1*(x3 + c10*x29) + x45*x13 - x46*x22)/x24
+    x48 = c12*x39
+    x49 = x12*x48
+    x50 = x16*x48
+    x51 = x50 - (x50 + x15)
+    x52 = m3*(x49 - (x49 + x6) - x51*x22)/x24
+    x53 = c1*sin_theta2 - sin_theta3*x17
+    x54 = (c5*sin_theta1 - sin_theta3*x13 - x53*x22)/x24
+    x55 = x26*x22
+    x56 = x21*(x35 + x20*x36)
+    x57 = x21*(x40 - x20*x41)
+    x58 = x21*(x43 - x20*x44)
+    x59 = x21*(x46 - x20*x47)
+    x60 = x21*(m3*x51 - x20*x52)
+    x61 = x21*(x53 - x20*x54)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-c0*x28, -c0*x38, -c0*x48, -c0*x52, -c0*x55, -c0*x58, -c0*x60),
-        (c9*x61, c9*x62, -c9*x63, c9*x64, c9*x65, -c9*x66, -c9*x67),
+        (-c0*x26, -c0*x36, -c0*x41, c0*x44, -c0*x47, c0*x52, -c0*x54),
         (
-            c10*(x13*x28 - x18*x61),
-            c10*(x13*x38 - x18*x62),
-            c10*(c11*x44 + x13*x48 + x18*x63),
-            c10*(x49 + x13*x52 - x18*x64),
-            c10*(x53 + x13*x55 - x18*x65),
-            c10*(x56 + x13*x58 + x18*x66),
-            c10*(x13*x60 + x18*x67 - sin_theta3),
+            c10*x55,
+            c10*x56,
+            -c10*x57,
+            c10*x58,
+            -c10*x59,
+            c10*x60,
+            -c10*x61,
+        ),
+        (
+            c12*(x12*x26 - x16*x55),
+            c12*(x12*x36 - x16*x56),
+            c12*(x12*x41 + x16*x57),
+            -c12*(x12*x44 + x16*x58 - x42),
+            c12*(x45 + x12*x47 + x16*x59),
+            -c12*(x48 + x12*x52 + x16*x60),
+            c12*(x12*x54 + x16*x61 - sin_theta3),
         ),
     )
 
@@ -765,9 +794,10 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c6 = g*c5
     c7 = l1*c1
     c8 = c1*g
-    c9 = 1.0/l2
-    c10 = 1.0/l3
-    c11 = 1.0/m3
+    c9 = c5*c0
+    c10 = 1.0/l2
+    c11 = c1*c10
+    c12 = 1.0/l3
     # intermediate terms
     sin_theta1 = sin(theta1)
     x0 = g*sin_theta1
@@ -782,67 +812,61 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x4 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
     x5 = theta3_dot*theta3_dot
     x6 = x4*x5
-    x7 = c2*x3 + c3*x6 + c6*sin_theta1
-    x8 = theta1_dot*theta1_dot
-    x9 = x4*x8
-    x10 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x11 = x10*x2
-    x12 = l1*x9 + l2*x11 - g*sin_theta3
-    x13 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x14 = m3*x13
-    x15 = x1*x8
-    x16 = x10*x5
-    x17 = c7*x15 - c3*x16 - c8*sin_theta2
-    x18 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x19 = m3*x18
-    x20 = x17 - x12*x19
-    x21 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x22 = c1*x21
-    x23 = x22 - x18*x14
-    x24 = 1.0/(m2 + m3*x10*x10)
-    x25 = x23*x24
-    x26 = c4 + m3*x4*x4 - x23*x25
-    x27 = (x7 + x12*x14 + x20*x25)/x26
-    x28 = (x0 - x27)/x26
-    x29 = l2*x3
-    x30 = x24*(x20 + x23*x27)
-    x31 = x21*x30
-    x32 = x27 - x31
-    x33 = l1*x15
-    x34 = g*sin_theta2
-    x35 = x21*x27
-    x36 = x30 - x35
-    x37 = x33 - x34 - x36
-    x38 = (x0 + x29 - x32 + x37*x25)/x26
-    x39 = x13*x27
-    x40 = x18*x30
-    x41 = x39 - x40
-    x42 = x12 + x41
-    x43 = x13*x42
-    x44 = x12 - (x42 - x41)
-    x45 = x18*x42
-    x46 = x34 - (x33 - l3*x16) + (x36 + x45) + x18*x44
-    x47 = x0 + (x29 + l3*x6) + (x43 - x32) + x13*x44 - x46*x25
-    x48 = x47/x26
-    x49 = x9 + c0*x39
-    x50 = c0*(x7 + (x22*x30 + x42*x14 - 2.0*c5*x27)) + x49*x14
-    x51 = c1*(x15 + c0*x35) - x49*x19
-    x52 = (x50 + x51*x25)/x26
-    x53 = x11 - c9*x40
-    x54 = c9*(x17 - (2.0*c1*x30 + x42*x19 - x22*x27)) - x53*x19
-    x55 = (c1*(x3 + c9*x31) + x53*x14 + x54*x25)/x26
-    x56 = c10*(x12 - (2.0*x42 - x41))
-    x57 = x16 + c10*x45 + x18*x56
-    x58 = m3*(x6 + c10*x43 + x13*x56 - x57*x25)/x26
-    x59 = c1*sin_theta2 - sin_theta3*x19
-    x60 = (c5*sin_theta1 - sin_theta3*x14 - x59*x25)/x26
-    x61 = x28*x25
-    x62 = x24*(x37 + x23*x38)
-    x63 = x24*(x46 - x23*x48)
-    x64 = x24*(x51 + x23*x52)
-    x65 = x24*(x54 + x23*x55)
-    x66 = x24*(m3*x57 - x23*x58)
-    x67 = x24*(x59 - x23*x60)
+    x7 = theta1_dot*theta1_dot
+    x8 = x4*x7
+    x9 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
+    x10 = x9*x2
+    x11 = l1*x8 + l2*x10 - g*sin_theta3
+    x12 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
+    x13 = m3*x12
+    x14 = x1*x7
+    x15 = x9*x5
+    x16 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
+    x17 = m3*x16
+    x18 = c7*x14 - c3*x15 - c8*sin_theta2 - x11*x17
+    x19 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x20 = c1*x19 - x16*x13
+    x21 = 1.0/(m2 + m3*x9*x9)
+    x22 = x20*x21
+    x23 = c2*x3 + c3*x6 + c6*sin_theta1 + x11*x13 + x18*x22
+    x24 = c4 + m3*x4*x4 - x20*x22
+    x25 = x23/x24
+    x26 = (x0 - x25)/x24
+    x27 = l2*x3
+    x28 = x21*(x18 + x20*x25)
+    x29 = x19*x28
+    x30 = x25 - x29
+    x31 = l1*x14
+    x32 = g*sin_theta2
+    x33 = x19*x25
+    x34 = x28 - x33
+    x35 = x31 - x32 - x34
+    x36 = (x0 + x27 - x30 + x35*x22)/x24
+    x37 = x12*x25
+    x38 = x16*x28
+    x39 = x11 + x37 - x38
+    x40 = x32 - (x31 - l3*x15) + x16*x39 + x34
+    x41 = (x0 + (x27 + l3*x6) + x12*x39 - x30 - x40*x22)/x24
+    x42 = x8 + c0*x37
+    x43 = c1*(x14 + c0*x33) - x42*x17
+    x44 = (c9*x25 - x42*x13 - x43*x22)/x24
+    x45 = x10 - c10*x38
+    x46 = c11*x28 + x45*x17
+    x47 = (c1*(x3 + c10*x29) + x45*x13 - x46*x22)/x24
+    x48 = c12*x39
+    x49 = x12*x48
+    x50 = x16*x48
+    x51 = x50 - (x50 + x15)
+    x52 = m3*(x49 - (x49 + x6) - x51*x22)/x24
+    x53 = c1*sin_theta2 - sin_theta3*x17
+    x54 = (c5*sin_theta1 - sin_theta3*x13 - x53*x22)/x24
+    x55 = x26*x22
+    x56 = x21*(x35 + x20*x36)
+    x57 = x21*(x40 - x20*x41)
+    x58 = x21*(x43 - x20*x44)
+    x59 = x21*(x46 - x20*x47)
+    x60 = x21*(m3*x51 - x20*x52)
+    x61 = x21*(x53 - x20*x54)
     # outputs
     return _stacked(
         (6, 7),
@@ -868,27 +892,27 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        -c0*x28,
-        -c0*x38,
-        -c0*x48,
-        -c0*x52,
-        -c0*x55,
-        -c0*x58,
-        -c0*x60,
-        c9*x61,
-        c9*x62,
-        -c9*x63,
-        c9*x64,
-        c9*x65,
-        -c9*x66,
-        -c9*x67,
-        c10*(x13*x28 - x18*x61),
-        c10*(x13*x38 - x18*x62),
-        c10*(c11*x44 + x13*x48 + x18*x63),
-        c10*(x49 + x13*x52 - x18*x64),
-        c10*(x53 + x13*x55 - x18*x65),
-        c10*(x56 + x13*x58 + x18*x66),
-        c10*(x13*x60 + x18*x67 - sin_theta3),
+        -c0*x26,
+        -c0*x36,
+        -c0*x41,
+        c0*x44,
+        -c0*x47,
+        c0*x52,
+        -c0*x54,
+        c10*x55,
+        c10*x56,
+        -c10*x57,
+        c10*x58,
+        -c10*x59,
+        c10*x60,
+        -c10*x61,
+        c12*(x12*x26 - x16*x55),
+        c12*(x12*x36 - x16*x56),
+        c12*(x12*x41 + x16*x57),
+        -c12*(x12*x44 + x16*x58 - x42),
+        c12*(x45 + x12*x47 + x16*x59),
+        -c12*(x48 + x12*x52 + x16*x60),
+        c12*(x12*x54 + x16*x61 - sin_theta3),
     )
 
 
@@ -1587,333 +1611,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    382 operations, 21 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        theta1, theta2, theta3 in rad; p_theta1, p_theta2, p_theta3 in J s.
-    params : iterable of 7 floats
-        m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l3
-    c2 = 1.0/l2
-    c3 = m2 + m3
-    c4 = m1 + m2
-    c5 = m3*l3
-    c6 = 1.0/c5
-    c7 = m3 + c4
-    c8 = m3*c1
-    c9 = 1.0/m3
-    c10 = l1*g
-    c11 = c7*g
-    c12 = c3*c0
-    c13 = m3*c0
-    c14 = c3*c2
-    c15 = l1*c7
-    c16 = l2*g
-    c17 = c3*g
-    c18 = m3*c2
-    c19 = c3*l2
-    c20 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    sin_theta3 = sin(theta3)
-    x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x1 = c1*p_theta3
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x2 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x3 = c2*p_theta2 - x2*x1
-    x4 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x5 = c3*x4
-    x6 = m3*x0
-    x7 = x5 - x2*x6
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = 1.0/(m2 + m3*x8*x8)
-    x10 = x7*x9
-    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x12 = c4 + m3*x11*x11 - x7*x10
-    x13 = (c0*p_theta1 - x0*x1 - x3*x10)/x12
-    x14 = x13/x12
-    x15 = x7*x13
-    x16 = x9*(x3 - x15)
-    x17 = x13 + x4*x16
-    x18 = x16 + x4*x13
-    x19 = (x17 - x18*x10)/x12
-    x20 = x0*x13
-    x21 = x2*x16
-    x22 = x20 + x21
-    x23 = x22 - c6*p_theta3
-    x24 = x22 - x23
-    x25 = x18 - x2*x23 - x2*x24
-    x26 = (x17 - x0*x23 - x0*x24 - x25*x10)/x12
-    x27 = m3*x23
-    x28 = c0*(2.0*c7*x13 + x5*x16 - x0*x27 - x20*x6 - x15*x10)
-    x29 = x28/x12
-    x30 = x5*x13 + 2.0*c3*x16 - x2*x27 - m3*x2*x21
-    x31 = c2*x7*(x16 - x9*x30)/x12
-    x32 = x22 - 2.0*x23
-    x33 = c8*(x23 + x32)
-    x34 = (x0 - x2*x10)*x33/x12
-    x35 = x14*x10
-    x36 = x9*(x18 - x7*x19)
-    x37 = x9*(x25 - x7*x26)
-    x38 = (x29 - c0*x13)*x10
-    x39 = x9*(c2*x30 - x7*x31)
-    x40 = x9*(x2*x33 - x7*x34)
-    x41 = x0*x14 - x2*x35
-    x42 = x0*x19 + x2*x36
-    x43 = x0*x26 + x2*x37 - c9*x24
-    x44 = c0*x20 + x2*x38 - x0*x29
-    x45 = x0*x31 + x2*x39 - c2*x21
-    x46 = c1*x32 + x0*x34 + x2*x40
-    x47 = x11*x27
-    x48 = x11*x13
-    x49 = m3*x48
-    x50 = c10*sin_theta1
-    x51 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x52 = c3*x51
-    x53 = x16*x52
-    x54 = x13*x52
-    x55 = x14*x53 - x35*x54
-    x56 = x51*(x13*x16)
-    x57 = x50 + x56
-    x58 = x19*x53 + x36*x54
-    x59 = x23*x48
-    x60 = x43*x49 - (x59 - x26*x47)
-    x61 = x26*x53 + x37*x54
-    x62 = x38*x54 + (c12*x56 - x29*x53)
-    x63 = x29*x47 + c11*sin_theta1 + x62 - c13*x59 - x44*x49
-    x64 = x39*x54 - (c14*x56 - x31*x53)
-    x65 = x34*x53 + x40*x54
-    x66 = x8*x16
-    x67 = m3*x66
-    x68 = x8*x27
-    x69 = x56 - c16*sin_theta2
-    x70 = x23*x66
-    x71 = x43*x67 - (x70 - x37*x68)
-    x72 = x39*x68 + x45*x67 + c17*sin_theta2 + x64 - c18*x70
-    x73 = x11*x23
-    x74 = x8*x23
-    x75 = m3*(c0*x59 + x44*x48 + x38*x74 + x44*x66 - x29*x73)
-    x76 = m3*(x31*x73 + x45*x48 + x39*x74 + x45*x66 - c2*x70)
-    x77 = c1*x59 + x34*x73 + x46*x48 + c1*x70 + x40*x74 + x46*x66 + g*sin_theta3
-    # outputs
-    return (
-        (-c0*x14, -c0*x19, -c0*x26, -c0*x29, -c0*x31, c0*x34, 0.0),
-        (c2*x35, -c2*x36, -c2*x37, c2*x38, -c2*x39, c2*x40, 0.0),
-        (c1*x41, c1*x42, c1*x43, -c1*x44, c1*x45, -c1*x46, 0.0),
-        (
-            -(x14*x47 + x41*x49 + x50 - x55),
-            -(x19*x47 + x42*x49 + x57 - x58),
-            -(x57 + x60 - x61),
-            -x63,
-            -(x31*x47 + x45*x49 - x64),
-            c8*x59 + x34*x47 + x46*x49 - x65,
-            -c15*sin_theta1,
-        ),
-        (
-            -(x41*x67 + x55 - x35*x68),
-            -(x36*x68 + x42*x67 + x58 - x69),
-            -(x61 + x71 - x69),
-            x38*x68 + x44*x67 + x62,
-            -x72,
-            c8*x70 + x40*x68 + x46*x67 + x65,
-            -c19*sin_theta2,
-        ),
-        (
-            m3*(x14*x73 + x41*x48 + x41*x66 - x35*x74),
-            m3*(x19*x73 + x42*x48 + x36*x74 + x42*x66),
-            x60 + x71 - c20*sin_theta3,
-            -x75,
-            x76,
-            -m3*x77,
-            -c5*sin_theta3,
-        ),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (6, 7, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l3
-    c2 = 1.0/l2
-    c3 = m2 + m3
-    c4 = m1 + m2
-    c5 = m3*l3
-    c6 = 1.0/c5
-    c7 = m3 + c4
-    c8 = m3*c1
-    c9 = 1.0/m3
-    c10 = l1*g
-    c11 = c7*g
-    c12 = c3*c0
-    c13 = m3*c0
-    c14 = c3*c2
-    c15 = l1*c7
-    c16 = l2*g
-    c17 = c3*g
-    c18 = m3*c2
-    c19 = c3*l2
-    c20 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    sin_theta3 = sin(theta3)
-    x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x1 = c1*p_theta3
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x2 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x3 = c2*p_theta2 - x2*x1
-    x4 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x5 = c3*x4
-    x6 = m3*x0
-    x7 = x5 - x2*x6
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = 1.0/(m2 + m3*x8*x8)
-    x10 = x7*x9
-    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x12 = c4 + m3*x11*x11 - x7*x10
-    x13 = (c0*p_theta1 - x0*x1 - x3*x10)/x12
-    x14 = x13/x12
-    x15 = x7*x13
-    x16 = x9*(x3 - x15)
-    x17 = x13 + x4*x16
-    x18 = x16 + x4*x13
-    x19 = (x17 - x18*x10)/x12
-    x20 = x0*x13
-    x21 = x2*x16
-    x22 = x20 + x21
-    x23 = x22 - c6*p_theta3
-    x24 = x22 - x23
-    x25 = x18 - x2*x23 - x2*x24
-    x26 = (x17 - x0*x23 - x0*x24 - x25*x10)/x12
-    x27 = m3*x23
-    x28 = c0*(2.0*c7*x13 + x5*x16 - x0*x27 - x20*x6 - x15*x10)
-    x29 = x28/x12
-    x30 = x5*x13 + 2.0*c3*x16 - x2*x27 - m3*x2*x21
-    x31 = c2*x7*(x16 - x9*x30)/x12
-    x32 = x22 - 2.0*x23
-    x33 = c8*(x23 + x32)
-    x34 = (x0 - x2*x10)*x33/x12
-    x35 = x14*x10
-    x36 = x9*(x18 - x7*x19)
-    x37 = x9*(x25 - x7*x26)
-    x38 = (x29 - c0*x13)*x10
-    x39 = x9*(c2*x30 - x7*x31)
-    x40 = x9*(x2*x33 - x7*x34)
-    x41 = x0*x14 - x2*x35
-    x42 = x0*x19 + x2*x36
-    x43 = x0*x26 + x2*x37 - c9*x24
-    x44 = c0*x20 + x2*x38 - x0*x29
-    x45 = x0*x31 + x2*x39 - c2*x21
-    x46 = c1*x32 + x0*x34 + x2*x40
-    x47 = x11*x27
-    x48 = x11*x13
-    x49 = m3*x48
-    x50 = c10*sin_theta1
-    x51 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x52 = c3*x51
-    x53 = x16*x52
-    x54 = x13*x52
-    x55 = x14*x53 - x35*x54
-    x56 = x51*(x13*x16)
-    x57 = x50 + x56
-    x58 = x19*x53 + x36*x54
-    x59 = x23*x48
-    x60 = x43*x49 - (x59 - x26*x47)
-    x61 = x26*x53 + x37*x54
-    x62 = x38*x54 + (c12*x56 - x29*x53)
-    x63 = x29*x47 + c11*sin_theta1 + x62 - c13*x59 - x44*x49
-    x64 = x39*x54 - (c14*x56 - x31*x53)
-    x65 = x34*x53 + x40*x54
-    x66 = x8*x16
-    x67 = m3*x66
-    x68 = x8*x27
-    x69 = x56 - c16*sin_theta2
-    x70 = x23*x66
-    x71 = x43*x67 - (x70 - x37*x68)
-    x72 = x39*x68 + x45*x67 + c17*sin_theta2 + x64 - c18*x70
-    x73 = x11*x23
-    x74 = x8*x23
-    x75 = m3*(c0*x59 + x44*x48 + x38*x74 + x44*x66 - x29*x73)
-    x76 = m3*(x31*x73 + x45*x48 + x39*x74 + x45*x66 - c2*x70)
-    x77 = c1*x59 + x34*x73 + x46*x48 + c1*x70 + x40*x74 + x46*x66 + g*sin_theta3
-    # outputs
-    return _stacked(
-        (6, 7),
-        y[0],
-        -c0*x14,
-        -c0*x19,
-        -c0*x26,
-        -c0*x29,
-        -c0*x31,
-        c0*x34,
-        0.0,
-        c2*x35,
-        -c2*x36,
-        -c2*x37,
-        c2*x38,
-        -c2*x39,
-        c2*x40,
-        0.0,
-        c1*x41,
-        c1*x42,
-        c1*x43,
-        -c1*x44,
-        c1*x45,
-        -c1*x46,
-        0.0,
-        -(x14*x47 + x41*x49 + x50 - x55),
-        -(x19*x47 + x42*x49 + x57 - x58),
-        -(x57 + x60 - x61),
-        -x63,
-        -(x31*x47 + x45*x49 - x64),
-        c8*x59 + x34*x47 + x46*x49 - x65,
-        -c15*sin_theta1,
-        -(x41*x67 + x55 - x35*x68),
-        -(x36*x68 + x42*x67 + x58 - x69),
-        -(x61 + x71 - x69),
-        x38*x68 + x44*x67 + x62,
-        -x72,
-        c8*x70 + x40*x68 + x46*x67 + x65,
-        -c19*sin_theta2,
-        m3*(x14*x73 + x41*x48 + x41*x66 - x35*x74),
-        m3*(x19*x73 + x42*x48 + x36*x74 + x42*x66),
-        x60 + x71 - c20*sin_theta3,
-        -x75,
-        x76,
-        -m3*x77,
-        -c5*sin_theta3,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -2290,7 +1987,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    193 operations, 11 of them on parameters alone.
+    197 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -2323,67 +2020,62 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     c8 = 1.0/l2
     c9 = 1.0/l3
     # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
+    x0 = theta2_dot*theta2_dot
+    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
     x2 = c2*x1
     x3 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x4 = c3*theta3_dot
-    x5 = theta3_dot*x4
+    x4 = theta3_dot*theta3_dot
+    x5 = c3*x4
     x6 = theta1_dot*theta1_dot
     x7 = l1*x6
     x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x1
+    x9 = l2*x0
     x10 = x3*x7 + x8*x9 - g*sin_theta3
     x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
     x12 = m3*x11
-    x13 = c6*x6
+    x13 = c6*x1
     x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
     x15 = m3*x14
-    x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x16 = x6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
     x17 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
     x18 = c1*x17 - x14*x12
-    x19 = 1.0/(m2 + m3*x8*x8)
-    x20 = x18*x19
-    x21 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x20
-    x22 = c4 + m3*x3*x3 - x18*x20
-    x23 = x21/x22
-    x24 = x19*(x16 + x18*x23)
-    x25 = x10 + x11*x23 - x14*x24
-    x26 = x17*x2
-    x27 = x11*x5
-    x28 = c1*x0
-    x29 = x24*x28
-    x30 = m3*x25
-    x31 = x3*x30
+    x19 = m3*x8
+    x20 = 1.0/(m2 + x8*x19)
+    x21 = x18*x20
+    x22 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x21
+    x23 = m3*x3
+    x24 = c4 + x3*x23 - x18*x21
+    x25 = x22/x24
+    x26 = x20*(x16 + x18*x25)
+    x27 = x10 + x11*x25 - x14*x26
+    x28 = c1*x1
+    x29 = x26*x28 + x27*x23 - (c2*x17*x0 + x11*x5 + c5*cos_theta1)
+    x30 = l3*x4
+    x31 = m3*delta_theta3
     x32 = theta2_dot*delta_theta2_dot
-    x33 = delta_theta3_dot*x4
+    x33 = delta_theta3_dot*(c3*theta3_dot)
     x34 = (
-        delta_theta1*(x26 + x27 + c5*cos_theta1) + delta_theta2*x29 + delta_theta3*x31
-        + 2.0*(c2*x0*x32 + x3*x33) - x26*delta_theta2 - x27*delta_theta3
-        - delta_theta1*(x29 + x31)
+        delta_theta1*x29 + c1*delta_theta2*(x17*x9 - x1*x26) + (x11*x30 - x3*x27)*x31
+        + 2.0*(-(x32*x2 + x3*x33))
     )
     x35 = x11*x7
-    x36 = x14*x9
-    x37 = x8*x24
-    x38 = x3*x23
+    x36 = x3*x25
+    x37 = x14*x9
+    x38 = x8*x26
     x39 = theta1_dot*delta_theta1_dot
-    x40 = (
-        delta_theta1*x35 + delta_theta2*x36 + delta_theta2*x37 + delta_theta3*(x38 - x37)
-        + 2.0*(l1*x3*x39 + l2*x8*x32) - delta_theta3*(x35 + x36 + g*cos_theta3)
-        - delta_theta1*x38
+    x40 = delta_theta3*(x38 + (x35 + x37 + g*cos_theta3) - x36)
+    x41 = (
+        delta_theta1*(x35 - x36) + delta_theta2*(x37 + x38) + 2.0*(l1*x3*x39 + l2*x8*x32)
+        - x40
     )
-    x41 = x17*x13
-    x42 = x14*x5
-    x43 = x23*x28
-    x44 = x8*x30
-    x45 = (
-        delta_theta1*x41 + delta_theta3*x42 + delta_theta2*(x43 + x44)
-        + 2.0*(c6*x0*x39 - x8*x33) - delta_theta2*(x41 + x42 + c7*cos_theta2)
-        - delta_theta1*x43 - delta_theta3*x44
+    x42 = x25*x28 + x27*x19 - (c6*x17*x6 + x14*x5 + c7*cos_theta2)
+    x43 = (
+        c1*delta_theta1*(x17*x7 - x1*x25) + delta_theta2*x42 + (x14*x30 - x8*x27)*x31
+        + 2.0*(x39*x13 - x8*x33)
     )
-    x46 = x45 - x40*x15
-    x47 = (x34 + x40*x12 + x46*x20)/x22
-    x48 = x19*(x46 + x18*x47)
+    x44 = x43 - x41*x15
+    x45 = (x34 - x41*x12 - x44*x21)/x24
+    x46 = x20*(x44 - x18*x45)
     # outputs
     return (
         theta1_dot*cos_theta1,
@@ -2392,15 +2084,15 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        -c0*x23,
-        c8*x24,
-        c9*x25,
+        -c0*x25,
+        c8*x26,
+        c9*x27,
         delta_theta1_dot,
         delta_theta2_dot,
         delta_theta3_dot,
-        -c0*x47,
-        c8*x48,
-        c9*(x40 + x11*x47 - x14*x48),
+        c0*x45,
+        c8*x46,
+        -c9*(x11*x45 + x14*x46 - x41),
     )
 
 
@@ -2421,67 +2113,62 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c8 = 1.0/l2
     c9 = 1.0/l3
     # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
+    x0 = theta2_dot*theta2_dot
+    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
     x2 = c2*x1
     x3 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x4 = c3*theta3_dot
-    x5 = theta3_dot*x4
+    x4 = theta3_dot*theta3_dot
+    x5 = c3*x4
     x6 = theta1_dot*theta1_dot
     x7 = l1*x6
     x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x1
+    x9 = l2*x0
     x10 = x3*x7 + x8*x9 - g*sin_theta3
     x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
     x12 = m3*x11
-    x13 = c6*x6
+    x13 = c6*x1
     x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
     x15 = m3*x14
-    x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x16 = x6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
     x17 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
     x18 = c1*x17 - x14*x12
-    x19 = 1.0/(m2 + m3*x8*x8)
-    x20 = x18*x19
-    x21 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x20
-    x22 = c4 + m3*x3*x3 - x18*x20
-    x23 = x21/x22
-    x24 = x19*(x16 + x18*x23)
-    x25 = x10 + x11*x23 - x14*x24
-    x26 = x17*x2
-    x27 = x11*x5
-    x28 = c1*x0
-    x29 = x24*x28
-    x30 = m3*x25
-    x31 = x3*x30
+    x19 = m3*x8
+    x20 = 1.0/(m2 + x8*x19)
+    x21 = x18*x20
+    x22 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x21
+    x23 = m3*x3
+    x24 = c4 + x3*x23 - x18*x21
+    x25 = x22/x24
+    x26 = x20*(x16 + x18*x25)
+    x27 = x10 + x11*x25 - x14*x26
+    x28 = c1*x1
+    x29 = x26*x28 + x27*x23 - (c2*x17*x0 + x11*x5 + c5*cos_theta1)
+    x30 = l3*x4
+    x31 = m3*delta_theta3
     x32 = theta2_dot*delta_theta2_dot
-    x33 = delta_theta3_dot*x4
+    x33 = delta_theta3_dot*(c3*theta3_dot)
     x34 = (
-        delta_theta1*(x26 + x27 + c5*cos_theta1) + delta_theta2*x29 + delta_theta3*x31
-        + 2.0*(c2*x0*x32 + x3*x33) - x26*delta_theta2 - x27*delta_theta3
-        - delta_theta1*(x29 + x31)
+        delta_theta1*x29 + c1*delta_theta2*(x17*x9 - x1*x26) + (x11*x30 - x3*x27)*x31
+        + 2.0*(-(x32*x2 + x3*x33))
     )
     x35 = x11*x7
-    x36 = x14*x9
-    x37 = x8*x24
-    x38 = x3*x23
+    x36 = x3*x25
+    x37 = x14*x9
+    x38 = x8*x26
     x39 = theta1_dot*delta_theta1_dot
-    x40 = (
-        delta_theta1*x35 + delta_theta2*x36 + delta_theta2*x37 + delta_theta3*(x38 - x37)
-        + 2.0*(l1*x3*x39 + l2*x8*x32) - delta_theta3*(x35 + x36 + g*cos_theta3)
-        - delta_theta1*x38
+    x40 = delta_theta3*(x38 + (x35 + x37 + g*cos_theta3) - x36)
+    x41 = (
+        delta_theta1*(x35 - x36) + delta_theta2*(x37 + x38) + 2.0*(l1*x3*x39 + l2*x8*x32)
+        - x40
     )
-    x41 = x17*x13
-    x42 = x14*x5
-    x43 = x23*x28
-    x44 = x8*x30
-    x45 = (
-        delta_theta1*x41 + delta_theta3*x42 + delta_theta2*(x43 + x44)
-        + 2.0*(c6*x0*x39 - x8*x33) - delta_theta2*(x41 + x42 + c7*cos_theta2)
-        - delta_theta1*x43 - delta_theta3*x44
+    x42 = x25*x28 + x27*x19 - (c6*x17*x6 + x14*x5 + c7*cos_theta2)
+    x43 = (
+        c1*delta_theta1*(x17*x7 - x1*x25) + delta_theta2*x42 + (x14*x30 - x8*x27)*x31
+        + 2.0*(x39*x13 - x8*x33)
     )
-    x46 = x45 - x40*x15
-    x47 = (x34 + x40*x12 + x46*x20)/x22
-    x48 = x19*(x46 + x18*x47)
+    x44 = x43 - x41*x15
+    x45 = (x34 - x41*x12 - x44*x21)/x24
+    x46 = x20*(x44 - x18*x45)
     # outputs
     return _stacked(
         (15,),
@@ -2492,15 +2179,303 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -theta2_dot*sin_theta2,
         theta3_dot*cos_theta3,
         -theta3_dot*sin_theta3,
-        -c0*x23,
-        c8*x24,
-        c9*x25,
+        -c0*x25,
+        c8*x26,
+        c9*x27,
         delta_theta1_dot,
         delta_theta2_dot,
         delta_theta3_dot,
-        -c0*x47,
-        c8*x48,
-        c9*(x40 + x11*x47 - x14*x48),
+        c0*x45,
+        c8*x46,
+        -c9*(x11*x45 + x14*x46 - x41),
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    308 operations, 36 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 15 floats
+        sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
+        theta1_dot, theta2_dot, theta3_dot in rad/s; delta_theta1, delta_theta2,
+        delta_theta3 in rad; delta_theta1_dot, delta_theta2_dot, delta_theta3_dot in rad/s.
+    params : iterable of 14 floats
+        delta_m1, delta_m2, delta_m3 in kg; delta_l1, delta_l2, delta_l3 in m; delta_g in
+        m/s^2; m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot, delta_theta1, delta_theta2, delta_theta3, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    delta_m1, delta_m2, delta_m3, delta_l1, delta_l2, delta_l3, delta_g, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2 + m3
+    c2 = c1*l2
+    c3 = m3*l3
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = c5*g
+    c7 = l1*c1
+    c8 = c1*g
+    c9 = 1.0/l2
+    c10 = 1.0/l3
+    c11 = l1*delta_m2
+    c12 = l1*delta_m3
+    c13 = c7*delta_l2
+    c14 = l1*m3
+    c15 = c14*delta_l3
+    c16 = l1*c5*delta_g
+    c17 = l1*c2
+    c18 = l3*c14
+    c19 = l1*delta_m1
+    c20 = c5*delta_l1
+    c21 = m3*c10
+    c22 = l3*delta_l1
+    c23 = l3*delta_l2
+    c24 = l1*l3
+    c25 = l2*l3
+    c26 = l3*delta_g
+    c27 = m3*l2
+    c28 = l2*delta_m2
+    c29 = c2*delta_l1
+    c30 = l3*c27
+    c31 = l2*delta_m3
+    c32 = c1*delta_l2
+    c33 = delta_l3*c27
+    c34 = c2*delta_g
+    # intermediate terms
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x1 = theta2_dot*theta2_dot
+    x2 = x0*x1
+    x3 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x4 = theta3_dot*theta3_dot
+    x5 = c3*x4
+    x6 = theta1_dot*theta1_dot
+    x7 = l1*x6
+    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
+    x9 = l2*x1
+    x10 = x3*x7 + x8*x9 - g*sin_theta3
+    x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x12 = m3*x11
+    x13 = x0*x6
+    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x15 = c7*x13 - x8*x5 - c8*sin_theta2 - m3*x14*x10
+    x16 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x17 = c1*x16 - x14*x12
+    x18 = m3*x8
+    x19 = 1.0/(m2 + x8*x18)
+    x20 = x17*x19
+    x21 = c2*x2 + x3*x5 + c6*sin_theta1 + x10*x12 + x15*x20
+    x22 = m3*x3
+    x23 = c4 + x3*x22 - x17*x20
+    x24 = x21/x23
+    x25 = c0*x24
+    x26 = x19*(x15 + x17*x24)
+    x27 = c9*x26
+    x28 = x10 + x11*x24 - x14*x26
+    x29 = c10*x28
+    x30 = g*sin_theta1
+    x31 = x0*x9
+    x32 = x24 - x16*x26
+    x33 = l3*x4
+    x34 = theta2_dot*delta_theta2_dot
+    x35 = c17*x0
+    x36 = theta3_dot*delta_theta3_dot
+    x37 = c1*x0
+    x38 = x26*x37 + x28*x22 - (c2*x16*x1 + x11*x5 + c6*cos_theta1)
+    x39 = (
+        c11*(x30 + x31 - x32) + c12*(x30 + (x31 + x3*x33) + x11*x28 - x32)
+        + c13*(x2 + x16*x27) + c15*(x3*x4 + x11*x29) + c16*sin_theta1
+        + 2.0*(x34*x35 + c18*x3*x36) - l1*delta_theta1*x38
+        - c7*delta_theta2*(x16*x9 - x0*x26) - c14*delta_theta3*(x11*x33 - x3*x28)
+        - c19*(x24 - x30) - c20*x24
+    )
+    x40 = x11*x7
+    x41 = x3*x24
+    x42 = x14*x9
+    x43 = x8*x26
+    x44 = theta1_dot*delta_theta1_dot
+    x45 = l3*delta_theta3*(x43 + (x40 + x42 + g*cos_theta3) - x41)
+    x46 = (
+        l3*delta_theta1*(x40 - x41) + l3*delta_theta2*(x42 + x43) + c22*(x3*x6 + x11*x25)
+        + c23*(x8*x1 - x14*x27) + 2.0*(c24*x3*x44 + c25*x8*x34) - x45 - delta_l3*x28
+        - c26*sin_theta3
+    )
+    x47 = c21*x46
+    x48 = x24*x37 + x28*x18 - (c7*x16*x6 + x14*x5 + c8*cos_theta2)
+    x49 = x0*x7
+    x50 = g*sin_theta2
+    x51 = x26 - x16*x24
+    x52 = (
+        c2*delta_theta1*(x16*x7 - x0*x24) + l2*delta_theta2*x48
+        + c27*delta_theta3*(x14*x33 - x8*x28) + c28*(x49 - x50 - x51) + c29*(x13 + x16*x25)
+        + 2.0*(x44*x35 - c30*x8*x36) - c31*(x50 - (x49 - x8*x33) + x14*x28 + x51) - c32*x26
+        - c33*(x8*x4 + x14*x29) - c34*sin_theta2
+    )
+    x53 = c9*x52 - x14*x47
+    x54 = (c0*x39 + x11*x47 + x53*x20)/x23
+    x55 = x19*(x53 + x17*x54)
+    # outputs
+    return (
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        theta3_dot*cos_theta3,
+        -theta3_dot*sin_theta3,
+        -x25,
+        x27,
+        x29,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        delta_theta3_dot,
+        -c0*x54,
+        c9*x55,
+        c10*(c10*x46 + x11*x54 - x14*x55),
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (15, ...)."""
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot, delta_theta1, delta_theta2, delta_theta3, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y
+    delta_m1, delta_m2, delta_m3, delta_l1, delta_l2, delta_l3, delta_g, m1, m2, m3, l1, l2, l3, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2 + m3
+    c2 = c1*l2
+    c3 = m3*l3
+    c4 = m1 + m2
+    c5 = m3 + c4
+    c6 = c5*g
+    c7 = l1*c1
+    c8 = c1*g
+    c9 = 1.0/l2
+    c10 = 1.0/l3
+    c11 = l1*delta_m2
+    c12 = l1*delta_m3
+    c13 = c7*delta_l2
+    c14 = l1*m3
+    c15 = c14*delta_l3
+    c16 = l1*c5*delta_g
+    c17 = l1*c2
+    c18 = l3*c14
+    c19 = l1*delta_m1
+    c20 = c5*delta_l1
+    c21 = m3*c10
+    c22 = l3*delta_l1
+    c23 = l3*delta_l2
+    c24 = l1*l3
+    c25 = l2*l3
+    c26 = l3*delta_g
+    c27 = m3*l2
+    c28 = l2*delta_m2
+    c29 = c2*delta_l1
+    c30 = l3*c27
+    c31 = l2*delta_m3
+    c32 = c1*delta_l2
+    c33 = delta_l3*c27
+    c34 = c2*delta_g
+    # intermediate terms
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x1 = theta2_dot*theta2_dot
+    x2 = x0*x1
+    x3 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
+    x4 = theta3_dot*theta3_dot
+    x5 = c3*x4
+    x6 = theta1_dot*theta1_dot
+    x7 = l1*x6
+    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
+    x9 = l2*x1
+    x10 = x3*x7 + x8*x9 - g*sin_theta3
+    x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
+    x12 = m3*x11
+    x13 = x0*x6
+    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
+    x15 = c7*x13 - x8*x5 - c8*sin_theta2 - m3*x14*x10
+    x16 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x17 = c1*x16 - x14*x12
+    x18 = m3*x8
+    x19 = 1.0/(m2 + x8*x18)
+    x20 = x17*x19
+    x21 = c2*x2 + x3*x5 + c6*sin_theta1 + x10*x12 + x15*x20
+    x22 = m3*x3
+    x23 = c4 + x3*x22 - x17*x20
+    x24 = x21/x23
+    x25 = c0*x24
+    x26 = x19*(x15 + x17*x24)
+    x27 = c9*x26
+    x28 = x10 + x11*x24 - x14*x26
+    x29 = c10*x28
+    x30 = g*sin_theta1
+    x31 = x0*x9
+    x32 = x24 - x16*x26
+    x33 = l3*x4
+    x34 = theta2_dot*delta_theta2_dot
+    x35 = c17*x0
+    x36 = theta3_dot*delta_theta3_dot
+    x37 = c1*x0
+    x38 = x26*x37 + x28*x22 - (c2*x16*x1 + x11*x5 + c6*cos_theta1)
+    x39 = (
+        c11*(x30 + x31 - x32) + c12*(x30 + (x31 + x3*x33) + x11*x28 - x32)
+        + c13*(x2 + x16*x27) + c15*(x3*x4 + x11*x29) + c16*sin_theta1
+        + 2.0*(x34*x35 + c18*x3*x36) - l1*delta_theta1*x38
+        - c7*delta_theta2*(x16*x9 - x0*x26) - c14*delta_theta3*(x11*x33 - x3*x28)
+        - c19*(x24 - x30) - c20*x24
+    )
+    x40 = x11*x7
+    x41 = x3*x24
+    x42 = x14*x9
+    x43 = x8*x26
+    x44 = theta1_dot*delta_theta1_dot
+    x45 = l3*delta_theta3*(x43 + (x40 + x42 + g*cos_theta3) - x41)
+    x46 = (
+        l3*delta_theta1*(x40 - x41) + l3*delta_theta2*(x42 + x43) + c22*(x3*x6 + x11*x25)
+        + c23*(x8*x1 - x14*x27) + 2.0*(c24*x3*x44 + c25*x8*x34) - x45 - delta_l3*x28
+        - c26*sin_theta3
+    )
+    x47 = c21*x46
+    x48 = x24*x37 + x28*x18 - (c7*x16*x6 + x14*x5 + c8*cos_theta2)
+    x49 = x0*x7
+    x50 = g*sin_theta2
+    x51 = x26 - x16*x24
+    x52 = (
+        c2*delta_theta1*(x16*x7 - x0*x24) + l2*delta_theta2*x48
+        + c27*delta_theta3*(x14*x33 - x8*x28) + c28*(x49 - x50 - x51) + c29*(x13 + x16*x25)
+        + 2.0*(x44*x35 - c30*x8*x36) - c31*(x50 - (x49 - x8*x33) + x14*x28 + x51) - c32*x26
+        - c33*(x8*x4 + x14*x29) - c34*sin_theta2
+    )
+    x53 = c9*x52 - x14*x47
+    x54 = (c0*x39 + x11*x47 + x53*x20)/x23
+    x55 = x19*(x53 + x17*x54)
+    # outputs
+    return _stacked(
+        (15,),
+        y[0],
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        theta3_dot*cos_theta3,
+        -theta3_dot*sin_theta3,
+        -x25,
+        x27,
+        x29,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        delta_theta3_dot,
+        -c0*x54,
+        c9*x55,
+        c10*(c10*x46 + x11*x54 - x14*x55),
     )
 
 

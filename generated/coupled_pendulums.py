@@ -38,6 +38,18 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_theta1_dot [rad/s]
     delta_theta2_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    sin_theta1 [1]
+    cos_theta1 [1]
+    sin_theta2 [1]
+    cos_theta2 [1]
+    theta1_dot [rad/s]
+    theta2_dot [rad/s]
+    delta_theta1 [rad]
+    delta_theta2 [rad]
+    delta_theta1_dot [rad/s]
+    delta_theta2_dot [rad/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass of a bob
     l [m] > 0, default 1.0: length
@@ -90,10 +102,10 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "c8d6389baf0b4da5"
+DIGEST = "cc27774b4b78bac7"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
     "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
@@ -106,6 +118,18 @@ STATES = {
         "theta2_dot",
     ),
     "variational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "theta1_dot",
+        "theta2_dot",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+    ),
+    "sensitivity": (
         "sin_theta1",
         "cos_theta1",
         "sin_theta2",
@@ -130,28 +154,28 @@ CALLS_FUNCTIONS = (
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
     "rhs_rational",
     "rhs_variational",
+    "rhs_sensitivity",
 )
 OPERATIONS = {
     "rhs": (46, 4),
     "jacobian": (94, 6),
-    "parameter_jacobian": (128, 8),
+    "parameter_jacobian": (121, 6),
     "energy": (38, 4),
     "mass_matrix": (2, 2),
     "positions": (11, 0),
     "hamiltonian_state": (4, 2),
     "rhs_hamiltonian": (49, 5),
     "jacobian_hamiltonian": (92, 7),
-    "parameter_jacobian_hamiltonian": (120, 8),
     "energy_hamiltonian": (42, 5),
     "lagrangian_state": (7, 3),
     "rational_state": (4, 0),
     "rhs_rational": (48, 4),
     "rhs_variational": (116, 5),
+    "rhs_sensitivity": (185, 8),
     "equilibrium": (0, 0),
     "linear": (8, 8),
 }
@@ -415,7 +439,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    128 operations, 8 of them on parameters alone.
+    121 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -439,9 +463,8 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c1 = 1.0/m
     c2 = l*l
     c3 = m*g
-    c4 = 1.0/(l*m)
-    c5 = l*k
-    c6 = k*c1
+    c4 = m*c0
+    c5 = k*c1
     # intermediate terms
     sin_theta1 = sin(theta1)
     cos_theta1 = cos(theta1)
@@ -457,36 +480,34 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x7 = l*(x2 + x3*(2.0*d + x4))/(d + x6)
     x8 = sin_theta1*x1 + cos_theta1*x5
     x9 = x7*x8
-    x10 = k*x9/x6 - c3*sin_theta1
-    x11 = c1*x10
-    x12 = x2 + x3*x5
-    x13 = x6*x12
-    x14 = x6*x6
-    x15 = x7*x14
-    x16 = x8*x13 + (sin_theta1*x0 + cos_theta1*x3)*x15 - x12*x9
-    x17 = x6*x14
-    x18 = (1.0 - x5/x6)*x14
-    x19 = sin_theta2*x1 + cos_theta2*x5
-    x20 = x7*x19
-    x21 = k*x20/x6 + c3*sin_theta2
-    x22 = c1*x21
-    x23 = x19*x13 + (x0*sin_theta2 + cos_theta2*x3)*x15 - x12*x20
+    x10 = c1*(k*x9/x6 - c3*sin_theta1)
+    x11 = x2 + x3*x5
+    x12 = x6*x11
+    x13 = x6*x6
+    x14 = x7*x13
+    x15 = x8*x12 + (sin_theta1*x0 + cos_theta1*x3)*x14 - x11*x9
+    x16 = x6*x13
+    x17 = (1.0 - x5/x6)*x13
+    x18 = sin_theta2*x1 + cos_theta2*x5
+    x19 = x7*x18
+    x20 = c1*(k*x19/x6 + c3*sin_theta2)
+    x21 = x18*x12 + (x0*sin_theta2 + cos_theta2*x3)*x14 - x11*x19
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (
-            -c0*(c1*(g*sin_theta1 + x11)),
-            c0*(c4*(x10 + c5*x16/x17 - 2.0*m*x11)),
+            -c0*(c1*(g*sin_theta1 + x10)),
+            c0*(c1*(k*x15/x16 - c4*x10)),
             c0*(c1*x9/x6),
-            -c0*(c6*(x5*x9 + x8*x18 - cos_theta1*x15)/x17),
+            -c0*(c5*(x5*x9 + x8*x17 - cos_theta1*x14)/x16),
             -c0*sin_theta1,
         ),
         (
-            -c0*(c1*(g*sin_theta2 - x22)),
-            -c0*(c4*(x21 + c5*x23/x17 - 2.0*m*x22)),
-            -c0*(c1*x20/x6),
-            c0*(c6*(x5*x20 + x19*x18 - cos_theta2*x15)/x17),
+            c0*(c1*(x20 - g*sin_theta2)),
+            -c0*(c1*(k*x21/x16 - c4*x20)),
+            -c0*(c1*x19/x6),
+            c0*(c5*(x5*x19 + x18*x17 - cos_theta2*x14)/x16),
             -c0*sin_theta2,
         ),
     )
@@ -504,9 +525,8 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = 1.0/m
     c2 = l*l
     c3 = m*g
-    c4 = 1.0/(l*m)
-    c5 = l*k
-    c6 = k*c1
+    c4 = m*c0
+    c5 = k*c1
     # intermediate terms
     sin_theta1 = sin(theta1)
     cos_theta1 = cos(theta1)
@@ -522,20 +542,18 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x7 = l*(x2 + x3*(2.0*d + x4))/(d + x6)
     x8 = sin_theta1*x1 + cos_theta1*x5
     x9 = x7*x8
-    x10 = k*x9/x6 - c3*sin_theta1
-    x11 = c1*x10
-    x12 = x2 + x3*x5
-    x13 = x6*x12
-    x14 = x6*x6
-    x15 = x7*x14
-    x16 = x8*x13 + (sin_theta1*x0 + cos_theta1*x3)*x15 - x12*x9
-    x17 = x6*x14
-    x18 = (1.0 - x5/x6)*x14
-    x19 = sin_theta2*x1 + cos_theta2*x5
-    x20 = x7*x19
-    x21 = k*x20/x6 + c3*sin_theta2
-    x22 = c1*x21
-    x23 = x19*x13 + (x0*sin_theta2 + cos_theta2*x3)*x15 - x12*x20
+    x10 = c1*(k*x9/x6 - c3*sin_theta1)
+    x11 = x2 + x3*x5
+    x12 = x6*x11
+    x13 = x6*x6
+    x14 = x7*x13
+    x15 = x8*x12 + (sin_theta1*x0 + cos_theta1*x3)*x14 - x11*x9
+    x16 = x6*x13
+    x17 = (1.0 - x5/x6)*x13
+    x18 = sin_theta2*x1 + cos_theta2*x5
+    x19 = x7*x18
+    x20 = c1*(k*x19/x6 + c3*sin_theta2)
+    x21 = x18*x12 + (x0*sin_theta2 + cos_theta2*x3)*x14 - x11*x19
     # outputs
     return _stacked(
         (4, 5),
@@ -550,15 +568,15 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        -c0*(c1*(g*sin_theta1 + x11)),
-        c0*(c4*(x10 + c5*x16/x17 - 2.0*m*x11)),
+        -c0*(c1*(g*sin_theta1 + x10)),
+        c0*(c1*(k*x15/x16 - c4*x10)),
         c0*(c1*x9/x6),
-        -c0*(c6*(x5*x9 + x8*x18 - cos_theta1*x15)/x17),
+        -c0*(c5*(x5*x9 + x8*x17 - cos_theta1*x14)/x16),
         -c0*sin_theta1,
-        -c0*(c1*(g*sin_theta2 - x22)),
-        -c0*(c4*(x21 + c5*x23/x17 - 2.0*m*x22)),
-        -c0*(c1*x20/x6),
-        c0*(c6*(x5*x20 + x19*x18 - cos_theta2*x15)/x17),
+        c0*(c1*(x20 - g*sin_theta2)),
+        -c0*(c1*(k*x21/x16 - c4*x20)),
+        -c0*(c1*x19/x6),
+        c0*(c5*(x5*x19 + x18*x17 - cos_theta2*x14)/x16),
         -c0*sin_theta2,
     )
 
@@ -965,155 +983,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    120 operations, 8 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta1, theta2 in rad; p_theta1, p_theta2 in J s.
-    params : iterable of 5 floats
-        m in kg; l in m; k in N/m; d in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
-    m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = l*g
-    c5 = l*l
-    c6 = m*g
-    c7 = l*k
-    # intermediate terms
-    x0 = c3*p_theta1
-    x1 = c3*p_theta2
-    sin_theta1 = sin(theta1)
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x2 = cos_theta1 - cos_theta2
-    x3 = l*x2
-    x4 = x2*x3
-    sin_theta2 = sin(theta2)
-    x5 = sin_theta2 - sin_theta1
-    x6 = l*x5
-    x7 = d + x6
-    x8 = sqrt(c5*x2*x2 + x7*x7)
-    x9 = l*(x4 + x5*(2.0*d + x6))/(d + x8)
-    x10 = sin_theta1*x3 + cos_theta1*x7
-    x11 = x9*x10
-    x12 = x4 + x5*x7
-    x13 = x8*x12
-    x14 = x8*x8
-    x15 = x9*x14
-    x16 = x10*x13 + (sin_theta1*x2 + cos_theta1*x5)*x15 - x12*x11
-    x17 = x8*x14
-    x18 = (1.0 - x7/x8)*x14
-    x19 = sin_theta2*x3 + cos_theta2*x7
-    x20 = x9*x19
-    x21 = x19*x13 + (x2*sin_theta2 + cos_theta2*x5)*x15 - x12*x20
-    # outputs
-    return (
-        (-c0*(c1*x0), -2.0*c0*(c0*x0), 0.0, 0.0, 0.0),
-        (-c0*(c1*x1), -2.0*c0*(c0*x1), 0.0, 0.0, 0.0),
-        (
-            -c4*sin_theta1,
-            k*x11/x8 - c6*sin_theta1 + c7*x16/x17,
-            l*x11/x8,
-            -c7*(x7*x11 + x10*x18 - cos_theta1*x15)/x17,
-            -c2*sin_theta1,
-        ),
-        (
-            -c4*sin_theta2,
-            -(k*x20/x8 + c6*sin_theta2 + c7*x21/x17),
-            -l*x20/x8,
-            c7*(x7*x20 + x19*x18 - cos_theta2*x15)/x17,
-            -c2*sin_theta2,
-        ),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 5, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m, l, k, d, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = l*g
-    c5 = l*l
-    c6 = m*g
-    c7 = l*k
-    # intermediate terms
-    x0 = c3*p_theta1
-    x1 = c3*p_theta2
-    sin_theta1 = sin(theta1)
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x2 = cos_theta1 - cos_theta2
-    x3 = l*x2
-    x4 = x2*x3
-    sin_theta2 = sin(theta2)
-    x5 = sin_theta2 - sin_theta1
-    x6 = l*x5
-    x7 = d + x6
-    x8 = sqrt(c5*x2*x2 + x7*x7)
-    x9 = l*(x4 + x5*(2.0*d + x6))/(d + x8)
-    x10 = sin_theta1*x3 + cos_theta1*x7
-    x11 = x9*x10
-    x12 = x4 + x5*x7
-    x13 = x8*x12
-    x14 = x8*x8
-    x15 = x9*x14
-    x16 = x10*x13 + (sin_theta1*x2 + cos_theta1*x5)*x15 - x12*x11
-    x17 = x8*x14
-    x18 = (1.0 - x7/x8)*x14
-    x19 = sin_theta2*x3 + cos_theta2*x7
-    x20 = x9*x19
-    x21 = x19*x13 + (x2*sin_theta2 + cos_theta2*x5)*x15 - x12*x20
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        -c0*(c1*x0),
-        -2.0*c0*(c0*x0),
-        0.0,
-        0.0,
-        0.0,
-        -c0*(c1*x1),
-        -2.0*c0*(c0*x1),
-        0.0,
-        0.0,
-        0.0,
-        -c4*sin_theta1,
-        k*x11/x8 - c6*sin_theta1 + c7*x16/x17,
-        l*x11/x8,
-        -c7*(x7*x11 + x10*x18 - cos_theta1*x15)/x17,
-        -c2*sin_theta1,
-        -c4*sin_theta2,
-        -(k*x20/x8 + c6*sin_theta2 + c7*x21/x17),
-        -l*x20/x8,
-        c7*(x7*x20 + x19*x18 - cos_theta2*x15)/x17,
-        -c2*sin_theta2,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1493,6 +1362,184 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         delta_theta2_dot,
         x19,
         x22,
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    185 operations, 8 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 10 floats
+        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
+        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
+        rad/s.
+    params : iterable of 10 floats
+        delta_m in kg; delta_l in m; delta_k in N/m; delta_d in m; delta_g in m/s^2; m in
+        kg; l in m; k in N/m; d in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
+    delta_m, delta_l, delta_k, delta_d, delta_g, m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*l
+    c3 = m*g
+    c4 = l*k
+    c5 = m*c0
+    c6 = k*delta_d
+    c7 = m*delta_g
+    # intermediate terms
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
+    x2 = x0*x1
+    x3 = sin_theta1 - sin_theta2
+    x4 = l*x3
+    x5 = d - x4
+    x6 = sqrt(c2*x0*x0 + x5*x5)
+    x7 = l*(x2 - x3*(2.0*d - x4))/(d + x6)
+    x8 = sin_theta1*x1 + cos_theta1*x5
+    x9 = x7*x8
+    x10 = c1*(k*x9/x6 - c3*sin_theta1)
+    x11 = sin_theta2*x1 + cos_theta2*x5
+    x12 = x7*x11
+    x13 = c1*(k*x12/x6 + c3*sin_theta2)
+    x14 = l*x8
+    x15 = (
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x5 + l*cos_theta1*cos_theta1)
+    )
+    x16 = x6*x6
+    x17 = x7*x16
+    x18 = x6*x8
+    x19 = x6*x16
+    x20 = k*(x9*x14 + x15*x17 - x18*x14)/x19 - c3*cos_theta1
+    x21 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x17
+    x22 = c4*(x11*x18 + x21 - x11*x9)
+    x23 = x2 - x3*x5
+    x24 = x23*x18 + (sin_theta1*x0 - cos_theta1*x3)*x17 - x23*x9
+    x25 = (1.0 - x5/x6)*x16
+    x26 = (
+        delta_theta1*x20 + delta_theta2*x22/x19 + delta_l*(k*x24/x19 - c5*x10)
+        + delta_k*x9/x6 - delta_m*(x10 + g*sin_theta1)
+        - c6*(x5*x9 + x8*x25 - cos_theta1*x17)/x19 - c7*sin_theta1
+    )
+    x27 = l*x11
+    x28 = x6*x11
+    x29 = (
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x5 - l*cos_theta2*cos_theta2)
+    )
+    x30 = k*(x27*x28 + x29*x17 - x12*x27)/x19 + c3*cos_theta2
+    x31 = x23*x28 + (sin_theta2*x0 - cos_theta2*x3)*x17 - x23*x12
+    x32 = (
+        delta_theta2*x30 + delta_l*(k*x31/x19 - c5*x13) + delta_k*x12/x6 + c7*sin_theta2
+        - delta_theta1*x22/x19 - delta_m*(x13 - g*sin_theta2)
+        - c6*(x5*x12 + x11*x25 - cos_theta2*x17)/x19
+    )
+    # outputs
+    return (
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        c0*x10,
+        -c0*x13,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        c0*(c1*x26),
+        -c0*(c1*x32),
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
+    from numpy import sqrt
+
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
+    delta_m, delta_l, delta_k, delta_d, delta_g, m, l, k, d, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = 1.0/m
+    c2 = l*l
+    c3 = m*g
+    c4 = l*k
+    c5 = m*c0
+    c6 = k*delta_d
+    c7 = m*delta_g
+    # intermediate terms
+    x0 = cos_theta1 - cos_theta2
+    x1 = l*x0
+    x2 = x0*x1
+    x3 = sin_theta1 - sin_theta2
+    x4 = l*x3
+    x5 = d - x4
+    x6 = sqrt(c2*x0*x0 + x5*x5)
+    x7 = l*(x2 - x3*(2.0*d - x4))/(d + x6)
+    x8 = sin_theta1*x1 + cos_theta1*x5
+    x9 = x7*x8
+    x10 = c1*(k*x9/x6 - c3*sin_theta1)
+    x11 = sin_theta2*x1 + cos_theta2*x5
+    x12 = x7*x11
+    x13 = c1*(k*x12/x6 + c3*sin_theta2)
+    x14 = l*x8
+    x15 = (
+        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
+        - (sin_theta1*x5 + l*cos_theta1*cos_theta1)
+    )
+    x16 = x6*x6
+    x17 = x7*x16
+    x18 = x6*x8
+    x19 = x6*x16
+    x20 = k*(x9*x14 + x15*x17 - x18*x14)/x19 - c3*cos_theta1
+    x21 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x17
+    x22 = c4*(x11*x18 + x21 - x11*x9)
+    x23 = x2 - x3*x5
+    x24 = x23*x18 + (sin_theta1*x0 - cos_theta1*x3)*x17 - x23*x9
+    x25 = (1.0 - x5/x6)*x16
+    x26 = (
+        delta_theta1*x20 + delta_theta2*x22/x19 + delta_l*(k*x24/x19 - c5*x10)
+        + delta_k*x9/x6 - delta_m*(x10 + g*sin_theta1)
+        - c6*(x5*x9 + x8*x25 - cos_theta1*x17)/x19 - c7*sin_theta1
+    )
+    x27 = l*x11
+    x28 = x6*x11
+    x29 = (
+        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
+        - (sin_theta2*x5 - l*cos_theta2*cos_theta2)
+    )
+    x30 = k*(x27*x28 + x29*x17 - x12*x27)/x19 + c3*cos_theta2
+    x31 = x23*x28 + (sin_theta2*x0 - cos_theta2*x3)*x17 - x23*x12
+    x32 = (
+        delta_theta2*x30 + delta_l*(k*x31/x19 - c5*x13) + delta_k*x12/x6 + c7*sin_theta2
+        - delta_theta1*x22/x19 - delta_m*(x13 - g*sin_theta2)
+        - c6*(x5*x12 + x11*x25 - cos_theta2*x17)/x19
+    )
+    # outputs
+    return _stacked(
+        (10,),
+        y[0],
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        c0*x10,
+        -c0*x13,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        c0*(c1*x26),
+        -c0*(c1*x32),
     )
 
 

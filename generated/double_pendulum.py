@@ -38,6 +38,18 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_theta1_dot [rad/s]
     delta_theta2_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    sin_theta1 [1]
+    cos_theta1 [1]
+    sin_theta2 [1]
+    cos_theta2 [1]
+    theta1_dot [rad/s]
+    theta2_dot [rad/s]
+    delta_theta1 [rad]
+    delta_theta2 [rad]
+    delta_theta1_dot [rad/s]
+    delta_theta2_dot [rad/s]
+
 Parameters params:
     m1 [kg] > 0, default 1.0: first mass
     m2 [kg] > 0, default 1.0: second mass
@@ -85,10 +97,10 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_pendulum"
-DIGEST = "e436b8a12343cd23"
+DIGEST = "e973c7141fbed391"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
     "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
@@ -101,6 +113,18 @@ STATES = {
         "theta2_dot",
     ),
     "variational": (
+        "sin_theta1",
+        "cos_theta1",
+        "sin_theta2",
+        "cos_theta2",
+        "theta1_dot",
+        "theta2_dot",
+        "delta_theta1",
+        "delta_theta2",
+        "delta_theta1_dot",
+        "delta_theta2_dot",
+    ),
+    "sensitivity": (
         "sin_theta1",
         "cos_theta1",
         "sin_theta2",
@@ -128,15 +152,14 @@ CALLS_FUNCTIONS = (
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (32, 5),
-    "jacobian": (85, 6),
-    "parameter_jacobian": (94, 6),
+    "jacobian": (84, 6),
+    "parameter_jacobian": (78, 6),
     "energy": (26, 8),
     "reactions": (48, 4),
     "mass_matrix": (9, 6),
@@ -144,12 +167,12 @@ OPERATIONS = {
     "hamiltonian_state": (15, 3),
     "rhs_hamiltonian": (35, 8),
     "jacobian_hamiltonian": (65, 8),
-    "parameter_jacobian_hamiltonian": (133, 12),
     "energy_hamiltonian": (31, 6),
     "lagrangian_state": (20, 4),
     "rational_state": (4, 0),
     "rhs_rational": (39, 5),
     "rhs_variational": (77, 5),
+    "rhs_sensitivity": (125, 17),
     "equilibrium": (0, 0),
     "linear": (8, 8),
 }
@@ -258,7 +281,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    85 operations, 6 of them on parameters alone.
+    84 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -306,17 +329,17 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x15 = x13 - x14
     x16 = (c1*x2 + c2*cos_theta1 - x12*x9 + x15*x8)/x10
     x17 = x14 - (x13 + g*cos_theta2)
-    x18 = m2*(x4*x12 - l2*x2 + x0*x17)/x10
+    x18 = m2*(l2*x2 - x4*x12 - x0*x17)/x10
     x19 = c3*x0*x5/x10
     x20 = theta2_dot*x7/x10
     # outputs
     return (
         (0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 1.0),
-        (-c0*x16, -c0*x18, -2.0*c0*x19, -2.0*c0*x20),
+        (-c0*x16, c0*x18, -2.0*c0*x19, -2.0*c0*x20),
         (
             c4*(x15 + x0*x16),
-            c4*(x17 + x0*x18),
+            c4*(x17 - x0*x18),
             2.0*c4*(x4*x3 + x0*x19),
             2.0*c4*(x0*x20),
         ),
@@ -359,7 +382,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x15 = x13 - x14
     x16 = (c1*x2 + c2*cos_theta1 - x12*x9 + x15*x8)/x10
     x17 = x14 - (x13 + g*cos_theta2)
-    x18 = m2*(x4*x12 - l2*x2 + x0*x17)/x10
+    x18 = m2*(l2*x2 - x4*x12 - x0*x17)/x10
     x19 = c3*x0*x5/x10
     x20 = theta2_dot*x7/x10
     # outputs
@@ -375,11 +398,11 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         1.0,
         -c0*x16,
-        -c0*x18,
+        c0*x18,
         -2.0*c0*x19,
         -2.0*c0*x20,
         c4*(x15 + x0*x16),
-        c4*(x17 + x0*x18),
+        c4*(x17 - x0*x18),
         2.0*c4*(x4*x3 + x0*x19),
         2.0*c4*(x0*x20),
     )
@@ -388,7 +411,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    94 operations, 6 of them on parameters alone.
+    78 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -412,44 +435,42 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c1 = m2*l2
     c2 = m1 + m2
     c3 = g*c2
-    c4 = 1.0/l2
-    c5 = 1.0/m2
+    c4 = c2*c0
+    c5 = 1.0/l2
     # intermediate terms
     sin_theta1 = sin(theta1)
     x0 = g*sin_theta1
     x1 = theta1 - theta2
     sin_x1 = sin(x1)
     x2 = theta2_dot*(sin_x1*theta2_dot)
-    x3 = c1*x2 + c3*sin_theta1
-    x4 = theta1_dot*(sin_x1*theta1_dot)
+    x3 = theta1_dot*(sin_x1*theta1_dot)
     sin_theta2 = sin(theta2)
-    x5 = l1*x4 - g*sin_theta2
+    x4 = l1*x3 - g*sin_theta2
     cos_x1 = cos(x1)
-    x6 = m2*cos_x1
-    x7 = m1 + m2*sin_x1*sin_x1
-    x8 = (x3 + x5*x6)/x7
-    x9 = (x0 - x8)/x7
-    x10 = cos_x1*x8
-    x11 = x5 + x10
-    x12 = cos_x1*x11
-    x13 = x5 + (x10 - x11)
-    x14 = (x0 + l2*x2 - (x8 - x12) + cos_x1*x13)/x7
-    x15 = x4 + c0*x10
-    x16 = (c0*(x3 - (2.0*c2*x8 - x11*x6)) + x15*x6)/x7
-    x17 = c4*(x5 + (x10 - 2.0*x11))
-    x18 = m2*(x2 + c4*x12 + cos_x1*x17)/x7
-    x19 = (c2*sin_theta1 - sin_theta2*x6)/x7
+    x5 = m2*cos_x1
+    x6 = m1 + m2*sin_x1*sin_x1
+    x7 = (c1*x2 + c3*sin_theta1 + x4*x5)/x6
+    x8 = (x0 - x7)/x6
+    x9 = cos_x1*x7
+    x10 = x4 + x9
+    x11 = cos_x1*x10
+    x12 = (x0 + l2*x2 + x11 - x7)/x6
+    x13 = x3 + c0*x9
+    x14 = (c4*x7 - x13*x5)/x6
+    x15 = c5*x11
+    x16 = m2*(x15 - (x15 + x2))/x6
+    x17 = (c2*sin_theta1 - sin_theta2*x5)/x6
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
-        (-c0*x9, -c0*x14, -c0*x16, -c0*x18, -c0*x19),
+        (-c0*x8, -c0*x12, c0*x14, c0*x16, -c0*x17),
         (
-            c4*(cos_x1*x9),
-            c4*(c5*x13 + cos_x1*x14),
-            c4*(x15 + cos_x1*x16),
-            c4*(x17 + cos_x1*x18),
-            -c4*(sin_theta2 - cos_x1*x19),
+            c5*(cos_x1*x8),
+            c5*(cos_x1*x12),
+            c5*(x13 - cos_x1*x14),
+            -c5*(c5*x10 + cos_x1*x16),
+            -c5*(sin_theta2 - cos_x1*x17),
         ),
     )
 
@@ -466,33 +487,31 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = m2*l2
     c2 = m1 + m2
     c3 = g*c2
-    c4 = 1.0/l2
-    c5 = 1.0/m2
+    c4 = c2*c0
+    c5 = 1.0/l2
     # intermediate terms
     sin_theta1 = sin(theta1)
     x0 = g*sin_theta1
     x1 = theta1 - theta2
     sin_x1 = sin(x1)
     x2 = theta2_dot*(sin_x1*theta2_dot)
-    x3 = c1*x2 + c3*sin_theta1
-    x4 = theta1_dot*(sin_x1*theta1_dot)
+    x3 = theta1_dot*(sin_x1*theta1_dot)
     sin_theta2 = sin(theta2)
-    x5 = l1*x4 - g*sin_theta2
+    x4 = l1*x3 - g*sin_theta2
     cos_x1 = cos(x1)
-    x6 = m2*cos_x1
-    x7 = m1 + m2*sin_x1*sin_x1
-    x8 = (x3 + x5*x6)/x7
-    x9 = (x0 - x8)/x7
-    x10 = cos_x1*x8
-    x11 = x5 + x10
-    x12 = cos_x1*x11
-    x13 = x5 + (x10 - x11)
-    x14 = (x0 + l2*x2 - (x8 - x12) + cos_x1*x13)/x7
-    x15 = x4 + c0*x10
-    x16 = (c0*(x3 - (2.0*c2*x8 - x11*x6)) + x15*x6)/x7
-    x17 = c4*(x5 + (x10 - 2.0*x11))
-    x18 = m2*(x2 + c4*x12 + cos_x1*x17)/x7
-    x19 = (c2*sin_theta1 - sin_theta2*x6)/x7
+    x5 = m2*cos_x1
+    x6 = m1 + m2*sin_x1*sin_x1
+    x7 = (c1*x2 + c3*sin_theta1 + x4*x5)/x6
+    x8 = (x0 - x7)/x6
+    x9 = cos_x1*x7
+    x10 = x4 + x9
+    x11 = cos_x1*x10
+    x12 = (x0 + l2*x2 + x11 - x7)/x6
+    x13 = x3 + c0*x9
+    x14 = (c4*x7 - x13*x5)/x6
+    x15 = c5*x11
+    x16 = m2*(x15 - (x15 + x2))/x6
+    x17 = (c2*sin_theta1 - sin_theta2*x5)/x6
     # outputs
     return _stacked(
         (4, 5),
@@ -507,16 +526,16 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        -c0*x9,
-        -c0*x14,
-        -c0*x16,
-        -c0*x18,
-        -c0*x19,
-        c4*(cos_x1*x9),
-        c4*(c5*x13 + cos_x1*x14),
-        c4*(x15 + cos_x1*x16),
-        c4*(x17 + cos_x1*x18),
-        -c4*(sin_theta2 - cos_x1*x19),
+        -c0*x8,
+        -c0*x12,
+        c0*x14,
+        c0*x16,
+        -c0*x17,
+        c5*(cos_x1*x8),
+        c5*(cos_x1*x12),
+        c5*(x13 - cos_x1*x14),
+        -c5*(c5*x10 + cos_x1*x16),
+        -c5*(sin_theta2 - cos_x1*x17),
     )
 
 
@@ -1013,171 +1032,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    133 operations, 12 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta1, theta2 in rad; p_theta1, p_theta2 in J s.
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = m2*l2
-    c3 = 1.0/c2
-    c4 = m1 + m2
-    c5 = m2*c1
-    c6 = 1.0/m2
-    c7 = l1*g
-    c8 = m2*c0
-    c9 = c4*g
-    c10 = l1*c4
-    c11 = l2*g
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    sin_x0 = sin(x0)
-    x1 = m2*sin_x0
-    x2 = m1 + sin_x0*x1
-    x3 = (c0*p_theta1 - c1*p_theta2*cos_x0)/x2
-    x4 = x3/x2
-    x5 = cos_x0*x3
-    x6 = c3*p_theta2 - x5
-    x7 = x5 + x6
-    x8 = (x3 + cos_x0*x6 - cos_x0*x7)/x2
-    x9 = m2*cos_x0
-    x10 = c0*(2.0*c4*x3 + x6*x9 - x5*x9)/x2
-    x11 = x5 + 2.0*x6
-    x12 = c5*cos_x0*(x6 - x11)/x2
-    x13 = cos_x0*x4
-    x14 = c6*x7 - cos_x0*x8
-    x15 = cos_x0*(c0*x3 - x10)
-    x16 = c1*x11 - cos_x0*x12
-    x17 = x3*x1
-    sin_theta1 = sin(theta1)
-    x18 = c7*sin_theta1
-    x19 = x6*x1
-    x20 = x3*x6
-    x21 = sin_x0*x20
-    x22 = x14*x17 - (x21 - x8*x19)
-    x23 = x6*x12
-    x24 = x3*x16
-    sin_theta2 = sin(theta2)
-    x25 = m2*(sin_x0*x23 + sin_x0*x24 + g*sin_theta2 - c1*x21)
-    # outputs
-    return (
-        (-c0*x4, -c0*x8, -c0*x10, -c0*x12, 0.0),
-        (c1*x13, -c1*x14, -c1*x15, -c1*x16, 0.0),
-        (
-            -(x13*x17 + x18 - x4*x19),
-            -(x18 - x22),
-            -(c8*x21 + c9*sin_theta1 - x10*x19 - x15*x17),
-            (x23 + x24 - c1*x20)*x1,
-            -c10*sin_theta1,
-        ),
-        (
-            -(x4*x6 - x3*x13)*x1,
-            -(c11*sin_theta2 + x22),
-            -(x6*x10 + x3*x15 - c0*x20)*x1,
-            -x25,
-            -c2*sin_theta2,
-        ),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 5, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = m2*l2
-    c3 = 1.0/c2
-    c4 = m1 + m2
-    c5 = m2*c1
-    c6 = 1.0/m2
-    c7 = l1*g
-    c8 = m2*c0
-    c9 = c4*g
-    c10 = l1*c4
-    c11 = l2*g
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    sin_x0 = sin(x0)
-    x1 = m2*sin_x0
-    x2 = m1 + sin_x0*x1
-    x3 = (c0*p_theta1 - c1*p_theta2*cos_x0)/x2
-    x4 = x3/x2
-    x5 = cos_x0*x3
-    x6 = c3*p_theta2 - x5
-    x7 = x5 + x6
-    x8 = (x3 + cos_x0*x6 - cos_x0*x7)/x2
-    x9 = m2*cos_x0
-    x10 = c0*(2.0*c4*x3 + x6*x9 - x5*x9)/x2
-    x11 = x5 + 2.0*x6
-    x12 = c5*cos_x0*(x6 - x11)/x2
-    x13 = cos_x0*x4
-    x14 = c6*x7 - cos_x0*x8
-    x15 = cos_x0*(c0*x3 - x10)
-    x16 = c1*x11 - cos_x0*x12
-    x17 = x3*x1
-    sin_theta1 = sin(theta1)
-    x18 = c7*sin_theta1
-    x19 = x6*x1
-    x20 = x3*x6
-    x21 = sin_x0*x20
-    x22 = x14*x17 - (x21 - x8*x19)
-    x23 = x6*x12
-    x24 = x3*x16
-    sin_theta2 = sin(theta2)
-    x25 = m2*(sin_x0*x23 + sin_x0*x24 + g*sin_theta2 - c1*x21)
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        -c0*x4,
-        -c0*x8,
-        -c0*x10,
-        -c0*x12,
-        0.0,
-        c1*x13,
-        -c1*x14,
-        -c1*x15,
-        -c1*x16,
-        0.0,
-        -(x13*x17 + x18 - x4*x19),
-        -(x18 - x22),
-        -(c8*x21 + c9*sin_theta1 - x10*x19 - x15*x17),
-        (x23 + x24 - c1*x20)*x1,
-        -c10*sin_theta1,
-        -(x4*x6 - x3*x13)*x1,
-        -(c11*sin_theta2 + x22),
-        -(x6*x10 + x3*x15 - c0*x20)*x1,
-        -x25,
-        -c2*sin_theta2,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1453,31 +1307,30 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     c2 = (m1 + m2)*g
     c3 = 1.0/l2
     # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = c1*theta2_dot
-    x2 = theta2_dot*x1
+    x0 = theta2_dot*theta2_dot
+    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x2 = c1*x1
     x3 = l1*theta1_dot
     x4 = theta1_dot*x3
-    x5 = x0*x4 - g*sin_theta2
+    x5 = x1*x4 - g*sin_theta2
     x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
     x7 = m2*x6
-    x8 = m2*x0
-    x9 = m1 + x0*x8
+    x8 = m2*x1
+    x9 = m1 + x1*x8
     x10 = (x0*x2 + c2*sin_theta1 + x5*x7)/x9
     x11 = x5 + x6*x10
-    x12 = x6*x2
-    x13 = x11*x8
-    x14 = (
-        delta_theta1*(x12 + c2*cos_theta1) + 2.0*x0*delta_theta2_dot*x1 + delta_theta2*x13
-        - x12*delta_theta2 - delta_theta1*x13
+    x12 = x6*x0
+    x13 = (
+        delta_theta1*(c1*x12 + c2*cos_theta1 - x11*x8) + 2.0*theta2_dot*delta_theta2_dot*x2
+        - m2*delta_theta2*(l2*x12 - x1*x11)
     )
-    x15 = x6*x4
-    x16 = x0*x10
-    x17 = (
-        delta_theta1*x15 + 2.0*x0*delta_theta1_dot*x3 + delta_theta2*x16
-        - delta_theta2*(x15 + g*cos_theta2) - delta_theta1*x16
+    x14 = x6*x4
+    x15 = x1*x10
+    x16 = (
+        delta_theta1*(x14 - x15) + delta_theta2*(x15 - (x14 + g*cos_theta2))
+        + 2.0*x1*delta_theta1_dot*x3
     )
-    x18 = (x14 + x17*x7)/x9
+    x17 = (x13 + x16*x7)/x9
     # outputs
     return (
         theta1_dot*cos_theta1,
@@ -1488,8 +1341,8 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
         c3*x11,
         delta_theta1_dot,
         delta_theta2_dot,
-        -c0*x18,
-        c3*(x17 + x6*x18),
+        -c0*x17,
+        c3*(x16 + x6*x17),
     )
 
 
@@ -1504,31 +1357,30 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c2 = (m1 + m2)*g
     c3 = 1.0/l2
     # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = c1*theta2_dot
-    x2 = theta2_dot*x1
+    x0 = theta2_dot*theta2_dot
+    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x2 = c1*x1
     x3 = l1*theta1_dot
     x4 = theta1_dot*x3
-    x5 = x0*x4 - g*sin_theta2
+    x5 = x1*x4 - g*sin_theta2
     x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
     x7 = m2*x6
-    x8 = m2*x0
-    x9 = m1 + x0*x8
+    x8 = m2*x1
+    x9 = m1 + x1*x8
     x10 = (x0*x2 + c2*sin_theta1 + x5*x7)/x9
     x11 = x5 + x6*x10
-    x12 = x6*x2
-    x13 = x11*x8
-    x14 = (
-        delta_theta1*(x12 + c2*cos_theta1) + 2.0*x0*delta_theta2_dot*x1 + delta_theta2*x13
-        - x12*delta_theta2 - delta_theta1*x13
+    x12 = x6*x0
+    x13 = (
+        delta_theta1*(c1*x12 + c2*cos_theta1 - x11*x8) + 2.0*theta2_dot*delta_theta2_dot*x2
+        - m2*delta_theta2*(l2*x12 - x1*x11)
     )
-    x15 = x6*x4
-    x16 = x0*x10
-    x17 = (
-        delta_theta1*x15 + 2.0*x0*delta_theta1_dot*x3 + delta_theta2*x16
-        - delta_theta2*(x15 + g*cos_theta2) - delta_theta1*x16
+    x14 = x6*x4
+    x15 = x1*x10
+    x16 = (
+        delta_theta1*(x14 - x15) + delta_theta2*(x15 - (x14 + g*cos_theta2))
+        + 2.0*x1*delta_theta1_dot*x3
     )
-    x18 = (x14 + x17*x7)/x9
+    x17 = (x13 + x16*x7)/x9
     # outputs
     return _stacked(
         (10,),
@@ -1541,8 +1393,164 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         c3*x11,
         delta_theta1_dot,
         delta_theta2_dot,
-        -c0*x18,
-        c3*(x17 + x6*x18),
+        -c0*x17,
+        c3*(x16 + x6*x17),
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    125 operations, 17 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 10 floats
+        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
+        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
+        rad/s.
+    params : iterable of 10 floats
+        delta_m1, delta_m2 in kg; delta_l1, delta_l2 in m; delta_g in m/s^2; m1, m2 in kg;
+        l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
+    delta_m1, delta_m2, delta_l1, delta_l2, delta_g, m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2*l2
+    c2 = m1 + m2
+    c3 = c2*g
+    c4 = 1.0/l2
+    c5 = l1*m2
+    c6 = l2*c5
+    c7 = l1*delta_m2
+    c8 = c5*delta_l2
+    c9 = l1*c2*delta_g
+    c10 = l1*delta_m1
+    c11 = c2*delta_l1
+    c12 = m2*c4
+    c13 = l1*l2
+    c14 = l2*delta_l1
+    c15 = l2*delta_g
+    # intermediate terms
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x1 = theta2_dot*theta2_dot
+    x2 = x0*x1
+    x3 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x4 = theta1_dot*theta1_dot
+    x5 = l1*x4
+    x6 = x0*x5 - g*sin_theta2
+    x7 = m2*x0
+    x8 = m1 + x0*x7
+    x9 = (c1*x2 + c3*sin_theta1 + m2*x3*x6)/x8
+    x10 = x3*x9
+    x11 = x6 + x10
+    x12 = x3*x1
+    x13 = l1*delta_theta1*(c1*x12 + c3*cos_theta1 - x11*x7)
+    x14 = g*sin_theta1
+    x15 = x3*x11
+    x16 = (
+        x13 + 2.0*c6*theta2_dot*x0*delta_theta2_dot + c7*(x14 + l2*x2 + x15 - x9)
+        + c8*(x2 + c4*x15) + c9*sin_theta1 - c5*delta_theta2*(l2*x12 - x0*x11)
+        - c10*(x9 - x14) - c11*x9
+    )
+    x17 = x3*x5
+    x18 = x0*x9
+    x19 = (
+        l2*delta_theta1*(x17 - x18) + l2*delta_theta2*(x18 - (x17 + g*cos_theta2))
+        + 2.0*c13*theta1_dot*x0*delta_theta1_dot + c14*(x0*x4 + c0*x10) - delta_l2*x11
+        - c15*sin_theta2
+    )
+    x20 = (c0*x16 + c12*x3*x19)/x8
+    # outputs
+    return (
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        -c0*x9,
+        c4*x11,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        -c0*x20,
+        c4*(c4*x19 + x3*x20),
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
+    # inputs
+    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
+    delta_m1, delta_m2, delta_l1, delta_l2, delta_g, m1, m2, l1, l2, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l1
+    c1 = m2*l2
+    c2 = m1 + m2
+    c3 = c2*g
+    c4 = 1.0/l2
+    c5 = l1*m2
+    c6 = l2*c5
+    c7 = l1*delta_m2
+    c8 = c5*delta_l2
+    c9 = l1*c2*delta_g
+    c10 = l1*delta_m1
+    c11 = c2*delta_l1
+    c12 = m2*c4
+    c13 = l1*l2
+    c14 = l2*delta_l1
+    c15 = l2*delta_g
+    # intermediate terms
+    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
+    x1 = theta2_dot*theta2_dot
+    x2 = x0*x1
+    x3 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
+    x4 = theta1_dot*theta1_dot
+    x5 = l1*x4
+    x6 = x0*x5 - g*sin_theta2
+    x7 = m2*x0
+    x8 = m1 + x0*x7
+    x9 = (c1*x2 + c3*sin_theta1 + m2*x3*x6)/x8
+    x10 = x3*x9
+    x11 = x6 + x10
+    x12 = x3*x1
+    x13 = l1*delta_theta1*(c1*x12 + c3*cos_theta1 - x11*x7)
+    x14 = g*sin_theta1
+    x15 = x3*x11
+    x16 = (
+        x13 + 2.0*c6*theta2_dot*x0*delta_theta2_dot + c7*(x14 + l2*x2 + x15 - x9)
+        + c8*(x2 + c4*x15) + c9*sin_theta1 - c5*delta_theta2*(l2*x12 - x0*x11)
+        - c10*(x9 - x14) - c11*x9
+    )
+    x17 = x3*x5
+    x18 = x0*x9
+    x19 = (
+        l2*delta_theta1*(x17 - x18) + l2*delta_theta2*(x18 - (x17 + g*cos_theta2))
+        + 2.0*c13*theta1_dot*x0*delta_theta1_dot + c14*(x0*x4 + c0*x10) - delta_l2*x11
+        - c15*sin_theta2
+    )
+    x20 = (c0*x16 + c12*x3*x19)/x8
+    # outputs
+    return _stacked(
+        (10,),
+        y[0],
+        theta1_dot*cos_theta1,
+        -theta1_dot*sin_theta1,
+        theta2_dot*cos_theta2,
+        -theta2_dot*sin_theta2,
+        -c0*x9,
+        c4*x11,
+        delta_theta1_dot,
+        delta_theta2_dot,
+        -c0*x20,
+        c4*(c4*x19 + x3*x20),
     )
 
 

@@ -25,6 +25,13 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_theta [rad]
     delta_theta_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    sin_theta [1]
+    cos_theta [1]
+    theta_dot [rad/s]
+    delta_theta [rad]
+    delta_theta_dot [rad/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     l [m] > 0, default 1.0: length
@@ -68,15 +75,22 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "9180229a7cd8a52e"
+DIGEST = "340a35b307e5049f"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("theta", "theta_dot"),
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
+        "sin_theta",
+        "cos_theta",
+        "theta_dot",
+        "delta_theta",
+        "delta_theta_dot",
+    ),
+    "sensitivity": (
         "sin_theta",
         "cos_theta",
         "theta_dot",
@@ -97,11 +111,11 @@ TIMED = (
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rhs_rational",
     "rhs_variational",
+    "rhs_sensitivity",
 )
 CALLS_FUNCTIONS = (
     "rhs",
@@ -113,12 +127,12 @@ CALLS_FUNCTIONS = (
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
     "rhs_rational",
     "rhs_variational",
+    "rhs_sensitivity",
 )
 OPERATIONS = {
     "rhs": (19, 7),
@@ -131,12 +145,12 @@ OPERATIONS = {
     "hamiltonian_state": (10, 2),
     "rhs_hamiltonian": (25, 8),
     "jacobian_hamiltonian": (34, 10),
-    "parameter_jacobian_hamiltonian": (76, 13),
     "energy_hamiltonian": (29, 8),
     "lagrangian_state": (13, 5),
     "rational_state": (2, 0),
     "rhs_rational": (21, 7),
     "rhs_variational": (31, 7),
+    "rhs_sensitivity": (60, 15),
     "equilibrium": (0, 0),
 }
 UNITS = {
@@ -747,128 +761,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], c0*x2, c0*c3, -x4, -c0*(c8 + x2))
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    76 operations, 13 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 2 floats
-        theta in rad; p_theta in J s.
-    params : iterable of 6 floats
-        m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    m, l, a, Omega, c, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = m*Omega
-    c5 = a*c4
-    c6 = l*c5
-    c7 = Omega*a
-    c8 = l*g
-    c9 = c0*c
-    c10 = c0*c5
-    c11 = m*g
-    c12 = m*a
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = Omega*t
-    sin_x0 = sin(x0)
-    x1 = sin_theta*sin_x0
-    x2 = c3*(p_theta + c6*x1)
-    x3 = c7*x1
-    x4 = c1*(x2 - x3)
-    x5 = c0*(2.0*x2 - x3)
-    x6 = Omega*x1
-    x7 = sin_x0 + x0*cos(x0)
-    x8 = a*sin_theta*x7
-    cos_theta = cos(theta)
-    x9 = sin_x0*cos_theta
-    x10 = x2*x9
-    x11 = c5*x9
-    # outputs
-    return (
-        (-c0*x4, -c0*x5, c0*x6, c0*x8, 0.0, 0.0),
-        (
-            -(c7*x10 + c8*sin_theta - x4*x11 - c9*x4),
-            -(c10*x10 + c11*sin_theta - x5*x11 - c9*x5),
-            -(c4*x10 + x6*x11 + c9*x6),
-            -(c12*x2*x7*cos_theta + x8*x11 + c9*x8),
-            -c0*x2,
-            -c2*sin_theta,
-        ),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (2, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, p_theta = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = m*Omega
-    c5 = a*c4
-    c6 = l*c5
-    c7 = Omega*a
-    c8 = l*g
-    c9 = c0*c
-    c10 = c0*c5
-    c11 = m*g
-    c12 = m*a
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = Omega*t
-    sin_x0 = sin(x0)
-    x1 = sin_theta*sin_x0
-    x2 = c3*(p_theta + c6*x1)
-    x3 = c7*x1
-    x4 = c1*(x2 - x3)
-    x5 = c0*(2.0*x2 - x3)
-    x6 = Omega*x1
-    x7 = sin_x0 + x0*cos(x0)
-    x8 = a*sin_theta*x7
-    cos_theta = cos(theta)
-    x9 = sin_x0*cos_theta
-    x10 = x2*x9
-    x11 = c5*x9
-    # outputs
-    return _stacked(
-        (2, 6),
-        y[0],
-        -c0*x4,
-        -c0*x5,
-        c0*x6,
-        c0*x8,
-        0.0,
-        0.0,
-        -(c7*x10 + c8*sin_theta - x4*x11 - c9*x4),
-        -(c10*x10 + c11*sin_theta - x5*x11 - c9*x5),
-        -(c4*x10 + x6*x11 + c9*x6),
-        -(c12*x2*x7*cos_theta + x8*x11 + c9*x8),
-        -c0*x2,
-        -c2*sin_theta,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1140,6 +1032,111 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -c0*x1,
         delta_theta_dot,
         -c0*(c2*x2),
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    60 operations, 15 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s.
+    y : iterable of 5 floats
+        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
+        in rad/s.
+    params : iterable of 12 floats
+        delta_m in kg; delta_l, delta_a in m; delta_Omega in rad/s; delta_c in N m s;
+        delta_g in m/s^2; m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    delta_m, delta_l, delta_a, delta_Omega, delta_c, delta_g, m, l, a, Omega, c, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = l*m
+    c2 = 1.0/c1
+    c3 = g*c1
+    c4 = Omega*Omega
+    c5 = a*c1
+    c6 = c4*c5
+    c7 = a*c4
+    c8 = c1*delta_g
+    c9 = l*delta_m
+    c10 = m*delta_l
+    c11 = c1*delta_a*c4
+    c12 = Omega*delta_Omega*c5
+    # intermediate terms
+    x0 = Omega*t
+    cos_x0 = cos(x0)
+    x1 = sin_theta*cos_x0
+    x2 = c2*(c3*sin_theta + c*theta_dot - c6*x1)
+    x3 = g - c7*cos_x0
+    x4 = sin_theta*x3
+    x5 = (
+        c1*cos_theta*delta_theta*x3 + c*delta_theta_dot + delta_c*theta_dot + c8*sin_theta
+        - c9*(x2 - x4) - c10*(2.0*x2 - x4) - c11*x1
+        - c12*sin_theta*(2.0*cos_x0 - x0*sin(x0))
+    )
+    # outputs
+    return (
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -c0*x2,
+        delta_theta_dot,
+        -c0*(c2*x5),
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (5, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
+    delta_m, delta_l, delta_a, delta_Omega, delta_c, delta_g, m, l, a, Omega, c, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = l*m
+    c2 = 1.0/c1
+    c3 = g*c1
+    c4 = Omega*Omega
+    c5 = a*c1
+    c6 = c4*c5
+    c7 = a*c4
+    c8 = c1*delta_g
+    c9 = l*delta_m
+    c10 = m*delta_l
+    c11 = c1*delta_a*c4
+    c12 = Omega*delta_Omega*c5
+    # intermediate terms
+    x0 = Omega*t
+    cos_x0 = cos(x0)
+    x1 = sin_theta*cos_x0
+    x2 = c2*(c3*sin_theta + c*theta_dot - c6*x1)
+    x3 = g - c7*cos_x0
+    x4 = sin_theta*x3
+    x5 = (
+        c1*cos_theta*delta_theta*x3 + c*delta_theta_dot + delta_c*theta_dot + c8*sin_theta
+        - c9*(x2 - x4) - c10*(2.0*x2 - x4) - c11*x1
+        - c12*sin_theta*(2.0*cos_x0 - x0*sin(x0))
+    )
+    # outputs
+    return _stacked(
+        (5,),
+        y[0],
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -c0*x2,
+        delta_theta_dot,
+        -c0*(c2*x5),
     )
 
 

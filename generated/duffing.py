@@ -19,6 +19,12 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_x [m]
     delta_x_dot [m/s]
 
+State y of `rhs_sensitivity`: the same:
+    x [m]
+    x_dot [m/s]
+    delta_x [m]
+    delta_x_dot [m/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass
     k [N/m] real, default 1.0: linear stiffness
@@ -60,14 +66,15 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "duffing"
-DIGEST = "ff6f6bdcc6cfa0ab"
+DIGEST = "0e5cb7cbb986856a"
 COORDINATES = ("x",)
 STATE = ("x", "x_dot")
-FORMS = ("lagrangian", "hamiltonian", "variational")
+FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("x", "x_dot"),
     "hamiltonian": ("x", "p_x"),
     "variational": ("x", "x_dot", "delta_x", "delta_x_dot"),
+    "sensitivity": ("x", "x_dot", "delta_x", "delta_x_dot"),
 }
 PARAMETERS: tuple[str, ...] = ("m", "k", "beta", "c", "F", "Omega")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 0.1, 0.2, 1.0)
@@ -78,9 +85,9 @@ TIMED = (
     "energy",
     "power",
     "rhs_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rhs_variational",
+    "rhs_sensitivity",
 )
 CALLS_FUNCTIONS = (
     "rhs",
@@ -88,9 +95,9 @@ CALLS_FUNCTIONS = (
     "energy",
     "power",
     "rhs_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rhs_variational",
+    "rhs_sensitivity",
 )
 OPERATIONS = {
     "rhs": (21, 1),
@@ -103,10 +110,10 @@ OPERATIONS = {
     "hamiltonian_state": (1, 0),
     "rhs_hamiltonian": (21, 1),
     "jacobian_hamiltonian": (11, 3),
-    "parameter_jacobian_hamiltonian": (16, 1),
     "energy_hamiltonian": (17, 1),
     "lagrangian_state": (2, 1),
     "rhs_variational": (30, 1),
+    "rhs_sensitivity": (46, 2),
 }
 UNITS = {
     "m": "kg",
@@ -594,73 +601,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], 0.0, c0, -0.5*(x1 + (3.0*x0 + x1)), -c0*c)
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    16 operations, 1 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 2 floats
-        x in m; p_x in kg m/s.
-    params : iterable of 6 floats
-        m in kg; k in N/m; beta in N/m^3; c in N s/m; F in N; Omega in rad/s.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    x, p_x = y.tolist() if hasattr(y, "tolist") else y
-    m, _, _, c, F, Omega = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = c0*p_x
-    x1 = c0*x0
-    x2 = Omega*t
-    # outputs
-    return (
-        (-x1, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (c*x1, -x, -x*x*x, -x0, cos(x2), -F*t*sin(x2)),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (2, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, p_x = y
-    m, _, _, c, F, Omega = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = c0*p_x
-    x1 = c0*x0
-    x2 = Omega*t
-    # outputs
-    return _stacked(
-        (2, 6),
-        y[0],
-        -x1,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c*x1,
-        -x,
-        -x*x*x,
-        -x0,
-        cos(x2),
-        -F*t*sin(x2),
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -794,6 +734,77 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x3 = c0*(0.5*delta_x*(x1 + (3.0*x0 + x1)) + c*delta_x_dot)
     # outputs
     return _stacked((4,), y[0], x_dot, -c0*x2, delta_x_dot, -x3)
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    46 operations, 2 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s.
+    y : iterable of 4 floats
+        x in m; x_dot in m/s; delta_x in m; delta_x_dot in m/s.
+    params : iterable of 12 floats
+        delta_m in kg; delta_k in N/m; delta_beta in N/m^3; delta_c in N s/m; delta_F in N;
+        delta_Omega in rad/s; m in kg; k in N/m; beta in N/m^3; c in N s/m; F in N; Omega in
+        rad/s.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    x, x_dot, delta_x, delta_x_dot = y.tolist() if hasattr(y, "tolist") else y
+    delta_m, delta_k, delta_beta, delta_c, delta_F, delta_Omega, m, k, beta, c, F, Omega = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/m
+    c1 = F*delta_Omega
+    # intermediate terms
+    x0 = x*x
+    x1 = x*x0
+    x2 = Omega*t
+    cos_x2 = cos(x2)
+    x3 = beta*x0
+    x4 = k + 1.5*x3
+    x5 = 0.5*k*x + 0.25*beta*x1 - F*cos_x2 + 0.5*x*x4 + c*x_dot
+    x6 = c0*x5
+    x7 = (
+        0.5*delta_x*(x4 + (3.0*x3 + x4)) + c*delta_x_dot + delta_k*x + delta_beta*x1
+        + delta_c*x_dot + c1*t*sin(x2) - delta_m*x6 - delta_F*cos_x2
+    )
+    # outputs
+    return (x_dot, -x6, delta_x_dot, -c0*x7)
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (4, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    x, x_dot, delta_x, delta_x_dot = y
+    delta_m, delta_k, delta_beta, delta_c, delta_F, delta_Omega, m, k, beta, c, F, Omega = params
+    # terms of the parameters alone
+    c0 = 1.0/m
+    c1 = F*delta_Omega
+    # intermediate terms
+    x0 = x*x
+    x1 = x*x0
+    x2 = Omega*t
+    cos_x2 = cos(x2)
+    x3 = beta*x0
+    x4 = k + 1.5*x3
+    x5 = 0.5*k*x + 0.25*beta*x1 - F*cos_x2 + 0.5*x*x4 + c*x_dot
+    x6 = c0*x5
+    x7 = (
+        0.5*delta_x*(x4 + (3.0*x3 + x4)) + c*delta_x_dot + delta_k*x + delta_beta*x1
+        + delta_c*x_dot + c1*t*sin(x2) - delta_m*x6 - delta_F*cos_x2
+    )
+    # outputs
+    return _stacked((4,), y[0], x_dot, -x6, delta_x_dot, -c0*x7)
 
 
 def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:

@@ -36,6 +36,17 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_r_dot [m/s]
     delta_theta_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    r [m]
+    sin_theta [1]
+    cos_theta [1]
+    r_dot [m/s]
+    theta_dot [rad/s]
+    delta_r [m]
+    delta_theta [rad]
+    delta_r_dot [m/s]
+    delta_theta_dot [rad/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     k [N/m] > 0, default 100.0: stiffness of the spring
@@ -76,15 +87,26 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "elastic_pendulum"
-DIGEST = "a8b5e62a7c840483"
+DIGEST = "4ceb663f085ad1aa"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("r", "theta", "r_dot", "theta_dot"),
     "hamiltonian": ("r", "theta", "p_r", "p_theta"),
     "rational": ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot"),
     "variational": (
+        "r",
+        "sin_theta",
+        "cos_theta",
+        "r_dot",
+        "theta_dot",
+        "delta_r",
+        "delta_theta",
+        "delta_r_dot",
+        "delta_theta_dot",
+    ),
+    "sensitivity": (
         "r",
         "sin_theta",
         "cos_theta",
@@ -108,13 +130,12 @@ CALLS_FUNCTIONS = (
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (19, 2),
-    "jacobian": (26, 1),
+    "jacobian": (24, 1),
     "parameter_jacobian": (22, 3),
     "energy": (17, 1),
     "mass_matrix": (2, 0),
@@ -122,12 +143,12 @@ OPERATIONS = {
     "hamiltonian_state": (4, 0),
     "rhs_hamiltonian": (20, 2),
     "jacobian_hamiltonian": (27, 2),
-    "parameter_jacobian_hamiltonian": (28, 1),
     "energy_hamiltonian": (19, 2),
     "lagrangian_state": (5, 1),
     "rational_state": (2, 0),
     "rhs_rational": (20, 2),
     "rhs_variational": (45, 2),
+    "rhs_sensitivity": (61, 4),
     "equilibrium": (4, 4),
     "linear": (7, 7),
 }
@@ -226,7 +247,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    26 operations, 1 of them on parameters alone.
+    24 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
@@ -255,7 +276,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         (0.0, 0.0, 0.0, 1.0),
         (-c0*(k - m*theta_dot*theta_dot), -x0, 0.0, 2.0*theta_dot*r),
         (
-            -(-(x0 + 2.0*theta_dot*r_dot))/r/r,
+            (x0 + 2.0*theta_dot*r_dot)/r/r,
             -g*cos(theta)/r,
             -2.0*theta_dot/r,
             -2.0*r_dot/r,
@@ -290,7 +311,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -x0,
         0.0,
         2.0*theta_dot*r,
-        -(-(x0 + 2.0*theta_dot*r_dot))/r/r,
+        (x0 + 2.0*theta_dot*r_dot)/r/r,
         -g*cos(theta)/r,
         -2.0*theta_dot/r,
         -2.0*r_dot/r,
@@ -664,86 +685,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    28 operations, 1 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        r in m; theta in rad; p_r in kg m/s; p_theta in J s.
-    params : iterable of 4 floats
-        m in kg; k in N/m; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    r, theta, p_r, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = c0*p_theta/r
-    x1 = c0*x0
-    cos_theta = cos(theta)
-    x2 = r*sin(theta)
-    # outputs
-    return (
-        (-c0*(c0*p_r), 0.0, 0.0, 0.0),
-        (-x1/r, 0.0, 0.0, 0.0),
-        (
-            x0*x0/r + g*cos_theta - 2.0*m*x0*x1/r,
-            -(r - l),
-            k,
-            m*cos_theta,
-        ),
-        (-g*x2, 0.0, 0.0, -m*x2),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, p_r, p_theta = y
-    m, k, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = c0*p_theta/r
-    x1 = c0*x0
-    cos_theta = cos(theta)
-    x2 = r*sin(theta)
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        -c0*(c0*p_r),
-        0.0,
-        0.0,
-        0.0,
-        -x1/r,
-        0.0,
-        0.0,
-        0.0,
-        x0*x0/r + g*cos_theta - 2.0*m*x0*x1/r,
-        -(r - l),
-        k,
-        m*cos_theta,
-        -g*x2,
-        0.0,
-        0.0,
-        -m*x2,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1001,6 +942,107 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         delta_theta_dot,
         -c0*x4,
         -x5/r/r,
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    61 operations, 4 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 9 floats
+        r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s; delta_r in m;
+        delta_theta in rad; delta_r_dot in m/s; delta_theta_dot in rad/s.
+    params : iterable of 8 floats
+        delta_m in kg; delta_k in N/m; delta_l in m; delta_g in m/s^2; m in kg; k in N/m; l
+        in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    delta_m, delta_k, delta_l, delta_g, m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/m
+    c1 = m*g
+    c2 = k*delta_l
+    c3 = m*delta_g
+    # intermediate terms
+    x0 = theta_dot*r
+    x1 = m*theta_dot
+    x2 = r - l
+    x3 = c0*(x0*x1 - (k*x2 - c1*cos_theta))
+    x4 = 2.0*r_dot*theta_dot + g*sin_theta
+    x5 = g*cos_theta
+    x6 = (
+        delta_r*(k - theta_dot*x1) + c1*sin_theta*delta_theta
+        + delta_m*(x3 - (theta_dot*x0 + x5)) + delta_k*x2 - c2 - 2.0*m*delta_theta_dot*x0
+        - c3*cos_theta
+    )
+    x7 = (
+        r*delta_theta*x5 + delta_g*sin_theta*r
+        + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot) - x4*delta_r
+    )
+    # outputs
+    return (
+        r_dot,
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        x3,
+        -x4/r,
+        delta_r_dot,
+        delta_theta_dot,
+        -c0*x6,
+        -x7/r/r,
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (9, ...)."""
+    # inputs
+    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y
+    delta_m, delta_k, delta_l, delta_g, m, k, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/m
+    c1 = m*g
+    c2 = k*delta_l
+    c3 = m*delta_g
+    # intermediate terms
+    x0 = theta_dot*r
+    x1 = m*theta_dot
+    x2 = r - l
+    x3 = c0*(x0*x1 - (k*x2 - c1*cos_theta))
+    x4 = 2.0*r_dot*theta_dot + g*sin_theta
+    x5 = g*cos_theta
+    x6 = (
+        delta_r*(k - theta_dot*x1) + c1*sin_theta*delta_theta
+        + delta_m*(x3 - (theta_dot*x0 + x5)) + delta_k*x2 - c2 - 2.0*m*delta_theta_dot*x0
+        - c3*cos_theta
+    )
+    x7 = (
+        r*delta_theta*x5 + delta_g*sin_theta*r
+        + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot) - x4*delta_r
+    )
+    # outputs
+    return _stacked(
+        (9,),
+        y[0],
+        r_dot,
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        x3,
+        -x4/r,
+        delta_r_dot,
+        delta_theta_dot,
+        -c0*x6,
+        -x7/r/r,
     )
 
 

@@ -28,6 +28,16 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_x_dot [m/s]
     delta_y_dot [m/s]
 
+State y of `rhs_sensitivity`: the same:
+    x [m]
+    y [m]
+    x_dot [m/s]
+    y_dot [m/s]
+    delta_x [m]
+    delta_y [m]
+    delta_x_dot [m/s]
+    delta_y_dot [m/s]
+
 Parameters params:
     m [kg] > 0, default 28.0: mass
     l [m] > 0, default 67.0: length
@@ -97,14 +107,24 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "1c1841d73840c8fd"
+DIGEST = "9d267088fe436107"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
-FORMS = ("lagrangian", "hamiltonian", "variational")
+FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("x", "y", "x_dot", "y_dot"),
     "hamiltonian": ("x", "y", "p_x", "p_y"),
     "variational": (
+        "x",
+        "y",
+        "x_dot",
+        "y_dot",
+        "delta_x",
+        "delta_y",
+        "delta_x_dot",
+        "delta_y_dot",
+    ),
+    "sensitivity": (
         "x",
         "y",
         "x_dot",
@@ -128,25 +148,25 @@ CALLS_FUNCTIONS = (
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rhs_variational",
+    "rhs_sensitivity",
 )
 OPERATIONS = {
     "rhs": (122, 8),
-    "jacobian": (387, 10),
-    "parameter_jacobian": (302, 12),
+    "jacobian": (395, 10),
+    "parameter_jacobian": (286, 12),
     "energy": (41, 5),
     "mass_matrix": (15, 1),
     "positions": (25, 3),
     "hamiltonian_state": (38, 3),
     "rhs_hamiltonian": (134, 10),
     "jacobian_hamiltonian": (394, 11),
-    "parameter_jacobian_hamiltonian": (498, 17),
     "energy_hamiltonian": (69, 8),
     "lagrangian_state": (45, 4),
-    "rhs_variational": (370, 10),
+    "rhs_variational": (369, 10),
+    "rhs_sensitivity": (499, 12),
 }
 UNITS = {
     "m": "kg",
@@ -303,7 +323,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    387 operations, 10 of them on parameters alone.
+    395 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -337,104 +357,108 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x0 = x*x
     x1 = y_*y_
     x2 = x0 + x1 - c0
-    x3 = x2 - x0
-    x4 = x2 - 4.0*x0
+    x3 = x2 - 4.0*x0
+    x4 = x2 - x0
     x5 = x_dot*x_dot
-    x6 = x2*x2
-    x7 = x2*x6
-    x8 = y_dot*y_dot
-    x9 = x1*x4
-    x10 = x1 - 0.5*x2
-    x11 = 2.0*x10
-    x12 = sqrt(-x2)
-    x13 = x12*x12
-    x14 = x13 - x0
-    x15 = 4.0*x13 - 3.0*x14
-    x16 = x*y_
-    x17 = c1*y_dot
-    x18 = x16*x17
-    x19 = x12*x13
-    x20 = x13*x19
-    x21 = x13 + (3.0*x0 + 2.0*x13)
-    x22 = sin_c3*y_
-    x23 = c4 + x22/x12
-    x24 = x*x16
-    x25 = x2 - 2.0*x0
-    x26 = x_dot*x16
-    x27 = y_dot*x26
-    x28 = (
-        x3*x4*x5/x7 + x8*x9/x7 + (4.0*x0*x11 + 2.0*x0*x2 - x2*x11)*x8/x7 + x15*x18/x20
-        - x21*x18/x20 - 0.5*c2*(x23 + sin_c3*x24/x19) - 4.0*x25*x27/x7
+    x6 = x4*x5
+    x7 = x2*x2
+    x8 = x2*x7
+    x9 = y_dot*y_dot
+    x10 = x1*x3
+    x11 = x1 - 0.5*x2
+    x12 = 2.0*x11
+    x13 = sqrt(-x2)
+    x14 = x13*x13
+    x15 = x14 - x0
+    x16 = 4.0*x14 - 3.0*x15
+    x17 = x*y_
+    x18 = c1*y_dot
+    x19 = x17*x18
+    x20 = x13*x14
+    x21 = x14*x20
+    x22 = x14 + (3.0*x0 + 2.0*x14)
+    x23 = sin_c3*y_
+    x24 = c4 + x23/x13
+    x25 = x*x17
+    x26 = x0 - 0.5*x2
+    x27 = -2.0*x26
+    x28 = x_dot*x17
+    x29 = y_dot*x28
+    x30 = (
+        x3*x6/x8 + x9*x10/x8 + (4.0*x0*x12 + 2.0*x0*x2 - x2*x12)*x9/x8 + x16*x19/x21
+        - x22*x19/x21 - 0.5*c2*(x24 + sin_c3*x25/x20) - 4.0*x27*x29/x8
     )
-    x29 = x*x3
-    x30 = x16*x8
-    x31 = cos_latitude*y_
-    x32 = Omega*(sin_latitude - x31/x12 - cos_latitude*x24/x19)
-    x33 = Omega*(sin_latitude - x14*x31/x19)
-    x34 = x*x11
-    x35 = (
-        x5*x29/x6 + y_*x30/x6 + y_dot*x32 + y_dot*x33 - 0.5*c2*x*x23 - 2.0*x*x27/x6
-        - x8*x34/x6
+    x31 = y_*x17
+    x32 = cos_latitude*y_
+    x33 = Omega*(sin_latitude - x32/x13 - cos_latitude*x25/x20)
+    x34 = Omega*(sin_latitude - x15*x32/x20)
+    x35 = x*x12
+    x36 = (
+        x*x6/x7 + x9*x31/x7 + y_dot*x33 + y_dot*x34 - 0.5*c2*x*x24 - 2.0*x*x29/x7
+        - x9*x35/x7
     )
-    x36 = x_dot*x26
-    x37 = x2 - x1
-    x38 = y_*x37
-    x39 = y_*x25
-    x40 = (
-        x_dot*x33 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x12 - x1/x12)) + 2.0*y_*x27/x6
-        + x_dot*x32 - x*x36/x6 - x8*x38/x6 - x5*x39/x6
+    x37 = x_dot*x28
+    x38 = x2 - x1
+    x39 = y_*x38
+    x40 = y_*x27
+    x41 = (
+        x_dot*x34 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x13 - x1/x13)) + 2.0*y_*x29/x7
+        + x_dot*x33 - x*x37/x7 - x9*x39/x7 - x5*x40/x7
     )
-    x41 = x40 + g*y_/x12
-    x42 = m*(1.0/(m*(1.0 - x1/x2)))
-    x43 = x16*x42
-    x44 = m*(1.0 - x0/x2 - x16*x43/x6)
-    x45 = m*(x35 - g*x/x12 - x41*x43/x2)/x44
-    x46 = x45*x16
-    x47 = (x41 - x46/x2)*x42
-    x48 = x28 - g*(x0 + x13)/x19 + (2.0*x45*x29 - x47*x39)/x6
-    x49 = c1*x26
-    x50 = x1 + x13
-    x51 = c5*x*x50/x19
-    x52 = x_dot*y_dot
-    x53 = (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x52/x7 - x25*x36/x7
-    x54 = g*x16/x19
-    x55 = x15*x49/x20 + 0.5*x51 + 2.0*x53 - x21*x49/x20 + x54
-    x56 = x55 - y_*(x25*x45 + 2.0*x47*x16)/x6
-    x57 = m*(x48 - x56*x43/x2)/x44
-    x58 = x13*x50 + x0*(3.0*x1 + x13)
-    x59 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13
-    x60 = -2.0*x10
-    x61 = x1 - 0.25*x2
-    x62 = (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x60*x30/x7 - x0*(4.0*x61)*x52/x7
-    x63 = x54 + (0.5*x51 + x58*x17/x20 + x59*x17/x20 + 2.0*x62)
-    x64 = -4.0*x61
-    x65 = c1*x_dot
-    x66 = (
-        x0*x64*x5/x7 + x59*x65/x20 + x37*x64*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
-        + x58*x65/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
-        - 4.0*x60*x27/x7
+    x42 = x41 + g*y_/x13
+    x43 = m*(1.0/(m*(1.0 - x1/x2)))
+    x44 = x17*x43
+    x45 = x43*x31
+    x46 = m*(1.0 - x0/x2 - x*x45/x7)
+    x47 = m*(x36 - g*x/x13 - x42*x44/x2)/x46
+    x48 = x*x47
+    x49 = (x42 - x47*x17/x2)*x43
+    x50 = y_*(2.0*x26)
+    x51 = x30 - g*(x0 + x14)/x20 + 2.0*x4*x48/x7 + x49*x50/x7
+    x52 = c1*x28
+    x53 = x1 + x14
+    x54 = c5*x*x53/x20
+    x55 = x17*x9
+    x56 = x_dot*y_dot
+    x57 = (2.0*x38 - x2)*x55/x8 + (x2 + 2.0*x27)*x37/x8 + x10*x56/x8 - x27*x37/x8
+    x58 = g*x17/x20
+    x59 = x16*x52/x21 + 0.5*x54 + 2.0*x57 - x22*x52/x21 + x58
+    x60 = x59 + x47*x50/x7 - 2.0*x49*x31/x7
+    x61 = m*(x51 - x60*x44/x2)/x46
+    x62 = x14*x53 + x0*(3.0*x1 + x14)
+    x63 = x14*x15 + 3.0*x1*x15 - 2.0*x1*x14
+    x64 = -2.0*x11
+    x65 = x1 - 0.25*x2
+    x66 = (x2 - 2.0*x12)*x55/x8 - (x2 - 2.0*x4)*x37/x8 - x64*x55/x8 - x0*(4.0*x65)*x56/x8
+    x67 = x58 + (0.5*x54 + x62*x18/x21 + x63*x18/x21 + 2.0*x66)
+    x68 = -4.0*x65
+    x69 = c1*x_dot
+    x70 = (
+        x0*x68*x5/x8 + x63*x69/x21 + x38*x68*x9/x8 + (x2*x27 + 2.0*x1*x2 - 4.0*x1*x27)*x5/x8
+        + x62*x69/x21 - 0.5*c2*(2.0*cos_c3 + x23*(x14 + (x1 + 2.0*x14))/x20)
+        - 4.0*x64*x29/x8
     )
-    x67 = x66 - g*x50/x19 - (x45*x34 + 2.0*x47*x38)/x6
-    x68 = m*(x63 + x*(2.0*x46 - x11*x47)/x6 - x67*x43/x2)/x44
-    x69 = y_dot*x16
-    x70 = x*x26/x6 - y_*x69/x6
-    x71 = x33 + x32
-    x72 = 2.0*(-(x_dot*x39/x6 + x70)) + x71
-    x73 = y_*x42
-    x74 = m*x*(2.0*(x_dot*x3 - x69) - x2*x72*x73)/(x6*x44)
-    x75 = y_dot*x37 - x26
-    x76 = 2.0*(-(y_dot*x34/x6 + x70)) + x71 + 2.0*y_*x75*x43/x7
-    x77 = m*x76/x44
+    x71 = x70 - g*x53/x20 + x64*x48/x7 - 2.0*x49*x39/x7
+    x72 = m*(x67 + 2.0*x17*x48/x7 + x*x49*x64/x7 - x71*x44/x2)
+    x73 = x72/x46
+    x74 = x*x28/x7 - y_dot*x31/x7
+    x75 = x34 + x33
+    x76 = 2.0*(-(x_dot*x40/x7 + x74)) + x75
+    x77 = y_*x43
+    x78 = m*x*(2.0*(x_dot*x4 - y_dot*x17) - x2*x76*x77)/(x7*x46)
+    x79 = y_dot*x38 - x28
+    x80 = 2.0*(-(y_dot*x35/x7 + x74)) + x75 + 2.0*x79*x45/x8
+    x81 = m*x80/x46
     # outputs
     return (
         (0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 1.0),
-        (x57, -x68, x74, x77),
+        (x61, -x73, x78, x81),
         (
-            -(x56 - x57*x16/x2)*x42,
-            (x67 - x68*x16/x2)*x42,
-            -(x72 - x74*x16/x2)*x42,
-            (2.0*x75 + x*x2*x77)*x73/x6,
+            -(x60 - x61*x17/x2)*x43,
+            (x71 - x73*x17/x2)*x43,
+            -(x76 - x78*x17/x2)*x43,
+            (2.0*x79 + x*x2*x81)*x77/x7,
         ),
     )
 
@@ -461,94 +485,98 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x0 = x*x
     x1 = y_*y_
     x2 = x0 + x1 - c0
-    x3 = x2 - x0
-    x4 = x2 - 4.0*x0
+    x3 = x2 - 4.0*x0
+    x4 = x2 - x0
     x5 = x_dot*x_dot
-    x6 = x2*x2
-    x7 = x2*x6
-    x8 = y_dot*y_dot
-    x9 = x1*x4
-    x10 = x1 - 0.5*x2
-    x11 = 2.0*x10
-    x12 = sqrt(-x2)
-    x13 = x12*x12
-    x14 = x13 - x0
-    x15 = 4.0*x13 - 3.0*x14
-    x16 = x*y_
-    x17 = c1*y_dot
-    x18 = x16*x17
-    x19 = x12*x13
-    x20 = x13*x19
-    x21 = x13 + (3.0*x0 + 2.0*x13)
-    x22 = sin_c3*y_
-    x23 = c4 + x22/x12
-    x24 = x*x16
-    x25 = x2 - 2.0*x0
-    x26 = x_dot*x16
-    x27 = y_dot*x26
-    x28 = (
-        x3*x4*x5/x7 + x8*x9/x7 + (4.0*x0*x11 + 2.0*x0*x2 - x2*x11)*x8/x7 + x15*x18/x20
-        - x21*x18/x20 - 0.5*c2*(x23 + sin_c3*x24/x19) - 4.0*x25*x27/x7
+    x6 = x4*x5
+    x7 = x2*x2
+    x8 = x2*x7
+    x9 = y_dot*y_dot
+    x10 = x1*x3
+    x11 = x1 - 0.5*x2
+    x12 = 2.0*x11
+    x13 = sqrt(-x2)
+    x14 = x13*x13
+    x15 = x14 - x0
+    x16 = 4.0*x14 - 3.0*x15
+    x17 = x*y_
+    x18 = c1*y_dot
+    x19 = x17*x18
+    x20 = x13*x14
+    x21 = x14*x20
+    x22 = x14 + (3.0*x0 + 2.0*x14)
+    x23 = sin_c3*y_
+    x24 = c4 + x23/x13
+    x25 = x*x17
+    x26 = x0 - 0.5*x2
+    x27 = -2.0*x26
+    x28 = x_dot*x17
+    x29 = y_dot*x28
+    x30 = (
+        x3*x6/x8 + x9*x10/x8 + (4.0*x0*x12 + 2.0*x0*x2 - x2*x12)*x9/x8 + x16*x19/x21
+        - x22*x19/x21 - 0.5*c2*(x24 + sin_c3*x25/x20) - 4.0*x27*x29/x8
     )
-    x29 = x*x3
-    x30 = x16*x8
-    x31 = cos_latitude*y_
-    x32 = Omega*(sin_latitude - x31/x12 - cos_latitude*x24/x19)
-    x33 = Omega*(sin_latitude - x14*x31/x19)
-    x34 = x*x11
-    x35 = (
-        x5*x29/x6 + y_*x30/x6 + y_dot*x32 + y_dot*x33 - 0.5*c2*x*x23 - 2.0*x*x27/x6
-        - x8*x34/x6
+    x31 = y_*x17
+    x32 = cos_latitude*y_
+    x33 = Omega*(sin_latitude - x32/x13 - cos_latitude*x25/x20)
+    x34 = Omega*(sin_latitude - x15*x32/x20)
+    x35 = x*x12
+    x36 = (
+        x*x6/x7 + x9*x31/x7 + y_dot*x33 + y_dot*x34 - 0.5*c2*x*x24 - 2.0*x*x29/x7
+        - x9*x35/x7
     )
-    x36 = x_dot*x26
-    x37 = x2 - x1
-    x38 = y_*x37
-    x39 = y_*x25
-    x40 = (
-        x_dot*x33 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x12 - x1/x12)) + 2.0*y_*x27/x6
-        + x_dot*x32 - x*x36/x6 - x8*x38/x6 - x5*x39/x6
+    x37 = x_dot*x28
+    x38 = x2 - x1
+    x39 = y_*x38
+    x40 = y_*x27
+    x41 = (
+        x_dot*x34 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x13 - x1/x13)) + 2.0*y_*x29/x7
+        + x_dot*x33 - x*x37/x7 - x9*x39/x7 - x5*x40/x7
     )
-    x41 = x40 + g*y_/x12
-    x42 = m*(1.0/(m*(1.0 - x1/x2)))
-    x43 = x16*x42
-    x44 = m*(1.0 - x0/x2 - x16*x43/x6)
-    x45 = m*(x35 - g*x/x12 - x41*x43/x2)/x44
-    x46 = x45*x16
-    x47 = (x41 - x46/x2)*x42
-    x48 = x28 - g*(x0 + x13)/x19 + (2.0*x45*x29 - x47*x39)/x6
-    x49 = c1*x26
-    x50 = x1 + x13
-    x51 = c5*x*x50/x19
-    x52 = x_dot*y_dot
-    x53 = (2.0*x37 - x2)*x30/x7 + (x2 + 2.0*x25)*x36/x7 + x9*x52/x7 - x25*x36/x7
-    x54 = g*x16/x19
-    x55 = x15*x49/x20 + 0.5*x51 + 2.0*x53 - x21*x49/x20 + x54
-    x56 = x55 - y_*(x25*x45 + 2.0*x47*x16)/x6
-    x57 = m*(x48 - x56*x43/x2)/x44
-    x58 = x13*x50 + x0*(3.0*x1 + x13)
-    x59 = x13*x14 + 3.0*x1*x14 - 2.0*x1*x13
-    x60 = -2.0*x10
-    x61 = x1 - 0.25*x2
-    x62 = (x2 - 2.0*x11)*x30/x7 - (x2 - 2.0*x3)*x36/x7 - x60*x30/x7 - x0*(4.0*x61)*x52/x7
-    x63 = x54 + (0.5*x51 + x58*x17/x20 + x59*x17/x20 + 2.0*x62)
-    x64 = -4.0*x61
-    x65 = c1*x_dot
-    x66 = (
-        x0*x64*x5/x7 + x59*x65/x20 + x37*x64*x8/x7 + (x2*x25 + 2.0*x1*x2 - 4.0*x1*x25)*x5/x7
-        + x58*x65/x20 - 0.5*c2*(2.0*cos_c3 + x22*(x13 + (x1 + 2.0*x13))/x19)
-        - 4.0*x60*x27/x7
+    x42 = x41 + g*y_/x13
+    x43 = m*(1.0/(m*(1.0 - x1/x2)))
+    x44 = x17*x43
+    x45 = x43*x31
+    x46 = m*(1.0 - x0/x2 - x*x45/x7)
+    x47 = m*(x36 - g*x/x13 - x42*x44/x2)/x46
+    x48 = x*x47
+    x49 = (x42 - x47*x17/x2)*x43
+    x50 = y_*(2.0*x26)
+    x51 = x30 - g*(x0 + x14)/x20 + 2.0*x4*x48/x7 + x49*x50/x7
+    x52 = c1*x28
+    x53 = x1 + x14
+    x54 = c5*x*x53/x20
+    x55 = x17*x9
+    x56 = x_dot*y_dot
+    x57 = (2.0*x38 - x2)*x55/x8 + (x2 + 2.0*x27)*x37/x8 + x10*x56/x8 - x27*x37/x8
+    x58 = g*x17/x20
+    x59 = x16*x52/x21 + 0.5*x54 + 2.0*x57 - x22*x52/x21 + x58
+    x60 = x59 + x47*x50/x7 - 2.0*x49*x31/x7
+    x61 = m*(x51 - x60*x44/x2)/x46
+    x62 = x14*x53 + x0*(3.0*x1 + x14)
+    x63 = x14*x15 + 3.0*x1*x15 - 2.0*x1*x14
+    x64 = -2.0*x11
+    x65 = x1 - 0.25*x2
+    x66 = (x2 - 2.0*x12)*x55/x8 - (x2 - 2.0*x4)*x37/x8 - x64*x55/x8 - x0*(4.0*x65)*x56/x8
+    x67 = x58 + (0.5*x54 + x62*x18/x21 + x63*x18/x21 + 2.0*x66)
+    x68 = -4.0*x65
+    x69 = c1*x_dot
+    x70 = (
+        x0*x68*x5/x8 + x63*x69/x21 + x38*x68*x9/x8 + (x2*x27 + 2.0*x1*x2 - 4.0*x1*x27)*x5/x8
+        + x62*x69/x21 - 0.5*c2*(2.0*cos_c3 + x23*(x14 + (x1 + 2.0*x14))/x20)
+        - 4.0*x64*x29/x8
     )
-    x67 = x66 - g*x50/x19 - (x45*x34 + 2.0*x47*x38)/x6
-    x68 = m*(x63 + x*(2.0*x46 - x11*x47)/x6 - x67*x43/x2)/x44
-    x69 = y_dot*x16
-    x70 = x*x26/x6 - y_*x69/x6
-    x71 = x33 + x32
-    x72 = 2.0*(-(x_dot*x39/x6 + x70)) + x71
-    x73 = y_*x42
-    x74 = m*x*(2.0*(x_dot*x3 - x69) - x2*x72*x73)/(x6*x44)
-    x75 = y_dot*x37 - x26
-    x76 = 2.0*(-(y_dot*x34/x6 + x70)) + x71 + 2.0*y_*x75*x43/x7
-    x77 = m*x76/x44
+    x71 = x70 - g*x53/x20 + x64*x48/x7 - 2.0*x49*x39/x7
+    x72 = m*(x67 + 2.0*x17*x48/x7 + x*x49*x64/x7 - x71*x44/x2)
+    x73 = x72/x46
+    x74 = x*x28/x7 - y_dot*x31/x7
+    x75 = x34 + x33
+    x76 = 2.0*(-(x_dot*x40/x7 + x74)) + x75
+    x77 = y_*x43
+    x78 = m*x*(2.0*(x_dot*x4 - y_dot*x17) - x2*x76*x77)/(x7*x46)
+    x79 = y_dot*x38 - x28
+    x80 = 2.0*(-(y_dot*x35/x7 + x74)) + x75 + 2.0*x79*x45/x8
+    x81 = m*x80/x46
     # outputs
     return _stacked(
         (4, 4),
@@ -561,21 +589,21 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         1.0,
-        x57,
-        -x68,
-        x74,
-        x77,
-        -(x56 - x57*x16/x2)*x42,
-        (x67 - x68*x16/x2)*x42,
-        -(x72 - x74*x16/x2)*x42,
-        (2.0*x75 + x*x2*x77)*x73/x6,
+        x61,
+        -x73,
+        x78,
+        x81,
+        -(x60 - x61*x17/x2)*x43,
+        (x71 - x73*x17/x2)*x43,
+        -(x76 - x78*x17/x2)*x43,
+        (2.0*x79 + x*x2*x81)*x77/x7,
     )
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    302 operations, 12 of them on parameters alone.
+    286 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
@@ -595,107 +623,102 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x, y_, x_dot, y_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = l*l
-    sin_latitude = sin(latitude)
+    c0 = m*l
+    c1 = l*l
     cos_latitude = cos(latitude)
-    c1 = Omega*Omega
-    c2 = 2.0*latitude
-    cos_c2 = cos(c2)
-    c3 = cos_c2 - 1.0
-    sin_c2 = sin(c2)
-    c4 = m*l
-    c5 = Omega*cos_latitude
-    c6 = sin_c2*c1
+    c2 = Omega*cos_latitude
+    c3 = 2.0*latitude
+    sin_c3 = sin(c3)
+    c4 = Omega*Omega
+    c5 = sin_c3*c4
+    sin_latitude = sin(latitude)
+    cos_c3 = cos(c3)
+    c6 = cos_c3 - 1.0
     c7 = m*Omega
     # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = x2 - x0
-    x4 = x_dot*x_dot
-    x5 = x*x4
-    x6 = x2*x2
-    x7 = x*y_
-    x8 = y_*y_dot
-    x9 = y_dot*x8
-    x10 = x7*x9
-    x11 = cos_latitude*y_
-    x12 = sqrt(-x2)
-    x13 = x*x7
-    x14 = x12*x12
-    x15 = x12*x14
-    x16 = sin_latitude - x11/x12 - cos_latitude*x13/x15
-    x17 = Omega*y_dot
-    x18 = x14 - x0
-    x19 = sin_latitude - x11*x18/x15
-    x20 = sin_c2*y_
-    x21 = c3 + x20/x12
-    x22 = x_dot*y_dot*x13
-    x23 = 2.0*x1 - x2
-    x24 = y_dot*(x*y_dot)
-    x25 = x3*x5/x6 + x10/x6 + x16*x17 + x19*x17 - 0.5*c1*x*x21 - 2.0*x22/x6 - x23*x24/x6
-    x26 = g*x
-    x27 = x25 - x26/x12
-    x28 = 1.0 - x0/x2
-    x29 = Omega*x_dot
-    x30 = cos_c2*y_
-    x31 = x12 - x1/x12
-    x32 = 2.0*x30 - sin_c2*x31
-    x33 = x_dot*x7*x8
-    x34 = x4*x13
-    x35 = x2 - x1
-    x36 = x2 - 2.0*x0
-    x37 = y_*x4
-    x38 = x19*x29 + 0.5*c1*x32 + 2.0*x33/x6 + x16*x29 - x34/x6 - x35*x9/x6 - x36*x37/x6
-    x39 = g*y_
-    x40 = x38 + x39/x12
-    x41 = 1.0 - x1/x2
-    x42 = 1.0/(m*x41)
-    x43 = m*x42
-    x44 = x7*x43
-    x45 = m*(x28 - x7*x44/x6)
-    x46 = m*(x27 - x40*x44/x2)/x45
-    x47 = x46*x7/x2
-    x48 = (x40 - x47)*x43
-    x49 = x40 - (x47 + x41*x48)
-    x50 = (x27 - (x28*x46 + x48*x7/x2) - x49*x44/x2)/x45
-    x51 = x2*x6
-    x52 = c5*(3.0*x0 + x14)
-    x53 = x15*x14
-    x54 = c5*(2.0*x14 - 3.0*x18)
-    x55 = (
-        4.0*x10/x51 + x8*x52/x53 + 0.5*c6*x7/x15
-        + 2.0*((2.0*x3 - x2)*x5/x51 - (x2 + 2.0*x23)*x24/x51) - 8.0*x22/x51 - x8*x54/x53
+    x0 = x*y_
+    x1 = y_*y_dot
+    x2 = y_dot*x1
+    x3 = x0*x2
+    x4 = x*x
+    x5 = y_*y_
+    x6 = x4 + x5 - c1
+    x7 = x6*x6
+    x8 = x6*x7
+    x9 = sqrt(-x6)
+    x10 = x9*x9
+    x11 = c2*(3.0*x4 + x10)
+    x12 = x9*x10
+    x13 = x10*x12
+    x14 = x6 - x4
+    x15 = x_dot*x_dot
+    x16 = x*x15
+    x17 = 2.0*x5 - x6
+    x18 = y_dot*(x*y_dot)
+    x19 = x*x0
+    x20 = x_dot*y_dot*x19
+    x21 = x10 - x4
+    x22 = c2*(2.0*x10 - 3.0*x21)
+    x23 = (
+        4.0*x3/x8 + x1*x11/x13 + 0.5*c5*x0/x12
+        + 2.0*((2.0*x14 - x6)*x16/x8 - (x6 + 2.0*x17)*x18/x8) - 8.0*x20/x8 - x1*x22/x13
     )
-    x56 = x*x46 - y_*x48
-    x57 = y_*x_dot
-    x58 = (
-        4.0*x34/x51 + x57*x54/x53 + 0.5*c6*(x1 + x14)/x15
-        + 2.0*((2.0*x35 - x2)*x9/x51 + (2.0*x36 - x2)*x37/x51) - 8.0*x33/x51 - x57*x52/x53
+    x24 = g*x
+    x25 = cos_latitude*y_
+    x26 = sin_latitude - x25/x9 - cos_latitude*x19/x12
+    x27 = Omega*y_dot
+    x28 = sin_latitude - x21*x25/x12
+    x29 = sin_c3*y_
+    x30 = c6 + x29/x9
+    x31 = x14*x16/x7 + x3/x7 + x26*x27 + x28*x27 - 0.5*c4*x*x30 - 2.0*x20/x7 - x17*x18/x7
+    x32 = Omega*x_dot
+    x33 = cos_c3*y_
+    x34 = x9 - x5/x9
+    x35 = 2.0*x33 - sin_c3*x34
+    x36 = x_dot*x0*x1
+    x37 = x19*x15
+    x38 = x6 - x5
+    x39 = x6 - 2.0*x4
+    x40 = y_*x15
+    x41 = x28*x32 + 0.5*c4*x35 + 2.0*x36/x7 + x26*x32 - x37/x7 - x38*x2/x7 - x39*x40/x7
+    x42 = g*y_
+    x43 = x41 + x42/x9
+    x44 = m*(1.0/(m*(1.0 - x5/x6)))
+    x45 = x0*x44
+    x46 = y_*x44
+    x47 = m*(1.0 - x4/x6 - x19*x46/x7)
+    x48 = m*(x31 - x24/x9 - x43*x45/x6)/x47
+    x49 = x48*x0
+    x50 = (x43 - x49/x6)*x44
+    x51 = y_*x_dot
+    x52 = (
+        4.0*x37/x8 + x51*x22/x13 + 0.5*c5*(x5 + x10)/x12
+        + 2.0*((2.0*x38 - x6)*x2/x8 + (2.0*x39 - x6)*x40/x8) - 8.0*x36/x8 - x51*x11/x13
     )
-    x59 = x58 + x39/x15 + 2.0*y_*x56/x6
-    x60 = c4*(x55 + x26/x15 + 2.0*x*x56/x6 + x59*x44/x2)/x45
-    x61 = m*x*(1.0 + x1*x43/x2)/(x45*x12)
-    x62 = Omega*x
-    x63 = x_dot*x19 + Omega*x32 + x_dot*x16
-    x64 = m*(y_dot*x16 + y_dot*x19 - x21*x62 - x63*x44/x2)/x45
-    x65 = sin_latitude*y_
-    x66 = cos_latitude + x65/x12 + sin_latitude*x13/x15
-    x67 = cos_latitude + x18*x65/x15
-    x68 = x_dot*x67 + x_dot*x66 - Omega*(2.0*x20 + cos_c2*x31)
-    x69 = y_dot*x66 + (sin_c2 - x30/x12)*x62 + y_dot*x67 - x68*x44/x2
-    x70 = c7*x69/x45
+    x53 = x52 + x42/x12 + 2.0*(x49/x7 - x5*x50/x7)
+    x54 = x23 + x24/x12 + 2.0*(x4*x48/x7 - x50*x0/x7) + x53*x45/x6
+    x55 = c0*x54/x47
+    x56 = m*x*(1.0 + x5*x44/x6)/(x47*x9)
+    x57 = Omega*x
+    x58 = x_dot*x28 + Omega*x35 + x_dot*x26
+    x59 = m*(y_dot*x26 + y_dot*x28 - x30*x57 - x58*x45/x6)/x47
+    x60 = sin_latitude*y_
+    x61 = cos_latitude + x60/x9 + sin_latitude*x19/x12
+    x62 = cos_latitude + x21*x60/x12
+    x63 = x_dot*x62 + x_dot*x61 - Omega*(2.0*x29 + cos_c3*x34)
+    x64 = y_dot*x61 + (sin_c3 - x33/x9)*x57 + y_dot*x62 - x63*x45/x6
+    x65 = c7*x64/x47
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
-        (x50, x60, -x61, x64, x70),
+        (0.0, x55, -x56, x59, x65),
         (
-            -x42*(x49 - m*x50*x7/x2),
-            (l*x59 + x60*x7/x2)*x43,
-            -y_*(1.0/x12 + x*x61/x2)*x43,
-            -(x63 - x64*x7/x2)*x43,
-            -(Omega*x68 - x70*x7/x2)*x43,
+            0.0,
+            (l*x53 + x55*x0/x6)*x44,
+            -(1.0/x9 + x*x56/x6)*x46,
+            -(x58 - x59*x0/x6)*x44,
+            -(Omega*x63 - x65*x0/x6)*x44,
         ),
     )
 
@@ -708,96 +731,91 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x, y_, x_dot, y_dot = y
     m, l, g, Omega, latitude = params
     # terms of the parameters alone
-    c0 = l*l
-    sin_latitude = sin(latitude)
+    c0 = m*l
+    c1 = l*l
     cos_latitude = cos(latitude)
-    c1 = Omega*Omega
-    c2 = 2.0*latitude
-    cos_c2 = cos(c2)
-    c3 = cos_c2 - 1.0
-    sin_c2 = sin(c2)
-    c4 = m*l
-    c5 = Omega*cos_latitude
-    c6 = sin_c2*c1
+    c2 = Omega*cos_latitude
+    c3 = 2.0*latitude
+    sin_c3 = sin(c3)
+    c4 = Omega*Omega
+    c5 = sin_c3*c4
+    sin_latitude = sin(latitude)
+    cos_c3 = cos(c3)
+    c6 = cos_c3 - 1.0
     c7 = m*Omega
     # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = x2 - x0
-    x4 = x_dot*x_dot
-    x5 = x*x4
-    x6 = x2*x2
-    x7 = x*y_
-    x8 = y_*y_dot
-    x9 = y_dot*x8
-    x10 = x7*x9
-    x11 = cos_latitude*y_
-    x12 = sqrt(-x2)
-    x13 = x*x7
-    x14 = x12*x12
-    x15 = x12*x14
-    x16 = sin_latitude - x11/x12 - cos_latitude*x13/x15
-    x17 = Omega*y_dot
-    x18 = x14 - x0
-    x19 = sin_latitude - x11*x18/x15
-    x20 = sin_c2*y_
-    x21 = c3 + x20/x12
-    x22 = x_dot*y_dot*x13
-    x23 = 2.0*x1 - x2
-    x24 = y_dot*(x*y_dot)
-    x25 = x3*x5/x6 + x10/x6 + x16*x17 + x19*x17 - 0.5*c1*x*x21 - 2.0*x22/x6 - x23*x24/x6
-    x26 = g*x
-    x27 = x25 - x26/x12
-    x28 = 1.0 - x0/x2
-    x29 = Omega*x_dot
-    x30 = cos_c2*y_
-    x31 = x12 - x1/x12
-    x32 = 2.0*x30 - sin_c2*x31
-    x33 = x_dot*x7*x8
-    x34 = x4*x13
-    x35 = x2 - x1
-    x36 = x2 - 2.0*x0
-    x37 = y_*x4
-    x38 = x19*x29 + 0.5*c1*x32 + 2.0*x33/x6 + x16*x29 - x34/x6 - x35*x9/x6 - x36*x37/x6
-    x39 = g*y_
-    x40 = x38 + x39/x12
-    x41 = 1.0 - x1/x2
-    x42 = 1.0/(m*x41)
-    x43 = m*x42
-    x44 = x7*x43
-    x45 = m*(x28 - x7*x44/x6)
-    x46 = m*(x27 - x40*x44/x2)/x45
-    x47 = x46*x7/x2
-    x48 = (x40 - x47)*x43
-    x49 = x40 - (x47 + x41*x48)
-    x50 = (x27 - (x28*x46 + x48*x7/x2) - x49*x44/x2)/x45
-    x51 = x2*x6
-    x52 = c5*(3.0*x0 + x14)
-    x53 = x15*x14
-    x54 = c5*(2.0*x14 - 3.0*x18)
-    x55 = (
-        4.0*x10/x51 + x8*x52/x53 + 0.5*c6*x7/x15
-        + 2.0*((2.0*x3 - x2)*x5/x51 - (x2 + 2.0*x23)*x24/x51) - 8.0*x22/x51 - x8*x54/x53
+    x0 = x*y_
+    x1 = y_*y_dot
+    x2 = y_dot*x1
+    x3 = x0*x2
+    x4 = x*x
+    x5 = y_*y_
+    x6 = x4 + x5 - c1
+    x7 = x6*x6
+    x8 = x6*x7
+    x9 = sqrt(-x6)
+    x10 = x9*x9
+    x11 = c2*(3.0*x4 + x10)
+    x12 = x9*x10
+    x13 = x10*x12
+    x14 = x6 - x4
+    x15 = x_dot*x_dot
+    x16 = x*x15
+    x17 = 2.0*x5 - x6
+    x18 = y_dot*(x*y_dot)
+    x19 = x*x0
+    x20 = x_dot*y_dot*x19
+    x21 = x10 - x4
+    x22 = c2*(2.0*x10 - 3.0*x21)
+    x23 = (
+        4.0*x3/x8 + x1*x11/x13 + 0.5*c5*x0/x12
+        + 2.0*((2.0*x14 - x6)*x16/x8 - (x6 + 2.0*x17)*x18/x8) - 8.0*x20/x8 - x1*x22/x13
     )
-    x56 = x*x46 - y_*x48
-    x57 = y_*x_dot
-    x58 = (
-        4.0*x34/x51 + x57*x54/x53 + 0.5*c6*(x1 + x14)/x15
-        + 2.0*((2.0*x35 - x2)*x9/x51 + (2.0*x36 - x2)*x37/x51) - 8.0*x33/x51 - x57*x52/x53
+    x24 = g*x
+    x25 = cos_latitude*y_
+    x26 = sin_latitude - x25/x9 - cos_latitude*x19/x12
+    x27 = Omega*y_dot
+    x28 = sin_latitude - x21*x25/x12
+    x29 = sin_c3*y_
+    x30 = c6 + x29/x9
+    x31 = x14*x16/x7 + x3/x7 + x26*x27 + x28*x27 - 0.5*c4*x*x30 - 2.0*x20/x7 - x17*x18/x7
+    x32 = Omega*x_dot
+    x33 = cos_c3*y_
+    x34 = x9 - x5/x9
+    x35 = 2.0*x33 - sin_c3*x34
+    x36 = x_dot*x0*x1
+    x37 = x19*x15
+    x38 = x6 - x5
+    x39 = x6 - 2.0*x4
+    x40 = y_*x15
+    x41 = x28*x32 + 0.5*c4*x35 + 2.0*x36/x7 + x26*x32 - x37/x7 - x38*x2/x7 - x39*x40/x7
+    x42 = g*y_
+    x43 = x41 + x42/x9
+    x44 = m*(1.0/(m*(1.0 - x5/x6)))
+    x45 = x0*x44
+    x46 = y_*x44
+    x47 = m*(1.0 - x4/x6 - x19*x46/x7)
+    x48 = m*(x31 - x24/x9 - x43*x45/x6)/x47
+    x49 = x48*x0
+    x50 = (x43 - x49/x6)*x44
+    x51 = y_*x_dot
+    x52 = (
+        4.0*x37/x8 + x51*x22/x13 + 0.5*c5*(x5 + x10)/x12
+        + 2.0*((2.0*x38 - x6)*x2/x8 + (2.0*x39 - x6)*x40/x8) - 8.0*x36/x8 - x51*x11/x13
     )
-    x59 = x58 + x39/x15 + 2.0*y_*x56/x6
-    x60 = c4*(x55 + x26/x15 + 2.0*x*x56/x6 + x59*x44/x2)/x45
-    x61 = m*x*(1.0 + x1*x43/x2)/(x45*x12)
-    x62 = Omega*x
-    x63 = x_dot*x19 + Omega*x32 + x_dot*x16
-    x64 = m*(y_dot*x16 + y_dot*x19 - x21*x62 - x63*x44/x2)/x45
-    x65 = sin_latitude*y_
-    x66 = cos_latitude + x65/x12 + sin_latitude*x13/x15
-    x67 = cos_latitude + x18*x65/x15
-    x68 = x_dot*x67 + x_dot*x66 - Omega*(2.0*x20 + cos_c2*x31)
-    x69 = y_dot*x66 + (sin_c2 - x30/x12)*x62 + y_dot*x67 - x68*x44/x2
-    x70 = c7*x69/x45
+    x53 = x52 + x42/x12 + 2.0*(x49/x7 - x5*x50/x7)
+    x54 = x23 + x24/x12 + 2.0*(x4*x48/x7 - x50*x0/x7) + x53*x45/x6
+    x55 = c0*x54/x47
+    x56 = m*x*(1.0 + x5*x44/x6)/(x47*x9)
+    x57 = Omega*x
+    x58 = x_dot*x28 + Omega*x35 + x_dot*x26
+    x59 = m*(y_dot*x26 + y_dot*x28 - x30*x57 - x58*x45/x6)/x47
+    x60 = sin_latitude*y_
+    x61 = cos_latitude + x60/x9 + sin_latitude*x19/x12
+    x62 = cos_latitude + x21*x60/x12
+    x63 = x_dot*x62 + x_dot*x61 - Omega*(2.0*x29 + cos_c3*x34)
+    x64 = y_dot*x61 + (sin_c3 - x33/x9)*x57 + y_dot*x62 - x63*x45/x6
+    x65 = c7*x64/x47
     # outputs
     return _stacked(
         (4, 5),
@@ -812,16 +830,16 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        x50,
-        x60,
-        -x61,
-        x64,
-        x70,
-        -x42*(x49 - m*x50*x7/x2),
-        (l*x59 + x60*x7/x2)*x43,
-        -y_*(1.0/x12 + x*x61/x2)*x43,
-        -(x63 - x64*x7/x2)*x43,
-        -(Omega*x68 - x70*x7/x2)*x43,
+        0.0,
+        x55,
+        -x56,
+        x59,
+        x65,
+        0.0,
+        (l*x53 + x55*x0/x6)*x44,
+        -(1.0/x9 + x*x56/x6)*x46,
+        -(x58 - x59*x0/x6)*x44,
+        -(Omega*x63 - x65*x0/x6)*x44,
     )
 
 
@@ -1474,353 +1492,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    498 operations, 17 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        x, y in m; p_x, p_y in kg m/s.
-    params : iterable of 5 floats
-        m in kg; l in m; g in m/s^2; Omega in rad/s; latitude in rad.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    x, y_, p_x, p_y = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = m*Omega
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c2 = m*l
-    c3 = Omega*cos_latitude
-    c4 = Omega*Omega
-    c5 = 2.0*latitude
-    cos_c5 = cos(c5)
-    c6 = cos_c5 - 1.0
-    sin_c5 = sin(c5)
-    c7 = m*c3
-    c8 = l*sin_c5*c4
-    c9 = l*c3
-    c10 = l*g
-    c11 = Omega*sin_latitude
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = 1.0 - x0/x2
-    x4 = sin_latitude*y_
-    x5 = sqrt(-x2)
-    x6 = x5 + x0/x5
-    x7 = x4 + cos_latitude*x6
-    x8 = cos_latitude*y_
-    x9 = sin_latitude - x8/x5
-    x10 = x*x9
-    x11 = p_y - c1*x10
-    x12 = 1.0 - x1/x2
-    x13 = 1.0/(m*x12)
-    x14 = x*y_
-    x15 = m*x14
-    x16 = x13*x15
-    x17 = x2*x2
-    x18 = m*(x3 - x14*x16/x17)
-    x19 = (p_x + c1*x7 + x11*x16/x2)/x18
-    x20 = x13*(x11 + x19*x15/x2)
-    x21 = x19*x14/x2 - x12*x20 - Omega*x10
-    x22 = (x3*x19 - x20*x14/x2 - Omega*x7 - x21*x16/x2)/x18
-    x23 = x*x19
-    x24 = y_*x20
-    x25 = x23 + x24
-    x26 = x5*x5
-    x27 = x26 - x0
-    x28 = x5*x26
-    x29 = c3*x
-    x30 = 2.0*x25/x17 - x29/x28
-    x31 = c2*(2.0*x*x25/x17 + c3*x27/x28 + y_*x30*x16/x2)/x18
-    x32 = m*(x7 - x16*x10/x2)/x18
-    x33 = cos_latitude + x4/x5
-    x34 = c1*(x8 - sin_latitude*x6 - x*x33*x16/x2)/x18
-    x35 = x22*x15
-    x36 = x13*(x21 - x35/x2)
-    x37 = m*y_
-    x38 = x13*(l*x30 + x*x31/x2)*x37
-    x39 = m*x
-    x40 = x13*x39
-    x41 = (x9 - y_*x32/x2)*x40
-    x42 = (Omega*x33 - y_*x34/x2)*x40
-    x43 = x26 - (x0 + 2.0*x26)
-    x44 = x23*x43
-    x45 = x24*x14
-    x46 = x*x14
-    x47 = x9 - cos_latitude*x46/x28
-    x48 = Omega*x47
-    x49 = x2 - 2.0*x0
-    x50 = x24*x49
-    x51 = m*x22
-    x52 = x2 - x0
-    x53 = x23*x52
-    x54 = sin_c5*y_
-    x55 = x*(c6 + x54/x5)
-    x56 = c7*x
-    x57 = y_*x19
-    x58 = x49*x57
-    x59 = m*x36
-    x60 = (
-        c3*x44/x28 + x20*x45/x17 + x20*x48 + x50*x51/x17 + c1*x36*x47
-        + 2.0*(x53*x51/x17 + x24*x36*x15/x17) - 0.5*c4*x55 - x19*x53/x17 - x19*x50/x17
-        - x22*x43*x56/x28 - x58*x59/x17 - g*x/x5
-    )
-    x61 = l*x20
-    x62 = x2*x17
-    x63 = x26*x28
-    x64 = x29*x43
-    x65 = l*x19
-    x66 = (
-        x38*x45/x17 - x23*(2.0*x52 - x2)*x65/x62 - x24*(2.0*x49 - x2)*x65/x62 - x31*x53/x17
-    )
-    x67 = (
-        0.5*c8*x14/x28 + 4.0*x45*x61/x62 + c9*x24*(3.0*x0 + x26)/x63 + x31*x64/x28 + x38*x48
-        + c10*x/x28 + 2.0*x66 - c9*x23*(2.0*x26 + 3.0*x43)/x63 - x31*x50/x17 - x38*x58/x17
-    )
-    x68 = (
-        Omega*x55 + x32*x50/x17 + x41*x48 + 2.0*(x32*x53/x17 + x41*x45/x17)
-        - cos_latitude*x44/x28 - x20*x47 - x32*x64/x28 - x41*x58/x17
-    )
-    x69 = cos_c5*y_
-    x70 = (
-        c11*x44/x28 + x34*x50/x17 + x42*x48 + 2.0*(x34*x53/x17 + x42*x45/x17)
-        - c4*x*(sin_c5 - x69/x5) - Omega*x20*(x33 + sin_latitude*x46/x28) - x34*x64/x28
-        - x42*x58/x17
-    )
-    x71 = x5 - x1/x5
-    x72 = 2.0*x69 - sin_c5*x71
-    x73 = sin_latitude - x8*x27/x28
-    x74 = Omega*x73
-    x75 = x2 - x1
-    x76 = x24*x75
-    x77 = x1 + x26
-    x78 = x*x20
-    x79 = x77*x78
-    x80 = 2.0*x1 - x2
-    x81 = x80*x78
-    x82 = x23*x14
-    x83 = x23*x80
-    x84 = (
-        0.5*c4*x72 + x19*x74 + x20*x76/x17 + c3*x79/x28 + x81*x51/x17 + x36*x77*x56/x28
-        + g*y_/x5 + 2.0*(x23*x35/x17 + x76*x59/x17) - x19*x82/x17 - x20*x83/x17 - c1*x22*x73
-        - x83*x59/x17
-    )
-    x85 = (
-        x23*(x2 + 2.0*x80)*x61/x62 + x24*(x2 - 2.0*x75)*x61/x62 + x31*x82/x17 - x38*x76/x17
-    )
-    x86 = x29*x77
-    x87 = (
-        0.5*c8*x77/x28 + 4.0*x82*x65/x62 + c9*(2.0*x26 - 3.0*x27)*x57/x63 + x31*x81/x17
-        + x38*x83/x17 + c10*y_/x28 + 2.0*x85 - c9*(2.0*x26 - 3.0*x77)*x78/x63 - x31*x74
-        - x38*x86/x28
-    )
-    x88 = (
-        Omega*x72 + x19*x73 + cos_latitude*x79/x28 + x32*x74 + x41*x83/x17
-        + 2.0*(-(x32*x82/x17 + x41*x76/x17)) - x32*x81/x17 - x41*x86/x28
-    )
-    x89 = (
-        c4*(2.0*x54 + cos_c5*x71) + c11*x79/x28 + x34*x81/x17 + x42*x86/x28
-        + 2.0*(x34*x82/x17 + x42*x76/x17) - Omega*x19*(cos_latitude + x4*x27/x28) - x34*x74
-        - x42*x83/x17
-    )
-    # outputs
-    return (
-        (-x22, x31, 0.0, x32, x34),
-        (x36, x38, 0.0, -x41, -x42),
-        (x60, m*x67, -x39/x5, -m*x68, -m*x70),
-        (-x84, m*x87, -x37/x5, -m*x88, m*x89),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 5, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, p_x, p_y = y
-    m, l, g, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = m*Omega
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c2 = m*l
-    c3 = Omega*cos_latitude
-    c4 = Omega*Omega
-    c5 = 2.0*latitude
-    cos_c5 = cos(c5)
-    c6 = cos_c5 - 1.0
-    sin_c5 = sin(c5)
-    c7 = m*c3
-    c8 = l*sin_c5*c4
-    c9 = l*c3
-    c10 = l*g
-    c11 = Omega*sin_latitude
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = 1.0 - x0/x2
-    x4 = sin_latitude*y_
-    x5 = sqrt(-x2)
-    x6 = x5 + x0/x5
-    x7 = x4 + cos_latitude*x6
-    x8 = cos_latitude*y_
-    x9 = sin_latitude - x8/x5
-    x10 = x*x9
-    x11 = p_y - c1*x10
-    x12 = 1.0 - x1/x2
-    x13 = 1.0/(m*x12)
-    x14 = x*y_
-    x15 = m*x14
-    x16 = x13*x15
-    x17 = x2*x2
-    x18 = m*(x3 - x14*x16/x17)
-    x19 = (p_x + c1*x7 + x11*x16/x2)/x18
-    x20 = x13*(x11 + x19*x15/x2)
-    x21 = x19*x14/x2 - x12*x20 - Omega*x10
-    x22 = (x3*x19 - x20*x14/x2 - Omega*x7 - x21*x16/x2)/x18
-    x23 = x*x19
-    x24 = y_*x20
-    x25 = x23 + x24
-    x26 = x5*x5
-    x27 = x26 - x0
-    x28 = x5*x26
-    x29 = c3*x
-    x30 = 2.0*x25/x17 - x29/x28
-    x31 = c2*(2.0*x*x25/x17 + c3*x27/x28 + y_*x30*x16/x2)/x18
-    x32 = m*(x7 - x16*x10/x2)/x18
-    x33 = cos_latitude + x4/x5
-    x34 = c1*(x8 - sin_latitude*x6 - x*x33*x16/x2)/x18
-    x35 = x22*x15
-    x36 = x13*(x21 - x35/x2)
-    x37 = m*y_
-    x38 = x13*(l*x30 + x*x31/x2)*x37
-    x39 = m*x
-    x40 = x13*x39
-    x41 = (x9 - y_*x32/x2)*x40
-    x42 = (Omega*x33 - y_*x34/x2)*x40
-    x43 = x26 - (x0 + 2.0*x26)
-    x44 = x23*x43
-    x45 = x24*x14
-    x46 = x*x14
-    x47 = x9 - cos_latitude*x46/x28
-    x48 = Omega*x47
-    x49 = x2 - 2.0*x0
-    x50 = x24*x49
-    x51 = m*x22
-    x52 = x2 - x0
-    x53 = x23*x52
-    x54 = sin_c5*y_
-    x55 = x*(c6 + x54/x5)
-    x56 = c7*x
-    x57 = y_*x19
-    x58 = x49*x57
-    x59 = m*x36
-    x60 = (
-        c3*x44/x28 + x20*x45/x17 + x20*x48 + x50*x51/x17 + c1*x36*x47
-        + 2.0*(x53*x51/x17 + x24*x36*x15/x17) - 0.5*c4*x55 - x19*x53/x17 - x19*x50/x17
-        - x22*x43*x56/x28 - x58*x59/x17 - g*x/x5
-    )
-    x61 = l*x20
-    x62 = x2*x17
-    x63 = x26*x28
-    x64 = x29*x43
-    x65 = l*x19
-    x66 = (
-        x38*x45/x17 - x23*(2.0*x52 - x2)*x65/x62 - x24*(2.0*x49 - x2)*x65/x62 - x31*x53/x17
-    )
-    x67 = (
-        0.5*c8*x14/x28 + 4.0*x45*x61/x62 + c9*x24*(3.0*x0 + x26)/x63 + x31*x64/x28 + x38*x48
-        + c10*x/x28 + 2.0*x66 - c9*x23*(2.0*x26 + 3.0*x43)/x63 - x31*x50/x17 - x38*x58/x17
-    )
-    x68 = (
-        Omega*x55 + x32*x50/x17 + x41*x48 + 2.0*(x32*x53/x17 + x41*x45/x17)
-        - cos_latitude*x44/x28 - x20*x47 - x32*x64/x28 - x41*x58/x17
-    )
-    x69 = cos_c5*y_
-    x70 = (
-        c11*x44/x28 + x34*x50/x17 + x42*x48 + 2.0*(x34*x53/x17 + x42*x45/x17)
-        - c4*x*(sin_c5 - x69/x5) - Omega*x20*(x33 + sin_latitude*x46/x28) - x34*x64/x28
-        - x42*x58/x17
-    )
-    x71 = x5 - x1/x5
-    x72 = 2.0*x69 - sin_c5*x71
-    x73 = sin_latitude - x8*x27/x28
-    x74 = Omega*x73
-    x75 = x2 - x1
-    x76 = x24*x75
-    x77 = x1 + x26
-    x78 = x*x20
-    x79 = x77*x78
-    x80 = 2.0*x1 - x2
-    x81 = x80*x78
-    x82 = x23*x14
-    x83 = x23*x80
-    x84 = (
-        0.5*c4*x72 + x19*x74 + x20*x76/x17 + c3*x79/x28 + x81*x51/x17 + x36*x77*x56/x28
-        + g*y_/x5 + 2.0*(x23*x35/x17 + x76*x59/x17) - x19*x82/x17 - x20*x83/x17 - c1*x22*x73
-        - x83*x59/x17
-    )
-    x85 = (
-        x23*(x2 + 2.0*x80)*x61/x62 + x24*(x2 - 2.0*x75)*x61/x62 + x31*x82/x17 - x38*x76/x17
-    )
-    x86 = x29*x77
-    x87 = (
-        0.5*c8*x77/x28 + 4.0*x82*x65/x62 + c9*(2.0*x26 - 3.0*x27)*x57/x63 + x31*x81/x17
-        + x38*x83/x17 + c10*y_/x28 + 2.0*x85 - c9*(2.0*x26 - 3.0*x77)*x78/x63 - x31*x74
-        - x38*x86/x28
-    )
-    x88 = (
-        Omega*x72 + x19*x73 + cos_latitude*x79/x28 + x32*x74 + x41*x83/x17
-        + 2.0*(-(x32*x82/x17 + x41*x76/x17)) - x32*x81/x17 - x41*x86/x28
-    )
-    x89 = (
-        c4*(2.0*x54 + cos_c5*x71) + c11*x79/x28 + x34*x81/x17 + x42*x86/x28
-        + 2.0*(x34*x82/x17 + x42*x76/x17) - Omega*x19*(cos_latitude + x4*x27/x28) - x34*x74
-        - x42*x83/x17
-    )
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        -x22,
-        x31,
-        0.0,
-        x32,
-        x34,
-        x36,
-        x38,
-        0.0,
-        -x41,
-        -x42,
-        x60,
-        m*x67,
-        -x39/x5,
-        -m*x68,
-        -m*x70,
-        -x84,
-        m*x87,
-        -x37/x5,
-        -m*x88,
-        m*x89,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1978,7 +1649,7 @@ def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    370 operations, 10 of them on parameters alone.
+    369 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -2052,63 +1723,64 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     x33 = x10*x32
     x34 = m*(1.0 - x1/x3 - y_*x32*x18/x6)
     x35 = m*(x24 + g*x/x8 + x31*x33/x3)/x34
-    x36 = x35*x10
-    x37 = (x31 + x36/x3)*x32
-    x38 = 4.0*x1 - x3
-    x39 = x3*x6
-    x40 = 4.0*x19 + 3.0*x22
-    x41 = c4*y_dot
-    x42 = x10*x41
-    x43 = x20*x19
-    x44 = x2*x38
-    x45 = x19 + (3.0*x1 + 2.0*x19)
-    x46 = (
-        x4*x38*x0/x39 + 4.0*x27*x12/x39 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x39
-        + x40*x42/x43 - x13*x44/x39 - x45*x42/x43 - 0.5*c1*(x9 + sin_c2*x18/x20)
+    x36 = (x31 + x35*x10/x3)*x32
+    x37 = 4.0*x1 - x3
+    x38 = x3*x6
+    x39 = 4.0*x19 + 3.0*x22
+    x40 = c4*y_dot
+    x41 = x10*x40
+    x42 = x20*x19
+    x43 = x2*x37
+    x44 = x19 + (3.0*x1 + 2.0*x19)
+    x45 = (
+        x4*x37*x0/x38 + 4.0*x27*x12/x38 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x38
+        + x39*x41/x42 - x13*x43/x38 - x44*x41/x42 - 0.5*c1*(x9 + sin_c2*x18/x20)
     )
-    x47 = y_dot*x10
-    x48 = y_*x47/x6 - x*x11/x6
-    x49 = x21 + x23
-    x50 = x2 + x19
-    x51 = x19*x50 + x1*(3.0*x2 + x19)
-    x52 = c5*x*x50/x20
-    x53 = x_dot*y_dot
-    x54 = 4.0*x2 - x3
-    x55 = x1*x54
-    x56 = x14*x16/x39 + (x3 - 2.0*x14)*x16/x39 - (x3 + 2.0*x4)*x29/x39 - x53*x55/x39
-    x57 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
-    x58 = g*x10/x20
-    x59 = x51*x41/x43 + 0.5*x52 + 2.0*x56 - x57*x41/x43 + x58
+    x46 = x45 - g*(x1 + x19)/x20 + 2.0*x35*x5/x6 + x36*x28/x6
+    x47 = x2 + x19
+    x48 = x19*x47 + x1*(3.0*x2 + x19)
+    x49 = c5*x*x47/x20
+    x50 = x_dot*y_dot
+    x51 = 4.0*x2 - x3
+    x52 = x1*x51
+    x53 = x14*x16/x38 + (x3 - 2.0*x14)*x16/x38 - (x3 + 2.0*x4)*x29/x38 - x50*x52/x38
+    x54 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
+    x55 = g*x10/x20
+    x56 = x48*x40/x42 + 0.5*x49 + 2.0*x53 - x54*x40/x42 + x55
+    x57 = y_dot*x10
+    x58 = y_*x57/x6 - x*x11/x6
+    x59 = x21 + x23
     x60 = (
-        delta_x*(x46 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x48 - y_dot*x15/x6) + x49)
-        + delta_x*(2.0*x35*x5 + x37*x28)/x6 + x*delta_y*(2.0*x36 + x14*x37)/x6 - delta_y*x59
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x47)/x6
+        delta_x*x46 + delta_y*(2.0*x35*x18/x6 + x36*x15/x6 - x56)
+        + delta_y_dot*(2.0*(x58 - y_dot*x15/x6) + x59)
+        - 2.0*x*delta_x_dot*(x_dot*x4 + x57)/x6
     )
     x61 = c4*x11
-    x62 = x27*x29/x39 + (x3 - 2.0*x27)*x29/x39 - (x3 + 2.0*x25)*x16/x39 - x53*x44/x39
-    x63 = x58 + (0.5*x52 + x40*x61/x43 + 2.0*x62 - x45*x61/x43)
+    x62 = x27*x29/x38 + (x3 - 2.0*x27)*x29/x38 - (x3 + 2.0*x25)*x16/x38 - x50*x43/x38
+    x63 = x55 + (0.5*x49 + x39*x61/x42 + 2.0*x62 - x44*x61/x42)
     x64 = c4*x_dot
     x65 = (
-        x25*x54*x13/x39 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x39 + 4.0*x14*x12/x39
-        + x51*x64/x43 - x0*x55/x39 - x57*x64/x43
+        x25*x51*x13/x38 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x38 + 4.0*x14*x12/x38
+        + x48*x64/x42 - x0*x52/x38 - x54*x64/x42
         - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20)
     )
-    x66 = (
-        delta_x*x63 + delta_x_dot*(2.0*(x_dot*x28/x6 + x48) + x49)
-        + 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x65 - g*x50/x20)
-        - y_*delta_x*(x27*x35 + 2.0*x37*x10)/x6 - delta_y*(x35*x15 + 2.0*x37*x26)/x6
+    x66 = delta_y*(x65 - g*x47/x20 + x35*x15/x6 + 2.0*x36*x26/x6)
+    x67 = (
+        delta_x*(x35*x28/x6 + 2.0*y_*x36*x10/x6 - x63) + x66
+        - delta_x_dot*(2.0*(x_dot*x28/x6 + x58) + x59)
+        - 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6
     )
-    x67 = m*(x60 - x66*x33/x3)/x34
+    x68 = m*(x60 + x67*x33/x3)/x34
     # outputs
     return (
         x_dot,
         y_dot,
         -x35,
-        -x37,
+        -x36,
         delta_x_dot,
         delta_y_dot,
-        x67,
-        -(x66 - x67*x10/x3)*x32,
+        x68,
+        (x67 + x68*x10/x3)*x32,
     )
 
 
@@ -2173,53 +1845,54 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x33 = x10*x32
     x34 = m*(1.0 - x1/x3 - y_*x32*x18/x6)
     x35 = m*(x24 + g*x/x8 + x31*x33/x3)/x34
-    x36 = x35*x10
-    x37 = (x31 + x36/x3)*x32
-    x38 = 4.0*x1 - x3
-    x39 = x3*x6
-    x40 = 4.0*x19 + 3.0*x22
-    x41 = c4*y_dot
-    x42 = x10*x41
-    x43 = x20*x19
-    x44 = x2*x38
-    x45 = x19 + (3.0*x1 + 2.0*x19)
-    x46 = (
-        x4*x38*x0/x39 + 4.0*x27*x12/x39 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x39
-        + x40*x42/x43 - x13*x44/x39 - x45*x42/x43 - 0.5*c1*(x9 + sin_c2*x18/x20)
+    x36 = (x31 + x35*x10/x3)*x32
+    x37 = 4.0*x1 - x3
+    x38 = x3*x6
+    x39 = 4.0*x19 + 3.0*x22
+    x40 = c4*y_dot
+    x41 = x10*x40
+    x42 = x20*x19
+    x43 = x2*x37
+    x44 = x19 + (3.0*x1 + 2.0*x19)
+    x45 = (
+        x4*x37*x0/x38 + 4.0*x27*x12/x38 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x38
+        + x39*x41/x42 - x13*x43/x38 - x44*x41/x42 - 0.5*c1*(x9 + sin_c2*x18/x20)
     )
-    x47 = y_dot*x10
-    x48 = y_*x47/x6 - x*x11/x6
-    x49 = x21 + x23
-    x50 = x2 + x19
-    x51 = x19*x50 + x1*(3.0*x2 + x19)
-    x52 = c5*x*x50/x20
-    x53 = x_dot*y_dot
-    x54 = 4.0*x2 - x3
-    x55 = x1*x54
-    x56 = x14*x16/x39 + (x3 - 2.0*x14)*x16/x39 - (x3 + 2.0*x4)*x29/x39 - x53*x55/x39
-    x57 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
-    x58 = g*x10/x20
-    x59 = x51*x41/x43 + 0.5*x52 + 2.0*x56 - x57*x41/x43 + x58
+    x46 = x45 - g*(x1 + x19)/x20 + 2.0*x35*x5/x6 + x36*x28/x6
+    x47 = x2 + x19
+    x48 = x19*x47 + x1*(3.0*x2 + x19)
+    x49 = c5*x*x47/x20
+    x50 = x_dot*y_dot
+    x51 = 4.0*x2 - x3
+    x52 = x1*x51
+    x53 = x14*x16/x38 + (x3 - 2.0*x14)*x16/x38 - (x3 + 2.0*x4)*x29/x38 - x50*x52/x38
+    x54 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
+    x55 = g*x10/x20
+    x56 = x48*x40/x42 + 0.5*x49 + 2.0*x53 - x54*x40/x42 + x55
+    x57 = y_dot*x10
+    x58 = y_*x57/x6 - x*x11/x6
+    x59 = x21 + x23
     x60 = (
-        delta_x*(x46 - g*(x1 + x19)/x20) + delta_y_dot*(2.0*(x48 - y_dot*x15/x6) + x49)
-        + delta_x*(2.0*x35*x5 + x37*x28)/x6 + x*delta_y*(2.0*x36 + x14*x37)/x6 - delta_y*x59
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x47)/x6
+        delta_x*x46 + delta_y*(2.0*x35*x18/x6 + x36*x15/x6 - x56)
+        + delta_y_dot*(2.0*(x58 - y_dot*x15/x6) + x59)
+        - 2.0*x*delta_x_dot*(x_dot*x4 + x57)/x6
     )
     x61 = c4*x11
-    x62 = x27*x29/x39 + (x3 - 2.0*x27)*x29/x39 - (x3 + 2.0*x25)*x16/x39 - x53*x44/x39
-    x63 = x58 + (0.5*x52 + x40*x61/x43 + 2.0*x62 - x45*x61/x43)
+    x62 = x27*x29/x38 + (x3 - 2.0*x27)*x29/x38 - (x3 + 2.0*x25)*x16/x38 - x50*x43/x38
+    x63 = x55 + (0.5*x49 + x39*x61/x42 + 2.0*x62 - x44*x61/x42)
     x64 = c4*x_dot
     x65 = (
-        x25*x54*x13/x39 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x39 + 4.0*x14*x12/x39
-        + x51*x64/x43 - x0*x55/x39 - x57*x64/x43
+        x25*x51*x13/x38 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x38 + 4.0*x14*x12/x38
+        + x48*x64/x42 - x0*x52/x38 - x54*x64/x42
         - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20)
     )
-    x66 = (
-        delta_x*x63 + delta_x_dot*(2.0*(x_dot*x28/x6 + x48) + x49)
-        + 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6 - delta_y*(x65 - g*x50/x20)
-        - y_*delta_x*(x27*x35 + 2.0*x37*x10)/x6 - delta_y*(x35*x15 + 2.0*x37*x26)/x6
+    x66 = delta_y*(x65 - g*x47/x20 + x35*x15/x6 + 2.0*x36*x26/x6)
+    x67 = (
+        delta_x*(x35*x28/x6 + 2.0*y_*x36*x10/x6 - x63) + x66
+        - delta_x_dot*(2.0*(x_dot*x28/x6 + x58) + x59)
+        - 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6
     )
-    x67 = m*(x60 - x66*x33/x3)/x34
+    x68 = m*(x60 + x67*x33/x3)/x34
     # outputs
     return _stacked(
         (8,),
@@ -2227,11 +1900,338 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         x_dot,
         y_dot,
         -x35,
-        -x37,
+        -x36,
         delta_x_dot,
         delta_y_dot,
-        x67,
-        -(x66 - x67*x10/x3)*x32,
+        x68,
+        (x67 + x68*x10/x3)*x32,
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    499 operations, 12 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 8 floats
+        x, y in m; x_dot, y_dot in m/s; delta_x, delta_y in m; delta_x_dot, delta_y_dot in
+        m/s.
+    params : iterable of 10 floats
+        delta_m in kg; delta_l in m; delta_g in m/s^2; delta_Omega in rad/s; delta_latitude
+        in rad; m in kg; l in m; g in m/s^2; Omega in rad/s; latitude in rad.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, delta_l, delta_g, delta_Omega, delta_latitude, m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = l*l
+    c1 = Omega*Omega
+    c2 = 2.0*latitude
+    cos_c2 = cos(c2)
+    c3 = cos_c2 - 1.0
+    sin_c2 = sin(c2)
+    sin_latitude = sin(latitude)
+    cos_latitude = cos(latitude)
+    c4 = Omega*cos_latitude
+    c5 = sin_c2*c1
+    c6 = Omega*delta_latitude
+    c7 = l*delta_l
+    # intermediate terms
+    x0 = x_dot*x_dot
+    x1 = x*x
+    x2 = y_*y_
+    x3 = x1 + x2 - c0
+    x4 = x1 - x3
+    x5 = x*x4
+    x6 = x3*x3
+    x7 = sin_c2*y_
+    x8 = sqrt(-x3)
+    x9 = c3 + x7/x8
+    x10 = x*y_
+    x11 = x_dot*x10
+    x12 = y_dot*x11
+    x13 = x*x12
+    x14 = y_dot*y_dot
+    x15 = 2.0*x2 - x3
+    x16 = x*x15
+    x17 = x10*x14
+    x18 = y_*x17
+    x19 = cos_latitude*y_
+    x20 = x*x10
+    x21 = x8*x8
+    x22 = x8*x21
+    x23 = sin_latitude - x19/x8 - cos_latitude*x20/x22
+    x24 = Omega*x23
+    x25 = x1 - x21
+    x26 = sin_latitude + x19*x25/x22
+    x27 = Omega*x26
+    x28 = x0*x5/x6 + 0.5*c1*x*x9 + 2.0*x13/x6 + x14*x16/x6 - x18/x6 - y_dot*x24 - y_dot*x27
+    x29 = g*x
+    x30 = x2 - x3
+    x31 = y_*x30
+    x32 = cos_c2*y_
+    x33 = x8 - x2/x8
+    x34 = 2.0*x32 - sin_c2*x33
+    x35 = 2.0*x1 - x3
+    x36 = y_*x35
+    x37 = y_*x12
+    x38 = x_dot*x11
+    x39 = x*x38
+    x40 = x_dot*x27 + x14*x31/x6 + 0.5*c1*x34 + x0*x36/x6 + 2.0*x37/x6 + x_dot*x24 - x39/x6
+    x41 = g*y_
+    x42 = x40 + x41/x8
+    x43 = m*(1.0/(m*(1.0 - x2/x3)))
+    x44 = x10*x43
+    x45 = m*(1.0 - x1/x3 - y_*x43*x20/x6)
+    x46 = m*(x28 + x29/x8 + x42*x44/x3)/x45
+    x47 = x46*x10
+    x48 = (x42 + x47/x3)*x43
+    x49 = 4.0*x1 - x3
+    x50 = x3*x6
+    x51 = 4.0*x21 + 3.0*x25
+    x52 = c4*y_dot
+    x53 = x10*x52
+    x54 = x22*x21
+    x55 = x2*x49
+    x56 = x21 + (3.0*x1 + 2.0*x21)
+    x57 = (
+        x4*x49*x0/x50 + 4.0*x35*x12/x50 + (4.0*x1*x15 + 2.0*x1*x3 - x3*x15)*x14/x50
+        + x51*x53/x54 - x14*x55/x50 - x56*x53/x54 - 0.5*c1*(x9 + sin_c2*x20/x22)
+    )
+    x58 = x57 - g*(x1 + x21)/x22 + 2.0*x46*x5/x6 + x48*x36/x6
+    x59 = x2 + x21
+    x60 = x21*x59 + x1*(3.0*x2 + x21)
+    x61 = c5*x59
+    x62 = x*x61/x22
+    x63 = x3 + 2.0*x4
+    x64 = x_dot*y_dot
+    x65 = 4.0*x2 - x3
+    x66 = x1*x65
+    x67 = x15*x17/x50 + (x3 - 2.0*x15)*x17/x50 - x63*x38/x50 - x64*x66/x50
+    x68 = 2.0*x2*x21 + x21*x25 + 3.0*x2*x25
+    x69 = g*x10/x22
+    x70 = x60*x52/x54 + 0.5*x62 + 2.0*x67 - x68*x52/x54 + x69
+    x71 = y_dot*x10
+    x72 = y_*x71/x6 - x*x11/x6
+    x73 = x24 + x27
+    x74 = Omega*x
+    x75 = sin_latitude*y_
+    x76 = cos_latitude + x75/x8 + sin_latitude*x20/x22
+    x77 = cos_latitude - x25*x75/x22
+    x78 = c6*(y_dot*x76 + (sin_c2 - x32/x8)*x74 + y_dot*x77)
+    x79 = y_*(2.0*x21 + 3.0*x25)
+    x80 = y_*(3.0*x1 + x21)
+    x81 = (
+        8.0*x13/x50 + x52*x79/x54 + 2.0*(x*x63*x0/x50 + x*(x3 + 2.0*x15)*x14/x50)
+        - 4.0*x18/x50 - x52*x80/x54 - 0.5*c5*x10/x22
+    )
+    x82 = x48*x10
+    x83 = (
+        delta_x*x58 + delta_y*(2.0*x46*x20/x6 + x48*x16/x6 - x70)
+        + delta_y_dot*(2.0*(x72 - y_dot*x16/x6) + x73)
+        + delta_Omega*(y_dot*x23 + y_dot*x26 - x9*x74) + x78
+        - 2.0*x*delta_x_dot*(x_dot*x4 + x71)/x6
+        - c7*(x81 - x29/x22 + 2.0*(x1*x46/x6 + x82/x6)) - delta_g*x/x8
+    )
+    x84 = c4*x_dot
+    x85 = x3 + 2.0*x30
+    x86 = (
+        8.0*x37/x50 + x84*x80/x54 + 2.0*(y_*x85*x14/x50 + y_*(x3 + 2.0*x35)*x0/x50)
+        - 4.0*x39/x50 - x84*x79/x54 - 0.5*x61/x22
+    )
+    x87 = x_dot*x77 + x_dot*x76 - Omega*(2.0*x7 + cos_c2*x33)
+    x88 = c4*x11
+    x89 = x35*x38/x50 + (x3 - 2.0*x35)*x38/x50 - x85*x17/x50 - x64*x55/x50
+    x90 = x69 + (0.5*x62 + x51*x88/x54 + 2.0*x89 - x56*x88/x54)
+    x91 = (
+        x30*x65*x14/x50 + (4.0*x2*x35 + 2.0*x2*x3 - x3*x35)*x0/x50 + 4.0*x15*x12/x50
+        + x60*x84/x54 - x0*x66/x50 - x68*x84/x54
+        - 0.5*c1*(2.0*cos_c2 + x7*(x21 + (x2 + 2.0*x21))/x22)
+    )
+    x92 = delta_y*(x91 - g*x59/x22 + x46*x16/x6 + 2.0*x48*x31/x6)
+    x93 = (
+        delta_x_dot*(2.0*(x_dot*x36/x6 + x72) + x73)
+        + 2.0*y_*delta_y_dot*(y_dot*x30 + x11)/x6
+        + c7*(x86 - x41/x22 + 2.0*(x47/x6 + x2*x48/x6)) + delta_g*y_/x8
+        + delta_Omega*(x_dot*x26 + Omega*x34 + x_dot*x23) + c6*x87
+        - delta_x*(x46*x36/x6 + 2.0*y_*x82/x6 - x90) - x92
+    )
+    x94 = m*(x83 - x93*x44/x3)/x45
+    # outputs
+    return (
+        x_dot,
+        y_dot,
+        -x46,
+        -x48,
+        delta_x_dot,
+        delta_y_dot,
+        x94,
+        -(x93 - x94*x10/x3)*x43,
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (8, ...)."""
+    from numpy import cos, sin, sqrt
+
+    # inputs
+    x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y
+    _, delta_l, delta_g, delta_Omega, delta_latitude, m, l, g, Omega, latitude = params
+    # terms of the parameters alone
+    c0 = l*l
+    c1 = Omega*Omega
+    c2 = 2.0*latitude
+    cos_c2 = cos(c2)
+    c3 = cos_c2 - 1.0
+    sin_c2 = sin(c2)
+    sin_latitude = sin(latitude)
+    cos_latitude = cos(latitude)
+    c4 = Omega*cos_latitude
+    c5 = sin_c2*c1
+    c6 = Omega*delta_latitude
+    c7 = l*delta_l
+    # intermediate terms
+    x0 = x_dot*x_dot
+    x1 = x*x
+    x2 = y_*y_
+    x3 = x1 + x2 - c0
+    x4 = x1 - x3
+    x5 = x*x4
+    x6 = x3*x3
+    x7 = sin_c2*y_
+    x8 = sqrt(-x3)
+    x9 = c3 + x7/x8
+    x10 = x*y_
+    x11 = x_dot*x10
+    x12 = y_dot*x11
+    x13 = x*x12
+    x14 = y_dot*y_dot
+    x15 = 2.0*x2 - x3
+    x16 = x*x15
+    x17 = x10*x14
+    x18 = y_*x17
+    x19 = cos_latitude*y_
+    x20 = x*x10
+    x21 = x8*x8
+    x22 = x8*x21
+    x23 = sin_latitude - x19/x8 - cos_latitude*x20/x22
+    x24 = Omega*x23
+    x25 = x1 - x21
+    x26 = sin_latitude + x19*x25/x22
+    x27 = Omega*x26
+    x28 = x0*x5/x6 + 0.5*c1*x*x9 + 2.0*x13/x6 + x14*x16/x6 - x18/x6 - y_dot*x24 - y_dot*x27
+    x29 = g*x
+    x30 = x2 - x3
+    x31 = y_*x30
+    x32 = cos_c2*y_
+    x33 = x8 - x2/x8
+    x34 = 2.0*x32 - sin_c2*x33
+    x35 = 2.0*x1 - x3
+    x36 = y_*x35
+    x37 = y_*x12
+    x38 = x_dot*x11
+    x39 = x*x38
+    x40 = x_dot*x27 + x14*x31/x6 + 0.5*c1*x34 + x0*x36/x6 + 2.0*x37/x6 + x_dot*x24 - x39/x6
+    x41 = g*y_
+    x42 = x40 + x41/x8
+    x43 = m*(1.0/(m*(1.0 - x2/x3)))
+    x44 = x10*x43
+    x45 = m*(1.0 - x1/x3 - y_*x43*x20/x6)
+    x46 = m*(x28 + x29/x8 + x42*x44/x3)/x45
+    x47 = x46*x10
+    x48 = (x42 + x47/x3)*x43
+    x49 = 4.0*x1 - x3
+    x50 = x3*x6
+    x51 = 4.0*x21 + 3.0*x25
+    x52 = c4*y_dot
+    x53 = x10*x52
+    x54 = x22*x21
+    x55 = x2*x49
+    x56 = x21 + (3.0*x1 + 2.0*x21)
+    x57 = (
+        x4*x49*x0/x50 + 4.0*x35*x12/x50 + (4.0*x1*x15 + 2.0*x1*x3 - x3*x15)*x14/x50
+        + x51*x53/x54 - x14*x55/x50 - x56*x53/x54 - 0.5*c1*(x9 + sin_c2*x20/x22)
+    )
+    x58 = x57 - g*(x1 + x21)/x22 + 2.0*x46*x5/x6 + x48*x36/x6
+    x59 = x2 + x21
+    x60 = x21*x59 + x1*(3.0*x2 + x21)
+    x61 = c5*x59
+    x62 = x*x61/x22
+    x63 = x3 + 2.0*x4
+    x64 = x_dot*y_dot
+    x65 = 4.0*x2 - x3
+    x66 = x1*x65
+    x67 = x15*x17/x50 + (x3 - 2.0*x15)*x17/x50 - x63*x38/x50 - x64*x66/x50
+    x68 = 2.0*x2*x21 + x21*x25 + 3.0*x2*x25
+    x69 = g*x10/x22
+    x70 = x60*x52/x54 + 0.5*x62 + 2.0*x67 - x68*x52/x54 + x69
+    x71 = y_dot*x10
+    x72 = y_*x71/x6 - x*x11/x6
+    x73 = x24 + x27
+    x74 = Omega*x
+    x75 = sin_latitude*y_
+    x76 = cos_latitude + x75/x8 + sin_latitude*x20/x22
+    x77 = cos_latitude - x25*x75/x22
+    x78 = c6*(y_dot*x76 + (sin_c2 - x32/x8)*x74 + y_dot*x77)
+    x79 = y_*(2.0*x21 + 3.0*x25)
+    x80 = y_*(3.0*x1 + x21)
+    x81 = (
+        8.0*x13/x50 + x52*x79/x54 + 2.0*(x*x63*x0/x50 + x*(x3 + 2.0*x15)*x14/x50)
+        - 4.0*x18/x50 - x52*x80/x54 - 0.5*c5*x10/x22
+    )
+    x82 = x48*x10
+    x83 = (
+        delta_x*x58 + delta_y*(2.0*x46*x20/x6 + x48*x16/x6 - x70)
+        + delta_y_dot*(2.0*(x72 - y_dot*x16/x6) + x73)
+        + delta_Omega*(y_dot*x23 + y_dot*x26 - x9*x74) + x78
+        - 2.0*x*delta_x_dot*(x_dot*x4 + x71)/x6
+        - c7*(x81 - x29/x22 + 2.0*(x1*x46/x6 + x82/x6)) - delta_g*x/x8
+    )
+    x84 = c4*x_dot
+    x85 = x3 + 2.0*x30
+    x86 = (
+        8.0*x37/x50 + x84*x80/x54 + 2.0*(y_*x85*x14/x50 + y_*(x3 + 2.0*x35)*x0/x50)
+        - 4.0*x39/x50 - x84*x79/x54 - 0.5*x61/x22
+    )
+    x87 = x_dot*x77 + x_dot*x76 - Omega*(2.0*x7 + cos_c2*x33)
+    x88 = c4*x11
+    x89 = x35*x38/x50 + (x3 - 2.0*x35)*x38/x50 - x85*x17/x50 - x64*x55/x50
+    x90 = x69 + (0.5*x62 + x51*x88/x54 + 2.0*x89 - x56*x88/x54)
+    x91 = (
+        x30*x65*x14/x50 + (4.0*x2*x35 + 2.0*x2*x3 - x3*x35)*x0/x50 + 4.0*x15*x12/x50
+        + x60*x84/x54 - x0*x66/x50 - x68*x84/x54
+        - 0.5*c1*(2.0*cos_c2 + x7*(x21 + (x2 + 2.0*x21))/x22)
+    )
+    x92 = delta_y*(x91 - g*x59/x22 + x46*x16/x6 + 2.0*x48*x31/x6)
+    x93 = (
+        delta_x_dot*(2.0*(x_dot*x36/x6 + x72) + x73)
+        + 2.0*y_*delta_y_dot*(y_dot*x30 + x11)/x6
+        + c7*(x86 - x41/x22 + 2.0*(x47/x6 + x2*x48/x6)) + delta_g*y_/x8
+        + delta_Omega*(x_dot*x26 + Omega*x34 + x_dot*x23) + c6*x87
+        - delta_x*(x46*x36/x6 + 2.0*y_*x82/x6 - x90) - x92
+    )
+    x94 = m*(x83 - x93*x44/x3)/x45
+    # outputs
+    return _stacked(
+        (8,),
+        y[0],
+        x_dot,
+        y_dot,
+        -x46,
+        -x48,
+        delta_x_dot,
+        delta_y_dot,
+        x94,
+        -(x93 - x94*x10/x3)*x43,
     )
 
 

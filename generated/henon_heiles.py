@@ -28,6 +28,16 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_x_dot [m/s]
     delta_y_dot [m/s]
 
+State y of `rhs_sensitivity`: the same:
+    x [m]
+    y [m]
+    x_dot [m/s]
+    y_dot [m/s]
+    delta_x [m]
+    delta_y [m]
+    delta_x_dot [m/s]
+    delta_y_dot [m/s]
+
 Parameters params:
 
 Masses and their positions:
@@ -63,7 +73,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "henon_heiles"
-DIGEST = "8692b127bbe18e63"
+DIGEST = "b10bc511d7d514ba"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")

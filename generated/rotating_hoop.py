@@ -25,6 +25,13 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_theta [rad]
     delta_theta_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    sin_theta [1]
+    cos_theta [1]
+    theta_dot [rad/s]
+    delta_theta [rad]
+    delta_theta_dot [rad/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bead
     R [m] > 0, default 1.0: radius
@@ -64,15 +71,22 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "033538b9e0a6df66"
+DIGEST = "979f9fd781caa7ba"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("theta", "theta_dot"),
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
+        "sin_theta",
+        "cos_theta",
+        "theta_dot",
+        "delta_theta",
+        "delta_theta_dot",
+    ),
+    "sensitivity": (
         "sin_theta",
         "cos_theta",
         "theta_dot",
@@ -92,26 +106,25 @@ CALLS_FUNCTIONS = (
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (9, 3),
-    "jacobian": (13, 3),
-    "parameter_jacobian": (20, 3),
+    "jacobian": (12, 3),
+    "parameter_jacobian": (20, 4),
     "energy": (15, 3),
     "mass_matrix": (2, 2),
     "positions": (10, 0),
     "hamiltonian_state": (3, 2),
     "rhs_hamiltonian": (14, 5),
     "jacobian_hamiltonian": (16, 6),
-    "parameter_jacobian_hamiltonian": (29, 7),
     "energy_hamiltonian": (18, 5),
     "lagrangian_state": (5, 3),
     "rational_state": (2, 0),
     "rhs_rational": (11, 3),
     "rhs_variational": (18, 3),
+    "rhs_sensitivity": (30, 5),
     "equilibrium": (0, 0),
     "linear": (6, 6),
 }
@@ -194,7 +207,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    13 operations, 3 of them on parameters alone.
+    12 operations, 3 of them on parameters alone.
 
     Parameters
     ----------
@@ -217,11 +230,11 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c0 = 1.0/R
     c1 = R*Omega*Omega
     # intermediate terms
-    sin_theta = sin(theta)
     cos_theta = cos(theta)
-    x0 = c1*sin_theta*sin_theta - cos_theta*(c1*cos_theta - g)
+    sin_theta = sin(theta)
+    x0 = cos_theta*(c1*cos_theta - g) - c1*sin_theta*sin_theta
     # outputs
-    return ((0.0, 1.0), (-c0*x0, 0.0))
+    return ((0.0, 1.0), (c0*x0, 0.0))
 
 
 def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -235,17 +248,17 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c0 = 1.0/R
     c1 = R*Omega*Omega
     # intermediate terms
-    sin_theta = sin(theta)
     cos_theta = cos(theta)
-    x0 = c1*sin_theta*sin_theta - cos_theta*(c1*cos_theta - g)
+    sin_theta = sin(theta)
+    x0 = cos_theta*(c1*cos_theta - g) - c1*sin_theta*sin_theta
     # outputs
-    return _stacked((2, 2), y[0], 0.0, 1.0, -c0*x0, 0.0)
+    return _stacked((2, 2), y[0], 0.0, 1.0, c0*x0, 0.0)
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    20 operations, 3 of them on parameters alone.
+    20 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
@@ -268,18 +281,18 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c0 = 1.0/R
     c1 = R*Omega
     c2 = Omega*c1
+    c3 = Omega*Omega
     # intermediate terms
     sin_theta = sin(theta)
     cos_theta = cos(theta)
-    x0 = c2*cos_theta
-    x1 = x0 - g
+    x0 = sin_theta*cos_theta
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0),
         (
             0.0,
-            c0*(c0*(sin_theta*(x0 + x1) - 2.0*sin_theta*x1)),
-            2.0*c0*(c1*sin_theta*cos_theta),
+            -c0*(c0*(sin_theta*(c2*cos_theta - g)) - c3*x0),
+            2.0*c0*(c1*x0),
             -c0*sin_theta,
         ),
     )
@@ -296,11 +309,11 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c0 = 1.0/R
     c1 = R*Omega
     c2 = Omega*c1
+    c3 = Omega*Omega
     # intermediate terms
     sin_theta = sin(theta)
     cos_theta = cos(theta)
-    x0 = c2*cos_theta
-    x1 = x0 - g
+    x0 = sin_theta*cos_theta
     # outputs
     return _stacked(
         (2, 4),
@@ -310,8 +323,8 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        c0*(c0*(sin_theta*(x0 + x1) - 2.0*sin_theta*x1)),
-        2.0*c0*(c1*sin_theta*cos_theta),
+        -c0*(c0*(sin_theta*(c2*cos_theta - g)) - c3*x0),
+        2.0*c0*(c1*x0),
         -c0*sin_theta,
     )
 
@@ -578,88 +591,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/R), -c0*x0, 0.0)
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    29 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        theta in rad; p_theta in J s.
-    params : iterable of 4 floats
-        m in kg; R in m; Omega in rad/s; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    m, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = 1.0/m
-    c2 = R*m
-    c3 = 1.0/c2
-    c4 = R*Omega
-    c5 = Omega*c4
-    c6 = c2*c4
-    # intermediate terms
-    x0 = c3*p_theta
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x1 = c5*cos_theta
-    # outputs
-    return (
-        (-c0*(c1*x0), -2.0*c0*(c0*x0), 0.0, 0.0),
-        (
-            R*sin_theta*(x1 - g),
-            m*sin_theta*(2.0*x1 - g),
-            2.0*c6*sin_theta*cos_theta,
-            -c2*sin_theta,
-        ),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (2, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, p_theta = y
-    m, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = 1.0/m
-    c2 = R*m
-    c3 = 1.0/c2
-    c4 = R*Omega
-    c5 = Omega*c4
-    c6 = c2*c4
-    # intermediate terms
-    x0 = c3*p_theta
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x1 = c5*cos_theta
-    # outputs
-    return _stacked(
-        (2, 4),
-        y[0],
-        -c0*(c1*x0),
-        -2.0*c0*(c0*x0),
-        0.0,
-        0.0,
-        R*sin_theta*(x1 - g),
-        m*sin_theta*(2.0*x1 - g),
-        2.0*c6*sin_theta*cos_theta,
-        -c2*sin_theta,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -868,7 +799,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = R*Omega*Omega
     # intermediate terms
     x0 = g - c1*cos_theta
-    x1 = delta_theta*(c1*sin_theta*sin_theta + cos_theta*x0)
+    x1 = delta_theta*(cos_theta*x0 + c1*sin_theta*sin_theta)
     # outputs
     return (
         theta_dot*cos_theta,
@@ -889,7 +820,7 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = R*Omega*Omega
     # intermediate terms
     x0 = g - c1*cos_theta
-    x1 = delta_theta*(c1*sin_theta*sin_theta + cos_theta*x0)
+    x1 = delta_theta*(cos_theta*x0 + c1*sin_theta*sin_theta)
     # outputs
     return _stacked(
         (5,),
@@ -899,6 +830,81 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -c0*(sin_theta*x0),
         delta_theta_dot,
         -c0*x1,
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    30 operations, 5 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 5 floats
+        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
+        in rad/s.
+    params : iterable of 8 floats
+        delta_m in kg; delta_R in m; delta_Omega in rad/s; delta_g in m/s^2; m in kg; R in
+        m; Omega in rad/s; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, delta_R, delta_Omega, delta_g, _, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/R
+    c1 = R*Omega
+    c2 = Omega*c1
+    c3 = Omega*Omega
+    c4 = delta_Omega*c1
+    # intermediate terms
+    x0 = g - c2*cos_theta
+    x1 = c0*(sin_theta*x0)
+    x2 = delta_theta*(cos_theta*x0 + c2*sin_theta*sin_theta)
+    x3 = cos_theta*sin_theta
+    x4 = x2 + delta_g*sin_theta - delta_R*(x1 + c3*x3) - 2.0*c4*x3
+    # outputs
+    return (
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -x1,
+        delta_theta_dot,
+        -c0*x4,
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (5, ...)."""
+    # inputs
+    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
+    _, delta_R, delta_Omega, delta_g, _, R, Omega, g = params
+    # terms of the parameters alone
+    c0 = 1.0/R
+    c1 = R*Omega
+    c2 = Omega*c1
+    c3 = Omega*Omega
+    c4 = delta_Omega*c1
+    # intermediate terms
+    x0 = g - c2*cos_theta
+    x1 = c0*(sin_theta*x0)
+    x2 = delta_theta*(cos_theta*x0 + c2*sin_theta*sin_theta)
+    x3 = cos_theta*sin_theta
+    x4 = x2 + delta_g*sin_theta - delta_R*(x1 + c3*x3) - 2.0*c4*x3
+    # outputs
+    return _stacked(
+        (5,),
+        y[0],
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -x1,
+        delta_theta_dot,
+        -c0*x4,
     )
 
 

@@ -25,6 +25,13 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_theta [rad]
     delta_theta_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    sin_theta [1]
+    cos_theta [1]
+    theta_dot [rad/s]
+    delta_theta [rad]
+    delta_theta_dot [rad/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     l [m] > 0, default 2.0: length
@@ -63,15 +70,22 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "single_pendulum"
-DIGEST = "da700d138cf1d02d"
+DIGEST = "42e088d4a91cc1d2"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("theta", "theta_dot"),
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
+        "sin_theta",
+        "cos_theta",
+        "theta_dot",
+        "delta_theta",
+        "delta_theta_dot",
+    ),
+    "sensitivity": (
         "sin_theta",
         "cos_theta",
         "theta_dot",
@@ -92,14 +106,13 @@ CALLS_FUNCTIONS = (
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (5, 1),
     "jacobian": (5, 1),
-    "parameter_jacobian": (9, 1),
+    "parameter_jacobian": (7, 1),
     "energy": (8, 1),
     "reactions": (6, 0),
     "mass_matrix": (2, 2),
@@ -107,12 +120,12 @@ OPERATIONS = {
     "hamiltonian_state": (3, 2),
     "rhs_hamiltonian": (9, 4),
     "jacobian_hamiltonian": (8, 5),
-    "parameter_jacobian_hamiltonian": (20, 6),
     "energy_hamiltonian": (11, 4),
     "lagrangian_state": (5, 3),
     "rational_state": (2, 0),
     "rhs_rational": (7, 1),
     "rhs_variational": (11, 1),
+    "rhs_sensitivity": (18, 3),
     "equilibrium": (0, 0),
     "linear": (3, 3),
 }
@@ -233,7 +246,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    9 operations, 1 of them on parameters alone.
+    7 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
@@ -257,7 +270,7 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     # intermediate terms
     sin_theta = sin(theta)
     # outputs
-    return ((0.0, 0.0, 0.0), (0.0, -c0*(c0*(-g*sin_theta)), -c0*sin_theta))
+    return ((0.0, 0.0, 0.0), (0.0, c0*(c0*(g*sin_theta)), -c0*sin_theta))
 
 
 def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -279,7 +292,7 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        -c0*(c0*(-g*sin_theta)),
+        c0*(c0*(g*sin_theta)),
         -c0*sin_theta,
     )
 
@@ -561,75 +574,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/l), -c1*cos(theta), 0.0)
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    20 operations, 6 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        theta in rad; p_theta in J s.
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = l*g
-    c5 = m*g
-    # intermediate terms
-    x0 = c3*p_theta
-    sin_theta = sin(theta)
-    # outputs
-    return (
-        (-c0*(c1*x0), -2.0*c0*(c0*x0), 0.0),
-        (-c4*sin_theta, -c5*sin_theta, -c2*sin_theta),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (2, 3, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, p_theta = y
-    m, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = l*g
-    c5 = m*g
-    # intermediate terms
-    x0 = c3*p_theta
-    sin_theta = sin(theta)
-    # outputs
-    return _stacked(
-        (2, 3),
-        y[0],
-        -c0*(c1*x0),
-        -2.0*c0*(c0*x0),
-        0.0,
-        -c4*sin_theta,
-        -c5*sin_theta,
-        -c2*sin_theta,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -849,6 +793,70 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -c0*(g*sin_theta),
         delta_theta_dot,
         -c0*(g*cos_theta*delta_theta),
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    18 operations, 3 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 5 floats
+        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
+        in rad/s.
+    params : iterable of 6 floats
+        delta_m in kg; delta_l in m; delta_g in m/s^2; m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, delta_l, delta_g, _, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = l*g
+    c2 = l*delta_g
+    # intermediate terms
+    x0 = g*sin_theta
+    x1 = c1*cos_theta*delta_theta + c2*sin_theta - delta_l*x0
+    # outputs
+    return (
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -c0*x0,
+        delta_theta_dot,
+        -c0*(c0*x1),
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (5, ...)."""
+    # inputs
+    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
+    _, delta_l, delta_g, _, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    c1 = l*g
+    c2 = l*delta_g
+    # intermediate terms
+    x0 = g*sin_theta
+    x1 = c1*cos_theta*delta_theta + c2*sin_theta - delta_l*x0
+    # outputs
+    return _stacked(
+        (5,),
+        y[0],
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        -c0*x0,
+        delta_theta_dot,
+        -c0*(c0*x1),
     )
 
 

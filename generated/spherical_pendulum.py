@@ -38,6 +38,18 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_theta_dot [rad/s]
     delta_phi_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    sin_theta [1]
+    cos_theta [1]
+    sin_phi [1]
+    cos_phi [1]
+    theta_dot [rad/s]
+    phi_dot [rad/s]
+    delta_theta [rad]
+    delta_phi [rad]
+    delta_theta_dot [rad/s]
+    delta_phi_dot [rad/s]
+
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     l [m] > 0, default 1.0: length
@@ -77,10 +89,10 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "8f6092d5fbcf4d84"
+DIGEST = "3ee2ad5d33693a45"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("theta", "phi", "theta_dot", "phi_dot"),
     "hamiltonian": ("theta", "phi", "p_theta", "p_phi"),
@@ -93,6 +105,18 @@ STATES = {
         "phi_dot",
     ),
     "variational": (
+        "sin_theta",
+        "cos_theta",
+        "sin_phi",
+        "cos_phi",
+        "theta_dot",
+        "phi_dot",
+        "delta_theta",
+        "delta_phi",
+        "delta_theta_dot",
+        "delta_phi_dot",
+    ),
+    "sensitivity": (
         "sin_theta",
         "cos_theta",
         "sin_phi",
@@ -119,27 +143,26 @@ CALLS_FUNCTIONS = (
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "lagrangian_state",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (13, 1),
-    "jacobian": (36, 1),
-    "parameter_jacobian": (16, 1),
+    "jacobian": (33, 1),
+    "parameter_jacobian": (15, 1),
     "energy": (14, 1),
     "mass_matrix": (5, 2),
     "positions": (9, 0),
     "hamiltonian_state": (7, 2),
     "rhs_hamiltonian": (19, 4),
     "jacobian_hamiltonian": (32, 5),
-    "parameter_jacobian_hamiltonian": (47, 5),
     "energy_hamiltonian": (18, 4),
     "lagrangian_state": (10, 3),
     "rational_state": (4, 0),
     "rhs_rational": (18, 1),
-    "rhs_variational": (49, 1),
+    "rhs_variational": (44, 1),
+    "rhs_sensitivity": (49, 1),
     "equilibrium": (0, 0),
     "linear": (3, 3),
 }
@@ -244,7 +267,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    36 operations, 1 of them on parameters alone.
+    33 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
@@ -267,26 +290,26 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c0 = 1.0/l
     # intermediate terms
     cos_theta = cos(theta)
-    x0 = l*phi_dot
-    x1 = cos_theta*x0
+    x0 = l*cos_theta
+    x1 = phi_dot*x0
     sin_theta = sin(theta)
-    x2 = sin_theta*sin_theta
-    x3 = theta_dot*(cos_theta*cos_theta - x2)*x0 - 2.0*cos_theta*(theta_dot*x1)
+    x2 = phi_dot*sin_theta
+    x3 = theta_dot*x2 + c0*cos_theta*(theta_dot*x1)/sin_theta
     # outputs
     return (
         (0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 1.0),
         (
-            c0*(cos_theta*(phi_dot*x1 - g) - phi_dot*x2*x0),
+            c0*(cos_theta*(phi_dot*x1 - g) - l*x2*x2),
             0.0,
             0.0,
             2.0*c0*(sin_theta*x1),
         ),
         (
-            -2.0*c0*(x3/sin_theta)/sin_theta,
+            2.0*c0*(l*x3)/sin_theta,
             0.0,
             -2.0*c0*x1/sin_theta,
-            -2.0*c0*(l*cos_theta*theta_dot)/sin_theta,
+            -2.0*c0*(theta_dot*x0)/sin_theta,
         ),
     )
 
@@ -302,11 +325,11 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c0 = 1.0/l
     # intermediate terms
     cos_theta = cos(theta)
-    x0 = l*phi_dot
-    x1 = cos_theta*x0
+    x0 = l*cos_theta
+    x1 = phi_dot*x0
     sin_theta = sin(theta)
-    x2 = sin_theta*sin_theta
-    x3 = theta_dot*(cos_theta*cos_theta - x2)*x0 - 2.0*cos_theta*(theta_dot*x1)
+    x2 = phi_dot*sin_theta
+    x3 = theta_dot*x2 + c0*cos_theta*(theta_dot*x1)/sin_theta
     # outputs
     return _stacked(
         (4, 4),
@@ -319,21 +342,21 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         1.0,
-        c0*(cos_theta*(phi_dot*x1 - g) - phi_dot*x2*x0),
+        c0*(cos_theta*(phi_dot*x1 - g) - l*x2*x2),
         0.0,
         0.0,
         2.0*c0*(sin_theta*x1),
-        -2.0*c0*(x3/sin_theta)/sin_theta,
+        2.0*c0*(l*x3)/sin_theta,
         0.0,
         -2.0*c0*x1/sin_theta,
-        -2.0*c0*(l*cos_theta*theta_dot)/sin_theta,
+        -2.0*c0*(theta_dot*x0)/sin_theta,
     )
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    16 operations, 1 of them on parameters alone.
+    15 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
@@ -356,15 +379,14 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c0 = 1.0/l
     # intermediate terms
     sin_theta = sin(theta)
-    x0 = phi_dot*(cos(theta)*(l*phi_dot))
-    x1 = x0 - g
+    x0 = cos(theta)*(phi_dot*phi_dot)
     # outputs
     return (
         (0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0),
         (
             0.0,
-            c0*(c0*(sin_theta*(x0 + x1) - 2.0*sin_theta*x1)),
+            -c0*(c0*(sin_theta*(l*x0 - g)) - sin_theta*x0),
             -c0*sin_theta,
         ),
         (0.0, 0.0, 0.0),
@@ -382,8 +404,7 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c0 = 1.0/l
     # intermediate terms
     sin_theta = sin(theta)
-    x0 = phi_dot*(cos(theta)*(l*phi_dot))
-    x1 = x0 - g
+    x0 = cos(theta)*(phi_dot*phi_dot)
     # outputs
     return _stacked(
         (4, 3),
@@ -395,7 +416,7 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        c0*(c0*(sin_theta*(x0 + x1) - 2.0*sin_theta*x1)),
+        -c0*(c0*(sin_theta*(l*x0 - g)) - sin_theta*x0),
         -c0*sin_theta,
         0.0,
         0.0,
@@ -738,95 +759,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    47 operations, 5 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta, phi in rad; p_theta, p_phi in J s.
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    theta, _, p_theta, p_phi = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = l*g
-    # intermediate terms
-    x0 = c3*p_theta
-    sin_theta = sin(theta)
-    x1 = c3*p_phi/sin_theta
-    x2 = c1*x1
-    x3 = c0*x1
-    x4 = x1*cos(theta)
-    x5 = 2.0*m*x2*x4/sin_theta + c4*sin_theta - x1*x4/sin_theta
-    x6 = x3*x4
-    x7 = 4.0*x6/sin_theta + g*sin_theta - 2.0*x6/sin_theta
-    # outputs
-    return (
-        (-c0*(c1*x0), -2.0*c0*(c0*x0), 0.0),
-        (-c0*x2/sin_theta, -2.0*c0*x3/sin_theta, 0.0),
-        (-x5, -m*x7, -c2*sin_theta),
-        (0.0, 0.0, 0.0),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _, p_theta, p_phi = y
-    m, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = l*g
-    # intermediate terms
-    x0 = c3*p_theta
-    sin_theta = sin(theta)
-    x1 = c3*p_phi/sin_theta
-    x2 = c1*x1
-    x3 = c0*x1
-    x4 = x1*cos(theta)
-    x5 = 2.0*m*x2*x4/sin_theta + c4*sin_theta - x1*x4/sin_theta
-    x6 = x3*x4
-    x7 = 4.0*x6/sin_theta + g*sin_theta - 2.0*x6/sin_theta
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        -c0*(c1*x0),
-        -2.0*c0*(c0*x0),
-        0.0,
-        -c0*x2/sin_theta,
-        -2.0*c0*x3/sin_theta,
-        0.0,
-        -x5,
-        -m*x7,
-        -c2*sin_theta,
-        0.0,
-        0.0,
-        0.0,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1042,7 +974,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    49 operations, 1 of them on parameters alone.
+    44 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
@@ -1066,27 +998,27 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     c0 = 1.0/l
     # intermediate terms
     x0 = theta_dot*cos_theta
-    x1 = l*phi_dot
-    x2 = cos_theta*x1
-    x3 = g - phi_dot*x2
-    x4 = theta_dot*x2
-    x5 = sin_theta*sin_theta
-    x6 = sin_theta*delta_phi_dot
-    x7 = delta_theta*(cos_theta*x3 + phi_dot*x5*x1) - 2.0*x2*x6
-    x8 = theta_dot*delta_theta*(x5 - cos_theta*cos_theta)*x1
-    x9 = x8 + 2.0*cos_theta*x4*delta_theta - sin_theta*delta_theta_dot*x2 - l*x0*x6
+    x1 = theta_dot*sin_theta
+    x2 = cos_theta*phi_dot
+    x3 = l*x2
+    x4 = g - phi_dot*x3
+    x5 = c0*(theta_dot*x3)
+    x6 = cos_theta*x4 + l*sin_theta*sin_theta*phi_dot*phi_dot
+    x7 = c0*(delta_theta*x6 - 2.0*sin_theta*delta_phi_dot*x3)
+    x8 = delta_theta*(x1*phi_dot + cos_theta*x5/sin_theta)
+    x9 = c0*(l*(delta_theta_dot*x2 + x0*delta_phi_dot - x8))
     # outputs
     return (
         x0,
-        -theta_dot*sin_theta,
+        -x1,
         phi_dot*cos_phi,
         -phi_dot*sin_phi,
-        -c0*(sin_theta*x3),
-        -2.0*c0*x4/sin_theta,
+        -c0*(sin_theta*x4),
+        -2.0*x5/sin_theta,
         delta_theta_dot,
         delta_phi_dot,
-        -c0*x7,
-        2.0*c0*(x9/sin_theta)/sin_theta,
+        -x7,
+        -2.0*x9/sin_theta,
     )
 
 
@@ -1099,15 +1031,107 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c0 = 1.0/l
     # intermediate terms
     x0 = theta_dot*cos_theta
-    x1 = l*phi_dot
-    x2 = cos_theta*x1
+    x1 = theta_dot*sin_theta
+    x2 = cos_theta*phi_dot
+    x3 = l*x2
+    x4 = g - phi_dot*x3
+    x5 = c0*(theta_dot*x3)
+    x6 = cos_theta*x4 + l*sin_theta*sin_theta*phi_dot*phi_dot
+    x7 = c0*(delta_theta*x6 - 2.0*sin_theta*delta_phi_dot*x3)
+    x8 = delta_theta*(x1*phi_dot + cos_theta*x5/sin_theta)
+    x9 = c0*(l*(delta_theta_dot*x2 + x0*delta_phi_dot - x8))
+    # outputs
+    return _stacked(
+        (10,),
+        y[0],
+        x0,
+        -x1,
+        phi_dot*cos_phi,
+        -phi_dot*sin_phi,
+        -c0*(sin_theta*x4),
+        -2.0*x5/sin_theta,
+        delta_theta_dot,
+        delta_phi_dot,
+        -x7,
+        -2.0*x9/sin_theta,
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    49 operations, 1 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 10 floats
+        sin_theta, cos_theta, sin_phi, cos_phi in 1; theta_dot, phi_dot in rad/s;
+        delta_theta, delta_phi in rad; delta_theta_dot, delta_phi_dot in rad/s.
+    params : iterable of 6 floats
+        delta_m in kg; delta_l in m; delta_g in m/s^2; m in kg; l in m; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot, delta_theta, _, delta_theta_dot, delta_phi_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, delta_l, delta_g, _, l, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # intermediate terms
+    x0 = theta_dot*cos_theta
+    x1 = cos_theta*phi_dot
+    x2 = l*x1
     x3 = g - phi_dot*x2
-    x4 = theta_dot*x2
-    x5 = sin_theta*sin_theta
-    x6 = sin_theta*delta_phi_dot
-    x7 = delta_theta*(cos_theta*x3 + phi_dot*x5*x1) - 2.0*x2*x6
-    x8 = theta_dot*delta_theta*(x5 - cos_theta*cos_theta)*x1
-    x9 = x8 + 2.0*cos_theta*x4*delta_theta - sin_theta*delta_theta_dot*x2 - l*x0*x6
+    x4 = c0*(sin_theta*x3)
+    x5 = c0*(theta_dot*x2)
+    x6 = sin_theta*phi_dot
+    x7 = (
+        delta_theta*(cos_theta*x3 + l*x6*x6) + delta_g*sin_theta
+        - 2.0*sin_theta*delta_phi_dot*x2 - delta_l*(x4 + x1*x6)
+    )
+    x8 = delta_theta*(theta_dot*x6 + cos_theta*x5/sin_theta)
+    x9 = c0*(l*(delta_theta_dot*x1 + x0*delta_phi_dot - x8))
+    # outputs
+    return (
+        x0,
+        -theta_dot*sin_theta,
+        phi_dot*cos_phi,
+        -phi_dot*sin_phi,
+        -x4,
+        -2.0*x5/sin_theta,
+        delta_theta_dot,
+        delta_phi_dot,
+        -c0*x7,
+        -2.0*x9/sin_theta,
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
+    # inputs
+    sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot, delta_theta, _, delta_theta_dot, delta_phi_dot = y
+    _, delta_l, delta_g, _, l, g = params
+    # terms of the parameters alone
+    c0 = 1.0/l
+    # intermediate terms
+    x0 = theta_dot*cos_theta
+    x1 = cos_theta*phi_dot
+    x2 = l*x1
+    x3 = g - phi_dot*x2
+    x4 = c0*(sin_theta*x3)
+    x5 = c0*(theta_dot*x2)
+    x6 = sin_theta*phi_dot
+    x7 = (
+        delta_theta*(cos_theta*x3 + l*x6*x6) + delta_g*sin_theta
+        - 2.0*sin_theta*delta_phi_dot*x2 - delta_l*(x4 + x1*x6)
+    )
+    x8 = delta_theta*(theta_dot*x6 + cos_theta*x5/sin_theta)
+    x9 = c0*(l*(delta_theta_dot*x1 + x0*delta_phi_dot - x8))
     # outputs
     return _stacked(
         (10,),
@@ -1116,12 +1140,12 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -theta_dot*sin_theta,
         phi_dot*cos_phi,
         -phi_dot*sin_phi,
-        -c0*(sin_theta*x3),
-        -2.0*c0*x4/sin_theta,
+        -x4,
+        -2.0*x5/sin_theta,
         delta_theta_dot,
         delta_phi_dot,
         -c0*x7,
-        2.0*c0*(x9/sin_theta)/sin_theta,
+        -2.0*x9/sin_theta,
     )
 
 

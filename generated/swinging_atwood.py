@@ -36,6 +36,17 @@ State y of `rhs_variational`: a motion and its linear perturbation:
     delta_r_dot [m/s]
     delta_theta_dot [rad/s]
 
+State y of `rhs_sensitivity`: the same:
+    r [m]
+    sin_theta [1]
+    cos_theta [1]
+    r_dot [m/s]
+    theta_dot [rad/s]
+    delta_r [m]
+    delta_theta [rad]
+    delta_r_dot [m/s]
+    delta_theta_dot [rad/s]
+
 Parameters params:
     M [kg] > 0, default 3.0: mass that moves vertically
     m [kg] > 0, default 1.0: mass that swings
@@ -76,15 +87,26 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "swinging_atwood"
-DIGEST = "c7af83d1cc71c87b"
+DIGEST = "8274edbb98602f72"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
-FORMS = ("lagrangian", "hamiltonian", "rational", "variational")
+FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("r", "theta", "r_dot", "theta_dot"),
     "hamiltonian": ("r", "theta", "p_r", "p_theta"),
     "rational": ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot"),
     "variational": (
+        "r",
+        "sin_theta",
+        "cos_theta",
+        "r_dot",
+        "theta_dot",
+        "delta_r",
+        "delta_theta",
+        "delta_r_dot",
+        "delta_theta_dot",
+    ),
+    "sensitivity": (
         "r",
         "sin_theta",
         "cos_theta",
@@ -108,13 +130,12 @@ CALLS_FUNCTIONS = (
     "positions",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
-    "parameter_jacobian_hamiltonian",
     "energy_hamiltonian",
     "rational_state",
 )
 OPERATIONS = {
     "rhs": (18, 2),
-    "jacobian": (27, 4),
+    "jacobian": (25, 4),
     "parameter_jacobian": (24, 2),
     "energy": (17, 3),
     "mass_matrix": (3, 1),
@@ -122,12 +143,12 @@ OPERATIONS = {
     "hamiltonian_state": (5, 1),
     "rhs_hamiltonian": (21, 4),
     "jacobian_hamiltonian": (26, 4),
-    "parameter_jacobian_hamiltonian": (31, 4),
     "energy_hamiltonian": (17, 3),
     "lagrangian_state": (7, 3),
     "rational_state": (2, 0),
     "rhs_rational": (19, 2),
     "rhs_variational": (42, 3),
+    "rhs_sensitivity": (58, 3),
 }
 UNITS = {
     "M": "kg",
@@ -221,7 +242,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    27 operations, 4 of them on parameters alone.
+    25 operations, 4 of them on parameters alone.
 
     Parameters
     ----------
@@ -252,7 +273,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         (0.0, 0.0, 0.0, 1.0),
         (theta_dot*x0, -c1*sin_theta, 0.0, 2.0*r*x0),
         (
-            -(-(2.0*theta_dot*r_dot + g*sin_theta))/r/r,
+            (2.0*theta_dot*r_dot + g*sin_theta)/r/r,
             -g*cos(theta)/r,
             -2.0*theta_dot/r,
             -2.0*r_dot/r,
@@ -289,7 +310,7 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -c1*sin_theta,
         0.0,
         2.0*r*x0,
-        -(-(2.0*theta_dot*r_dot + g*sin_theta))/r/r,
+        (2.0*theta_dot*r_dot + g*sin_theta)/r/r,
         -g*cos(theta)/r,
         -2.0*theta_dot/r,
         -2.0*r_dot/r,
@@ -663,81 +684,6 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def parameter_jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.
-
-    31 operations, 4 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        r in m; theta in rad; p_r in kg m/s; p_theta in J s.
-    params : iterable of 3 floats
-        M, m in kg; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.
-    """
-    # inputs
-    r, theta, p_r, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    M, m, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    c1 = 1.0/m
-    # intermediate terms
-    x0 = -c0*(c0*p_r)
-    x1 = c1*p_theta/r
-    x2 = c1*x1
-    cos_theta = cos(theta)
-    x3 = r*sin(theta)
-    # outputs
-    return (
-        (x0, x0, 0.0),
-        (0.0, -x2/r, 0.0),
-        (-g, x1*x1/r + g*cos_theta - 2.0*m*x1*x2/r, -(M - m*cos_theta)),
-        (0.0, -g*x3, -m*x3),
-    )
-
-
-def parameter_jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian_hamiltonian` over arrays: the result has shape (4, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, p_r, p_theta = y
-    M, m, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    c1 = 1.0/m
-    # intermediate terms
-    x0 = -c0*(c0*p_r)
-    x1 = c1*p_theta/r
-    x2 = c1*x1
-    cos_theta = cos(theta)
-    x3 = r*sin(theta)
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        x0,
-        x0,
-        0.0,
-        0.0,
-        -x2/r,
-        0.0,
-        -g,
-        x1*x1/r + g*cos_theta - 2.0*m*x1*x2/r,
-        -(M - m*cos_theta),
-        0.0,
-        -g*x3,
-        -m*x3,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -942,7 +888,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
     M, m, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = 1.0/(M + m)
+    c0 = 1.0/(m + M)
     c1 = m*c0
     # intermediate terms
     x0 = theta_dot*r
@@ -973,7 +919,7 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y
     M, m, g = params
     # terms of the parameters alone
-    c0 = 1.0/(M + m)
+    c0 = 1.0/(m + M)
     c1 = m*c0
     # intermediate terms
     x0 = theta_dot*r
@@ -997,6 +943,100 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         delta_theta_dot,
         c1*x3,
         -x4/r/r,
+    )
+
+
+def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
+    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+
+    58 operations, 3 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 9 floats
+        r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s; delta_r in m;
+        delta_theta in rad; delta_r_dot in m/s; delta_theta_dot in rad/s.
+    params : iterable of 6 floats
+        delta_M, delta_m in kg; delta_g in m/s^2; M, m in kg; g in m/s^2.
+
+    Returns
+    -------
+    Vector
+        Time derivative of y: of the motion, then of the perturbation.
+    """
+    # inputs
+    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
+    delta_M, delta_m, delta_g, M, m, g = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = 1.0/(m + M)
+    c1 = m*g
+    # intermediate terms
+    x0 = theta_dot*r
+    x1 = m*theta_dot
+    x2 = M - m*cos_theta
+    x3 = c0*(x0*x1 - g*x2)
+    x4 = 2.0*r_dot*theta_dot + g*sin_theta
+    x5 = g*cos_theta
+    x6 = (
+        c1*sin_theta*delta_theta + delta_M*(g + x3) + delta_m*(x3 - (theta_dot*x0 + x5))
+        + delta_g*x2 - theta_dot*delta_r*x1 - 2.0*m*delta_theta_dot*x0
+    )
+    x7 = (
+        r*delta_theta*x5 + delta_g*sin_theta*r
+        + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot) - x4*delta_r
+    )
+    # outputs
+    return (
+        r_dot,
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        x3,
+        -x4/r,
+        delta_r_dot,
+        delta_theta_dot,
+        -c0*x6,
+        -x7/r/r,
+    )
+
+
+def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`rhs_sensitivity` over arrays: the result has shape (9, ...)."""
+    # inputs
+    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y
+    delta_M, delta_m, delta_g, M, m, g = params
+    # terms of the parameters alone
+    c0 = 1.0/(m + M)
+    c1 = m*g
+    # intermediate terms
+    x0 = theta_dot*r
+    x1 = m*theta_dot
+    x2 = M - m*cos_theta
+    x3 = c0*(x0*x1 - g*x2)
+    x4 = 2.0*r_dot*theta_dot + g*sin_theta
+    x5 = g*cos_theta
+    x6 = (
+        c1*sin_theta*delta_theta + delta_M*(g + x3) + delta_m*(x3 - (theta_dot*x0 + x5))
+        + delta_g*x2 - theta_dot*delta_r*x1 - 2.0*m*delta_theta_dot*x0
+    )
+    x7 = (
+        r*delta_theta*x5 + delta_g*sin_theta*r
+        + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot) - x4*delta_r
+    )
+    # outputs
+    return _stacked(
+        (9,),
+        y[0],
+        r_dot,
+        theta_dot*cos_theta,
+        -theta_dot*sin_theta,
+        x3,
+        -x4/r,
+        delta_r_dot,
+        delta_theta_dot,
+        -c0*x6,
+        -x7/r/r,
     )
 
 

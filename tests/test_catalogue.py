@@ -235,6 +235,13 @@ def test_other_forms_are_the_same_motion(module: ModuleType) -> None:
         form = Form(module, "variational", params)
         rates = form.rhs(t, form.from_ordinary(t, np.array([*y, *change])))
         assert_allclose(rates[-2 * n :], direction, rtol=1e-8, atol=1e-9)
+        if "sensitivity" in module.FORMS:
+            changes = np.arange(1.0, len(params) + 1)
+            constants = np.array(params) + 1e-30j * changes
+            direction = module.rhs_many(t, np.array(y) + 1e-30j * change, constants).imag / 1e-30
+            form = Form(module, "sensitivity", (*changes, *params))
+            rates = form.rhs(t, form.from_ordinary(t, np.array([*y, *change])))
+            assert_allclose(rates[-2 * n :], direction, rtol=1e-8, atol=1e-9)
         if "rational" in module.FORMS:
             rational = Form(module, "rational", params)
             rates = rational.rhs(t, rational.from_ordinary(t, np.array(y)))
@@ -266,15 +273,17 @@ def test_arrays_give_what_single_states_give(module: ModuleType) -> None:
         takes = inspect.signature(one).parameters
         for t, y, params in cases(module)[:2]:
             state = y
-            if name in ("rhs_rational", "rhs_variational"):
-                form = Form(module, name.removeprefix("rhs_"), params)
+            own = params
+            if name in ("rhs_rational", "rhs_variational", "rhs_sensitivity"):
+                form = Form(module, "lagrangian", params).in_form(name.removeprefix("rhs_"))
                 state = form.from_ordinary(t, np.resize(y, len(form.ordinary))).tolist()
-            given = {"t": t, "y": state, "params": params}
+                own = form.params
+            given = {"t": t, "y": state, "params": own}
             alone = np.array(one(*(given[key] for key in takes)))
             given = {
                 "t": np.full(3, t),
                 "y": np.tile(np.array(state)[:, None], 3),
-                "params": np.tile(np.array(params).reshape(-1, 1), 3),
+                "params": np.tile(np.array(own).reshape(-1, 1), 3),
             }
             together = many(*(given[key] for key in takes))
             if "y" not in takes and not params:

@@ -162,7 +162,7 @@ def test_the_rational_form_gives_the_same_rates(derivation: Derivation, module: 
             assert abs(rate - value) <= 2 * FEW * EPS * (weight + abs(value))
 
 
-@pytest.mark.parametrize("name", ["rhs_rational", "rhs_variational"])
+@pytest.mark.parametrize("name", ["rhs_rational", "rhs_variational", "rhs_sensitivity"])
 def test_rational_right_hand_sides_call_no_function(module: ModuleType, name: str) -> None:
     source = ast.parse(inspect.getsource(getattr(module, name)))
     called = {
@@ -212,11 +212,12 @@ def test_nothing_moves_at_the_equilibrium(module: ModuleType) -> None:
 def test_arrays_of_states_give_what_single_states_give(module: ModuleType) -> None:
     for name in formulas_names(module):
         cases = list(states(module))
-        if name in ("rhs_rational", "rhs_variational"):
-            forms = [Form(module, name.removeprefix("rhs_"), params) for _, params in cases]
+        if name in ("rhs_rational", "rhs_variational", "rhs_sensitivity"):
+            lagrangian = [Form(module, "lagrangian", params) for _, params in cases]
+            forms = [form.in_form(name.removeprefix("rhs_")) for form in lagrangian]
             cases = [
-                (form.from_ordinary(0.0, np.resize(y, len(form.ordinary))), params)
-                for form, (y, params) in zip(forms, cases, strict=True)
+                (form.from_ordinary(0.0, np.resize(y, len(form.ordinary))), form.params)
+                for form, (y, _) in zip(forms, cases, strict=True)
             ]
         y = np.array([y for y, _ in cases]).T
         params = np.array([params for _, params in cases]).T
@@ -313,7 +314,6 @@ def test_both_forms_give_the_report_s_motion() -> None:
         "mass_matrix",
         "jacobian",
         "jacobian_hamiltonian",
-        "parameter_jacobian_hamiltonian",
         "equilibrium",
         "linear",
     ],

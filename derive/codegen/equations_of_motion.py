@@ -119,14 +119,6 @@ class EquationsOfMotion:
             positions += [sp.sin(q), sp.cos(q)] if q in self.angles else [q]
         return [*self._nodes(positions), *self._qdot]
 
-    def _shifted(self, variable: sp.Symbol, vector: Sequence[Node]) -> list[Node]:
-        """(∂M/∂variable) vector."""
-        name, n = variable.name, len(vector)
-        return [
-            self._graph.sum([(self._derivative(row[j], name) * vector[j], 1) for j in range(n)])
-            for row in self._inertia[:n]
-        ]
-
     @property
     def equilibrium(self) -> list[Node]:
         """Coordinates q₀ of the equilibrium."""

@@ -14,7 +14,7 @@ from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
 
-Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "parameters"]
+Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "sensitivity", "parameters"]
 
 
 def _energy(derivation: Derivation) -> str:
@@ -102,13 +102,6 @@ SPECS = (
         "Jacobian of `rhs_hamiltonian`.",
         "Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].",
         exists=_is_small),
-    FunctionSpec("input_jacobian_hamiltonian", "hamiltonian", "state inputs",
-        "Derivatives of `rhs_hamiltonian` with respect to the inputs.",
-        "Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to input j."),
-    FunctionSpec("parameter_jacobian_hamiltonian", "hamiltonian", "state parameters",
-        "Derivatives of `rhs_hamiltonian` with respect to the parameters, without inputs.",
-        "Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to parameter j.",
-        exists=_is_small),
     FunctionSpec("energy_hamiltonian", "hamiltonian", "",
         "Hamiltonian H(q, p): `energy` by momenta.",
         "Energy in J."),
@@ -125,6 +118,10 @@ SPECS = (
         "Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear "
         "perturbation.",
         "Time derivative of y: of the motion, then of the perturbation."),
+    FunctionSpec("rhs_sensitivity", "sensitivity", "sensitivity",
+        "`rhs_variational` with perturbed parameters, whose perturbations precede them.",
+        "Time derivative of y: of the motion, then of the perturbation.",
+        exists=lambda derivation: bool(derivation.system.params) and _is_small(derivation)),
     FunctionSpec("equilibrium", "parameters", "q",
         "Coordinates at the equilibrium.",
         "{}.", _equilibrium, lambda derivation: derivation.equilibrium is not None),
@@ -151,8 +148,9 @@ class Function:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Names of the parameters, in order."""
-        return tuple(symbol.name for symbol in self.system.params)
+        """Names of the parameters, in order, in the sensitivity form after perturbations."""
+        changes = self.system.parameter_variations if self.form == "sensitivity" else ()
+        return tuple(symbol.name for symbol in (*changes, *self.system.params))
 
     def arguments(self, state: str) -> dict[str, tuple[str, ...]]:
         """Names of the components of the arguments, of which the state is called `state`."""
@@ -193,7 +191,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     # a function whose result has an axis of no entries does not exist
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
     sizes |= {name: count for name, count in constants.items() if count}
-    sizes |= {form: len(states[form]) for form in ("rational", "variational") if form in states}
+    sizes |= {form: len(states[form]) for form in states if form not in ("lagrangian", "hamiltonian")}
     functions = []
     for spec in SPECS:
         axes = spec.shape.split()
@@ -216,7 +214,8 @@ def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
     form = HamiltonianForm if spec.form == "hamiltonian" else LagrangianForm
     outputs = getattr(form(derivation), spec.name)
     angles = [q.name for q in derivation.system.q]
-    parameters = {symbol.name for symbol in derivation.system.params}
+    system = derivation.system
+    parameters = {s.name for s in (*system.params, *system.parameter_variations)}
     return Lowering(with_fewest_calls(outputs, angles), parameters)
 
 
@@ -233,4 +232,5 @@ def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
     if angles:
         states["rational"] = rational
     states["variational"] = (*rational, *(s.name for s in system.variations))
+    states["sensitivity"] = states["variational"]
     return states

@@ -89,23 +89,13 @@ class HamiltonianForm(EquationsOfMotion):
             lower.append(row)
         return [node for row in (*upper, *lower) for node in row]
 
-    @property
-    def input_jacobian_hamiltonian(self) -> list[Node]:
-        """Rows of ∂(q̇, ṗ)/∂u."""
-        return self._derivatives(self._system.u)
-
-    @property
-    def parameter_jacobian_hamiltonian(self) -> list[Node]:
-        """Rows of ∂(q̇, ṗ)/∂(parameters, without inputs)."""
-        return self._derivatives([part.symbol for part in self._system.parameters])
-
-    def _derivatives(self, constants: Sequence[sp.Symbol]) -> list[Node]:
-        """Rows of ∂(q̇, ṗ)/∂constants."""
-        changes = [self._velocity_change(s) for s in constants]
-        pairs = [*zip(constants, changes, strict=True)]
-        upper = [[change[i] for change in changes] for i in self._n]
-        lower = [[self._force_change(i, s, change) for s, change in pairs] for i in self._n]
-        return [node for row in (*upper, *lower) for node in row]
+    def _shifted(self, variable: sp.Symbol, vector: Sequence[Node]) -> list[Node]:
+        """(∂M/∂variable) vector."""
+        name, n = variable.name, len(vector)
+        return [
+            self._graph.sum([(self._derivative(row[j], name) * vector[j], 1) for j in range(n)])
+            for row in self._inertia[:n]
+        ]
 
     def _velocity_change(self, variable: sp.Symbol) -> list[Node]:
         """∂w/∂variable: M ∂w = -(∂M w + ∂b)."""

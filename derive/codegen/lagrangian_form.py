@@ -1,6 +1,6 @@
 """Lagrange's form, M q̈ = f, its rational form and its variational equations."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 
@@ -116,12 +116,10 @@ class LagrangianForm(EquationsOfMotion):
 
     def _derivatives(self, variables: Sequence[sp.Symbol]) -> list[Node]:
         """Rows of ∂(q̇, q̈)/∂variables: M ∂q̈ = ∂f - ∂M q̈."""
-        columns = []
-        for variable in variables:
-            change = [self._derivative(force, variable.name) for force in self._forcing]
-            shift = self._shifted(variable, self._accelerations)
-            right = [a - b for a, b in zip(change, shift, strict=True)]
-            columns.append(self._factorisation.solve(right))
+        columns = [
+            self._factorisation.solve([self._imbalance(i, variable) for i in self._n])
+            for variable in variables
+        ]
         upper = (
             self._graph.node(int(variable is velocity))
             for velocity in self._system.qdot
@@ -129,16 +127,50 @@ class LagrangianForm(EquationsOfMotion):
         )
         return [*upper, *(column[i] for i in self._n for column in columns)]
 
+    def _imbalance(self, i: int, variable: sp.Symbol) -> Node:
+        """(∂f - ∂M q̈)_i by a variable.
+
+        A common factor F of f_i and M_ij stays as it is, since (f - M q̈)_i ∂F is 0.
+        """
+        factor = self._row_factors[i]
+        entries = [self._forcing[i], *(self._inertia[i][j] for j in self._n)]
+        by_force, *by_masses = (
+            self._derivative(entry / factor, variable.name) for entry in entries
+        )
+        products = zip(by_masses, self._accelerations, strict=True)
+        terms = [(by_force, 1), *((change * x, -1) for change, x in products)]
+        return factor * self._graph.sum(terms)
+
+    @cached_property
+    def _row_factors(self) -> list[Node]:
+        """The common factor of f_i and row i of M."""
+        rows = []
+        for i, force in enumerate(self._forcing):
+            entries = [e for e in (force, *self._inertia[i][: len(self._n)]) if not e.is_number(0)]
+            powers = [entry.exponents() for entry in entries]
+            common = {f: min(p.get(f, 0) for p in powers) for f in powers[0]}
+            rows.append(self._graph.product((f, p) for f, p in common.items() if p > 0))
+        return rows
+
     @property
     def rhs_variational(self) -> list[Node]:
         """`rhs_rational` of the motion, then δq̇ and δq̈ = M⁻¹ (δf - δM q̈)."""
+        return self._with_perturbation({})
+
+    @property
+    def rhs_sensitivity(self) -> list[Node]:
+        """The same with perturbed parameters."""
+        system = self._system
+        changes = self._nodes(system.parameter_variations)
+        return self._with_perturbation(dict(zip(system.params, changes, strict=True)))
+
+    def _with_perturbation(self, of_parameters: Mapping[sp.Symbol, Node]) -> list[Node]:
         q, qdot = self._system.q, self._system.qdot
         changes = dict(zip((*q, *qdot), self._nodes(self._system.variations), strict=True))
-        shifts = {s: self._shifted(s, self._accelerations) for s in q}
-        change_of_forcing = []
-        for i, force in enumerate(self._forcing):
-            derivatives = ((self._derivative(force, s.name) * x, 1) for s, x in changes.items())
-            inertial = ((shift[i] * changes[s], -1) for s, shift in shifts.items())
-            change_of_forcing.append(self._graph.sum([*derivatives, *inertial]))
-        tangent = [*(changes[s] for s in qdot), *self._factorisation.solve(change_of_forcing)]
+        changes |= of_parameters
+        imbalances = [
+            self._graph.sum([(self._imbalance(i, s) * x, 1) for s, x in changes.items()])
+            for i in self._n
+        ]
+        tangent = [*(changes[s] for s in qdot), *self._factorisation.solve(imbalances)]
         return rationalised([*self._rational_rates, *tangent], [q.name for q in self.angles])

@@ -20,12 +20,14 @@ STATES: dict[Form, str] = {
     "hamiltonian": "State y = (q, p), in functions of the Hamiltonian form",
     "rational": "State y in functions of the rational form",
     "variational": "State y of `rhs_variational`: a motion and its linear perturbation",
+    "sensitivity": "State y of `rhs_sensitivity`: the same",
 }
 
 
 def units(system: System) -> dict[str, str]:
     """Units of all names."""
     rows = {part.symbol.name: part.unit for part in system.parameters_and_inputs}
+    rows |= {f"delta_{name}": unit for name, unit in rows.items()}
     for coordinate, qdot, p in zip(system.coordinates, system.qdot, system.p, strict=True):
         rows[coordinate.symbol.name] = coordinate.unit
         rows[qdot.name] = f"{coordinate.unit}/s"

@@ -91,6 +91,6 @@ def check_unique(names: Iterable[str], system: str) -> None:
     if repeated:
         raise SystemDefinitionError(
             f"system {system!r} uses a name twice: {', '.join(repeated)} (velocities are "
-            "named q_dot, accelerations q_ddot, momenta p_q, linear perturbations delta_q, sines "
+            "named q_dot, accelerations q_ddot, momenta p_q, perturbations delta_q, sines "
             "and cosines sin_q and cos_q)"
         )

@@ -159,6 +159,11 @@ class System:
         return tuple(variation(s) for s in self.q + self.qdot)
 
     @cached_property
+    def parameter_variations(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of perturbations of the parameters and, after them, of the inputs."""
+        return tuple(map(variation, self.params))
+
+    @cached_property
     def params(self) -> tuple[sp.Symbol, ...]:
         """Symbols of the parameters and, after them, of the inputs."""
         return tuple(part.symbol for part in self.parameters_and_inputs)
@@ -207,7 +212,8 @@ class System:
         declared = [s.name for s in (*self.q, *self.params)]
         for name in [self.name, *declared]:
             check_name(name, self.name)
-        derived = self.qdot + self.qddot + self.p + self.variations
+        check_unique(declared, self.name)
+        derived = self.qdot + self.qddot + self.p + self.variations + self.parameter_variations
         waves = (f"{wave}_{q.name}" for q in self.q for wave in ("sin", "cos"))
         check_unique([*declared, *(s.name for s in derived), *waves], self.name)
 

@@ -1,7 +1,8 @@
 """Forms of the equations of motion, and conversion of their states.
 
-An ordinary state is (q, q̇); the state of a form may differ. In the variational form, both also
-contain a linear perturbation of the state.
+An ordinary state is (q, q̇); the state of a form may differ. In the variational and the sensitivity
+form, both also contain a linear perturbation of the state. In the sensitivity form parameters are
+preceded by their perturbations.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,6 +17,7 @@ from solvers.equations.module import (
     function,
     has_function,
     named,
+    parameter_names,
     state_names,
     switching_functions,
 )
@@ -64,6 +66,16 @@ class Form:
         form = copy(self)
         form.params = tuple(params)
         return form
+
+    def in_form(self, name: str) -> "Form":
+        """The same equations in another form; parameters are not perturbed there."""
+        n = len(parameter_names(self.module, name)) - len(self.constants)
+        return Form(self.module, name, (*[0.0] * n, *self.constants), self.feedback, self.signs)
+
+    @property
+    def constants(self) -> tuple[Any, ...]:
+        """The parameters without their perturbations."""
+        return self.params[len(self.params) - len(self.module.PARAMETERS) :]
 
     @property
     def angles(self) -> list[tuple[int, int]]:
@@ -124,7 +136,7 @@ class Form:
     def switches(self, t: float, y: Array) -> tuple[Array, Array]:
         """Switching functions and their rates of change at an ordinary state."""
         state = y[: len(self.module.STATE)]
-        params = self._params_at(t, state)
+        params = self._params_at(t, state)[len(self.params) - len(self.constants) :]
         values, rates = self._value(function(self.module, "switches"), t, state, params)
         return values, rates
 

@@ -141,7 +141,22 @@ def header(module: GeneratedModule) -> Path | None:
     return path if path.is_file() else None
 
 
+def has_perturbation(form: str) -> bool:
+    """Whether states in a form contain a linear perturbation."""
+    return form in ("variational", "sensitivity")
+
+
 def state_names(module: GeneratedModule, form: str) -> tuple[str, ...]:
-    """Names of an ordinary state: (q, q̇), in the variational form also of a perturbation."""
-    changes = [f"delta_{name}" for name in module.STATE if form == "variational"]
-    return (*module.STATE, *changes)
+    """Names of an ordinary state: (q, q̇), and in some forms those of a perturbation."""
+    return (*module.STATE, *(perturbations(module.STATE) if has_perturbation(form) else ()))
+
+
+def parameter_names(module: GeneratedModule, form: str) -> tuple[str, ...]:
+    """Names of the parameters of a form, in the sensitivity form after their perturbations."""
+    changes = perturbations(module.PARAMETERS) if form == "sensitivity" else ()
+    return (*changes, *module.PARAMETERS)
+
+
+def perturbations(names: Iterable[str]) -> tuple[str, ...]:
+    """Names of perturbations."""
+    return tuple(f"delta_{name}" for name in names)

@@ -28,7 +28,7 @@ def conserves_energy(module: GeneratedModule) -> bool:
 def energies(form: Form, y: Array) -> Array:
     """Energies in J of ordinary states in columns."""
     with np.errstate(all="ignore"):
-        return np.asarray(form.module.energy_many(0.0, y[: len(form.module.STATE)], form.params))
+        return np.asarray(form.module.energy_many(0.0, y[: len(form.module.STATE)], form.constants))
 
 
 def motion_energy(form: Form, start: Array) -> Array:
@@ -41,7 +41,7 @@ def motion_energy(form: Form, start: Array) -> Array:
     own, at_rest = energies(form, start), start.copy()
     at_rest[n:] = 0.0
     potential = energies(form, at_rest)
-    rest = equilibrium_state(form.module, form.params)
+    rest = equilibrium_state(form.module, form.constants)
     above = own - (np.nan if rest is None else energies(form, rest))
     parts = [np.abs(part) for part in np.broadcast_arrays(own - potential, potential, above)]
     return np.asarray(np.fmax.reduce(parts))

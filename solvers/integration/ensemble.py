@@ -127,7 +127,7 @@ def ensemble(
     problem = validation.problem_at_rest(module, times.span, options)
     if times.differ and problem.schedule:
         raise ValueError("inputs are held between samples: t_span must be the same for all motions")
-    constants = validation.parameter_rows(module, params, len(states))
+    constants = validation.parameter_rows(module, params, len(states), problem.form.name)
     if inputs is not None:
         count = len(input_names(module))
         constants[:, -count:] = problem.form.params[-count:]
@@ -138,8 +138,9 @@ def ensemble(
     threads = validation.count(
         "workers", processors if workers is None else workers, 1, MOST_WORKERS
     )
+    own = constants[:, constants.shape[1] - len(module.PARAMETERS) :]
     some = [
-        (f"motion {k}: ", constants[k % len(constants)].tolist(), states[k].tolist())
+        (f"motion {k}: ", own[k % len(own)].tolist(), states[k].tolist())
         for k in examined(len(states))
     ]
     check_condition(module, some, problem.span[0])

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from solvers.equations.forms import fastest_form
+from solvers.equations.module import has_perturbation
 from solvers.integration import compiled_loop, python_loop
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.solution import Array
@@ -22,7 +23,7 @@ def global_error_estimate(problem: Problem, t: Array, y: Array) -> Array:
     """
     method = next(name for name in METHODS if name != problem.options.method)
     module, form = problem.form.module, problem.form.name
-    if form != "variational" and not problem.form.feedback:
+    if not has_perturbation(form) and not problem.form.feedback:
         form = fastest_form(module) if form == "lagrangian" else "lagrangian"
     rtol, atol = TIGHTEST, TIGHTEST
     if problem.h is None:

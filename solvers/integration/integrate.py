@@ -131,7 +131,7 @@ def integrate(
         method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated, inputs
     )
     problem = validation.problem(module, t_span, y0, params, options)
-    check_condition(module, [("", problem.form.params, problem.start.tolist())], problem.span[0])
+    check_condition(module, [("", problem.form.constants, problem.start.tolist())], problem.span[0])
     problem, program = compiled_loop.select(problem, lanes=False, switches=True)
     problem = replace(problem, max_steps=limit_steps(problem))
     outcome = Outcome.at_start(problem)
@@ -164,7 +164,7 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = ""
         detail += ": the states of more steps do not fit into memory, give times t_eval"
     states, energies = rows.T[: len(form.module.STATE)], None
     if energy:
-        energies = np.asarray(form.module.energy_many(times, states, form.params))
+        energies = np.asarray(form.module.energy_many(times, states, form.constants))
     return Solution(
         t=times,
         y=rows.T,

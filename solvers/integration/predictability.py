@@ -152,6 +152,6 @@ def _log_size(problem: Problem, t: Array, y: Array) -> Array:
     module, state = problem.form.module, y.shape[1] // 2
     n = state // 2
     change = y[:, state : state + n].T
-    masses = np.asarray(module.mass_matrix_many(t, y[:, :state].T, problem.form.params))
+    masses = np.asarray(module.mass_matrix_many(t, y[:, :state].T, problem.form.constants))
     with np.errstate(all="ignore"):
         return np.asarray(np.log((change * (masses * change).sum(axis=1)).sum(axis=0)) / 2)

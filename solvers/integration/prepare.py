@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from solvers.equations.mass_matrix import check_condition
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, parameter_names
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import REAL, Values
 from solvers.integration import compiled_loop, validation
@@ -84,7 +84,7 @@ def prepare(
         method, form, rtol, atol, h, (), (), max_steps, backend="compiled", compensated=compensated
     )
     problem = validation.problem_at_rest(module, (0.0, 1.0), options, params)
-    check_condition(module, [("", problem.form.params, None)])
+    check_condition(module, [("", problem.form.constants, None)])
     problem, program = compiled_loop.select(problem, lanes=False)
     assert program
     return Prepared(program.single, Batch(program, problem), problem)
@@ -114,7 +114,8 @@ class Prepared:
         self._single, self._task = single, ctypes.addressof(batch.task)
         self._from, self._to = map(ctypes.addressof, (self._start, self._end))
         module, names = problem.form.module, problem.form.ordinary
-        self._positive = [k for k, p in enumerate(module.PARAMETERS) if p in module.POSITIVE]
+        parameters = parameter_names(module, problem.form.name)
+        self._positive = [k for k, p in enumerate(parameters) if p in module.POSITIVE]
         self._inputs = len(input_names(module))
         self._limited = [k for k, q in enumerate(names) if q in module.POSITIVE]
         self._span_start = 0.0
@@ -210,7 +211,11 @@ class Prepared:
                 return
         except (TypeError, ValueError, LookupError, OverflowError):
             pass  # a mapping, or invalid
-        self._params[:] = validation.parameters(self._problem.form.module, params).tolist()
+        self._params[:] = self._checked_params(params)
+
+    def _checked_params(self, params: Any) -> list[Any]:
+        form = self._problem.form
+        return validation.parameters(form.module, params, form.name).tolist()
 
     def _set_inputs(self, inputs: Any) -> None:
         try:

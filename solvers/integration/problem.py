@@ -61,8 +61,7 @@ class Problem:
 
     def with_form(self, name: str) -> "Problem":
         """The same problem in another form with the same ordinary state."""
-        form = self.form
-        return self.with_form_of(Form(form.module, name, form.params, form.feedback, form.signs))
+        return self.with_form_of(self.form.in_form(name))
 
     def with_form_of(self, form: Form) -> "Problem":
         """The same problem with another form, or other signs of switching functions."""

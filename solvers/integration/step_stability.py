@@ -111,7 +111,7 @@ def _rates_at_start(problem: Problem, *, with_equilibrium: bool) -> NDArray[np.c
     if not has_function(module, "jacobian"):
         return np.empty(0, complex)
     states = [problem.start[: len(module.STATE)]]
-    if with_equilibrium and (rest := equilibrium_state(module, problem.form.params)) is not None:
+    if with_equilibrium and (rest := equilibrium_state(module, problem.form.constants)) is not None:
         states.append(rest)
     return np.concatenate([_rates(problem, state) for state in states])
 
@@ -120,7 +120,7 @@ def _rates(problem: Problem, state: Array) -> NDArray[np.complex128]:
     """Rates of the modes in 1/s at a state, without those that grow; none if they are unknown."""
     begin, end = problem.span
     try:
-        jacobian = np.array(problem.form.module.jacobian(begin, state, problem.form.params))
+        jacobian = np.array(problem.form.module.jacobian(begin, state, problem.form.constants))
     except ArithmeticError:
         return np.empty(0, complex)
     if not np.isfinite(jacobian).all():

@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule, state_names
+from solvers.equations.module import (
+    GeneratedModule,
+    parameter_names,
+    perturbations,
+    state_names,
+)
 from solvers.equations.quantities import Values, quantities, real_number, real_numbers
 from solvers.integration.events import Limit
 from solvers.integration.inputs import Held, Schedule, controlled, given
@@ -48,7 +53,7 @@ def problem(
     if options.compensated and options.backend == "python":
         raise ValueError("compensated = True needs a compiled loop, not backend 'python'")
     span, method, name = time_span(t_span), options.method, options.form or "lagrangian"
-    form = Form(module, name, parameters(module, params).tolist())
+    form = Form(module, name, parameters(module, params, name).tolist())
     form, schedule = _with_inputs(form, options.inputs, span)
     start = initial_state(module, y0, name)
     tableau = None if method in SCIPY else load(str(method))
@@ -97,12 +102,12 @@ def problem_at_rest(
     check_module(module)
     names = state_names(module, options.form or "lagrangian")
     rest = [float(name in module.POSITIVE) for name in names]
-    return problem(module, t_span, rest, module.DEFAULTS if params is None else params, options)
+    return problem(module, t_span, rest, {} if params is None else params, options)
 
 
-def parameters(module: GeneratedModule, values: Values) -> Array:
-    """Parameters in the order of the module; a mapping is completed by default values."""
-    return _vector("params", _parameters(module, values), module.PARAMETERS)
+def parameters(module: GeneratedModule, values: Values, form: str = "lagrangian") -> Array:
+    """Parameters in the order of the form; a mapping is completed by default values."""
+    return _vector("params", _parameters(module, values, form), parameter_names(module, form))
 
 
 def initial_state(module: GeneratedModule, values: Values, form: str = "lagrangian") -> Array:
@@ -110,11 +115,13 @@ def initial_state(module: GeneratedModule, values: Values, form: str = "lagrangi
     return _vector("y0", _states(module, values, form), state_names(module, form))
 
 
-def parameter_rows(module: GeneratedModule, values: Values, motions: int) -> Array:
+def parameter_rows(
+    module: GeneratedModule, values: Values, motions: int, form: str = "lagrangian"
+) -> Array:
     """Parameters, component first, as rows: one for all motions or one for each."""
-    array = _parameters(module, values)
+    array = _parameters(module, values, form)
     columns = array[:, np.newaxis] if array.ndim == 1 else array
-    rows = _rows("params", columns, module.PARAMETERS)
+    rows = _rows("params", columns, parameter_names(module, form))
     if len(rows) not in (1, motions):
         raise ValueError(
             f"params holds values for {counted(len(rows), 'motion')}, but y0 has {motions}"
@@ -127,14 +134,18 @@ def state_rows(module: GeneratedModule, values: Values, form: str) -> Array:
     return _rows("y0", _states(module, values, form), state_names(module, form))
 
 
-def _parameters(module: GeneratedModule, values: Values) -> Array:
+def _parameters(module: GeneratedModule, values: Values, form: str) -> Array:
+    names = parameter_names(module, form)
     defaults = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
-    return quantities(module, "params", module.PARAMETERS, values, defaults)
+    defaults = dict.fromkeys(names, 0.0) | defaults
+    return quantities(module, "params", names, values, defaults)
 
 
 def _states(module: GeneratedModule, values: Values, form: str) -> Array:
     velocities = module.STATE[len(module.COORDINATES) :]
-    defaults = dict.fromkeys([*velocities, *(f"delta_{name}" for name in velocities)], 0.0)
+    # in the variational form, the perturbation is that of the state alone
+    perturbed = module.STATE if form == "sensitivity" else velocities
+    defaults = dict.fromkeys([*velocities, *perturbations(perturbed)], 0.0)
     return quantities(module, "y0", state_names(module, form), values, defaults)
 
 

@@ -216,6 +216,7 @@ class CNotation(Notation):
     """Literals and calls of the number type of a system's header."""
 
     system: str
+    first_sign: int = 0  # where parameters that only some functions have precede the others
 
     def decimal(self, value: Number) -> str:
         digits = super().decimal(value)
@@ -223,7 +224,7 @@ class CNotation(Notation):
         return f"{sign}{self.system.upper()}_NUMBER({digits.removeprefix('-')})"
 
     def switch(self, index: int, value: str) -> str:
-        return f"{self.system.upper()}_SWITCH({index}, {value})"
+        return f"{self.system.upper()}_SWITCH({self.first_sign + index}, {value})"
 
     def call(self, function: str, *arguments: str) -> str:
         return f"{self.system}_{super().call(function, *arguments)}"
@@ -235,7 +236,8 @@ class CBackend(Backend):
     suffix = ".h"
 
     def notation(self, function: Function) -> Notation:
-        return CNotation(function.system.name)
+        others = len(function.parameters) - len(function.system.params)
+        return CNotation(function.system.name, others)
 
     def comment(self, text: str) -> str:
         return f"    /* {text} */"

@@ -5,7 +5,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule, header, named, switching_functions
+from solvers.equations.module import (
+    GeneratedModule,
+    header,
+    named,
+    parameter_names,
+    switching_functions,
+)
 from solvers.integration.compiled.compiler import Library, build
 from solvers.integration.compiled.kernel_source import Equations
 
@@ -47,7 +53,7 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
             f"derive {name}"
         )
     rhs, jacobian = (f"{path.stem}_{named(stem, form)}" for stem in ("rhs", "jacobian"))
-    layout = Form(module, form, (0.0,) * len(module.PARAMETERS))
+    layout = Form(module, form, (0.0,) * len(parameter_names(module, form)))
     from_ordinary = [f"z[{i}] = y[{k}];" for k, i in layout.shared_columns]
     to_ordinary = [f"y[{k}] = z[{i}];" for k, i in layout.shared_columns]
     for a, (k, i) in enumerate(layout.angle_columns):
@@ -63,7 +69,7 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
         rhs,
         jacobian,
         state=len(layout.state),
-        parameters=len(module.PARAMETERS),
+        parameters=len(layout.params),
         ordinary=len(layout.ordinary),
         angles=layout.angles,
         from_ordinary=from_ordinary,
@@ -82,7 +88,7 @@ def native_rhs(
     ----------
     module : module
         A generated module, whose header stands beside it.
-    form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
+    form : {"lagrangian", "hamiltonian", "rational", "variational", "sensitivity"}, optional
         Which right-hand side.
     reproducible : bool, optional
         Whether every compiler must give the same bits, at some cost of speed.
@@ -91,7 +97,7 @@ def native_rhs(
     -------
     NativeRhs
         A function of the time in s, the state of this form, the array for its derivative, and the
-        parameters in the order of ``module.PARAMETERS``.
+        parameters in the order of ``module.PARAMETERS``, in the sensitivity form after their perturbations.
 
     Raises
     ------
