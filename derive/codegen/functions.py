@@ -191,7 +191,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     # a function whose result has an axis of no entries does not exist
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
     sizes |= {name: count for name, count in constants.items() if count}
-    sizes |= {form: len(states[form]) for form in states if form not in ("lagrangian", "hamiltonian")}
+    sizes |= {form: len(state) for form, state in states.items()}
     functions = []
     for spec in SPECS:
         axes = spec.shape.split()

@@ -138,9 +138,9 @@ def ensemble(
     threads = validation.count(
         "workers", processors if workers is None else workers, 1, MOST_WORKERS
     )
-    own = constants[:, constants.shape[1] - len(module.PARAMETERS) :]
+    unperturbed = constants[:, constants.shape[1] - len(module.PARAMETERS) :]
     some = [
-        (f"motion {k}: ", own[k % len(own)].tolist(), states[k].tolist())
+        (f"motion {k}: ", unperturbed[k % len(unperturbed)].tolist(), states[k].tolist())
         for k in examined(len(states))
     ]
     check_condition(module, some, problem.span[0])

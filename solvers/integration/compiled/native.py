@@ -97,7 +97,8 @@ def native_rhs(
     -------
     NativeRhs
         A function of the time in s, the state of this form, the array for its derivative, and the
-        parameters in the order of ``module.PARAMETERS``, in the sensitivity form after their perturbations.
+        parameters in the order of ``module.PARAMETERS``, in the sensitivity form after their
+        perturbations.
 
     Raises
     ------
