@@ -38,6 +38,7 @@ from solvers.sweeps.maps.first import First as First
 from solvers.sweeps.maps.lyapunov import Lyapunov as Lyapunov
 from solvers.sweeps.maps.samples import Samples as Samples
 from solvers.sweeps.maps.section import Section as Section
+from solvers.sweeps.maps.stroboscopic import Stroboscopic as Stroboscopic
 from solvers.sweeps.pool import Pool as Pool
 from solvers.sweeps.results import Results as Results
 from solvers.sweeps.run import partial_results as partial_results

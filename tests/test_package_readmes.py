@@ -234,7 +234,9 @@ def test_the_keys_and_sweeps_of_the_readme_are_those_of_the_code() -> None:
 
 
 def test_the_sweep_file_of_the_readme_runs(tmp_path: Path) -> None:
-    (file,) = blocks(SWEEPS, "toml")
+    file, *shipped = blocks(SWEEPS, "toml")
+    texts = {path.read_text(encoding="utf-8") for path in reading.FILES.iterdir()}
+    assert texts.issuperset(shipped)
     (tmp_path / "my_sweep.toml").write_text(file)
     definition = reading.find(str(tmp_path / "my_sweep.toml"), load_module)
     results = sweep(definition, tmp_path / "out")

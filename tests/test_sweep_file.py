@@ -15,7 +15,7 @@ from solvers.sweeps.reading import find
 @pytest.mark.parametrize(("change", "words"), [
     (('"double_pendulum"', '"double_pendlum"'), "no system is called|did you mean"),
     (("duration", "duratoin"), "no key 'duratoin' .did you mean 'duration'"),
-    (("duration = 30", ""), "'duration' is missing"),
+    (("duration = 30", ""), "duration is missing: give that of each motion"),
     (("duration = 30", 'duration = "30 kg"'), "duration: '30 kg' has another unit"),
     (("duration = 30", "duration = -1"), "duration = -1.0 must be positive"),
     (("[axes]", "[axis]"), "no key 'axis' .did you mean 'axes'"),

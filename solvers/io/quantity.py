@@ -6,15 +6,19 @@ brackets; `solvers.io.units` describes units.
 
 import ast
 import operator
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 from math import pi
+from types import MappingProxyType
+from typing import Any
 
-from solvers.io.suggestion import shortened
+from solvers.io.suggestion import did_you_mean, shortened
 from solvers.io.units import KNOWN, UNIT, UnitError, dimension
 
-#: Characters of the longest number.
+#: Characters of the longest number or formula, and a name in a formula.
 MAX_LENGTH = 100
-OPERATORS: dict[type[ast.AST], Callable[[float, float], float]] = {
+WORD = re.compile(r"[A-Za-z_]\w*")
+OPERATORS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
@@ -36,6 +40,23 @@ def quantity(value: object, unit: str) -> float:
     if not abs(number) < 1e308:  # NaN, infinity, or a whole number that is no float
         raise QuantityError(f"{shortened(value)} is not finite")
     return float(number)
+
+
+def formula(text: str, names: Mapping[str, Any]) -> Any:
+    """The value of an expression in which names stand for numbers or arrays."""
+    if len(text) > MAX_LENGTH:
+        raise QuantityError(f"{text[:20]!r}... is longer than a formula: {len(text)} characters")
+    try:
+        return _value(ast.parse(text.strip(), mode="eval").body, names)
+    except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
+        known = ", ".join(names)
+        words = [node for node in WORD.findall(text) if node not in (*names, "pi")]
+        hint = f": unknown name {words[0]!r}{did_you_mean(words[0], [*names])}" if words else ""
+        raise QuantityError(
+            f"{text!r} is no formula{hint}; use digits, pi, + - * / **, brackets and {known}"
+        ) from error
+    except ArithmeticError as error:
+        raise QuantityError(f"{text!r} has no value: {error}") from error
 
 
 def _parsed(text: str, unit: str) -> float:
@@ -72,16 +93,19 @@ def _factor(text: str, given: str, unit: str) -> float:
     return scale / expected
 
 
-def _value(node: ast.AST) -> float:
+def _value(node: ast.AST, names: Mapping[str, Any] = MappingProxyType({})) -> Any:
     match node:
+        case ast.Name(id=name) if name in names:
+            return names[name]
         case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
             return float(number)
         case ast.Name(id="pi"):
             return pi
         case ast.UnaryOp(op=ast.USub() | ast.UAdd() as op, operand=operand):
-            return -_value(operand) if isinstance(op, ast.USub) else _value(operand)
+            value = _value(operand, names)
+            return -value if isinstance(op, ast.USub) else value
         case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
-            result = OPERATORS[type(op)](_value(left), _value(right))
+            result = OPERATORS[type(op)](_value(left, names), _value(right, names))
             if isinstance(result, complex):
                 raise ValueError("a root of a negative number")
             return result

@@ -63,9 +63,9 @@ def run_equal_chunk(
 def arithmetic(sweep: Sweep, sample: Mapping[str, Array]) -> dict[str, str]:
     """The digest of the results of a sample of motions, and causes of differences, for messages."""
     short = sweep.unchecked(max_steps=min(sweep.max_steps, STEPS))
-    chunk, _, motions = computed(short, sample)
+    chunk, ensembles = computed(short, sample)
     results = [chunk, *_elementary(sweep)]
-    if motions:
+    for motions in ensembles:
         results += [motions.y, motions.t, motions.t_events]
     digest = hashlib.sha256(b"".join(np.ascontiguousarray(one).tobytes() for one in results))
     library = os.confstr("CS_GNU_LIBC_VERSION") if "CS_GNU_LIBC_VERSION" in os.confstr_names else ""
@@ -80,9 +80,7 @@ def arithmetic(sweep: Sweep, sample: Mapping[str, Array]) -> dict[str, str]:
 
 def _loop(sweep: Sweep) -> str:
     """The kind of loop that integrates the motions."""
-    problem = validation.problem_at_rest(
-        sweep.module, (0.0, sweep.duration), Options(**sweep.options)
-    )
+    problem = validation.problem_at_rest(sweep.module, (0.0, 1.0), Options(**sweep.options))
     _, program = compiled_loop.select(problem, lanes=True)
     if program is None:
         return "Python"

@@ -8,7 +8,7 @@ import numpy as np
 
 from solvers.equations.mass_matrix import Motion, examined
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import quantity
+from solvers.equations.quantities import positive, quantity, real_number
 from solvers.io.arguments import check_type
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Axes
@@ -78,6 +78,10 @@ def check_maps(
         raise ValueError("no maps: give at least one")
     for name, one in maps.items():
         check_type(f"maps[{name!r}]", one, Map, "a map, such as Final(('theta1',))")
+    samplings = {one.sampling: name for name, one in maps.items() if one.sample_count}
+    if len(samplings) > 1:
+        both = " and ".join(samplings.values())
+        raise ValueError(f"maps {both} have other times: all must have the same ones")
     counts = {one.sample_count for one in maps.values()} - {0}
     if len(counts) > 1:
         raise ValueError(f"maps have {sorted(counts)} samples: all must have the same number")
@@ -95,6 +99,25 @@ def check_maps(
             one.check(module, axes, values)
         except ValueError as error:
             raise ValueError(f"map {name}: {error}") from error
+
+
+def check_duration(maps: Mapping[str, Map], duration: float | None, skip: float) -> None:
+    """Check that exactly one of duration and maps determines the end of motions."""
+    periodic = next((name for name, one in maps.items() if one.sampling), "")
+    if real_number("skip", skip, "s") < 0:
+        raise ValueError(f"skip = {skip:g} must not be negative")
+    if not periodic:
+        if duration is None:
+            raise ValueError("duration is missing: give that of each motion in s")
+        if skip >= positive("duration", duration):
+            raise ValueError(f"skip = {skip:g} s must be less than duration = {duration:g} s")
+    elif duration is not None:
+        raise ValueError(
+            f"duration = {duration:g}, but `every`, `skip` and `count` of map {periodic} determine "
+            "it: leave it out"
+        )
+    elif skip:
+        raise ValueError(f"skip = {skip:g} s: give `skip` of map {periodic}, in periods, instead")
 
 
 def examined_motions(module: GeneratedModule, axes: Axes, values: Values) -> Iterator[Motion]:

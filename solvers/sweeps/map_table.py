@@ -6,6 +6,7 @@ from typing import Any
 
 from solvers.equations.module import GeneratedModule
 from solvers.io import toml_input
+from solvers.io.quantity import QuantityError, quantity
 from solvers.io.suggestion import did_you_mean, shortened
 from solvers.io.toml_input import InputError
 
@@ -33,9 +34,20 @@ class MapTable:
                 raise InputError(f"{self.path}.{key}: unknown component {word}; known are {known}")
         return names
 
-    def count(self, key: str) -> int:
-        """A positive number of values."""
-        return toml_input.whole(f"{self.path}.{key}", self.table.get(key), 1, MAX_COUNT)
+    def count(self, key: str, default: int | None = None) -> int:
+        """A number of values, 1 or more, or the default or more."""
+        least, value = 1 if default is None else default, self.table.get(key, default)
+        return toml_input.whole(f"{self.path}.{key}", value, least, MAX_COUNT)
+
+    def period(self, key: str) -> str | float:
+        """A time in s, or a formula of parameters, which is returned as it is."""
+        value, path = self.table.get(key), f"{self.path}.{key}"
+        if value is None:
+            raise InputError(f'{path} is missing: give a period such as "2*pi/Omega" or "0.5 s"')
+        try:
+            return quantity(value, "s")
+        except QuantityError:
+            return toml_input.text(path, value)  # checked with the sweep
 
     def number(self, key: str, unit: str, default: float) -> float:
         """A number in a unit."""

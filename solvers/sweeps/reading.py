@@ -19,7 +19,7 @@ from solvers.sweeps.checks import ENERGY, FROM_ENERGY, unit
 from solvers.sweeps.sweep import Sweep
 
 FILES = Path(__file__).parent / "files"
-REQUIRED = ("system", "duration", "axes", "maps")
+REQUIRED = ("system", "axes", "maps")
 #: Largest number of values along an axis, and of motions or steps.
 MAX_VALUES, MAX_COUNT = 10**7, 10**11
 #: Optional keys of a file that are arguments of `Sweep`, and how they are read.
@@ -28,6 +28,8 @@ OPTIONS: dict[str, Callable[[str, object], Any]] = {
     "method": toml_input.text,
     "rtol": partial(toml_input.number, unit="1"),
     "atol": partial(toml_input.number, unit="1"),
+    "duration": partial(toml_input.number, unit="s"),
+    "skip": partial(toml_input.number, unit="s"),
     "max_steps": partial(toml_input.whole, least=1, most=MAX_COUNT),
 }
 KEYS = (*REQUIRED, *OPTIONS, "initial", "parameters", "random")
@@ -63,8 +65,7 @@ def _sweep(path: Path, table: Mapping[str, Any], module: Callable[[str], Generat
         for key, one in toml_input.table("maps", table["maps"]).items()
     }
     axes, values = _axes(path, equations, table), _values(equations, table)
-    duration = toml_input.number("duration", table["duration"], "s")
-    return Sweep(equations, axes, maps, duration, values, name=path.stem, **options)
+    return Sweep(equations, axes, maps, values=values, name=path.stem, **options)
 
 
 def _values(module: GeneratedModule, table: Mapping[str, Any]) -> dict[str, float | str]:

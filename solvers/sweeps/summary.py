@@ -25,7 +25,7 @@ def summary(
     yield definition.title
     time = "" if seconds is None else f"; this run took {seconds:.3g} s"
     yield (
-        f"{definition.motions:,} motions of {definition.duration:g} s, "
+        f"{definition.motions:,} motions of {definition.extent}, "
         f"{load(definition.method).title}, {definition.form} form, rtol = {definition.rtol:g}{time}"
     )
     hints = {name: f" ({hint})" for name, hint in HINTS.items()}

@@ -1,7 +1,7 @@
 """The definition of a sweep: many motions of one system, and maps of them."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from importlib import import_module
@@ -15,14 +15,14 @@ from solvers.equations.forms import fastest_form
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
-from solvers.equations.quantities import positive
 from solvers.integration import validation
 from solvers.integration.problem import Options
 from solvers.io.arguments import check_type
 from solvers.runge_kutta.catalogue import load, names
 from solvers.sweeps import checks
-from solvers.sweeps.axes import Axes
+from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.maps import Map
+from solvers.sweeps.sampling import Sampling
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Sweep:
         Quantities that vary.
     maps : mapping of str to Map
         Maps by name.
-    duration : float
-        Duration of each motion in s.
+    duration : float, optional
+        Duration of each motion in s; none where a map has a period `every`, which determines it.
     values : mapping of str to float or str, optional
         Quantities that do not vary: coordinates, velocities, parameters and energy, in their
         units. Velocities that are not named are 0, parameters have their default. One velocity
@@ -49,6 +49,9 @@ class Sweep:
         Tolerances of each step, as in `solvers.integration.ensemble.ensemble`.
     max_steps : int, optional
         Largest number of steps of a motion.
+    skip : float, optional
+        Time in s at the start of each motion that no map includes: a transient. The equations are
+        integrated over it without perturbations and events.
     name, title : str, optional
         Name for files, and title for people.
 
@@ -71,18 +74,18 @@ class Sweep:
     module: GeneratedModule
     axes: Axes
     maps: Mapping[str, Map]
-    duration: float
+    duration: float | None = None
     values: Mapping[str, float | str] = field(default_factory=dict)
     method: str = "verner853"
     rtol: float = 1e-9
     atol: float = 1e-12
     max_steps: int = 1_000_000
+    skip: float = 0.0
     name: str = "sweep"
     title: str = "a sweep"
 
     def __post_init__(self) -> None:
         validation.check_module(self.module)
-        positive("duration", self.duration)
         check_type("axes", self.axes, Axes, "a Grid, Random or Table")
         check_type("maps", self.maps, Mapping, "a mapping of names to maps")
         check_type("values", self.values, Mapping, "a mapping of names to numbers")
@@ -94,9 +97,12 @@ class Sweep:
         checks.check_names(self.module, self.axes, self.values)
         checks.check_energy(self.module, (*self.axes.smallest, *self.values), self.values)
         checks.check_maps(self.module, self.axes, self.maps, self.values)
-        validation.problem_at_rest(self.module, (0.0, self.duration), Options(**self.options))
+        checks.check_duration(self.maps, self.duration, self.skip)
+        validation.problem_at_rest(self.module, (0.0, 1.0), Options(**self.options))
         some = checks.examined_motions(self.module, self.axes, self.values)
         check_condition(self.module, some, stacklevel=4)
+        for _, params, _ in checks.examined_motions(self.module, self.axes, self.values):
+            self.times([np.array([value]) for value in params])  # periods must be positive
 
     def __getstate__(self) -> dict[str, Any]:
         """A module cannot be pickled: its source takes its place."""
@@ -120,8 +126,30 @@ class Sweep:
 
     @property
     def samples(self) -> int:
-        """Number of evenly spaced times at which states are stored, both ends included."""
+        """Number of times at which states are stored."""
         return max(one.sample_count for one in self.maps.values())
+
+    @property
+    def sampling(self) -> Sampling | None:
+        """Multiples of a period at which states are stored, if a map has any."""
+        return next(filter(None, (one.sampling for one in self.maps.values())), None)
+
+    def times(self, params: Sequence[Array]) -> tuple[Array, Array]:
+        """Ends and sample times in s, in one row or a row for each set of parameters."""
+        if self.sampling:
+            times = self.sampling.times(self.module, params)
+            return times[:, -1], times
+        assert self.duration is not None
+        samples = np.linspace(self.skip, self.duration, self.samples)
+        return np.array([self.duration]), samples[np.newaxis]
+
+    @property
+    def extent(self) -> str:
+        """Duration of each motion, in words."""
+        if self.sampling:
+            unit = f" of {self.sampling.every}" + " s" * (not isinstance(self.sampling.every, str))
+            return f"{self.sampling.skip + self.sampling.count - 1} periods{unit}"
+        return f"{self.duration:g} s"
 
     @property
     def options(self) -> dict[str, Any]:
@@ -167,6 +195,7 @@ class Sweep:
             "system": self.module.SYSTEM,
             "equations": hashlib.sha256(generated.read_bytes()).hexdigest(),
             "duration": self.duration,
+            "skip": self.skip,
             "values": dict(sorted(self.values.items())),
             "method": self.method,
             **self._limits,

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,49 +31,82 @@ def run_chunk(
     sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
 ) -> NDArray[np.void]:
     """Integrate motions and compute their maps; NaN for motions that fail."""
-    chunk, runs, motions = computed(sweep, columns, stop)
-    if motions:
-        failed = runs[~motions.success]
-        for name in sweep.maps:
-            chunk[name][failed] = np.nan
-    return chunk
+    return computed(sweep, columns, stop)[0]
 
 
 def computed(
     sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
-) -> tuple[NDArray[np.void], NDArray[np.intp], Ensemble | None]:
-    """A chunk with maps of all motions, the indices of those integrated, and these, if any."""
+) -> tuple[NDArray[np.void], list[Ensemble]]:
+    """A chunk with the maps of all motions, and the motions that were integrated."""
     module, maps = sweep.module, sweep.maps
     starts, params, status = initial_states(sweep, columns)
     chunk = np.zeros(len(status), sweep.dtype)
     for name in sweep.dtype.names or ():
         chunk[name] = status if name == "status" else columns.get(name, np.nan)
-    runs, motions = np.flatnonzero(status == 0), None
+    runs = np.flatnonzero(status == 0)
+    ensembles = []
     if len(runs):
         starts, params = starts[runs], [column[runs] for column in params]
+        if sweep.skip:
+            starts, transient = after_transient(sweep, starts, params, stop)
+            ensembles.append(transient)
         motions = integrated(sweep, starts, params, stop)
+        ensembles.append(motions)
         first = 0
         for name, one in maps.items():
             events = slice(first, first + len(one.events(module)))
             first = events.stop
-            chunk[name][runs] = one.values(Motions(module, starts, params, motions, events))
+            chunk[name][runs] = one.values(
+                Motions(module, sweep.skip, starts, params, motions, events)
+            )
+        ends, success = motions.status, motions.success
+        for transient in ensembles[:-1]:
+            ends = np.where(transient.success, ends, transient.status)
+            success &= transient.success
         for end, code in CODES.items():
-            chunk["status"][runs[motions.status == end]] = code
-    return chunk, runs, motions
+            chunk["status"][runs[ends == end]] = code
+        for name in maps:
+            chunk[name][runs[~success]] = np.nan
+    return chunk, ensembles
+
+
+def after_transient(
+    sweep: Sweep, starts: Array, params: list[Array], stop: StopFlag | None
+) -> tuple[Array, Ensemble]:
+    """States at `sweep.skip`, and the motions up to there; those that fail keep their start."""
+    module, form = sweep.module, sweep.unchecked(maps={}).form
+    n = len(module.STATE)
+    options = sweep.options | {"form": form}
+    span = 0.0, sweep.skip
+    motions = _integrate(sweep, span, starts[:, :n], params, stop, options)
+    return np.hstack([np.where(motions.success, motions.y, starts.T[:n]).T, starts[:, n:]]), motions
 
 
 def integrated(
     sweep: Sweep, starts: Array, params: list[Array], stop: StopFlag | None = None
 ) -> Ensemble:
-    """The motions, in one thread."""
+    """The motions after `sweep.skip`, in one thread."""
     maps = sweep.maps.values()
-    events = [event for one in maps for event in one.events(sweep.module)]
+    events = [(event, one.skip) for one in maps for event in one.events(sweep.module)]
+    ends, samples = sweep.times(params)
     options = sweep.options | {
-        "events": [replace(event, terminal=sweep.ends_at_event) for event in events],
+        "events": [replace(event, terminal=sweep.ends_at_event) for event, _ in events],
+        "skip": [skip for _, skip in events],
         "occurrences": max(one.occurrences for one in maps),
-        "t_eval": np.linspace(0, sweep.duration, sweep.samples) if sweep.samples else None,
+        "t_eval": samples if samples.size else None,
     }
-    span, constants = (0.0, sweep.duration), np.stack(params) if params else ()
+    return _integrate(sweep, (sweep.skip, ends), starts, params, stop, options)
+
+
+def _integrate(
+    sweep: Sweep,
+    span: tuple[float, float | Array],
+    starts: Array,
+    params: list[Array],
+    stop: StopFlag | None,
+    options: Mapping[str, Any],
+) -> Ensemble:
+    constants = np.stack(params) if params else ()
     with ignore_predictability(), checked_before():
         motions = ensemble(sweep.module, span, starts.T, constants, workers=1, stop=stop, **options)
     if (motions.status == Status.INTERRUPTED).any():
@@ -82,8 +116,8 @@ def integrated(
 
 def mean_evaluations(sweep: Sweep, columns: Mapping[str, Array]) -> float:
     """Mean number of evaluations of the right-hand side for each of some motions."""
-    chunk, _, motions = computed(sweep, columns)
-    return (1 + int(motions.nfev.sum() if motions else 0)) / len(chunk)
+    chunk, ensembles = computed(sweep, columns)
+    return (1 + sum(int(motions.nfev.sum()) for motions in ensembles)) / len(chunk)
 
 
 def chunk_length(sweep: Sweep, evaluations: float) -> int:

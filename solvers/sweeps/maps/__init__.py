@@ -11,6 +11,7 @@ from solvers.io.arguments import check_texts
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.sampling import Sampling
 
 if TYPE_CHECKING:  # workers do not load matplotlib
     from matplotlib.axes import Axes as Panel
@@ -26,6 +27,7 @@ class Motions:
     """Integrated motions as input of a map; `events` selects its own in the ensemble."""
 
     module: GeneratedModule
+    begin: float  # time in s of the starts
     starts: Array
     params: list[Array]
     ensemble: Ensemble
@@ -64,6 +66,8 @@ class Map:
     is_variational: ClassVar[bool] = False
     #: Whether the first event of the map may end the motion.
     ends_motion: ClassVar[bool] = False
+    #: Number of occurrences of each event that come first and are not stored.
+    skip: int = 0
     #: Positions at rest: motions with less energy than the lowest have no event.
     barrier: tuple[Mapping[str, float], ...] = ()
 
@@ -89,8 +93,13 @@ class Map:
 
     @property
     def sample_count(self) -> int:
-        """Number of evenly spaced times at which states are stored."""
+        """Number of times at which states are stored; evenly spaced without a `sampling`."""
         return 0
+
+    @property
+    def sampling(self) -> Sampling | None:
+        """Multiples of a period at which states are stored; the motion ends with the last."""
+        return None
 
     @property
     def occurrences(self) -> int:
@@ -120,6 +129,8 @@ class Map:
                 hint, known = did_you_mean(name, module.STATE), ", ".join(module.STATE)
                 raise ValueError(f"unknown component {name[:50]!r}{hint}; known are {known}")
         self.events(module)
+        if self.sampling:
+            self.sampling.check(module)
         if self.uses_energy and has_function(module, "power"):
             raise ValueError(f"{module.SYSTEM} does not conserve its energy")
 

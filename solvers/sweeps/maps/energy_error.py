@@ -33,4 +33,4 @@ class EnergyError(Map):
             motions.module.energy_many,
         )
         after = np.asarray(energy(ensemble.t, ensemble.y[:n], motions.params))
-        return after - np.asarray(energy(0.0, motions.starts[:, :n].T, motions.params))
+        return after - np.asarray(energy(motions.begin, motions.starts[:, :n].T, motions.params))

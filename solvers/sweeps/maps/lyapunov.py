@@ -31,4 +31,4 @@ class Lyapunov(Map):
     is_variational = True
 
     def values(self, motions: Motions) -> Array:
-        return motions.ensemble.growth / motions.ensemble.t
+        return motions.ensemble.growth / (motions.ensemble.t - motions.begin)

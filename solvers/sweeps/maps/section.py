@@ -17,7 +17,7 @@ DIRECTIONS = {"both": 0, "up": 1, "down": -1}
 
 @dataclass(frozen=True)
 class Section(CountedMap):
-    """Poincaré section: components at the first `count` crossings of `where` = `value`.
+    """Poincaré section: components at `count` crossings of `where` = `value`, after `skip` others.
 
     The start of a motion does not count as a crossing.
 
@@ -26,13 +26,15 @@ class Section(CountedMap):
     of : tuple of str
         Components of the state that are stored.
     count : int
-        Number of crossings, counted from the start.
+        Number of crossings.
     where : str
         The component that crosses the value.
     value : float
         The value, in the component's unit.
     direction : {0, 1, -1}
         Both directions, upwards only, downwards only.
+    skip : int
+        Number of crossings before the first that is stored.
 
     Examples
     --------
@@ -43,8 +45,9 @@ class Section(CountedMap):
     where: str
     value: float = 0.0
     direction: int = 0
+    skip: int = 0
 
-    example = 'of = ["theta2"], count = 50, where = "theta1", value = 0, direction = "up"'
+    example = 'of = ["theta2"], count = 50, where = "theta1", value = 0, direction = "up", skip = 0'
     plot = "section"
     wraps_angles = True
 
@@ -53,7 +56,8 @@ class Section(CountedMap):
         where = table.choice("where", table.module.STATE)
         direction = DIRECTIONS[table.choice("direction", tuple(DIRECTIONS), "both")]
         value = table.number("value", table.module.UNITS[where], 0.0)
-        return cls(table.components("of"), table.count("count"), where, value, direction)
+        events = where, value, direction, table.count("skip", 0)
+        return cls(table.components("of"), table.count("count"), *events)
 
     @property
     def occurrences(self) -> int:

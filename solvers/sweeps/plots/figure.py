@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from functools import partial
 from itertools import product
-from math import ceil
+from math import ceil, prod
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from solvers.io import figures
 from solvers.io.notation import symbol
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.maps import Panels
+from solvers.sweeps.plots.diagram import diagram
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
 from solvers.sweeps.plots.quantity import Quantity, letter
 from solvers.sweeps.results import Results
@@ -20,6 +21,8 @@ from solvers.sweeps.status import GOOD
 
 #: Largest number of panels.
 MAX_PANELS = 12
+#: Width and height in inches of the figure of a single panel.
+ALONE = (8.4, 6.2)
 
 
 def figure(results: Results) -> Figure:
@@ -48,7 +51,8 @@ def figure(results: Results) -> Figure:
     shown = every[:MAX_PANELS]
     columns = min(3, len(shown))
     rows = ceil(len(shown) / columns)
-    title, size = definition.title.replace("$", r"\$"), (max(6.4, 5.4 * columns), 4.9 * rows + 0.5)
+    title, size = definition.title.replace("$", r"\$"), (5.4 * columns, 4.9 * rows + 0.5)
+    size = size if len(shown) > 1 else ALONE
     figure, axes = figures.panels(title, rows=rows, columns=columns, size=size)
     for panel, (subtitle, draw) in zip(axes, shown, strict=False):
         draw(panel)
@@ -69,8 +73,9 @@ def _remarks(results: Results) -> Iterator[str]:
     if "proved" in count:
         yield "white, inside the line: not enough energy"
     if "finished" in count and any(one.ends_motion for one in definition.maps.values()):
-        yield f"grey or empty: no event within {definition.duration:g} s"
-    if definition.samples and definition.motions > CURVES:
+        yield f"grey or empty: no event within {definition.extent}"
+    has_curves = any(one.plot == "curves" for one in definition.maps.values())
+    if has_curves and definition.motions > CURVES:
         yield f"about {CURVES} of {definition.motions:,} motions over time"
     yield from (f"{name}: {n:,} motions" for name, n in count.items() if name not in GOOD)
 
@@ -94,16 +99,34 @@ def _curves(name: str, results: Results) -> Panels:
 
 
 def _section(name: str, results: Results) -> Panels:
-    """A panel of crossings for each energy and each set of parameters."""
+    """A panel of points for each energy and each set of parameters.
+
+    Where these are more than `MAX_PANELS`, bifurcation diagrams over the longest of their axes.
+    """
     axes, definition = results.axes, results.definition
-    fixed = (ENERGY, *definition.module.PARAMETERS) if definition.axes.is_grid else ()
+    fixed = (ENERGY, *definition.module.PARAMETERS)
     names = [quantity for quantity in axes if quantity in fixed]
-    for indices in product(*(range(len(axes[quantity])) for quantity in names)):
-        group = dict(zip(names, indices, strict=True))
-        words = (f"{letter(q)} = {axes[q][k]:.4g} {results.unit(q)}" for q, k in group.items())
+    over = max(names, key=lambda axis: len(axes[axis]), default="")
+    if not definition.axes.is_grid:
+        names = names if len(axes) == len(names) == 1 else []
+    if prod(len(axes[quantity]) for quantity in names) <= MAX_PANELS:
+        over = ""
+    groups = [quantity for quantity in names if quantity != over]
+    for indices in product(*(range(len(axes[quantity])) for quantity in groups)):
+        group = dict(zip(groups, indices, strict=True))
+        words = [f"{letter(q)} = {axes[q][k]:.4g} {results.unit(q)}" for q, k in group.items()]
         selection: Any = tuple(group.get(quantity, slice(None)) for quantity in axes)
-        draw = partial(section, results=results, name=name)
-        yield ", ".join(words), partial(draw, selection=selection if fixed else ...)
+        selection = selection if definition.axes.is_grid else (...,)
+        if not over:
+            yield (
+                ", ".join(words),
+                partial(section, results=results, name=name, selection=selection),
+            )
+            continue
+        for k, component in enumerate(definition.maps[name].labels[0]):
+            quantity = Quantity(results, name, (k,))
+            title = ", ".join([f"{name}: {symbol(component)}", *words])
+            yield title, partial(diagram, quantity=quantity, axis=over, selection=selection)
 
 
 #: Panels of each kind of plot.

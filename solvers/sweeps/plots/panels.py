@@ -110,7 +110,7 @@ def curves(panel: Axes, *, quantity: Quantity) -> None:
     results, one = quantity.results, quantity.map
     motions = results.maps[quantity.name].reshape(-1, *one.shape)
     motions = motions[:: max(1, -(-len(motions) // CURVES)), quantity.index[0]]
-    times = np.linspace(0, results.definition.duration, one.sample_count)
+    times = results.definition.times([])[1][0]
     shades = mpl.colormaps["viridis"](np.linspace(0, 0.9, len(motions)))
     for y, colour in zip(motions, shades, strict=True):
         panel.plot(times, y, color=colour, linewidth=0.7)
