@@ -20,6 +20,8 @@ from solvers.integration.orbits.normal_mode import normal_mode_orbit as normal_m
 from solvers.integration.orbits.orbit_family import orbit_family as orbit_family
 from solvers.integration.orbits.periodic_orbit import periodic_orbit as periodic_orbit
 from solvers.integration.prepare import prepare as prepare
+from solvers.integration.sensitivities import Sensitivities as Sensitivities
+from solvers.integration.sensitivities import sensitivities as sensitivities
 from solvers.integration.solution import Solution as Solution
 from solvers.integration.solution import Status as Status
 from solvers.integration.stop_flag import StopFlag as StopFlag
