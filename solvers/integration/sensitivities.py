@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +18,7 @@ from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import Options, Problem
 from solvers.integration.solution import Array
-from solvers.integration.tangents import kinks
+from solvers.integration.switching import check_smooth
 from solvers.io.suggestion import did_you_mean
 
 #: Occurrences of each event that are stored at first.
@@ -122,8 +123,7 @@ def sensitivities(
     located = [events] if isinstance(events, Event) else [*events]
     options = Options("verner98", "lagrangian", rtol, atol, events=located, inputs=inputs)
     problem = validation.problem(module, t_span, y0, params, options)
-    if problem.form.switching_count:
-        raise ValueError(kinks(module))
+    check_smooth(problem.form)
     names = _names(module, by)
     starts, values, units = _perturbed(problem, names)
     occurrences, most = 0, OCCURRENCES
@@ -186,14 +186,14 @@ def _collected(
         raise NotFinishedError(motions.status[k], float(motions.t[k]), state)
     y, derivatives = motions.y[:count, 0], motions.y[count:] / sizes
     t_events, y_events, of_times, of_states = [], [], [], []
-    for i, event in enumerate(problem.events):
+    for i, event in enumerate(cast("list[Event]", problem.events)):
         n = int(motions.occurred[:, i].min())
         t, states = motions.t_events[:, i, :n], motions.y_events[:, :, i, :n]
         rates = _rates(problem, t[0], states[:count, 0])
         changes = states[count:] / sizes[:, np.newaxis]
         with np.errstate(divide="ignore", invalid="ignore"):
-            k = problem.form.module.STATE.index(event.name)
-            change_of_time = -changes[k] / rates[k]
+            component = problem.form.module.STATE.index(event.name)
+            change_of_time = -changes[component] / rates[component]
             changes = changes + rates[:, np.newaxis] * change_of_time
         t_events.append(t[0])
         y_events.append(states[:count, 0])

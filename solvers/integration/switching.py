@@ -53,6 +53,15 @@ class SlidingError(ArithmeticError):
     name: str
 
 
+def check_smooth(form: Form) -> None:
+    """Refuse equations with kinks or jumps, where variational equations do not hold."""
+    if form.switching_count:
+        raise ValueError(
+            f"forces of {form.module.SYSTEM} have kinks or jumps, where variational equations do "
+            "not hold: replace abs, sign, min, max and Piecewise by smooth functions"
+        )
+
+
 def held(problem: "Problem", t: float, y: Array) -> "Problem":
     """The problem with the signs of its switching functions at an ordinary state held.
 

@@ -13,6 +13,7 @@ from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import Options, Outcome, Problem
 from solvers.integration.solution import Array, Status
+from solvers.integration.switching import check_smooth
 
 METHOD = "verner98"
 
@@ -55,11 +56,7 @@ class Tangents:
     ) -> None:
         options = Options(METHOD, "variational", rtol, atol)
         problem = validation.problem_at_rest(module, t_span, options, params)
-        if problem.form.switching_count:
-            raise ValueError(
-                f"forces of {module.SYSTEM} have kinks or jumps, where variational equations do "
-                "not hold: replace abs, sign, min, max and Piecewise by smooth functions"
-            )
+        check_smooth(problem.form)
         self._problem, self._program = compiled_loop.select(problem, lanes=True)
         self._batch: Batch | None = None
         self.t, self.changes = problem.span[0], changes
