@@ -212,3 +212,21 @@ def test_crossings_of_the_benchmark_are_those_of_another_method() -> None:
         event = Event(dp, name, value)
         found = integrate(dp, (0, END), START, dp.DEFAULTS, events=event, **options).t_events[0]
         assert found == pytest.approx(exact, abs=1e-12)
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+@pytest.mark.parametrize(
+    ("method", "most"),  # evaluations by three shorter steps, and at the ends of the bracket
+    [("dp54", 3 * 6 + 2), ("verner98", 3 * 16 + 2), ("radau3", 3 * 10 + 2), ("gauss8", 3 * 24 + 2)],
+)
+def test_two_or_three_shorter_steps_locate_a_crossing(method: str, most: int, backend: str) -> None:
+    options = {"method": method, "rtol": 1e-9, "atol": 1e-9, "t_eval": [END], "backend": backend}
+    for (name, value), exact in CROSSINGS.items():
+        far, near = (
+            integrate(dp, (0, END), START, dp.DEFAULTS, events=Event(dp, name, level), **options)
+            for level in (1e6, value)
+        )
+        assert len(near.t_events[0]) == len(exact)
+        assert (near.nfev - far.nfev) / len(exact) <= most
+        there = near.y_events[0][:, dp.STATE.index(name)]
+        assert there == pytest.approx(value, abs=1e-13 * (1 + abs(value)))

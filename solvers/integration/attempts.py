@@ -39,13 +39,25 @@ class Accepted:
 
     def state(self, t: float) -> Array:
         """The state at a time within the step, by a shorter step from its start."""
-        if t == self.end.t:
-            return self.end.y
+        if t in (self.start.t, self.end.t):
+            return self.start.y if t == self.start.t else self.end.y
         start, polynomial = self.start, self.step.polynomial
         guess = polynomial.within() if polynomial else start.last
         step = self.attempts.stepper.step
         y = step(start.t, start.y, t - start.t, start.derivative, guess).y
         return self.attempts.normalise(y)
+
+    def between(self, begin: float, y0: Array, end: float, y1: Array) -> Callable[[Array], Array]:
+        """States, in columns, between those at two near times, by the cubic."""
+        derivative, width, change = self.attempts.stepper.derivative, end - begin, y1 - y0
+        first, last = width * derivative(begin, y0) - change, width * derivative(end, y1) - change
+
+        def curve(times: Array) -> Array:
+            x = ((times - begin) / width)[:, np.newaxis]
+            states = y0 + x * (change + (1 - x) * ((1 - x) * first - x * last))
+            return np.stack([self.attempts.normalise(y) for y in states], axis=1)
+
+        return curve
 
     def curves(self) -> Iterator[Callable[[Array], Array]]:
         """States at several times, in columns, by polynomials that are more accurate each."""

@@ -16,6 +16,7 @@ from numpy.polynomial.chebyshev import (
     chebroots,
     chebtrim,
     chebval,
+    chebvander,
 )
 from scipy.optimize import minimize_scalar
 
@@ -27,6 +28,7 @@ ROUGH_DEGREE, DEGREE = 8, 24
 #: Parts of a step at which the first one is known.
 ROUGH_NODES = (chebpts2(ROUGH_DEGREE + 1) + 1) / 2
 TO_BERNSTEIN = np.linalg.inv(bernstein_values(ROUGH_DEGREE, ROUGH_NODES))
+TO_CHEBYSHEV = np.linalg.inv(chebvander(2 * ROUGH_NODES - 1, ROUGH_DEGREE))
 #: Parts at which the second one is known.
 NODES = (chebpts1(DEGREE + 1) + 1) / 2
 #: Slopes err by less than this factor; extrema by less than this part of the bend.
@@ -46,6 +48,22 @@ class Extremum(NamedTuple):
     end: float
 
 
+class Shape(NamedTuple):
+    """The course of an event in a step, by Chebyshev coefficients.
+
+    It occurs at most once between its `extrema`, unless it may recur and these are unknown.
+    """
+
+    polynomial: Array
+    extrema: list[Extremum]
+    recurs: bool = False
+
+
+def rough_polynomial(values: Array) -> Array:
+    """Chebyshev coefficients of the event with these values at `ROUGH_NODES`."""
+    return np.asarray(TO_CHEBYSHEV @ values)
+
+
 def may_recur(values: Array) -> bool:
     """Whether an event, with these values at `ROUGH_NODES`, may occur several times in a step.
 
@@ -53,6 +71,8 @@ def may_recur(values: Array) -> bool:
     the slopes, the value is monotonic; it differs from the chord by less than a quarter of that sum
     times the degree.
     """
+    if not np.isfinite(values).all():
+        return False
     if values[0] == 0:
         return True
     c = TO_BERNSTEIN @ values
@@ -64,16 +84,17 @@ def may_recur(values: Array) -> bool:
     return bool(nearest <= ROUGH_DEGREE / 4 * bend)
 
 
-def separate_crossings(before: float, values: Array, after: float) -> list[Extremum]:
-    """Extrema at which an event, with these values at `NODES`, may have another sign than before.
+def separate_crossings(before: float, values: Array, after: float) -> Shape:
+    """The course of an event with these values at `NODES`.
 
-    These are extrema near 0, and the first of successive ones with the same sign, unless `before`
-    or `after`, the values at the ends, have it, too.
+    Its extrema are those at which it may have another sign than before: extrema near 0, and the
+    first of successive ones with the same sign, unless `before` or `after`, the values at the ends,
+    have it, too.
     """
-    c = chebfit(2 * NODES - 1, values, DEGREE)
-    c = chebtrim(c, ROUNDING * np.abs(values).max())
+    fitted = chebfit(2 * NODES - 1, values, DEGREE)
+    c = np.asarray(chebtrim(fitted, ROUNDING * np.abs(values).max()), float)
     if len(c) < 3:
-        return []
+        return Shape(c, [])
     margin = MARGIN * float(np.abs(values - before - NODES * (after - before)).max())
     roots = chebroots(chebder(c))
     real = np.sort(roots[(np.abs(roots.imag) < CLOSE) & (np.abs(roots.real) < 1)].real)
@@ -85,7 +106,7 @@ def separate_crossings(before: float, values: Array, after: float) -> list[Extre
         if is_near or not value * last > 0:
             kept.append(Extremum(part, value, end))
             last = 0.0 if is_near else value
-    return kept[:-1] if kept and last * after > 0 else kept
+    return Shape(c, kept[:-1] if kept and last * after > 0 else kept)
 
 
 def approach(

@@ -124,7 +124,7 @@ def _step(
     try:
         if isinstance(trial, Rejected):
             return trial, False
-        return trial, recorder.advance(t, trial.state, trial.states, trial.curves())
+        return trial, recorder.advance(t, trial)
     except FAILURES as failure:
         return Rejected(h / 4, failure), False
 

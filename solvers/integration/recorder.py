@@ -1,23 +1,22 @@
 """Record the samples and events of the steps of an integration."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
-from scipy.optimize import brentq
 
 from solvers.integration.crossings import (
     NODES,
     ROUGH_NODES,
-    Extremum,
+    Shape,
     approach,
     may_recur,
+    rough_polynomial,
     separate_crossings,
 )
+from solvers.integration.location import Bracket, estimate, locate
 from solvers.integration.problem import EventFunction, Outcome, Problem
 from solvers.integration.solution import Array
-
-#: States at several times of a step, in columns.
-Curve = Callable[[Array], Array]
+from solvers.integration.step_states import Curve, EventCourse, OrdinaryStates, StepStates
 
 
 class Recorder:
@@ -50,35 +49,20 @@ class Recorder:
         self._outcome.y.append(y.T.copy())
         self._sampled += len(t)
 
-    def advance(
-        self,
-        end: float,
-        state: Callable[[float], Array],
-        states: Curve,
-        curves: Iterable[Curve],
-    ) -> bool:
+    def advance(self, end: float, step: StepStates) -> bool:
         """Record the step that ends at `end`; return whether an event ends the run.
 
-        `state` gives the state at a time within the step, in the form of the problem, `states`
-        those at several times in columns; where they raise `ArithmeticError`, nothing is recorded.
-        `curves` are approximations of these, each better than the one before.
+        Where states within the step raise `ArithmeticError`, nothing is recorded.
         """
-        t = self.t
-
-        def ordinary(time: float) -> Array:
-            if time == t:
-                return self.y.copy()
-            return self.form.to_ordinary(time, state(time), self.y, time - t)
-
-        values = [event(end, ordinary(end)) for event in self.events]
-        extrema = self._extrema(end, values, curves) if self.events else []
-        roots = self._roots(end, values, extrema, ordinary)
+        states = OrdinaryStates(self.form, self.t, self.y, step)
+        values = [event(end, states.at(end)) for event in self.events]
+        roots = self._roots(end, values, states, step.curves()) if self.events else []
         stops = bool(roots) and _is_terminal(self.events[roots[-1][0]])
         until = roots[-1][1] if stops else end
-        y, occurrences = ordinary(until), [(k, root, ordinary(root)) for k, root in roots]
+        y, occurrences = states.at(until), [(k, root, states.at(root)) for k, root in roots]
         times, sampled = self._due(until), y[:, np.newaxis]
         if self.samples is not None and len(times):
-            sampled = self.form.to_ordinary(times, states(times), self.y, times - t)
+            sampled = states.along(step.states, times)
         if len(times):
             self._sample(times, sampled)
         for k, root, y_event in occurrences:
@@ -88,35 +72,6 @@ class Recorder:
         self.t, self.y = self._outcome.end = until, y
         return stops
 
-    def _extrema(
-        self, end: float, values: list[float], curves: Iterable[Curve]
-    ) -> list[list[Extremum]]:
-        """Extrema of each event between which it occurs at most once in the step."""
-        begin, h, events = self.t, end - self.t, range(len(self.events))
-        approximations = iter(curves)
-        curve = next(approximations)
-
-        def along(curve: Curve, k: int, parts: Array) -> Array:
-            times = begin + parts * h
-            states = self.form.to_ordinary(times, curve(times), self.y, times - begin)
-            pairs = zip(times.tolist(), states.T, strict=True)
-            return np.array([self.events[k](time, y.copy()) for time, y in pairs])
-
-        recurring = []
-        for k in events:
-            inside = along(curve, k, ROUGH_NODES[1:-1])
-            rough = np.array([self._values[k], *inside, values[k]])
-            if np.isfinite(rough).all() and may_recur(rough):
-                recurring.append(k)
-        extrema: list[list[Extremum]] = [[] for _ in events]
-        if recurring:
-            *_, curve = curve, *approximations
-        for k in recurring:
-            better = along(curve, k, NODES)
-            if np.isfinite(better).all():
-                extrema[k] = separate_crossings(self._values[k], better, values[k])
-        return extrema
-
     def _due(self, until: float) -> Array:
         """The times up to `until` to record that are not recorded yet."""
         if self.samples is None or self._ascending is None:
@@ -124,54 +79,67 @@ class Recorder:
         due = int(np.searchsorted(self._ascending, self._direction * until, "right"))
         return self.samples[self._sampled : due]
 
+    def _shapes(
+        self, end: float, values: list[float], states: OrdinaryStates, curves: Iterable[Curve]
+    ) -> list[Shape]:
+        """The course of each event in the step."""
+        begin, h = self.t, end - self.t
+        approximations = iter(curves)
+        curve = next(approximations)
+
+        def along(curve: Curve, k: int, parts: Array) -> Array:
+            times = begin + parts * h
+            pairs = zip(times.tolist(), states.along(curve, times).T, strict=True)
+            return np.array([self.events[k](time, y.copy()) for time, y in pairs])
+
+        shapes = []
+        for k, value in enumerate(values):
+            inside = along(curve, k, ROUGH_NODES[1:-1])
+            rough = np.array([self._values[k], *inside, value])
+            shapes.append(Shape(rough_polynomial(rough), [], may_recur(rough)))
+        if any(shape.recurs for shape in shapes):
+            *_, curve = curve, *approximations
+        for k, shape in enumerate(shapes):
+            better = along(curve, k, NODES) if shape.recurs else np.array([np.nan])
+            if np.isfinite(better).all():
+                shapes[k] = separate_crossings(self._values[k], better, values[k])
+        return shapes
+
     def _roots(
-        self,
-        end: float,
-        values: list[float],
-        extrema: list[list[Extremum]],
-        ordinary: Callable[[float], Array],
+        self, end: float, values: list[float], states: OrdinaryStates, curves: Iterable[Curve]
     ) -> list[tuple[int, float]]:
         """The events of a step and their times, in order, up to the first that is terminal."""
-        t, h, crossings = self.t, end - self.t, []
-        for k, event in enumerate(self.events):
-            begin, before = t, self._values[k]
-
-            def value(part: float, event: EventFunction = event) -> float:
-                return event(t + part * h, ordinary(t + part * h))
-
-            for extremum in [*extrema[k], None]:
-                time, after = end, values[k]
-                if extremum:
-                    part, after = approach(extremum, (begin - t) / h, before, value)
-                    time = t + part * h
-                crossed = before != 0 and np.sign(before) != np.sign(after)
-                if extremum and after == 0:
-                    continue  # which side it is on is decided by the next extremum
-                if crossed and np.sign(after - before) * getattr(event, "direction", 0) >= 0:
-                    root = _root(event, ordinary, begin, time)
-                    crossings.append((abs(root - t), k, root))
-                before, begin = after, time
+        crossings = []
+        for k, shape in enumerate(self._shapes(end, values, states, curves)):
+            course = EventCourse(self.events[k], states)
+            for bracket in self._brackets(end, self._values[k], values[k], shape, course):
+                rise = bracket.far_value - bracket.near_value
+                if np.sign(rise) * getattr(self.events[k], "direction", 0) >= 0:
+                    guess = estimate(shape.polynomial, self.t, bracket)
+                    root = locate(bracket, guess, course)
+                    crossings.append((abs(root - self.t), k, root))
         crossings.sort()
         terminal = [n for n, (_, k, _) in enumerate(crossings, 1) if _is_terminal(self.events[k])]
         return [(k, root) for _, k, root in crossings[: terminal[0] if terminal else None]]
 
+    def _brackets(
+        self, end: float, before: float, after: float, shape: Shape, course: EventCourse
+    ) -> Iterator[Bracket]:
+        """Parts of the step in each of which an event, with these values at the ends, occurs."""
+        begin, h = self.t, end - self.t
+        for extremum in shape.extrema:
+            part, value = approach(
+                extremum, (begin - self.t) / h, before, lambda part: course.at(self.t + part * h)
+            )
+            if value == 0:
+                continue  # which side it is on is decided by the next extremum
+            time = self.t + part * h
+            if before * value < 0:
+                yield Bracket(begin, before, time, value, h)
+            before, begin = value, time
+        if before != 0 and np.sign(before) != np.sign(after):
+            yield Bracket(begin, before, end, after, h)
+
 
 def _is_terminal(event: EventFunction) -> bool:
     return bool(getattr(event, "terminal", False))
-
-
-def _root(event: EventFunction, state: Callable[[float], Array], t: float, end: float) -> float:
-    """The time of the sign change of `event`, or just after it, so that a restart is past it."""
-
-    def value(time: float) -> float:
-        return event(time, state(time))
-
-    resolution = 4 * float(np.spacing(max(abs(t), abs(end))))
-    root = float(brentq(value, t, end, xtol=resolution, maxiter=1000))
-    # rounding may leave the sign as it was for a little longer
-    shift, before = 0.0, np.sign(value(t))
-    while abs(root + shift - t) < abs(end - t):
-        if np.sign(value(root + shift)) != before:
-            return root + shift
-        shift = 2 * shift or resolution * float(np.sign(end - t))
-    return end

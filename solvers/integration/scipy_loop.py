@@ -1,17 +1,51 @@
 """Integration by SciPy's methods, with the samples, events and statuses of this package."""
 
 from collections.abc import Callable
-from functools import cache
+from functools import cached_property
+from typing import cast
 
 import numpy as np
 from scipy import integrate
 
+from solvers.equations.forms import Form
 from solvers.integration.inputs import segments
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
+from solvers.integration.step_states import Curve
 from solvers.integration.stop_flag import StopFlag
 from solvers.runge_kutta.stepper import NotFiniteError, Rhs, evaluated
+
+
+class DenseOutput:
+    """States within the last step of a solver."""
+
+    def __init__(self, form: Form, solver: integrate.OdeSolver) -> None:
+        self._form, self._solver = form, solver
+
+    @cached_property
+    def _interpolant(self) -> Callable[[Array], Array]:
+        return cast("Callable[[Array], Array]", self._solver.dense_output())  # may be expensive
+
+    def state(self, t: float) -> Array:
+        """The state at a time."""
+        if t == self._solver.t:
+            return self._form.normalised(self._solver.y)
+        return self.states(np.array([t]))[:, 0]
+
+    def states(self, times: Array) -> Array:
+        """The states at several times, in columns."""
+        z = self._interpolant(times)
+        z[:, times == self._solver.t] = self._solver.y[:, np.newaxis]
+        return self._form.normalised(z)
+
+    def between(self, _begin: float, _y0: Array, _end: float, _y1: Array) -> Curve:
+        """States at several times."""
+        return self.states
+
+    def curves(self) -> list[Curve]:
+        """The states themselves."""
+        return [self.states]
 
 
 def run(problem: Problem, outcome: Outcome, stop: StopFlag) -> None:
@@ -41,8 +75,7 @@ def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag)
         if solver.status == "failed":
             return Status.STEP_TOO_SMALL
         outcome.steps += 1
-        state, states = _states_within(problem, solver)
-        if recorder.advance(solver.t, state, states, [states]):
+        if recorder.advance(solver.t, DenseOutput(problem.form, solver)):
             return Status.EVENT
     return Status.FINISHED
 
@@ -63,24 +96,6 @@ def _solver(problem: Problem, outcome: Outcome, y0: Array) -> integrate.OdeSolve
         options["jac"] = jacobian
     z = form.from_ordinary(begin, y0)
     return getattr(integrate, method)(rhs, begin, z, end, **options)
-
-
-def _states_within(
-    problem: Problem, solver: integrate.OdeSolver
-) -> tuple[Callable[[float], Array], Callable[[Array], Array]]:
-    """The state at a time within the last step, and those at several times."""
-    dense_output = cache(solver.dense_output)  # it may cost evaluations
-
-    def state(time: float) -> Array:
-        z = solver.y if time == solver.t else dense_output()(time)
-        return problem.form.normalised(z)
-
-    def states(times: Array) -> Array:
-        z = dense_output()(times)
-        z[:, times == solver.t] = solver.y[:, np.newaxis]
-        return problem.form.normalised(z)
-
-    return state, states
 
 
 def _finite(what: str, function: Rhs, t: float, z: Array, shape: tuple[int, ...]) -> Array:

@@ -41,8 +41,8 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 
 #: Handwritten files of the loop over steps, in their order.
 LOOP_FILES = (
-    *("within_step.h", "motions.h", "event_brackets.h", "process_step.h", "finish_step.h"),
-    *("advance.h", "integrator.c", "probe.h"),
+    *("within_step.h", "brackets.h", "substeps.h", "motions.h", "event_brackets.h"),
+    *("cubic.h", "process_step.h", "finish_step.h", "advance.h", "integrator.c", "probe.h"),
 )
 
 #: Conversion between ordinary states and those of the form, for single motions.

@@ -36,17 +36,36 @@ static __attribute__((noinline)) mask events_in_step(Lanes *lanes, const StepRes
     return occurring | several;
 }
 
+/* Estimate the event in a bracket by a polynomial, if that has another sign at its ends. */
+static void estimate_event(int degree, const double *coefficients, double full_h, Bracket *bracket)
+{
+    const double x = bracket->near/full_h, y = bracket->far/full_h;
+    double slope;
+    bracket->aim = NAN;
+    bracket->slope = 0;
+    if (value_at(degree, coefficients, x)*value_at(degree, coefficients, y) < 0) {
+        const double part = root_between(degree, coefficients, x, y, 0.1*BEYOND, &slope);
+        bracket->aim = part*full_h;
+        bracket->slope = slope/full_h;
+    }
+}
+
 /* Bracket all crossings of an event within the step of a lane. */
 static void bracket_crossings(const Lanes *lanes, int lane, WithinStep *within, int e)
 {
     const Event *event = &lanes->task->events[e];
     const double before = LANE(lanes->before[e], lane), after = within->after[e];
+    const int recurs = MASK_LANE(lanes->several[e], lane) != 0;
+    const int degree = recurs ? EXTENSION_DEGREE : DEGREE;
     double coefficients[EXTENSION_DEGREE + 1];
     Extremum extrema[MAX_ROOTS];
     Bracket bracket = {.event = e, .is_pending = 1, .tries = MAX_TRIES, .near_value = before};
     int count = 0;
-    if (MASK_LANE(lanes->several[e], lane)) {
-        read_lane(lanes->workspace->coefficients[e], EXTENSION_DEGREE + 1, lane, coefficients);
+    if (!recurs && !is_crossed(event, before, after)) {
+        return;
+    }
+    read_lane(lanes->workspace->coefficients[e], degree + 1, lane, coefficients);
+    if (recurs) {
         count = separate_crossings(coefficients, extrema);
     }
     if (count == 0 && !is_crossed(event, before, after)) {
@@ -55,11 +74,13 @@ static void bracket_crossings(const Lanes *lanes, int lane, WithinStep *within, 
     for (int k = 0; k < count; k++) {
         bracket.far = extrema[k].part*within->full_h;
         bracket.curvature = extrema[k].curvature/(within->full_h*within->full_h);
+        estimate_event(degree, coefficients, within->full_h, &bracket);
         add_bracket(within, &bracket);
         bracket.near = bracket.far;
     }
     bracket.tries = 0;
     bracket.far = within->full_h;
     bracket.far_value = after;
+    estimate_event(degree, coefficients, within->full_h, &bracket);
     add_bracket(within, &bracket);
 }

@@ -63,7 +63,7 @@ static inline void switching_polynomial(
    Its slopes differ by at most the sum of their changes; if these are smaller than the slopes, by a
    factor for the error of the extension, the value is monotonic. It differs from the chord by at
    most a quarter of that sum times the degree, which the curves of most steps do not half reach.
-   `coefficients` receives the Bernstein coefficients, unless others are to follow.
+   `coefficients` receives the Bernstein coefficients.
 
    Sums are those of single registers, since GCC keeps longer vectors that change in memory. */
 static inline mask has_several(
@@ -98,7 +98,7 @@ static inline mask has_several(
         const half nearest = half_fabs(c[0] + c[DEGREE]) - half_fabs(c[DEGREE] - c[0]);
         PART(steepness, part) = half_fabs(slopes) - SLACK*bend;
         PART(distance, part) = 0.5*nearest - (0.25*DEGREE)*bend;
-        for (int k = 0; k <= DEGREE && ROUNDS == 0; k++) {
+        for (int k = 0; k <= DEGREE; k++) {
             PART(coefficients[k], part) = c[k];
         }
     }

@@ -87,12 +87,19 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
             within->after[e] = LANE(lanes->after[e], lane);
             bracket_crossings(lanes, lane, within, e);
         }
+        if (within->bracket_count) {
+            read_lane(&motion->state, STATE_SIZE, lane, within->start);
+        }
     } else {
         use_state(lanes, lane, h, &lanes->end, end);
     }
     double next;
     while ((next = next_h(task, within, LANE(motion->state.t, lane),
                           LANE(motion->state.t_low, lane))) != 0) {
+        if (within->mode == LOCATE && is_narrow(within)) {
+            locate_by_cubic(lanes, lane, within);
+            continue;
+        }
 #if INTERPOLATES
         if (!substep(lanes, within, next)) {
             fail_step(motion, within, lane, h);

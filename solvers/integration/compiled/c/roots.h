@@ -10,7 +10,7 @@
 static const double CLOSE_ROOTS = 0x1p-24;
 /* Error of a polynomial, relative to the largest distance of its control points from the chord. */
 static const double MARGIN = 0.5;
-enum { MAX_DEPTH = 25, MAX_ROOTS = 2*EXTENSION_DEGREE };
+enum { MAX_DEPTH = 25, MAX_ROOTS = 2*EXTENSION_DEGREE, MAX_NEWTON = 50 };
 
 static int sign_changes(int degree, const double *coefficients)
 {
@@ -35,28 +35,51 @@ static void subdivide(int degree, double part, double *coefficients, double *lef
     }
 }
 
-static double value_at(int degree, const double *coefficients, double x)
+/* The value at x, and the slope there, by de Casteljau's algorithm. */
+static inline double value_and_slope(
+    int degree, const double *coefficients, double x, double *slope)
 {
-    double copy[EXTENSION_DEGREE + 1], left[EXTENSION_DEGREE + 1];
-    memcpy(copy, coefficients, (size_t)(degree + 1)*sizeof *copy);
-    subdivide(degree, x, copy, left);
-    return copy[0];
-}
-
-/* The only root between two parts of the interval. */
-static double root_between(int degree, const double *coefficients, double begin, double end)
-{
-    double rightmost = value_at(degree, coefficients, end);
-    while (end - begin > CLOSE_ROOTS) {
-        const double middle = 0.5*(begin + end), value = value_at(degree, coefficients, middle);
-        if ((value < 0) == (rightmost < 0) && value != 0) {
-            end = middle;
-            rightmost = value;
-        } else {
-            begin = middle;
+    double c[EXTENSION_DEGREE + 1];
+    memcpy(c, coefficients, (size_t)(degree + 1)*sizeof *c);
+    for (int level = degree; level > 1; level--) {
+        for (int k = 0; k < level; k++) {
+            c[k] += x*(c[k + 1] - c[k]);
         }
     }
-    return 0.5*(begin + end);
+    *slope = degree*(c[1] - c[0]);
+    return c[0] + x*(c[1] - c[0]);
+}
+
+static double value_at(int degree, const double *coefficients, double x)
+{
+    double slope;
+    return x == 0 ? coefficients[0] : x == 1 ? coefficients[degree]
+        : value_and_slope(degree, coefficients, x, &slope);
+}
+
+/* The only root between two parts of the interval within a tolerance, and the slope near it; by
+   Newton's iteration, or bisection where that leaves the interval. */
+static double root_between(
+    int degree, const double *coefficients, double begin, double end, double tolerance, double *slope)
+{
+    const double u = value_at(degree, coefficients, begin), v = value_at(degree, coefficients, end);
+    double x = u*v < 0 ? (begin*v - end*u)/(v - u) : 0.5*(begin + end);
+    *slope = (v - u)/(end - begin);
+    for (int k = 0; k < MAX_NEWTON && end - begin > tolerance; k++) {
+        const double last = x, value = value_and_slope(degree, coefficients, x, slope);
+        if ((value < 0) == (v < 0) && value != 0) {
+            end = x;
+        } else {
+            begin = x;
+        }
+        x -= value/(*slope);
+        if (!(x > begin && x < end)) {
+            x = 0.5*(begin + end);
+        } else if (fabs(x - last) < tolerance) {
+            break;
+        }
+    }
+    return x;
 }
 
 /* Roots in ascending order, a nearly double one twice. Returns their number. */
@@ -87,7 +110,9 @@ static int isolate_roots(int degree, const double *coefficients, double *roots)
             continue;
         }
         if (changes == 1) {
-            roots[count++] = root_between(degree, coefficients, begin[top], end[top]);
+            double slope;
+            roots[count++] = root_between(
+                degree, coefficients, begin[top], end[top], CLOSE_ROOTS, &slope);
         } else if (changes > 1) {
             roots[count++] = begin[top];
             roots[count++] = end[top];
