@@ -33,6 +33,7 @@ from solvers.scenes.scene import Scene as Scene
 from solvers.sweeps.axes import Grid as Grid
 from solvers.sweeps.axes import Random as Random
 from solvers.sweeps.axes import Table as Table
+from solvers.sweeps.maps.basins import Basins as Basins
 from solvers.sweeps.maps.energy_error import EnergyError as EnergyError
 from solvers.sweeps.maps.extremes import Extremes as Extremes
 from solvers.sweeps.maps.final import Final as Final

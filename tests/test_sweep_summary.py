@@ -71,6 +71,7 @@ def test_the_json_of_a_sweep_has_the_same_numbers(results: Results) -> None:
         "seconds": 12.34,
         "status": {"finished": 3, "step limit": 1},
         "maps": ranges(results),
+        "records": {},
         "convergence": changes,
     }
     part = {"smallest": 1.0, "median": 2.75, "largest": 4.0, "unit": "rad", "known": 1.0}

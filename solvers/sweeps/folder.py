@@ -160,8 +160,15 @@ class Folder:
 
     def gather(self) -> None:
         """Write a file for each field of the records, and for each axis of a grid."""
-        axes = self._sweep.axes
+        axes, together = self._sweep.axes, self._finished_together
+        for name in together:
+            numbers, records = self.finished(name)
+            write_text(self.path / f"{name}.npy", _npy(numbers))
+            text = json.dumps(records, indent=2, ensure_ascii=False) + "\n"
+            write_text(records_path(self._sweep, self.path, name), text)
         for name in self._dtype.names or ():
+            if name in together:
+                continue
             field = self._dtype[name]
             shape = (*axes.shape, *field.shape)
             header = {"descr": dtype_to_descr(field.base), "fortran_order": False, "shape": shape}
@@ -173,10 +180,17 @@ class Folder:
             for name, values in axes.coordinates().items():
                 write_text(self.path / f"{name}.npy", _npy(values))
 
-    def array(self, name: str) -> NDArray[Any]:
-        """One field of all motions, with the shape of the axes first."""
-        rows = np.concatenate([*self.rows(name)])
-        return rows.reshape(*self._sweep.axes.shape, *rows.shape[1:])
+    @property
+    def _finished_together(self) -> list[str]:
+        """Maps that need the stored numbers of all motions."""
+        return [name for name, one in self._sweep.maps.items() if one.records]
+
+    def finished(self, name: str) -> tuple[NDArray[Any], list[dict[str, Any]]]:
+        """One field of all motions, with the shape of the axes first, and the map's records."""
+        rows, records = np.concatenate([*self.rows(name)]), list[dict[str, Any]]()
+        if name in self._finished_together:
+            rows, records = self._sweep.maps[name].finish(self._sweep.module, rows)
+        return rows.reshape(*self._sweep.axes.shape, *rows.shape[1:]), records
 
     def rows(self, name: str) -> Iterator[NDArray[Any]]:
         """One field of all motions by chunks; NaN, or 0 for integers, where it is not done yet."""
@@ -188,6 +202,11 @@ class Folder:
             else:
                 unknown = np.nan if field.base.kind == "f" else 0
                 yield np.full((stop - start, *field.shape), unknown, field.base)
+
+
+def records_path(sweep: Sweep, folder: Path, name: str) -> Path:
+    """The file of the records of a map."""
+    return folder / f"{name}_{sweep.maps[name].records}.json"
 
 
 def _npy(array: NDArray[Any]) -> bytes:

@@ -1,7 +1,7 @@
 """The maps of a sweep as NumPy arrays, with their axes and units."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,8 @@ class Results:
         Quantities that vary: the values along each axis of a grid, else of each motion.
     status : ndarray of int
         Status of each motion, as an index of `solvers.sweeps.status.STATUSES`.
+    records : dict of str to list of dict
+        Attractors of each map of basins.
 
     Examples
     --------
@@ -46,6 +48,7 @@ class Results:
     maps: dict[str, NDArray[np.float64]]
     axes: dict[str, NDArray[np.float64]]
     status: NDArray[np.int8]
+    records: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, definition: Sweep, folder: Path) -> "Results":
@@ -54,7 +57,12 @@ class Results:
         files = {name: np.load(folder / f"{name}.npy", mmap_mode="r") for name in names}
         maps = {name: files[name] for name in definition.maps}
         axes = {name: files[name] for name in definition.axes.smallest}
-        return cls(definition, folder, maps, axes, files["status"])
+        records = {
+            name: json.loads((folder / f"{name}_{one.records}.json").read_text(encoding="utf-8"))
+            for name, one in definition.maps.items()
+            if one.records
+        }
+        return cls(definition, folder, maps, axes, files["status"], records)
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{name} {n:,}" for name, n in self.count.items())

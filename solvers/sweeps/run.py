@@ -72,5 +72,9 @@ def partial_results(definition: Sweep, folder: str | Path) -> Results:
     """
     stored = Folder(Path(folder), definition)
     stored.check()
-    maps, axes = {name: stored.array(name) for name in definition.maps}, definition.axes
-    return Results(definition, Path(folder), maps, axes.coordinates(), stored.array("status"))
+    finished = {name: stored.finished(name) for name in ("status", *definition.maps)}
+    status, *maps = (numbers for numbers, _ in finished.values())
+    numbers = dict(zip(definition.maps, maps, strict=True))
+    records = {name: one for name, (_, one) in finished.items() if one}
+    axes = definition.axes.coordinates()
+    return Results(definition, Path(folder), numbers, axes, status, records)

@@ -31,7 +31,13 @@ def summary(
     hints = {name: f" ({hint})" for name, hint in HINTS.items()}
     counts = (f"{name} {n:,}{hints.get(name, '')}" for name, n in results.count.items())
     yield f"status: {', '.join(counts)}"
+    for name, records in results.records.items():
+        yield from (
+            f"{name} {record['number']}: {_attractor(results, record)}" for record in records
+        )
     for name, values in ranges(results).items():
+        if name in results.records:
+            continue
         if not values["known"]:
             yield f"{name}: no values"
             continue
@@ -44,14 +50,23 @@ def summary(
             f"{values['known']:.1%} of the map has values"
         )
     for name, change in changes.items():
-        unit = definition.maps[name].unit(definition.module)
-        unit = unit and f" {unit}"
+        one = definition.maps[name]
+        unit = one.unit(definition.module)
+        unit, name = unit and f" {unit}", f"states of {name}" if one.records else name
         lost = f"; {change.lost:.0%} exist with one tolerance only" if change.lost else ""
         yield (
             f"{name}: of {change.motions} motions repeated with rtol = "
             f"{tighter_rtol(definition):g}, half change by less than {change.median:.1g}{unit}, "
             f"90 % by less than {change.most:.1g}{unit}{lost}"
         )
+
+
+def _attractor(results: Results, record: Mapping[str, Any]) -> str:
+    """An attractor in words."""
+    states = ", ".join(f"{name} = {value:.4g}" for name, value in record["states"][0].items())
+    turns = "".join(f", {n} turns of {q}" for q, n in record["turns"].items() if n)
+    share = record["motions"] / results.definition.motions
+    return f"{record['kind']}{turns}, {states}; {share:.1%} of the motions"
 
 
 def ranges(results: Results) -> dict[str, dict[str, Any]]:
@@ -81,5 +96,6 @@ def as_json(results: Results, seconds: float, changes: Mapping[str, Convergence]
         "seconds": seconds,
         "status": results.count,
         "maps": ranges(results),
+        "records": results.records,
         "convergence": changes,
     }

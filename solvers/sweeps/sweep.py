@@ -180,7 +180,7 @@ class Sweep:
     def dtype(self) -> np.dtype[np.void]:
         """The record that is stored for each motion; with what varies, unless on a grid."""
         columns = () if self.axes.is_grid else self.axes.smallest
-        fields = [(name, "<f8", one.shape) for name, one in self.maps.items()]
+        fields = [(name, "<f8", one.stored_shape(self.module)) for name, one in self.maps.items()]
         return np.dtype([("status", "i1"), *((name, "<f8") for name in columns), *fields])
 
     @property

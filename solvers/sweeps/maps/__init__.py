@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.ensemble_solution import Ensemble
@@ -66,6 +66,8 @@ class Map:
     is_variational: ClassVar[bool] = False
     #: Whether the first event of the map may end the motion.
     ends_motion: ClassVar[bool] = False
+    #: Plural of the records that all motions share, such as ``attractors``; see `finish`.
+    records: ClassVar[str] = ""
     #: Number of occurrences of each event that come first and are not stored.
     skip: int = 0
     #: Positions at rest: motions with less energy than the lowest have no event.
@@ -85,6 +87,10 @@ class Map:
     def shape(self) -> tuple[int, ...]:
         """Shape of the numbers of one motion."""
         return tuple(map(len, self.labels))
+
+    def stored_shape(self, module: GeneratedModule) -> tuple[int, ...]:
+        """Shape of the numbers that are stored of one motion; `finish` may change it."""
+        return self.shape
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -135,8 +141,15 @@ class Map:
             raise ValueError(f"{module.SYSTEM} does not conserve its energy")
 
     def values(self, motions: Motions) -> Array:
-        """The numbers, one entry of the map's shape for each motion; NaN where there are none."""
+        """The numbers, one entry of `stored_shape` for each motion; NaN where there are none."""
         raise NotImplementedError
+
+    def finish(self, module: GeneratedModule, stored: Array) -> tuple[Array, list[dict[str, Any]]]:
+        """The map of all motions, from their stored numbers, and records as JSON values.
+
+        It is called only by kinds with `records`, after the last motion.
+        """
+        return stored, []
 
     def panels(self, name: str, results: "Results") -> Panels:
         """Panels of a figure, as pairs of a title and a function that draws on axes."""

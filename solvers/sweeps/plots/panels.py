@@ -13,7 +13,7 @@ from solvers.io.notation import axis_label, symbol
 from solvers.sweeps.axes import Array, Grid
 from solvers.sweeps.barrier import barrier, energies
 from solvers.sweeps.initial_states import initial_states
-from solvers.sweeps.plots.quantity import Quantity, add_colour_bar, label_axis, letter, wrapped
+from solvers.sweeps.plots.quantity import Quantity, add_legend, label_axis, letter, wrapped
 from solvers.sweeps.results import Results
 from solvers.sweeps.status import PROVED
 
@@ -45,7 +45,11 @@ def image(panel: Axes, *, quantity: Quantity) -> None:
     fixed = {q: float(axis[len(axis) // 2]) for q, axis in results.axes.items() if q not in (x, y)}
     if quantity.map.barrier:
         _draw_boundary(panel, quantity, (x, y), fixed)
-    add_colour_bar(panel, mappable, quantity.label)
+    add_legend(panel, mappable, quantity)
+    for record in results.records.get(quantity.name, []):
+        if all(name in record["states"][0] for name in (x, y)):
+            points = ([state[name] for state in record["states"]] for name in (x, y))
+            panel.plot(*points, "o", color=NEVER, markeredgecolor="black", markersize=5)
     label_axis(panel, "x", results, x)
     label_axis(panel, "y", results, y)
     if fixed:
@@ -93,10 +97,11 @@ def line(panel: Axes, *, quantity: Quantity) -> None:
         unknown = np.isnan(values)
         panel.scatter(xs[unknown], ys[unknown], color=NOTHING, s=4)
         points = panel.scatter(xs, ys, c=values, s=4, cmap=palette, norm=norm)
-        add_colour_bar(panel, points, quantity.label)
+        add_legend(panel, points, quantity)
         label_axis(panel, "y", results, y)
         return
     is_joined = results.definition.axes.is_grid and not quantity.is_direction
+    is_joined &= not quantity.classes
     is_marked = not is_joined or len(values) <= MARKED or np.isnan(values).any()
     style = ("." if is_marked else "") + ("-" if is_joined else "")
     panel.plot(xs, values, style, color=COLOURS[0], linewidth=0.9, markersize=3)

@@ -1,14 +1,17 @@
 """Quantities in plots: values and colours of a map's number; axes with symbols and units."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize, to_hex
 from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 
+from solvers.io import figures
 from solvers.io.notation import axis_label, symbol
 from solvers.sweeps.axes import Array
 from solvers.sweeps.checks import ENERGY
@@ -17,6 +20,8 @@ from solvers.sweeps.results import Results
 
 #: Colours cover values between these percentiles; values beyond have the colours of the ends.
 PERCENTILES = (0.5, 99.5)
+#: Colour of motions in no class, and largest number of classes in a legend.
+NO_CLASS, MAX_CLASSES = "#dddddd", 12
 
 
 @dataclass(frozen=True)
@@ -61,8 +66,22 @@ class Quantity:
             return wrapped(values)
         return np.abs(values) if self.map.is_logarithmic else np.asarray(values)
 
-    def colours(self, values: Array) -> tuple[str, Normalize]:
+    @property
+    def classes(self) -> list[tuple[str, str]]:
+        """Colours and labels of the numbers 0, 1, … where these count records; else none."""
+        records = self.results.records.get(self.name, [])
+        shades = [*figures.COLOURS[:6], *map(to_hex, mpl.colormaps["tab20b"](range(20)))]
+        counted = [
+            (shades[k % len(shades)], f"{record['number']}: {brief(record)}")
+            for k, record in enumerate(records)
+        ]
+        return [(NO_CLASS, "0: not settled"), *counted] if counted else []
+
+    def colours(self, values: Array) -> tuple[str | Colormap, Normalize]:
         """A colour map and its range: cyclic for directions, else by the map's colour scale."""
+        if classes := self.classes:
+            discrete = ListedColormap([colour for colour, _ in classes])
+            return discrete, Normalize(-0.5, len(classes) - 0.5)
         palette, finite = self.map.colour_map, values[np.isfinite(values)]
         if not finite.size:
             return "viridis", Normalize(0, 1)
@@ -100,7 +119,29 @@ def label_axis(panel: Axes, axis: str, results: Results, name: str) -> None:
         ticks.set_major_formatter(FuncFormatter(_multiple_of_pi))
 
 
-def add_colour_bar(panel: Axes, mappable: ScalarMappable, label: str) -> None:
+def brief(record: Mapping[str, Any]) -> str:
+    """Kind of an attractor and its first state, in symbols."""
+    state = ", ".join(f"{symbol(name)} = ${v:.3g}$" for name, v in record["states"][0].items())
+    return f"{record['kind']}, {state}"
+
+
+def add_legend(panel: Axes, mappable: ScalarMappable, quantity: Quantity) -> None:
+    """Add a colour bar beside a panel, or a legend of the classes that occur."""
+    if not quantity.classes:
+        _add_colour_bar(panel, mappable, quantity.label)
+        return
+    values = quantity.values()
+    occurring = [k for k in range(len(quantity.classes)) if (values == k).any()]
+    for colour, label in (quantity.classes[k] for k in occurring[:MAX_CLASSES]):
+        panel.plot([], [], "s", color=colour, label=label)
+    if hidden := len(occurring[MAX_CLASSES:]):
+        panel.plot([], [], " ", label=f"and {hidden} more")
+    panel.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2, frameon=False, fontsize="small"
+    )
+
+
+def _add_colour_bar(panel: Axes, mappable: ScalarMappable, label: str) -> None:
     """Add a colour bar beside a panel; its numbers are written without powers of ten."""
     bar = panel.figure.colorbar(mappable, ax=panel, label=label)
     if isinstance(mappable.norm, LogNorm):
