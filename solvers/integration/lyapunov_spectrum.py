@@ -89,8 +89,7 @@ def lyapunov_spectrum(
         )
     constants, n = validation.parameters(module, params).tolist(), len(module.STATE)
     count = round(duration / interval)
-    options = {"rtol": rtol, "atol": atol}
-    tangents = Tangents(module, (0.0, duration), y0, constants, np.eye(n), **options)
+    tangents = Tangents(module, (0.0, duration), y0, constants, np.eye(n), rtol=rtol, atol=atol)
     halves, growth = (2, n // 2, n), np.empty((count, n))
     root = _root(module, tangents, constants)
     tangents.changes[:] = np.linalg.solve(root, np.eye(n).reshape(halves)).reshape(n, n)

@@ -27,6 +27,8 @@ class Tangents:
         As in `integrate`; the tolerances apply to the perturbations, too.
     changes : array_like of shape (state, n)
         Perturbations of the initial state, in columns.
+    parameter_changes : array_like of shape (parameters, n), optional
+        Perturbations of the parameters, which belong to those of the state.
 
     Attributes
     ----------
@@ -53,10 +55,18 @@ class Tangents:
         *,
         rtol: float,
         atol: float,
+        parameter_changes: Array | None = None,
     ) -> None:
-        options = Options(METHOD, "variational", rtol, atol)
-        problem = validation.problem_at_rest(module, t_span, options, params)
+        constants = validation.parameters(module, params)
+        if parameter_changes is None:
+            form, perturbed = "variational", [*constants]
+        else:
+            form, perturbed = "sensitivity", [*parameter_changes, *constants]
+            constants = np.concatenate([np.zeros(len(parameter_changes)), constants])
+        options = Options(METHOD, form, rtol, atol)
+        problem = validation.problem_at_rest(module, t_span, options, constants)
         check_smooth(problem.form)
+        problem = problem.with_params(perturbed)
         self._problem, self._program = compiled_loop.select(problem, lanes=True)
         self._batch: Batch | None = None
         self.t, self.changes = problem.span[0], changes
@@ -83,8 +93,9 @@ class Tangents:
 
     def _in_python(self, part: Problem, starts: Array) -> Array:
         ends = []
-        for start in starts:
-            outcome = Outcome.at_start(problem := replace(part, start=start))
+        for k, start in enumerate(starts):
+            own = [np.broadcast_to(p, len(starts))[k] for p in part.form.params]
+            outcome = Outcome.at_start(problem := replace(part.with_params(own), start=start))
             python_loop.run(problem, outcome)
             self._check(outcome.status, *outcome.end)
             ends.append(outcome.end[1])

@@ -60,11 +60,13 @@ class Curve:
         """The orbit at a distance along the tangent of `node`; `ArithmeticError` without one."""
         return self._near(node, distance * node.tangent, None)
 
-    def between(self, node: "Node", end: "Node", distance: float) -> "Node":
+    def between(
+        self, node: "Node", end: "Node", distance: float, rcond: float | None = SINGULAR
+    ) -> "Node":
         """The orbit at a distance along the tangent of `node`, which is less than that of `end`.
 
-        The guess is a cubic; so equations that are nearly singular, as at branch points, need not
-        be solved.
+        The guess is a cubic; so equations with singular values below `rcond`, as at branch points,
+        need not be solved.
         """
         chord = end.difference(node)
         length = float(chord @ node.tangent)
@@ -73,7 +75,7 @@ class Curve:
         guess = (
             s * start + s**2 * (3 * chord - 2 * start - slope) + s**3 * (start + slope - 2 * chord)
         )
-        return self._near(node, guess, SINGULAR)
+        return self._near(node, guess, rcond)
 
     def _near(self, node: "Node", change: Array, rcond: float | None) -> "Node":
         guess = self.shooting.moved(node.point, change * self.scales)

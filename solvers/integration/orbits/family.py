@@ -29,8 +29,8 @@ class SpecialOrbit:
     index : int
         Position in the family: it lies between the orbits ``index`` and ``index + 1``.
     direction : ndarray of shape (state + 2,) or None
-        Direction along the family that branches off, if any: that of the start, the period and the
-        parameter in the units of `orbit_family`'s steps.
+        Estimated direction of the family that branches off, if any: changes of the start, of the
+        period and of the parameter in proportion.
     """
 
     kind: str

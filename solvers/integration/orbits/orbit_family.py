@@ -1,6 +1,7 @@
 """Continuation: families of periodic orbits in a parameter, or in the energy."""
 
 from dataclasses import replace
+from functools import partial
 from math import inf
 
 import numpy as np
@@ -23,6 +24,8 @@ from solvers.io.suggestion import did_you_mean
 
 #: Longest period relative to that of the start.
 LONGEST = 10.0
+#: Change of a parameter with which a period is checked.
+VARIATION = 0.01
 #: Directions in which a family can branch off, by the kind of the special orbit.
 DIRECTIONS = {"branch point": crossing_direction, "period doubling": doubling_direction}
 
@@ -73,8 +76,9 @@ def orbit_family(
         Longest period in s, by default `LONGEST` times that of the start.
     max_step : float, optional
         Largest distance between orbits, in rad and 1 m of coordinates, in these per radian of the
-        period for velocities, and relative to the period and the parameter of the start. Steps are
-        shorter where the curve bends.
+        period for velocities, and relative to the period of the start and the range of the
+        parameter, or its value at the start if it has no bounds. Steps are shorter where the curve
+        bends.
 
     Returns
     -------
@@ -112,10 +116,7 @@ def orbit_family(
     shooting = Shooting(
         module, Nature.of(module, orbit.y, params, index), rtol, atol, reversal, index, period
     )
-    first = _first(shooting, start)
     low, high = real_numbers("bounds", bounds, finite=False).tolist()
-    if not low <= first.value <= high:
-        raise ValueError(f"bounds = ({low}, {high}) exclude the start, {parameter} = {first.value}")
     limits = Limits(
         low,
         high,
@@ -123,30 +124,36 @@ def orbit_family(
         validation.count("max_orbits", max_orbits, 1),
         positive("max_step", max_step),
     )
-    ahead = walk(first.curve, first, limits) if direction >= 0 else Walk([], end="start")
+    first = _first(shooting, start, limits)
+    if not low <= first.value <= high:
+        raise ValueError(f"bounds = ({low}, {high}) exclude the start, {parameter} = {first.value}")
     back = replace(first, tangent=-first.tangent, reference=-first.reference)
-    behind = walk(first.curve, back, limits) if direction <= 0 else Walk([], end="start")
+    follow = partial(walk, first.curve, limits=limits, branches_off=isinstance(start, SpecialOrbit))
+    ahead = follow(first) if direction >= 0 else Walk([], end="start")
+    behind = follow(back) if direction <= 0 else Walk([], end="start")
     return _family(module, parameter, behind, first, ahead)
 
 
-def _first(shooting: Shooting, start: PeriodicOrbit | SpecialOrbit) -> Node:
+def _first(shooting: Shooting, start: PeriodicOrbit | SpecialOrbit, limits: Limits) -> Node:
     """The first node, whose tangent leads to larger values."""
     orbit = start if isinstance(start, PeriodicOrbit) else start.orbit
     point = Point(orbit.y, orbit.period, np.array(orbit.params))
     if isinstance(start, SpecialOrbit) and start.kind == "period doubling":
         point = replace(point, period=2 * orbit.period)
     shooting.check_period(point)
+    shooting.check_period(shooting.moved(point, np.array([*0 * point.y, 0.0, VARIATION])))
     if shooting.parameter is None and not shooting.nature.is_conservative:
         raise ValueError(
             f"{shooting.module.SYSTEM} does not conserve its energy: give a parameter, one of "
             f"{', '.join(shooting.module.PARAMETERS)}"
         )
     shot = shooting(point)
-    curve = Curve(replace(shooting, advance=shot.advance), _scales(shooting, point))
+    curve = Curve(replace(shooting, advance=shot.advance), _scales(shooting, point, limits))
     if isinstance(start, SpecialOrbit):
         assert start.direction is not None
-        node = curve.node(point, shot, start.direction)
-        return replace(node, tangent=start.direction)
+        tangent = start.direction / curve.scales
+        tangent /= np.linalg.norm(tangent)
+        return replace(curve.node(point, shot, tangent), tangent=tangent)
     node = curve.node(point, shot, np.zeros(len(point.y) + 2))
     if node.uniqueness < UNIQUE:
         raise ValueError(
@@ -157,13 +164,15 @@ def _first(shooting: Shooting, start: PeriodicOrbit | SpecialOrbit) -> Node:
     return replace(node, tangent=sign * node.tangent, reference=sign * node.tangent)
 
 
-def _scales(shooting: Shooting, point: Point) -> Array:
+def _scales(shooting: Shooting, point: Point, limits: Limits) -> Array:
     """Units of the start, the period and the parameter in which distances are measured."""
     module, n = shooting.module, len(shooting.module.COORDINATES)
     is_angle = angles(module)[:n] > 0
     sizes = np.where(is_angle, 1.0, np.maximum(1.0, np.abs(point.y[:n])))
-    value = 0.0 if shooting.parameter is None else abs(point.params[shooting.parameter])
-    return np.array([*sizes, *(2 * np.pi / point.period * sizes), point.period, value or 1.0])
+    width = limits.high - limits.low
+    if shooting.parameter is None or not np.isfinite(width):
+        width = 1.0 if shooting.parameter is None else abs(point.params[shooting.parameter]) or 1.0
+    return np.array([*sizes, *(2 * np.pi / point.period * sizes), point.period, width])
 
 
 def _family(

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from solvers.integration.orbits.newton import NoPeriodicOrbitError, solve
 from solvers.integration.orbits.orbit import PeriodicOrbit
 from solvers.integration.orbits.shooting import SMALL, Point, Shooting
 from solvers.integration.orbits.symmetry import Reversal
+from solvers.integration.predictability import ignore_predictability
 from solvers.integration.solution import Array, Solution
 
 #: Time in s after which a motion that has not come back to a section never does.
@@ -111,8 +111,7 @@ def _returned(
     section = replace(section, terminal=True)
     motion = partial(integrate, module, (0.0, LONGEST), params=params, events=section, t_eval=())
     y, duration, count = y0, 0.0, validation.count("returns", returns, 1)
-    with catch_warnings():
-        simplefilter("ignore", UserWarning)  # of motions that do not meet the section
+    with ignore_predictability():  # of motions that do not meet the section
         if section(0.0, y0) != 0:
             y = _end(motion(y0=y0), section)[1]
             y[module.STATE.index(section.name)] = section.value

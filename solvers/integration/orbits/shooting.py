@@ -7,10 +7,10 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule, function
 from solvers.equations.quantities import positive
-from solvers.integration.orbits.nature import Nature
+from solvers.integration.orbits.nature import Nature, states_near
 from solvers.integration.orbits.symmetry import Reversal, angles
 from solvers.integration.solution import Array
-from solvers.integration.transition_matrix import transition_matrix
+from solvers.integration.tangents import Tangents
 
 #: Relative step of differences of the energy and of the period, of which a few digits suffice.
 STEP = 1e-5
@@ -113,12 +113,13 @@ class Shooting:
 
     def check_period(self, point: Point) -> None:
         """`ValueError` if equations that depend on time differ after the period."""
-        begin, end = (self.rate(point, t) for t in (0.0, point.period))
-        if np.abs(end - begin).max() > SMALL * np.abs(begin).max():
-            raise ValueError(
-                f"period = {point.period} s is not one of {self.module.SYSTEM}: its equations "
-                "differ after it"
-            )
+        for t, y in states_near(point.y):
+            begin, end = (self.rate(point, time, y) for time in (t, t + point.period))
+            if np.abs(end - begin).max() > SMALL * np.abs(begin).max():
+                raise ValueError(
+                    f"period = {point.period} s is not one of {self.module.SYSTEM}: its equations "
+                    "differ after it"
+                )
 
     def rate(self, point: Point, t: float = 0.0, y: Array | None = None) -> Array:
         """The rate of change of a state, by default the start."""
@@ -129,30 +130,56 @@ class Shooting:
         """Integrate from a point, and state the conditions."""
         share = 1.0 if self.reversal is None else 0.5
         duration = share * point.period
-        motion = transition_matrix(
-            self.module, (0.0, duration), point.y, point.params, rtol=self.rtol, atol=self.atol
-        )
-        rate = self.rate(point, duration, motion.y)
-        by_parameter = np.zeros(len(rate))
-        n, reversal = len(rate), self.reversal
-        by_end = np.column_stack([motion.matrix, share * rate, by_parameter])
+        end, by_start, by_parameter = self._motion(point, duration)
+        rate, n, reversal = self.rate(point, duration, end), len(end), self.reversal
+        by_parameter += share * rate * self._period_derivative(point)
+        by_end = np.column_stack([by_start, share * rate, by_parameter])
         identity = np.eye(n, n + 2)
         if reversal is None:
-            difference = motion.y - point.y
+            difference = end - point.y
             whole = angles(self.module) * 2 * np.pi * np.round(difference / (2 * np.pi))
             advance = whole if self.advance is None else self.advance
             return Shot(difference - advance, by_end - identity, by_end - identity, advance)
         changed = reversal.changed
-        start, end = reversal.nearest(point.y), reversal.nearest(motion.y)
-        whole = np.zeros(n)
-        whole[changed] = 2 * (end - start)
+        start, whole = reversal.nearest(point.y), np.zeros(n)
+        whole[changed] = 2 * (reversal.nearest(end) - start)
         advance = whole if self.advance is None else self.advance
-        residual = [motion.y[changed] - start - advance[changed] / 2, point.y[changed] - start]
+        residual = [end[changed] - start - advance[changed] / 2, point.y[changed] - start]
         rows = np.concatenate([by_end[changed], identity[changed]])
-        monodromy = reversal.monodromy(motion.matrix)
-        by_parameter = reversal.by_parameter(motion.matrix, by_parameter)
+        monodromy = reversal.monodromy(by_start)
+        by_parameter = reversal.by_parameter(by_start, by_parameter)
         change = np.column_stack([monodromy, self.rate(point), by_parameter]) - identity
         return Shot(np.concatenate(residual), rows, change, advance)
+
+    def _motion(self, point: Point, duration: float) -> tuple[Array, Array, Array]:
+        """The end of a motion, and its derivatives by the start and by the parameter."""
+        n, perturbed = len(point.y), None
+        if self.parameter is not None:
+            perturbed = np.zeros((len(point.params), n + 1))
+            perturbed[self.parameter, n] = 1.0
+        changes = np.eye(n, n if perturbed is None else n + 1)
+        motion = Tangents(
+            self.module,
+            (0.0, duration),
+            point.y,
+            point.params,
+            changes,
+            rtol=self.rtol,
+            atol=self.atol,
+            parameter_changes=perturbed,
+        )
+        motion.advance(duration)
+        by_parameter = np.zeros(n) if perturbed is None else motion.changes[:, n]
+        return motion.y, motion.changes[:, :n], by_parameter
+
+    def _period_derivative(self, point: Point) -> float:
+        """The derivative of a given period by the parameter that varies."""
+        if self.parameter is None or self.period_of is None:
+            return 0.0
+        change = np.zeros(len(point.params))
+        change[self.parameter] = STEP * max(1.0, abs(point.params[self.parameter]))
+        ahead, behind = (self._period(point.params + s * change, 0.0) for s in (1, -1))
+        return (ahead - behind) / (2 * change[self.parameter])
 
     def energy(self, point: Point) -> float:
         """The energy in J at the start."""

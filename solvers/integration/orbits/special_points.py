@@ -39,16 +39,16 @@ def crossing_direction(node: Node) -> Array:
     a, b = null @ row
     direction = np.zeros(len(free))
     direction[free] = b * null[0] - a * null[1]
-    return np.asarray(direction / np.linalg.norm(direction))
+    return np.asarray(direction * curve.scales)
 
 
 def doubling_direction(node: Node) -> Array:
     """The perturbation with the multiplier -1, along which a family of twice the period starts."""
-    n, scales = len(node.point.y), node.curve.scales
+    n = len(node.point.y)
     values, vectors = np.linalg.eig(node.shot.monodromy)
     direction = np.zeros(n + 2)
-    direction[:n] = vectors[:, np.argmin(np.abs(values + 1))].real / scales[:n]
-    return np.asarray(direction / np.linalg.norm(direction))
+    direction[:n] = vectors[:, np.argmin(np.abs(values + 1))].real
+    return direction
 
 
 def period_doubling(node: Node) -> float:
@@ -58,8 +58,6 @@ def period_doubling(node: Node) -> float:
 
 def neimark_sacker(node: Node) -> float:
     """The product, over all pairs of multipliers, of their product minus 1."""
-    if node.curve.shooting.nature.is_conservative:
-        return 1.0  # pairs stay on the unit circle until they meet
     pairs = combinations(np.linalg.eigvals(node.reduced), 2)
     return float(np.prod([a * b - 1 for a, b in pairs]).real)
 
@@ -71,6 +69,11 @@ FUNCTIONS: dict[str, Callable[[Node], float]] = {
     "period doubling": period_doubling,
     "Neimark-Sacker": neimark_sacker,
 }
+
+
+def keeps_volume(node: Node) -> bool:
+    """Whether pairs of multipliers stay on the unit circle until they meet: without friction."""
+    return bool(abs(np.linalg.det(node.reduced) - 1) < CLOSE)
 
 
 def is_torus(node: Node) -> bool:

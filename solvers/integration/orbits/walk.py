@@ -1,20 +1,24 @@
 """Steps along a curve of periodic orbits, from its start to one of its ends."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.optimize import brentq
 
 from solvers.integration.orbits.curve import Curve, Node
-from solvers.integration.orbits.special_points import FUNCTIONS, is_torus
+from solvers.integration.orbits.newton import NoPeriodicOrbitError
+from solvers.integration.orbits.special_points import FUNCTIONS, is_torus, keeps_volume
 
 #: First step and shortest step, relative to the longest.
 FIRST, SHORTEST = 0.1, 1e-5
-#: Angles between successive tangents in rad: the largest, and that which steps aim at.
-LARGEST, INTENDED = 0.3, 0.1
+#: Angles between successive tangents in rad: the largest; the largest with an estimate of the first
+#: tangent; that which steps aim at.
+LARGEST, LARGEST_ESTIMATE, INTENDED = 0.3, 1.0, 0.1
 #: Error of the distance at which a special point or a bound is located.
 LOCATED = 1e-15
+#: Distance of the nodes between which it is located again, relative to the step.
+CLOSE = 0.02
 #: Norm of a monodromy matrix beyond which rounding errors decide on multipliers.
 UNSTABLE = 1e10
 #: Distance from the start, relative to the step, at which a curve is closed.
@@ -41,47 +45,49 @@ class Walk:
     end: str = ""
 
 
-def walk(curve: Curve, first: Node, limits: Limits) -> Walk:
-    """Follow a curve in the direction of the tangent of its first node."""
+def walk(curve: Curve, first: Node, limits: Limits, *, branches_off: bool = False) -> Walk:
+    """Follow a curve in the direction of the tangent of its first node.
+
+    If it `branches_off` there from another one, its direction is an estimate, and the first node is
+    not a special one of this curve.
+    """
     result, node, step = Walk([]), first, FIRST * limits.step
     while len(result.nodes) < limits.orbits:
+        is_estimate = branches_off and not result.nodes
         try:
             new = curve.after(node, step)
             angle = float(np.arccos(np.clip(node.tangent @ new.tangent, -1, 1)))
-        except (ArithmeticError, np.linalg.LinAlgError):
-            angle = np.pi
-        if angle > LARGEST:
+            if angle > (LARGEST_ESTIMATE if is_estimate else LARGEST):
+                raise NoPeriodicOrbitError(f"the curve turns by {angle} rad in a step")
+            if end := _last(node, new):
+                return replace(result, end=end)
+            crossed = _crossed(new, limits)
+            if crossed:
+                new = _root(node, new, crossed[1])
+            special = [] if is_estimate else _special(node, new)
+        except (ArithmeticError, ValueError):  # also of a mass or length that is not positive
             step /= 2
             if step < SHORTEST * limits.step:
-                result.end = "no orbit in the shortest step"
-                return result
+                return replace(result, end="no orbit in the shortest step")
             continue
-        if _reverses(node, new):
-            result.end = "equilibrium"
-            return result
-        if np.linalg.norm(new.shot.monodromy) > UNSTABLE:
-            result.end = f"perturbations grow by more than {UNSTABLE:.0e} in a period"
-            return result
-        if crossed := _crossed(new, limits):
-            result.end, function = crossed
-            new = _root(node, new, function)
         is_closed = len(result.nodes) > 2 and _passes(node, new, first)
         result.nodes.append(new)
-        result.special.append(_special(node, new))
-        if is_closed:
-            result.end = "closed"
-        if result.end:
-            return result
+        result.special.append(special)
+        if crossed or is_closed:
+            return replace(result, end=crossed[0] if crossed else "closed")
         node, step = new, min(limits.step, step * np.clip(INTENDED / max(angle, 1e-9), 0.5, 2.0))
-    result.end = "number of orbits"
-    return result
+    return replace(result, end="number of orbits")
 
 
-def _reverses(node: Node, new: Node) -> bool:
-    """Whether the curve passed an equilibrium, beyond which the same orbits follow."""
+def _last(node: Node, new: Node) -> str:
+    """The reason why a node is the last one: the next has no meaning; empty if it has."""
     shooting = node.curve.shooting
     rates = [shooting.rate(n.point) for n in (node, new)]
-    return shooting.nature.is_autonomous and float(rates[0] @ rates[1]) < 0
+    if shooting.nature.is_autonomous and float(rates[0] @ rates[1]) < 0:
+        return "equilibrium"  # the same orbits follow
+    if np.linalg.norm(new.shot.monodromy) > UNSTABLE:
+        return f"perturbations grow by more than {UNSTABLE:.0e} in a period"
+    return ""
 
 
 def _crossed(new: Node, limits: Limits) -> tuple[str, Callable[[Node], float]] | None:
@@ -106,19 +112,35 @@ def _special(node: Node, new: Node) -> list[tuple[str, Node]]:
     """The special nodes in a step, by their kinds."""
     found = []
     for kind, function in FUNCTIONS.items():
+        is_neimark = kind == "Neimark-Sacker"
+        if is_neimark and keeps_volume(node) and keeps_volume(new):
+            continue
         if function(node) * function(new) < 0:
             there = _root(node, new, function)
-            if kind != "Neimark-Sacker" or is_torus(there):
+            if not is_neimark or is_torus(there):
                 found.append((float(there.difference(node) @ node.tangent), kind, there))
     return [(kind, there) for _, kind, there in sorted(found, key=lambda entry: entry[0])]
 
 
 def _root(node: Node, new: Node, function: Callable[[Node], float]) -> Node:
-    """The node between two others at which a function is 0."""
+    """The node between two others at which a function is 0.
+
+    It is located again between nodes close to it, from which it is predicted more accurately.
+    """
+    distance, length = _between(node, new, function)
+    near = [max(0.0, distance - CLOSE * length), min(length, distance + CLOSE * length)]
+    node, new = (node.curve.between(node, new, s, None) for s in near)
+    if function(node) * function(new) < 0:
+        distance, _ = _between(node, new, function)
+    return node.curve.between(node, new, distance)
+
+
+def _between(node: Node, new: Node, function: Callable[[Node], float]) -> tuple[float, float]:
+    """Distance from a node, along its tangent, where a function is 0, and that of the next node."""
     length = float(new.difference(node) @ node.tangent)
     known = {0.0: node, length: new}
 
-    def at(distance: float) -> Node:
-        return known.get(distance) or node.curve.between(node, new, distance)
+    def value(distance: float) -> float:
+        return function(known.get(distance) or node.curve.between(node, new, distance))
 
-    return at(brentq(lambda s: function(at(s)), 0.0, length, xtol=LOCATED, rtol=1e-15))
+    return float(brentq(value, 0.0, length, xtol=LOCATED, rtol=1e-15)), length

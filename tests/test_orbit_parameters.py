@@ -1,0 +1,208 @@
+"""Families of periodic orbits in a parameter, beside closed forms and SciPy's integrators."""
+
+from types import ModuleType
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+from scipy.special import ellipk, mathieu_a, mathieu_b
+
+import generated.driven_pendulum as driven
+import generated.duffing as duffing
+import generated.single_pendulum as single
+from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
+from solvers.app.modules import build
+from solvers.integration.orbits.family import SpecialOrbit
+from solvers.integration.orbits.orbit_family import orbit_family
+from solvers.integration.orbits.periodic_orbit import periodic_orbit
+
+DAMPED = {"a": 0.01, "Omega": 6.0, "c": 0.3}
+
+
+def test_resonances_of_the_driven_pendulum_are_mathieus() -> None:
+    rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 5, {"a": 0.01, "Omega": 5.0})
+    family = orbit_family(driven, rest, "a", (0.001, 3.0))
+    assert family.ends == ("bound", "bound")
+    assert family.values[[0, -1]] == pytest.approx([0.001, 3.0], rel=1e-12)
+    # theta'' + (A - 2 q cos 2x) theta = 0 for 2x = Ωt, A = 4 g/(l Ω²), q = 2a/l
+    stiffness = 4 * 9.81 / 25.0
+    exact = [brentq(lambda q: mathieu_a(1, q) - stiffness, *ends) / 2 for ends in ((0, 2), (4, 6))]
+    exact.append(brentq(lambda q: mathieu_b(2, q) - stiffness, 4, 6) / 2)
+    kinds = [point.kind for point in family.special]
+    assert kinds == ["period doubling", "period doubling", "branch point"]
+    located = [point.orbit.params[2] for point in family.special]
+    assert located == pytest.approx(exact, rel=1e-11)
+
+
+def dop853_multipliers(a: float, guess: np.ndarray, period: float) -> tuple[np.ndarray, complex]:
+    """An orbit of the driven pendulum near a guess, and its multipliers, by SciPy's DOP853."""
+
+    def rhs(t: float, z: np.ndarray) -> list[float]:
+        theta, rate, *changes = z
+        lift = 9.81 - a * 36.0 * np.cos(6.0 * t)
+        c, d = changes[:2], changes[2:]
+        slopes = [-lift * np.cos(theta) * x - 0.3 * v for x, v in zip(c, d, strict=True)]
+        return [rate, -lift * np.sin(theta) - 0.3 * rate, *d, *slopes]
+
+    y = guess.copy()
+    for _ in range(12):
+        start = [*y, 1.0, 0.0, 0.0, 1.0]
+        end = solve_ivp(rhs, (0, period), start, method="DOP853", rtol=1e-13, atol=1e-13).y[:, -1]
+        matrix = end[2:].reshape(2, 2)
+        step = np.linalg.solve(matrix - np.eye(2), y - end[:2])
+        y += step
+        if np.abs(step).max() < 1e-11:
+            break
+    return y, matrix
+
+
+def branch(point: SpecialOrbit, high: float) -> SpecialOrbit:
+    """The first special orbit of the family that branches off, up to an amplitude."""
+    family = orbit_family(driven, point, "a", (0.0, high), direction=1)
+    return next(found for found in family.special if found.kind != "turning point")
+
+
+def test_the_period_of_the_driven_pendulum_doubles() -> None:
+    rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 6, DAMPED)
+    (loses_rest,) = orbit_family(driven, rest, "a", (0.0, 0.2)).special
+    assert loses_rest.kind == "period doubling"
+    symmetric = branch(loses_rest, 0.31)
+    assert symmetric.kind == "branch point"
+    assert symmetric.orbit.period == pytest.approx(2 * rest.period, rel=1e-14)
+    doubles = branch(symmetric, 0.32)
+    assert doubles.kind == "period doubling"
+    again = branch(doubles, 0.3215)
+    assert again.kind == "period doubling"
+    assert again.orbit.period == pytest.approx(4 * rest.period, rel=1e-14)
+
+    y = doubles.orbit.y
+
+    def multiplier(a: float) -> float:  # the determinant of the matrix plus 1
+        nonlocal y
+        y, matrix = dop853_multipliers(a, y, 2 * rest.period)
+        return float(np.linalg.det(matrix + np.eye(2)))
+
+    a = doubles.orbit.params[2]
+    exact = brentq(multiplier, a - 1e-4, a + 1e-4, xtol=1e-12)
+    assert a == pytest.approx(exact, abs=1e-9)
+
+
+def test_the_response_of_duffings_oscillator_turns_twice() -> None:
+    params = {"Omega": 0.9, "F": 0.3}
+    start = periodic_orbit(duffing, {"x": 0.3}, 2 * np.pi / 0.9, params)
+    family = orbit_family(
+        duffing, start, "Omega", (0.9, 2.5), period=lambda p: 2 * np.pi / p["Omega"]
+    )
+    assert family.ends == ("bound", "bound")
+    assert [point.kind for point in family.special] == ["turning point"] * 2
+    assert set(family.stability) == {"asymptotically stable", "unstable"}
+    for point in family.special:
+        orbit = point.orbit
+        assert orbit.period == pytest.approx(2 * np.pi / orbit.params[5], rel=1e-14)
+        # friction contracts areas by exp(-c T/m), and one multiplier is 1
+        contraction = np.exp(-0.1 * orbit.period)
+        assert orbit.multipliers == pytest.approx([1.0, contraction], abs=1e-7)
+        assert np.trace(differences(orbit.y, orbit.period, duffing, orbit.params)) == pytest.approx(
+            1 + contraction, abs=1e-7
+        )
+
+
+def differences(
+    y: np.ndarray, period: float, module: ModuleType, params: tuple[float, ...]
+) -> np.ndarray:
+    """The monodromy matrix by differences of motions of SciPy's DOP853."""
+
+    def end(start: np.ndarray) -> np.ndarray:
+        options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-13}
+        return np.asarray(
+            solve_ivp(module.rhs, (0, period), start, args=(params,), **options).y[:, -1]
+        )
+
+    columns = [
+        (8 * (end(y + s) - end(y - s)) - end(y + 2 * s) + end(y - 2 * s)) / 12e-3
+        for s in 1e-3 * np.eye(len(y))
+    ]
+    return np.array(columns).T
+
+
+def van_der_pol() -> ModuleType:
+    """x'' - mu (1 - x²) x' + x = F cos(Ωt)."""
+    x, F = sp.symbols("x F", real=True)
+    mu, Omega = sp.symbols("mu Omega", positive=True)
+    return build(
+        System(
+            "forced_van_der_pol",
+            "",
+            [Coordinate(x, "m", "position")],
+            [
+                Parameter(mu, "1", 0.2, "damping"),
+                Parameter(F, "N", 0.0, "force"),
+                Parameter(Omega, "rad/s", 1.1, "frequency"),
+            ],
+            [PointMass(1, (x, 0))],
+            x**2 / 2,
+            forces=(mu * (1 - x**2) * velocity(x) + F * sp.cos(Omega * TIME),),
+        )
+    )
+
+
+def test_limit_cycles_and_their_tori() -> None:
+    module = van_der_pol()
+    free = periodic_orbit(module, {"x": 2.0}, 6.3, {"mu": 1.0})
+    assert free.period == pytest.approx(6.663286859323130, rel=1e-12)  # known to 16 digits
+    assert free.stability == "asymptotically stable"
+    family = orbit_family(module, free, "mu", (0.01, 2.0))
+    assert family.ends == ("bound", "bound")
+    assert family.special == []
+    assert family.period[0] == pytest.approx(2 * np.pi * (1 + 0.01**2 / 16), rel=1e-8)
+    # a strong force entrains the oscillation, a weaker one leaves a torus
+    period = 2 * np.pi / 1.3
+    forced = periodic_orbit(module, {"x": 0.0, "x_dot": -2.0}, period, {"F": 2.5, "Omega": 1.3})
+    assert forced.stability == "asymptotically stable"
+    family = orbit_family(module, forced, "F", (0.1, 2.5))
+    tori = [point.orbit for point in family.special if point.kind == "Neimark-Sacker"]
+    assert len(tori) == 1
+    matrix = differences(tori[0].y, period, module, tori[0].params)
+    assert np.linalg.det(matrix) == pytest.approx(1.0, abs=1e-8)
+    assert abs(np.trace(matrix)) < 2
+
+
+def test_orbits_of_one_period_in_a_parameter() -> None:
+    start = periodic_orbit(single, {"theta": 1.0}, 2.2, {"l": 1.0}, symmetry=("theta_dot",))
+    family = orbit_family(single, start, "l", (0.5, 2.0))
+    assert family.ends[0] == "bound"
+    assert family.period == pytest.approx(start.period, rel=1e-15)
+    for orbit in family.orbits:
+        modulus = np.sin(orbit.y[0] / 2) ** 2
+        exact = 4 * ellipk(modulus) * np.sqrt(orbit.params[1] / 9.81)
+        assert orbit.period == pytest.approx(exact, rel=1e-11)
+
+
+def test_arguments_of_families_are_checked() -> None:
+    orbit = periodic_orbit(single, {"theta": 1.0}, 2.2, {"l": 1.0})
+    with pytest.raises(ValueError, match=r"parameter = 'energi' \(did you mean 'energy'\?\)"):
+        orbit_family(single, orbit, "energi")
+    with pytest.raises(ValueError, match="exclude the start, energy"):
+        orbit_family(single, orbit, bounds=(0.0, 1.0))
+    with pytest.raises(ValueError, match="direction = 2 must be 0, 1 or -1"):
+        orbit_family(single, orbit, direction=2)
+    with pytest.raises(ValueError, match=r"start = 3\.0 must be an orbit"):
+        orbit_family(single, 3.0)  # type: ignore[arg-type]
+    rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 6, DAMPED)
+    with pytest.raises(ValueError, match="driven_pendulum does not conserve its energy"):
+        orbit_family(driven, rest)
+    with pytest.raises(ValueError, match=r"period = .* is not one of driven_pendulum"):
+        orbit_family(driven, rest, "Omega", (5.0, 7.0))
+
+
+def test_families_of_more_than_one_dimension_are_refused() -> None:
+    x, y = sp.symbols("x y", real=True)
+    coordinates = [Coordinate(q, "m", "position") for q in (x, y)]
+    masses = [PointMass(1, (q, 0)) for q in (x, y)]
+    free = build(System("free_pair", "", coordinates, [], masses, (x - y) ** 2 + (x - y) ** 4))
+    orbit = periodic_orbit(free, {"x": 0.4, "y": -0.4}, 2.4, {})
+    assert orbit.defect < 1e-11
+    with pytest.raises(ValueError, match="another quantity is conserved"):
+        orbit_family(free, orbit)
