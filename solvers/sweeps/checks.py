@@ -78,6 +78,9 @@ def check_maps(
         raise ValueError("no maps: give at least one")
     for name, one in maps.items():
         check_type(f"maps[{name!r}]", one, Map, "a map, such as Final(('theta1',))")
+    ladders = [name for name, one in maps.items() if one.ladder]
+    if ladders and len(maps) > 1:
+        raise ValueError(f"map {ladders[0]} is a response: it must be the only map")
     samplings = {one.sampling: name for name, one in maps.items() if one.sample_count}
     if len(samplings) > 1:
         both = " and ".join(samplings.values())

@@ -144,6 +144,17 @@ class Sweep:
         return np.array([self.duration]), samples[np.newaxis]
 
     @property
+    def ladder(self) -> str:
+        """The axis along which each motion starts where its neighbour ended, or an empty text."""
+        (one, *_) = self.maps.values()
+        return one.ladder
+
+    @property
+    def rungs(self) -> int:
+        """Number of successive motions that depend on each other."""
+        return self.axes.shape[-1] if self.ladder else 1
+
+    @property
     def extent(self) -> str:
         """Duration of each motion, in words."""
         if self.sampling:

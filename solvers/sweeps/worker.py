@@ -1,21 +1,17 @@
 """Chunks of a sweep: their length, and their computation in a thread or on another machine."""
 
 from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.mass_matrix import checked_before
-from solvers.integration.ensemble import ensemble
 from solvers.integration.ensemble_solution import Ensemble
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Status
 from solvers.integration.stop_flag import StopFlag
 from solvers.sweeps.axes import Array
 from solvers.sweeps.initial_states import initial_states
+from solvers.sweeps.ladders import climbed
 from solvers.sweeps.maps import Motions
+from solvers.sweeps.motions import after_transient, integrated
 from solvers.sweeps.status import CODES
 from solvers.sweeps.sweep import Sweep
 
@@ -38,6 +34,8 @@ def computed(
     sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
 ) -> tuple[NDArray[np.void], list[Ensemble]]:
     """A chunk with the maps of all motions, and the motions that were integrated."""
+    if sweep.ladder:
+        return climbed(sweep, columns, stop)
     module, maps = sweep.module, sweep.maps
     starts, params, status = initial_states(sweep, columns)
     chunk = np.zeros(len(status), sweep.dtype)
@@ -70,50 +68,6 @@ def computed(
     return chunk, ensembles
 
 
-def after_transient(
-    sweep: Sweep, starts: Array, params: list[Array], stop: StopFlag | None
-) -> tuple[Array, Ensemble]:
-    """States at `sweep.skip`, and the motions up to there; those that fail keep their start."""
-    module, form = sweep.module, sweep.unchecked(maps={}).form
-    n = len(module.STATE)
-    options = sweep.options | {"form": form}
-    span = 0.0, sweep.skip
-    motions = _integrate(sweep, span, starts[:, :n], params, stop, options)
-    return np.hstack([np.where(motions.success, motions.y, starts.T[:n]).T, starts[:, n:]]), motions
-
-
-def integrated(
-    sweep: Sweep, starts: Array, params: list[Array], stop: StopFlag | None = None
-) -> Ensemble:
-    """The motions after `sweep.skip`, in one thread."""
-    maps = sweep.maps.values()
-    events = [(event, one.skip) for one in maps for event in one.events(sweep.module)]
-    ends, samples = sweep.times(params)
-    options = sweep.options | {
-        "events": [replace(event, terminal=sweep.ends_at_event) for event, _ in events],
-        "skip": [skip for _, skip in events],
-        "occurrences": max(one.occurrences for one in maps),
-        "t_eval": samples if samples.size else None,
-    }
-    return _integrate(sweep, (sweep.skip, ends), starts, params, stop, options)
-
-
-def _integrate(
-    sweep: Sweep,
-    span: tuple[float, float | Array],
-    starts: Array,
-    params: list[Array],
-    stop: StopFlag | None,
-    options: Mapping[str, Any],
-) -> Ensemble:
-    constants = np.stack(params) if params else ()
-    with ignore_predictability(), checked_before():
-        motions = ensemble(sweep.module, span, starts.T, constants, workers=1, stop=stop, **options)
-    if (motions.status == Status.INTERRUPTED).any():
-        raise InterruptedError("the sweep was stopped")
-    return motions
-
-
 def mean_evaluations(sweep: Sweep, columns: Mapping[str, Array]) -> float:
     """Mean number of evaluations of the right-hand side for each of some motions."""
     chunk, ensembles = computed(sweep, columns)
@@ -132,4 +86,5 @@ def chunk_length(sweep: Sweep, evaluations: float) -> int:
     events = sum(one.occurrences * len(one.events(sweep.module)) for one in sweep.maps.values())
     most = MAX_BYTES / (8 * size * (1 + sweep.samples + events))
     seconds = min(CHUNK, (COST * each * sweep.motions) ** 0.5)
-    return max(1, int(min(seconds / each, most)))
+    length = max(1, int(min(seconds / each, most)))
+    return -(-length // sweep.rungs) * sweep.rungs

@@ -113,6 +113,11 @@ class Map:
         return 1
 
     @property
+    def ladder(self) -> str:
+        """Axis along which each motion starts where its neighbour ended, or an empty text."""
+        return ""
+
+    @property
     def uses_energy(self) -> bool:
         """Whether the energy must be conserved."""
         return bool(self.barrier)

@@ -42,7 +42,7 @@ class Basins(Map):
     """
 
     every: str | float
-    skip: int
+    skip: int = 0
     count: int = 16
     tolerance: float = 1e-3
 

@@ -16,6 +16,7 @@ from solvers.sweeps.maps import Panels
 from solvers.sweeps.plots.diagram import diagram
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
 from solvers.sweeps.plots.quantity import Quantity, letter
+from solvers.sweeps.plots.response import response
 from solvers.sweeps.results import Results
 from solvers.sweeps.status import GOOD
 
@@ -129,5 +130,12 @@ def _section(name: str, results: Results) -> Panels:
             yield title, partial(diagram, quantity=quantity, axis=over, selection=selection)
 
 
+def _response(name: str, results: Results) -> Panels:
+    """A panel for each component."""
+    for k, component in enumerate(results.definition.maps[name].labels[0]):
+        draw = partial(response, results=results, name=name, component=k)
+        yield f"{name}: {symbol(component)}", draw
+
+
 #: Panels of each kind of plot.
-PANELS = {"numbers": _numbers, "curves": _curves, "section": _section}
+PANELS = {"response": _response, "numbers": _numbers, "curves": _curves, "section": _section}

@@ -1,0 +1,76 @@
+"""Ladders: motions along an axis, each of which starts where its neighbour ended."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.integration.ensemble_solution import Ensemble
+from solvers.integration.solution import Status
+from solvers.integration.stop_flag import StopFlag
+from solvers.sweeps.axes import Array
+from solvers.sweeps.initial_states import initial_states
+from solvers.sweeps.maps import Motions
+from solvers.sweeps.motions import integrate_all
+from solvers.sweeps.status import CODES
+from solvers.sweeps.sweep import Sweep
+
+
+def climbed(
+    sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
+) -> tuple[NDArray[np.void], list[Ensemble]]:
+    """A chunk of whole ladders, each climbed upwards and downwards, and the motions.
+
+    All ladders move together from rung to rung. Every rung is integrated from t = 0, so that the
+    drive, whose period is that of the map, has the same phase at its start and at its end.
+    """
+    ((name, one),) = sweep.maps.items()
+    module, sampling = sweep.module, one.sampling
+    assert sampling is not None
+    starts, params, _ = initial_states(sweep, columns)
+    chunk = np.zeros(len(starts), sweep.dtype)
+    chunk[name] = np.nan
+    rungs = _rungs(columns, one.ladder)
+    state, codes = starts[rungs[:, 0]], np.full(len(rungs), CODES[Status.FINISHED])
+    ensembles = []
+    for k in range(rungs.shape[1]):
+        here = np.flatnonzero(rungs[:, k] >= 0)
+        alive = here[codes[here] == CODES[Status.FINISHED]]
+        if len(alive):
+            motions = rungs[alive, k]
+            own = [column[motions] for column in params]
+            times = sampling.times(module, own)
+            options = sweep.options
+            before = integrate_all(sweep, (0.0, times[:, 0]), state[alive], own, stop, options)
+            begins = np.where(before.success, before.y, state[alive].T).T
+            duration = times[:, -1] - times[:, 0]
+            options |= {"events": one.events(module), "occurrences": one.occurrences}
+            after = integrate_all(sweep, (0.0, duration), begins, own, stop, options)
+            ensembles += [before, after]
+            ends = np.where(before.success, after.status, before.status)
+            codes[alive] = [CODES[end] for end in ends]
+            good = codes[alive] == CODES[Status.FINISHED]
+            values = one.values(Motions(module, 0.0, begins, own, after, slice(None)))
+            chunk[name][motions[good], ..., alive[good] % 2] = values[good]
+            state[alive] = after.y.T
+        status = chunk["status"]  # that of a failure in one direction, if any
+        np.maximum.at(status, rungs[here, k], codes[here].astype(status.dtype))
+    return chunk, ensembles
+
+
+def _rungs(columns: Mapping[str, Array], along: str) -> NDArray[np.intp]:
+    """Indices of motions: a row for each ladder upwards and one downwards, then -1 if shorter.
+
+    Neighbours with equal values of all other quantities are on one ladder.
+    """
+    others = [column for name, column in columns.items() if name != along]
+    n = len(columns[along])
+    differ = [np.flatnonzero(np.diff(column)) + 1 for column in others]
+    bounds = np.unique(np.concatenate([[0, n], *differ]).astype(int))
+    ladders = [np.arange(*ends) for ends in pairwise(bounds)]
+    rows = np.full((2 * len(ladders), max(map(len, ladders))), -1)
+    for k, ladder in enumerate(ladders):
+        up = ladder[np.argsort(columns[along][ladder], kind="stable")]
+        rows[2 * k, : len(up)], rows[2 * k + 1, : len(up)] = up, up[::-1]
+    return rows
