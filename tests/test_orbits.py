@@ -74,14 +74,22 @@ def test_a_motion_that_stops_has_no_transition_matrix() -> None:
     assert raised.value.t < 0.1
 
 
-def test_forces_with_kinks_have_no_transition_matrix() -> None:
+def test_the_transition_matrix_of_two_springs() -> None:
     x = sp.Symbol("x", real=True)
     system = System(
         "two_springs", "", [Coordinate(x, "m", "position")], [], [PointMass(1, (x, 0))],
         sp.Max(0, x) ** 2, forces=(-x,),
     )  # fmt: skip
-    with pytest.raises(ValueError, match="two_springs have kinks or jumps"):
-        transition_matrix(build(system), (0, 1), {"x": 1.0}, {})
+    # stiffness 3 where x > 0, else 1: from x = 1 at rest over half a period of each
+    stiff = np.sqrt(3)
+    period = np.pi / stiff + np.pi
+    result = transition_matrix(build(system), (0, period), {"x": 1.0}, {})
+    assert result.y == pytest.approx((1.0, 0.0), abs=1e-10)
+    assert result.matrix == pytest.approx(np.eye(2), abs=1e-9)
+    quarter = transition_matrix(build(system), (0, np.pi / (2 * stiff) + 1), {"x": 1.0}, {})
+    expected = [[0.0, 1 / stiff], [-stiff, 0.0]]
+    rest = [[np.cos(1), np.sin(1)], [-np.sin(1), np.cos(1)]]
+    assert quarter.matrix == pytest.approx(np.array(rest) @ expected, abs=1e-10)
 
 
 def test_compiled_and_python_tangents_agree(monkeypatch: pytest.MonkeyPatch) -> None:

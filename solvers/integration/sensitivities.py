@@ -18,7 +18,7 @@ from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import Options, Problem
 from solvers.integration.solution import Array
-from solvers.integration.switching import check_smooth
+from solvers.integration.switching import started
 from solvers.io.suggestion import did_you_mean
 
 #: Occurrences of each event that are stored at first.
@@ -102,7 +102,7 @@ def sensitivities(
     Raises
     ------
     ValueError
-        When an argument is invalid, `module` has no form ``sensitivity``, or its forces have kinks.
+        When an argument is invalid, or `module` has no form ``sensitivity``.
     solvers.integration.prepare.NotFinishedError
         When the motion reaches neither its end nor a terminal event.
 
@@ -123,7 +123,6 @@ def sensitivities(
     located = [events] if isinstance(events, Event) else [*events]
     options = Options("verner98", "lagrangian", rtol, atol, events=located, inputs=inputs)
     problem = validation.problem(module, t_span, y0, params, options)
-    check_smooth(problem.form)
     names = _names(module, by)
     starts, values, units = _perturbed(problem, names)
     occurrences, most = 0, OCCURRENCES
@@ -221,9 +220,9 @@ def _rates(problem: Problem, t: Array, y: Array) -> Array:
     """Derivatives of states in columns by time."""
     rates = np.empty_like(y)
     for k, (time, state) in enumerate(zip(t.tolist(), y.T, strict=True)):
-        form, schedule = problem.form, problem.schedule
+        now, schedule = problem, problem.schedule
         if schedule:
             sample = int(np.searchsorted(schedule.times, time, "right")) - 1
-            form = problem.with_inputs(schedule.at(sample, time, state)).form
-        rates[:, k] = form.rhs(time, state)
+            now = problem.with_inputs(schedule.at(sample, time, state))
+        rates[:, k] = started(now, time, state, ())[0].form.rhs(time, state)
     return rates

@@ -13,7 +13,6 @@ from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import Options, Outcome, Problem
 from solvers.integration.solution import Array, Status
-from solvers.integration.switching import check_smooth
 
 METHOD = "verner98"
 
@@ -42,7 +41,7 @@ class Tangents:
     Raises
     ------
     ValueError
-        When an argument is invalid, `module` has no variational form, or its forces have kinks.
+        When an argument is invalid, or `module` has no variational form.
     """
 
     def __init__(
@@ -65,7 +64,6 @@ class Tangents:
             constants = np.concatenate([np.zeros(len(parameter_changes)), constants])
         options = Options(METHOD, form, rtol, atol)
         problem = validation.problem_at_rest(module, t_span, options, constants)
-        check_smooth(problem.form)
         problem = problem.with_params(perturbed)
         self._problem, self._program = compiled_loop.select(problem, lanes=True)
         self._batch: Batch | None = None
