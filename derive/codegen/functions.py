@@ -76,6 +76,15 @@ SPECS = (
         "The functions, then their rates of change along the motion.",
         exists=lambda derivation: bool(derivation.switching_functions)
         and bool(EquationsOfMotion(derivation).angles)),
+    FunctionSpec("switches_variational", "variational", "4 switches",
+        "`switches` of the variational state, and their linear perturbations.",
+        "The functions, their rates of change along the motion, and the perturbations of both.",
+        exists=lambda derivation: bool(derivation.switching_functions)),
+    FunctionSpec("switches_sensitivity", "sensitivity", "4 switches",
+        "`switches_variational` with perturbed parameters, whose perturbations precede them.",
+        "The functions, their rates of change along the motion, and the perturbations of both.",
+        exists=lambda derivation: bool(derivation.switching_functions)
+        and bool(derivation.system.params) and _is_small(derivation)),
     FunctionSpec("energy", "lagrangian", "",
         "{}.",
         "Energy in J.", _energy),
@@ -187,7 +196,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     system, states = derivation.system, _states(derivation)
     sizes = {"q": len(system.q), "masses": len(system.masses), "axes": system.dimension}
     sizes |= {"switches": len(derivation.switching_functions)}
-    sizes |= {"state": 2 * len(system.q), "reactions": len(system.reactions), "2": 2}
+    sizes |= {"state": 2 * len(system.q), "reactions": len(system.reactions), "2": 2, "4": 4}
     # a function whose result has an axis of no entries does not exist
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
     sizes |= {name: count for name, count in constants.items() if count}

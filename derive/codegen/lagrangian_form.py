@@ -62,18 +62,43 @@ class LagrangianForm(EquationsOfMotion):
     def switches(self) -> list[Node]:
         """Switching functions, then their rates of change along the motion."""
         values = self._nodes(self._derivation.switching_functions)
-        state, rates = (*self._system.q, *self._system.qdot, TIME), list[Node]()
-        changes = [*self._qdot, *self._accelerations, self._graph.node(1)]
-        for value in values:
-            pairs = zip(state, changes, strict=True)
-            terms = ((self._derivative(value, s.name) * change, 1) for s, change in pairs)
-            rates.append(self._graph.sum(terms))
-        return [*values, *rates]
+        return [*values, *(self._change(value, self._state_rates) for value in values)]
+
+    @property
+    def _state_rates(self) -> dict[sp.Symbol, Node]:
+        """The rates of change of the state and of time."""
+        rates = [*self._qdot, *self._accelerations, self._graph.node(1)]
+        return dict(zip((*self._system.q, *self._system.qdot, TIME), rates, strict=True))
+
+    def _change(self, value: Node, changes: Mapping[sp.Symbol, Node]) -> Node:
+        """The change of a function of the state by small changes of its components."""
+        terms = ((self._derivative(value, s.name) * change, 1) for s, change in changes.items())
+        return self._graph.sum(terms)
 
     @property
     def switches_rational(self) -> list[Node]:
-        """The same, of the rational state."""
+        """Switching functions of the rational state, then their rates of change."""
         return rationalised(self.switches, [q.name for q in self.angles])
+
+    @property
+    def switches_variational(self) -> list[Node]:
+        """Switching functions, their rates of change, and the perturbations of both."""
+        return self._perturbed_switches(self._changes)
+
+    @property
+    def switches_sensitivity(self) -> list[Node]:
+        """The same with perturbed parameters."""
+        return self._perturbed_switches(self._all_changes)
+
+    def _perturbed_switches(self, changes: Mapping[sp.Symbol, Node]) -> list[Node]:
+        values, rates, tangent = self.switches, self._state_rates, self._tangent(changes)
+        functions = values[: len(values) // 2]
+        perturbed = [self._change(value, changes) for value in functions]
+        for value in functions:
+            slopes = {s: self._derivative(value, s.name) for s in rates}
+            terms = [(self._change(slope, changes) * rates[s], 1) for s, slope in slopes.items()]
+            perturbed.append(self._graph.sum([*terms, (self._change(value, tangent), 1)]))
+        return rationalised([*values, *perturbed], [q.name for q in self.angles])
 
     @property
     def reactions(self) -> list[Node]:
@@ -155,22 +180,35 @@ class LagrangianForm(EquationsOfMotion):
     @property
     def rhs_variational(self) -> list[Node]:
         """`rhs_rational` of the motion, then δq̇ and δq̈ = M⁻¹ (δf - δM q̈)."""
-        return self._with_perturbation({})
+        return self._with_perturbation(self._changes)
 
     @property
     def rhs_sensitivity(self) -> list[Node]:
         """The same with perturbed parameters."""
-        system = self._system
-        changes = self._nodes(system.parameter_variations)
-        return self._with_perturbation(dict(zip(system.params, changes, strict=True)))
+        return self._with_perturbation(self._all_changes)
 
-    def _with_perturbation(self, of_parameters: Mapping[sp.Symbol, Node]) -> list[Node]:
+    def _with_perturbation(self, changes: Mapping[sp.Symbol, Node]) -> list[Node]:
+        tangent = self._tangent(changes).values()
+        return rationalised([*self._rational_rates, *tangent], [q.name for q in self.angles])
+
+    @property
+    def _changes(self) -> dict[sp.Symbol, Node]:
+        """The perturbation of each component of the state."""
+        state = (*self._system.q, *self._system.qdot)
+        return dict(zip(state, self._nodes(self._system.variations), strict=True))
+
+    @property
+    def _all_changes(self) -> dict[sp.Symbol, Node]:
+        """The same, and of each parameter."""
+        changes = self._nodes(self._system.parameter_variations)
+        return self._changes | dict(zip(self._system.params, changes, strict=True))
+
+    def _tangent(self, changes: Mapping[sp.Symbol, Node]) -> dict[sp.Symbol, Node]:
+        """The rates of change of the perturbation, δq̇ and δq̈."""
         q, qdot = self._system.q, self._system.qdot
-        changes = dict(zip((*q, *qdot), self._nodes(self._system.variations), strict=True))
-        changes |= of_parameters
         imbalances = [
             self._graph.sum([(self._imbalance(i, s) * x, 1) for s, x in changes.items()])
             for i in self._n
         ]
         tangent = [*(changes[s] for s in qdot), *self._factorisation.solve(imbalances)]
-        return rationalised([*self._rational_rates, *tangent], [q.name for q in self.angles])
+        return dict(zip((*q, *qdot), tangent, strict=True))

@@ -31,7 +31,8 @@ RESERVED = {
     *"linux unix i386 EOF INFINITY NAN NULL MAXFLOAT DECIMAL_DIG math_errhandling".split(),
     # macros of the compiled loops; a header of the system `lane` would define functions of theirs
     *"ONE_LANE LANE MASK_LANE RHS JACOBIAN COMPENSATED HAS_POLYNOMIAL INTERPOLATES".split(),
-    *"VARIES_ORDER HAS_SWITCHES SWITCHING PART".split(),
+    *"VARIES_ORDER HAS_SWITCHES SWITCHING PART PERTURBED HAS_JACOBIAN".split(),
+    *"SMOOTH_RHS SMOOTH_JACOBIAN".split(),
     *"lane holonomic".split(),
 }
 

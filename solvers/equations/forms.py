@@ -7,6 +7,7 @@ preceded by their perturbations.
 
 from collections.abc import Callable, Sequence
 from copy import copy
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from solvers.equations.module import (
     state_names,
     switching_functions,
 )
+from solvers.equations.sliding import Evaluate, Sliding, slide
 
 Array = NDArray[np.float64]
 
@@ -98,11 +100,15 @@ class Form:
 
     def rhs(self, t: float, z: Array) -> Array:
         """The right-hand side; `ArithmeticError` where it has no finite value."""
+        if 0.0 in self.signs:
+            return self.switching(t, z).derivative
         return self._value(self.function, t, z, self._params_at(t, z))
 
     def jacobian(self, t: float, z: Array) -> Array:
         """Its Jacobian; `ArithmeticError` where it has no finite value."""
         assert self._jacobian is not None
+        if 0.0 in self.signs:
+            return _differences(lambda y: self.rhs(t, y), z)
         params = self._params_at(t, z)
         matrix = self._value(self._jacobian, t, z, params)
         if self.feedback is None:
@@ -130,25 +136,52 @@ class Form:
         return len(switching_functions(self.module))
 
     def with_signs(self, signs: Sequence[float] | Array) -> "Form":
-        """The form with the signs of switching functions held; their values decide if empty."""
+        """The form with the signs of switching functions held; their values decide if empty.
+
+        A sign of 0 keeps its function at 0.
+        """
         return Form(self.module, self.name, self.params, self.feedback, [*map(float, signs)])
 
-    def switches(self, t: float, y: Array) -> tuple[Array, Array]:
-        """Switching functions and their rates of change at an ordinary state."""
-        state = y[: len(self.module.STATE)]
-        params = self._params_at(t, state)[len(self.params) - len(self.constants) :]
-        values, rates = self._value(function(self.module, "switches"), t, state, params)
-        return values, rates
+    def values(self, t: float, y: Array) -> Array:
+        """Switching functions at a state of Lagrange's form."""
+        switches = function(self.module, "switches")
+        return np.asarray(self._value(switches, t, y, self._params_at(t, y))[0])
+
+    def switching(self, t: float, z: Array) -> Sliding:
+        """The motion with the held signs, and its switching functions.
+
+        A sign of 0 keeps its function at 0.
+        """
+        return slide(self.by_signs(t, z), self.signs, self.perturbed)
+
+    def by_signs(self, t: float, z: Array) -> Evaluate:
+        """The right-hand side and the switching functions at a state, by their signs."""
+        form = self.name if self.name != "hamiltonian" else "lagrangian"
+        params, signs = self._params_at(t, z), len(self.signs)
+        plain = params[: len(params) - signs]
+        switches, y = function(self.module, named("switches", form)), z
+        if form != self.name:
+            y = self._value(function(self.module, "lagrangian_state"), t, z, params)
+
+        def evaluate(signs: Sequence[float]) -> tuple[Array, Array]:
+            held = (*plain, *signs)
+            return self._value(self.function, t, z, held), self._value(switches, t, y, held)
+
+        return evaluate
+
+    @cached_property
+    def perturbed(self) -> list[tuple[int, int]]:
+        """Indices of each velocity and its perturbation in the variational form."""
+        if f"delta_{self.module.STATE[-1]}" not in self.state:
+            return []
+        velocities = self.module.STATE[len(self.module.COORDINATES) :]
+        return [(self.state.index(v), self.state.index(f"delta_{v}")) for v in velocities]
 
     def _feedback_jacobian(self, t: float, z: Array) -> Array:
         """∂u/∂z, shape (inputs, state), by differences."""
-        assert self.feedback is not None
-        steps = STEP * np.maximum(np.abs(z), 1.0)
-        columns = [
-            (self.feedback(t, z + change) - self.feedback(t, z - change)) / (2 * change.sum())
-            for change in np.diag(steps)
-        ]
-        return np.array(columns).T
+        feedback = self.feedback
+        assert feedback is not None
+        return _differences(lambda y: feedback(t, y), z)
 
     def from_ordinary(self, t: float, y: Array) -> Array:
         """The state of this form for the ordinary state `y` at time `t`."""
@@ -217,6 +250,13 @@ class Form:
         params = [np.asarray(p, float) for p in self.params]
         with np.errstate(all="ignore"):
             return np.asarray(function(self.module, name)(t, states.T, params)).T
+
+
+def _differences(values: Callable[[Array], Array], z: Array) -> Array:
+    """The Jacobian of a function of the state, by differences."""
+    steps = np.diag(STEP * np.maximum(np.abs(z), 1.0))
+    columns = [(values(z + dz) - values(z - dz)) / (2 * dz.sum()) for dz in steps]
+    return np.array(columns).T
 
 
 def fastest_form(module: GeneratedModule) -> str:

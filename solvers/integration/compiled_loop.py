@@ -10,9 +10,7 @@ from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
 from solvers.integration.events import Event
 from solvers.integration.inputs import held_table, segments
 from solvers.integration.problem import Outcome, Problem
-from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Status
-from solvers.integration.switching import first_part, next_part
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.tableau import Tableau
 
@@ -22,11 +20,8 @@ ROW_CAPACITY, EVENT_CAPACITY = 4096, 64
 TIME_LIMIT = 0.05
 
 
-def obstacle(problem: Problem, *, switches: bool = False) -> str:
-    """The reason why no compiled loop can solve the problem; empty if one can.
-
-    With `switches`, steps end where switching functions are 0.
-    """
+def obstacle(problem: Problem) -> str:
+    """The reason why no compiled loop can solve the problem; empty if one can."""
     if not isinstance(problem.method, Tableau):
         return "the method is SciPy's"
     if problem.atol.ndim:
@@ -40,7 +35,7 @@ def obstacle(problem: Problem, *, switches: bool = False) -> str:
         return f"there are more than {MAX_EVENTS} events"
     if header(problem.form.module) is None:
         return "there is no C header beside the module"
-    count = problem.form.switching_count if switches else 0
+    count = problem.form.switching_count
     if count and problem.method.is_parallel:
         return "forces have kinks or jumps, at which parallel stages do not end steps"
     if count and len(problem.all_events) + count > MAX_EVENTS:
@@ -54,19 +49,15 @@ def obstacle(problem: Problem, *, switches: bool = False) -> str:
     return ""
 
 
-def select(
-    problem: Problem, *, lanes: bool, switches: bool = False
-) -> tuple[Problem, Kernel | None]:
+def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     """The problem in the form to integrate, and its compiled loop; None if it runs in Python.
-
-    With `switches`, steps end where switching functions are 0.
 
     Raises `ValueError` or `NoCompilerError` when it must be compiled and cannot; warns when no
     compiler could, and it runs in Python.
     """
     must_compile = problem.backend == "compiled"
     reason = "it is to run in Python" if problem.backend == "python" else ""
-    reason = reason or obstacle(problem, switches=switches)
+    reason = reason or obstacle(problem)
     if reason and must_compile:
         raise ValueError(f"no compiled loop can solve this problem: {reason}")
     if reason and lanes and problem.backend is None and isinstance(problem.method, Tableau):
@@ -76,7 +67,7 @@ def select(
     is_free = problem.options.form is None and not load(problem.options.method).needs_jacobian
     compilable = problem.with_form(fastest_form(problem.form.module)) if is_free else problem
     try:
-        return compilable, loop(compilable, lanes=lanes, switches=switches)
+        return compilable, loop(compilable, lanes=lanes)
     except NoCompilerError as error:
         if must_compile:
             raise
@@ -84,12 +75,10 @@ def select(
         return problem, None
 
 
-def loop(problem: Problem, *, lanes: bool = False, switches: bool = False) -> Kernel:
-    """The compiled loop for the problem; with `switches`, that for `run`."""
+def loop(problem: Problem, *, lanes: bool = False) -> Kernel:
+    """The compiled loop for the problem."""
     form, method, compensated = problem.form, problem.options.method, problem.options.compensated
-    switches = switches and form.switching_count > 0
-    options = {"lanes": lanes, "switches": switches, "compensated": compensated}
-    return kernel(form.module, form.name, method, **options)
+    return kernel(form.module, form.name, method, lanes=lanes, compensated=compensated)
 
 
 def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
@@ -98,32 +87,27 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     outcome.backend = f"compiled by {program.library.compiler}"
     capacity = ROW_CAPACITY if samples is None else len(samples)
     batch, status = None, Status.FINISHED
-    # where switching functions end steps, Python changes the inputs
-    table = None if problem.form.switching_count else held_table(problem, outcome.history)
+    table = held_table(problem, outcome.history)
     parts = iter([problem.with_inputs(table[1][0])]) if table else None
-    for segment in parts or segments(problem, lambda: outcome.end[1], outcome.history):
-        part, status = first_part(segment, outcome)
-        while part is not None:
-            if batch is None:
-                room = EVENT_CAPACITY
-                batch = Batch(program, part, capacity=capacity, occurrences=room, pauses=True)
-                if table:
-                    batch.hold(*table)
-            else:
-                batch.resume(part)
-            running = None
-            while running is None:
-                batch.restart(TIME_LIMIT)
-                try:
-                    batch.run()
-                finally:  # an interruption arrives when C returns: collect its results first
-                    running = STATUSES[batch.motions["status"][0]]
-                    _collect(batch, part, outcome)
-            part, status = next_part(part, outcome, running)
+    for part in parts or segments(problem, lambda: outcome.end[1], outcome.history):
+        if batch is None:
+            room = EVENT_CAPACITY
+            batch = Batch(program, part, capacity=capacity, occurrences=room, pauses=True)
+            if table:
+                batch.hold(*table)
+        else:
+            batch.resume(part)
+        running = None
+        while running is None:
+            batch.restart(TIME_LIMIT)
+            try:
+                batch.run()
+            finally:  # an interruption arrives when C returns: collect its results first
+                running = STATUSES[batch.motions["status"][0]]
+                _collect(batch, part, outcome)
+        status = running
         if status is not Status.FINISHED:
             break
-    if batch is None:  # there is no motion
-        Recorder(problem, outcome)
     outcome.end_with(status, problem)
 
 

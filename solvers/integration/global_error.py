@@ -40,7 +40,7 @@ def global_error_estimate(problem: Problem, t: Array, y: Array) -> Array:
         max_steps=100 * problem.max_steps,
         options=options,
     )
-    tighter, program = compiled_loop.select(tighter, lanes=False, switches=True)
+    tighter, program = compiled_loop.select(tighter, lanes=False)
     outcome = Outcome.at_start(tighter)
     if program:
         compiled_loop.run(tighter, outcome, program)

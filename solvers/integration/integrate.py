@@ -132,7 +132,7 @@ def integrate(
     )
     problem = validation.problem(module, t_span, y0, params, options)
     check_condition(module, [("", problem.form.constants, problem.start.tolist())], problem.span[0])
-    problem, program = compiled_loop.select(problem, lanes=False, switches=True)
+    problem, program = compiled_loop.select(problem, lanes=False)
     problem = replace(problem, max_steps=limit_steps(problem))
     outcome = Outcome.at_start(problem)
     try:
@@ -158,8 +158,6 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = ""
     if outcome.status is not Status.FINISHED:
         state = ", ".join(f"{name} = {x:.6g}" for name, x in zip(problem.units, y, strict=True))
         detail = f" (t = {t}, {state})" if not detail else f" ({detail})"
-    if outcome.sliding:
-        detail += f": {outcome.sliding} stays 0"
     if outcome.status is Status.STEP_LIMIT and problem.max_steps < problem.options.max_steps:
         detail += ": the states of more steps do not fit into memory, give times t_eval"
     states, energies = rows.T[: len(form.module.STATE)], None

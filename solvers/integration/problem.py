@@ -58,6 +58,7 @@ class Problem:
     max_steps: int
     options: Options  # as given
     schedule: Schedule | None = None  # of inputs that are held between samples
+    levels: tuple[float, ...] = ()  # values of switching functions that count as 0
 
     def with_form(self, name: str) -> "Problem":
         """The same problem in another form with the same ordinary state."""
@@ -88,7 +89,8 @@ class Problem:
     @property
     def switches(self) -> list[Switch]:
         """Events that end steps where switching functions, whose signs are held, are 0."""
-        return [Switch(self.form, k) for k in range(len(self.form.signs))]
+        lagrangian = self.form.in_form("lagrangian")
+        return [Switch(lagrangian, k, level) for k, level in enumerate(self.levels)]
 
     @property
     def backend(self) -> str | None:
@@ -123,8 +125,8 @@ class Outcome:
     steps: int = 0
     rejected: int = 0
     backend: str = "python"
-    sliding: str = ""  # the switching function that stays 0
-    brief_parts: int = 0  # successive parts between switches that took next to no time
+    signs: tuple[float, ...] = ()  # of switching functions, 0 of those that stay 0
+    recent: list[int] = field(default_factory=list)  # switches in succession in next to no time
     history: History = field(default_factory=History)  # of held inputs
 
     @classmethod

@@ -12,7 +12,7 @@ from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Status
 from solvers.integration.stop_flag import StopFlag
-from solvers.integration.switching import first_part, next_part
+from solvers.integration.switching import first_part, is_coarse, next_part
 from solvers.runge_kutta.order_choice import OrderChoice
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
@@ -124,6 +124,9 @@ def _step(
     try:
         if isinstance(trial, Rejected):
             return trial, False
+        end = trial.end
+        if attempts.controller and is_coarse(recorder.form, start.t, start.y, end.t, end.y):
+            return Rejected(h / 2), False
         return trial, recorder.advance(t, trial)
     except FAILURES as failure:
         return Rejected(h / 4, failure), False

@@ -38,7 +38,8 @@ class Recorder:
     def restart(self, problem: Problem) -> None:
         """Go on from the last state with the signs that the problem holds."""
         if problem.switches:
-            self.events = problem.all_events
+            self.form, self.events = problem.form, problem.all_events
+            self.y = self._outcome.end[1]
             self._evaluate_events()
 
     def _evaluate_events(self) -> None:

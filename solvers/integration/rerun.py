@@ -10,9 +10,9 @@ from solvers.integration.problem import Outcome, Problem
 def rerun(problem: Problem) -> Outcome:
     """The outcome of a problem in its form, compiled if that is possible, without warnings."""
     outcome, program = Outcome.at_start(problem), None
-    if problem.backend != "python" and not compiled_loop.obstacle(problem, switches=True):
+    if problem.backend != "python" and not compiled_loop.obstacle(problem):
         with suppress(NoCompilerError):  # the first run has reported it
-            program = compiled_loop.loop(problem, switches=True)
+            program = compiled_loop.loop(problem)
     if program:
         compiled_loop.run(problem, outcome, program)
     else:

@@ -14,6 +14,7 @@ from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status
 from solvers.integration.step_states import Curve
 from solvers.integration.stop_flag import StopFlag
+from solvers.integration.switching import first_part, next_part
 from solvers.runge_kutta.stepper import NotFiniteError, Rhs, evaluated
 
 
@@ -53,8 +54,12 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag) -> None:
     outcome.backend = "scipy"
     try:
         recorder, status = Recorder(problem, outcome), Status.FINISHED
-        for part in segments(problem, lambda: recorder.y, outcome.history):
-            status = _run(part, outcome, recorder, stop)
+        for segment in segments(problem, lambda: recorder.y, outcome.history):
+            part, status = first_part(segment, outcome)
+            while part is not None:
+                recorder.restart(part)
+                status = _run(part, outcome, recorder, stop)
+                part, status = next_part(part, outcome, status)
             if status is not Status.FINISHED:
                 break
         outcome.end_with(status, problem)

@@ -38,9 +38,9 @@ class Status(Enum):
         "control the steps, without h"
     )
     OUTSIDE_DOMAIN = "a coordinate that must be positive fell to 0"
-    SLIDING = (
-        "the motion stays on a jump of the forces, from which they push it back on either side: "
-        "for its continuation, replace sign(v) by tanh(v/w) with a small w"
+    UNDETERMINED = (
+        "at jumps of the forces, these determine no motion: replace sign(v) by tanh(v/w) with a "
+        "small w"
     )
 
 

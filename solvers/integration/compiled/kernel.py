@@ -17,7 +17,6 @@ from solvers.integration.compiled.native import equations
 from solvers.integration.events import Event, Extremum
 from solvers.integration.problem import SHORTEST, Problem
 from solvers.integration.solution import Status
-from solvers.integration.switching import Switch
 from solvers.runge_kutta.catalogue import load
 
 Array = NDArray[np.float64]
@@ -27,9 +26,9 @@ class Kernel:
     """The compiled program for one form of a module's equations and one method.
 
     With `lanes` it runs many motions at once, where right-hand side and method allow it; else it
-    also has the function `single`, for a motion from start to end. With `switches`, the signs of
-    switching functions follow the parameters, and are held. If `compensated`, the state's
-    rounding errors are carried along; if `reproducible`, every compiler gives the same bits.
+    also has the function `single`, for a motion from start to end. Steps end at zeros of switching
+    functions, but those of parallel stages. If `compensated`, the state's rounding errors are
+    carried along; if `reproducible`, every compiler gives the same bits.
     """
 
     def __init__(
@@ -39,11 +38,11 @@ class Kernel:
         method: str,
         *,
         lanes: bool = False,
-        switches: bool = False,
         compensated: bool = False,
         reproducible: bool = False,
     ) -> None:
-        tableau, source = load(method), equations(module, form, switches=switches)
+        tableau = load(method)
+        source = equations(module, form, switches=not tableau.is_parallel)
         vectors = lanes and source.vectorises and tableau.is_explicit
         # a single motion is rescaled in Python instead
         variations = source.ordinary // 2 if lanes and form == "variational" else 0
@@ -58,6 +57,7 @@ class Kernel:
         self.single = None if lanes else library.single
         library.fuses_products.restype = ctypes.c_int64
         self.fuses_products = bool(library.fuses_products())
+        self.switches = source.switches
         self.trajectory, self.row = record("Trajectory", sizes), record("Row", sizes)
 
 
@@ -84,19 +84,22 @@ class Batch:
         pauses: bool = False,
     ) -> None:
         starts = problem.start[np.newaxis] if starts is None else starts
-        n, events, form = len(starts), cast("list[Event]", problem.all_events), problem.form
+        n, form = len(starts), problem.form
+        requested = cast("list[Event]", [*problem.events, *problem.limits])
+        events = [_event(form, event, pauses) for event in requested]
+        events += map(_switch, range(kernel.switches))
         self._kernel, self.form = kernel, form
         self.motions = np.zeros(n, kernel.trajectory)  # Trajectory in c/layout.h
         self.motions["t"], self.motions["t_end"] = problem.span
         self.motions["min_h"] = SHORTEST * np.spacing(np.abs(problem.span).max())
         self.motions["z"], self.motions["turns"] = form.from_ordinary_many(problem.span[0], starts)
-        for k, parameter in enumerate((*form.params, *form.signs)):
+        for k, parameter in enumerate(form.params):
             self.motions["params"][:, k] = parameter
         self.rows = np.zeros((n, capacity), kernel.row)
         self.event_rows = np.zeros((n, len(events), occurrences), kernel.row)
         self.stop = np.zeros(1, np.int64)  # any other value makes `run` return
         self._times = np.empty(0) if problem.samples is None else problem.samples
-        self._events = np.array([_event(form, event, pauses) for event in events], EVENT)
+        self._events = np.array(events, EVENT)
         self.task = Task(
             count=n,
             trajectories=self.motions.ctypes.data,
@@ -123,14 +126,11 @@ class Batch:
         """
         motions, new = self.motions, STATUSES.index(None)
         motions["held"] = 0
-        ends = (Status.FINISHED, Status.EVENT) if problem.switches else (Status.FINISHED,)
-        goes_on = motions["status"] == new
-        for end in ends:
-            goes_on |= motions["status"] == STATUSES.index(end)
+        goes_on = np.isin(motions["status"], (new, STATUSES.index(Status.FINISHED)))
         motions["status"][goes_on] = new
         motions["t_end"][goes_on] = problem.span[1]
         motions["min_h"][goes_on] = SHORTEST * np.spacing(np.abs(problem.span).max())
-        for k, parameter in enumerate((*problem.form.params, *problem.form.signs)):
+        for k, parameter in enumerate(problem.form.params):
             motions["params"][:, k] = parameter
         if starts is not None:
             states = self.form.from_ordinary_many(problem.span[0], starts)
@@ -200,10 +200,13 @@ class Batch:
         return self.motions["jacobians"].astype(np.int64)
 
 
-def _event(form: Form, event: Event | Switch, pauses: bool) -> tuple[float | int, ...]:
+def _switch(index: int) -> tuple[float | int, ...]:
+    """A switching function as an event that ends a step."""
+    return (0.0, 0.0, 0.0, 0, index, 0, 1, 0, 0, 0, 0, 1)
+
+
+def _event(form: Form, event: Event, pauses: bool) -> tuple[float | int, ...]:
     """An event as a record of type ``Event`` in ``c/layout.h``."""
-    if isinstance(event, Switch):
-        return (0.0, 0.0, 0.0, 0, event.index, 0, 1, 0, 0, 0, 0, 1)
     # a motion that pauses has room for every occurrence
     extremes_only = isinstance(event, Extremum) and not pauses
     component = form.locate(event.name)

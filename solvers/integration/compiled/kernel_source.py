@@ -31,10 +31,12 @@ PROGRAM = """\
 {equations}
 {layout}
 static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
+{sliding}
 #define COMPENSATED {compensated}
 {step_h}
 {method}
 {motion_h}
+{switching}
 {extension}
 {loop}
 {single}"""
@@ -68,11 +70,18 @@ static void to_ordinary(
 EQUATIONS = """\
 #define HOLONOMIC_REAL real
 {signs}{header}
-#define RHS {rhs}
-#define JACOBIAN {jacobian}
-#define SWITCHING {switching}
+#define {smooth}RHS {rhs}
+#define {smooth}JACOBIAN {jacobian}
 #define HAS_SWITCHES {has_switches}
 """
+
+#: Definitions for equations with switching functions.
+SLIDING = """\
+#define SWITCHING {switching}
+#define PERTURBED {perturbed}
+#define HAS_JACOBIAN {has_jacobian}
+static const int VELOCITY[] = {{{velocities}}}, PERTURBATION[] = {{{perturbations}}};
+{sliding_h}"""
 
 #: Switching functions of a state with momenta.
 SWITCHING_OF_MOMENTA = """
@@ -222,15 +231,14 @@ class Equations:
     from_ordinary: Sequence[str]  # statements: state z and turns from the ordinary state y
     to_ordinary: Sequence[str]  # and y from these
     vectorises: bool  # the right-hand side calls no function: its numbers may be vectors
+    perturbed: Sequence[tuple[int, int]]  # indices of each velocity and its perturbation
     switches: int = 0  # switching functions, whose signs are held after the parameters
 
     @property
     def switching(self) -> str:
         """The name of the function of switching functions and their rates."""
         system, _, form = self.rhs.partition("_rhs")
-        if form == "_hamiltonian":
-            return "switching_of_momenta"
-        return f"{system}_switches{'_rational' if self.angles else ''}"
+        return "switching_of_momenta" if form == "_hamiltonian" else f"{system}_switches{form}"
 
     @property
     def switching_of_momenta(self) -> str:
@@ -247,7 +255,7 @@ class Equations:
             "LOW_DIM": compensated * self.state,
             "FSAL_DIM": tableau.is_fsal * self.state,
             "ANGLES": len(self.angles),
-            "PARAMETERS": self.parameters + self.switches,
+            "PARAMETERS": self.parameters + 2 * self.switches,
             "SWITCHES": self.switches,
             "POLYNOMIAL_DIM": (not tableau.is_explicit) * tableau.stages * self.state,
             "LENGTHS": int(not tableau.is_explicit),
@@ -289,6 +297,8 @@ def program(
         rate=", ".join(map(str, rates)),
         compensated=int(compensated),
         method=_method(tableau),
+        sliding=_sliding(equations, tableau),
+        switching=_source("switching.h") if equations.switches else "",
         extension=_extension(tableau),
         loop="\n".join(map(_source, LOOP_FILES)),
         single="" if lanes else single,
@@ -317,7 +327,7 @@ def _equations(equations: Equations, tableau: Tableau) -> str:
         return EQUATIONS.format(
             jacobian=equations.jacobian,
             signs="#define HOLONOMIC_SIGNS\n" if equations.switches else "",
-            switching=equations.switching,
+            smooth="SMOOTH_" if equations.switches else "",
             has_switches=int(equations.switches > 0),
             rhs=equations.rhs,
             header=equations.header + equations.switching_of_momenta,
@@ -332,6 +342,20 @@ def _equations(equations: Equations, tableau: Tableau) -> str:
         real=real,
         header=equations.header,
         rhs_h=text.format(rhs=equations.rhs, **sizes),
+    )
+
+
+def _sliding(equations: Equations, tableau: Tableau) -> str:
+    if not equations.switches:
+        return ""
+    velocities, perturbations = zip(*equations.perturbed or [(0, 0)], strict=True)
+    return SLIDING.format(
+        switching=equations.switching,
+        perturbed=len(equations.perturbed),
+        has_jacobian=int(tableau.needs_jacobian),
+        velocities=", ".join(map(str, velocities)),
+        perturbations=", ".join(map(str, perturbations)),
+        sliding_h=_source("sliding.h"),
     )
 
 

@@ -64,6 +64,7 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
     if form == "hamiltonian":
         from_ordinary = [f"{path.stem}_hamiltonian_state(t, y, params, z);"]
         to_ordinary = [f"{path.stem}_lagrangian_state(t, z, params, y);"]
+    called = [named("rhs", form), *([named("switches", form)] if switches else [])]
     return Equations(
         text,
         rhs,
@@ -74,7 +75,8 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
         angles=layout.angles,
         from_ordinary=from_ordinary,
         to_ordinary=to_ordinary,
-        vectorises=named("rhs", form) not in module.CALLS_FUNCTIONS,
+        vectorises=not {*called} & {*module.CALLS_FUNCTIONS},
+        perturbed=layout.perturbed,
         switches=len(switching_functions(module)) if switches else 0,
     )
 

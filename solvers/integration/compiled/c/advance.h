@@ -29,6 +29,11 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
             step_factor(&result, *accepted, lanes->h, state, &motion->previous_error);
         const real h = select(*accepted, motion->h, lanes->h)*factor;
         motion->h = select(advancing & ~*failed, h, motion->h);
+#if HAS_SWITCHES
+        const mask coarse = *accepted & is_coarse(state, end, lanes->h, motion->params);
+        motion->h = select(coarse, 0.5*lanes->h, motion->h);
+        *accepted &= ~coarse;
+#endif
 #if INTERPOLATES
         if (advancing & ~*failed & ~*accepted) {
             keep_polynomial(state, end);

@@ -42,8 +42,8 @@ static inline void switching_polynomial(
         return;
     }
     coefficients[0] = before;
-    coefficients[1] = before + h*switching_rate(event->index, start, params)*(1.0/3);
-    coefficients[2] = after - h*switching_rate(event->index, end, params)*(1.0/3);
+    coefficients[1] = before + h*switching_rate(event->index, start, params, h)*(1.0/3);
+    coefficients[2] = after - h*switching_rate(event->index, end, params, h)*(1.0/3);
     coefficients[3] = after;
     for (int d = 4; d <= degree; d++) {     /* the same with a degree that is larger by one */
         coefficients[d] = after;

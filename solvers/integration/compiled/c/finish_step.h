@@ -14,6 +14,11 @@ static enum Status status(const Lanes *lanes, int lane)
     if (left == 0) {
         return FINISHED;
     }
+#if HAS_SWITCHES
+    if (LANE(motion->reductions, lane) == IS_UNDETERMINED) {
+        return UNDETERMINED;
+    }
+#endif
     const double reductions = LANE(motion->reductions, lane);
     if (reductions > (task->fixed_h ? 0 : MAX_REDUCTIONS)) {
         return IS_EXPLICIT || reductions > MAX_REDUCTIONS + 1 ? NOT_FINITE : NO_CONVERGENCE;
@@ -49,7 +54,27 @@ static int change_inputs(Lanes *lanes, int lane)
     LANE(motion->held, lane) = (double)held;
     LANE(motion->t_end, lane) = task->hold_ends[held];
     MASK_LANE(lanes->starting, lane) = -1;
+#if HAS_SWITCHES
+    start_signs(motion, lane);
+    MASK_LANE(lanes->loaded, lane) = -1;
+#endif
     return 1;
+}
+
+/* If a switching function ended the step of a lane, let its motion go on from there. */
+static void pass_switch(Lanes *lanes, int lane)
+{
+#if HAS_SWITCHES
+    WithinStep *within = &lanes->within[lane];
+    if (within->terminal >= 0 && lanes->task->events[within->terminal].is_switch) {
+        within->trajectory->occurred[within->terminal] = 0;
+        switch_signs(&lanes->motion, lane, (int)lanes->task->events[within->terminal].index);
+        within->terminal = -1;
+        MASK_LANE(lanes->starting, lane) = MASK_LANE(lanes->loaded, lane) = -1;
+    }
+#else
+    (void)lanes; (void)lane;
+#endif
 }
 
 /* After a step, store a lane's motion if it ends or pauses, and load the next one; returns whether
@@ -59,6 +84,9 @@ static int finish_step(Lanes *lanes, int lane, int returning)
     WithinStep *within = &lanes->within[lane];
     Trajectory *trajectory = within->trajectory;
     const int advances = within->mode == ADVANCE;
+    if (advances) {
+        pass_switch(lanes, lane);
+    }
     enum Status now = advances ? status(lanes, lane) : RUNNING;
     if (now == FINISHED && change_inputs(lanes, lane)) {
         now = RUNNING;

@@ -35,6 +35,9 @@ typedef struct {
     real t_end;                 /* or the end of the inputs in params, if these are held */
     real held;                  /* number of times that held inputs have changed */
     real min_h;                 /* shortest step */
+    real last_switch;           /* time at which signs of switching functions changed last */
+    real brief_parts;           /* number of such changes in next to no time */
+    real recent;                /* functions that changed then, a bit each */
     real params[PARAMETERS];
 } Motion;
 

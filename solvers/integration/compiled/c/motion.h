@@ -76,21 +76,63 @@ static void record_event(const Task *task, Trajectory *trajectory, int event, co
 }
 
 #if HAS_SWITCHES
-/* A switching function, or its rate of change, whose sign is held at the end of the parameters. At
-   0 it has this sign. */
+/* Largest difference of 1 - s^2 from its change by the slopes at both ends of a step. */
+static const double COARSE = 0.1;
+
+/* A switching function less its level, whose sign is that behind the parameters also at 0; of one
+   that stays 0 the positive number 1 - s^2. */
 static real switching_function(int64_t index, const State *state, const real *params)
 {
-    real values[2*SWITCHES];
-    SWITCHING(state->t, state->z, params, values);
-    const real least = lane_copysign(splat(DBL_MIN), params[PARAMETERS - SWITCHES + index]);
-    return select(less_than(lane_fabs(values[index]), splat(DBL_MIN)), least, values[index]);
+    const real sign = params[FIRST_SIGN + index];
+    const mask stays = is_zero(sign);
+    Sliding sliding;
+    if (any(stays)) {
+        slide(state->t, state->z, params, &sliding);
+    } else {
+        SWITCHING(state->t, state->z, params, sliding.values);
+        sliding.signs[index] = sign;
+    }
+    const real margin = 1.0 - sliding.signs[index]*sliding.signs[index];
+    const real value = select(stays, margin, sliding.values[index]) - params[FIRST_LEVEL + index];
+    const real least = lane_copysign(splat(DBL_MIN), sign);
+    return select(less_than(lane_fabs(value), splat(DBL_MIN)), least, value);
 }
 
-static real switching_rate(int64_t index, const State *state, const real *params)
+/* Its rate of change, of 1 - s^2 by the difference over a small part of a step of length h. */
+static real switching_rate(int64_t index, const State *state, const real *params, real h)
 {
-    real values[2*SWITCHES];
-    SWITCHING(state->t, state->z, params, values);
-    return values[SWITCHES + index];
+    Sliding now, later;
+    slide(state->t, state->z, params, &now);
+    const mask stays = is_zero(params[FIRST_SIGN + index]);
+    if (!any(stays)) {
+        return now.values[RATES + index];
+    }
+    const real part = h*0x1p-20;
+    real z[DIM];
+    for (int n = 0; n < DIM; n++) {
+        z[n] = state->z[n] + part*now.derivative[n];
+    }
+    slide(state->t + part, z, params, &later);
+    const real s = now.signs[index], change = later.signs[index] - s;
+    return select(stays, -change*(2.0*s + change)/part, now.values[RATES + index]);
+}
+
+/* Whether a step is too long to follow a sign by which a function stays 0: the error of the state
+   does not show it. */
+static mask is_coarse(const State *start, const State *end, real h, const real *params)
+{
+    mask coarse = {0};
+    for (int k = 0; k < SWITCHES; k++) {
+        const mask stays = is_zero(params[FIRST_SIGN + k]);
+        if (any(stays)) {
+            const real change = switching_function(k, end, params)
+                - switching_function(k, start, params);
+            const real slopes =
+                switching_rate(k, start, params, h) + switching_rate(k, end, params, h);
+            coarse |= stays & less_than(splat(COARSE), lane_fabs(change - 0.5*h*slopes));
+        }
+    }
+    return coarse;
 }
 #endif
 
@@ -116,15 +158,17 @@ static real event_value(const Event *event, const State *state, const real *para
 }
 
 /* Its derivative, up to a positive factor for an angle. */
-static double event_slope(const Event *event, const State *state, const real *params, int lane)
+static double event_slope(
+    const Event *event, const State *state, const real *params, double h, int lane)
 {
     real derivative[DIM];
 #if HAS_SWITCHES
     if (event->is_switch) {
-        const real rate = switching_rate(event->index, state, params);
+        const real rate = switching_rate(event->index, state, params, splat(h));
         return ((const double *)&rate)[lane];
     }
 #endif
+    (void)h;
     RHS(state->t, state->z, params, derivative);
     return event->is_angle ? LANE(state->z[RATE[event->index]], lane)
                            : LANE(derivative[event->index], lane);

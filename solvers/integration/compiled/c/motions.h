@@ -38,6 +38,11 @@ static void load_motion(Lanes *lanes, int lane)
             within->terminal = -1;
             MASK_LANE(lanes->starting, lane) = trajectory->status == WAITING ? -1 : 0;
             MASK_LANE(lanes->loaded, lane) = -1;
+#if HAS_SWITCHES
+            if (trajectory->status == WAITING) {
+                start_signs(&lanes->motion, lane);
+            }
+#endif
             return;
         }
     }

@@ -25,7 +25,7 @@ static void use_state(
         const real values = event_value(event, state, lanes->motion.params);
         value = LANE(values, lane);
         if (within->bracket->tries) {
-            slope = event_slope(event, state, lanes->motion.params, lane);
+            slope = event_slope(event, state, lanes->motion.params, h, lane);
             LANE(lanes->motion.evaluations, lane) += 1;
         }
     }
