@@ -13,6 +13,8 @@ from solvers.integration.solution import Array
 
 #: Largest distance from the unit circle of a pair of multipliers, and smallest imaginary part.
 CLOSE = 1e-6
+#: Relative error of products of multipliers.
+ERROR = 1e-10
 
 
 def turning_point(node: Node) -> float:
@@ -73,7 +75,9 @@ FUNCTIONS: dict[str, Callable[[Node], float]] = {
 
 def keeps_volume(node: Node) -> bool:
     """Whether pairs of multipliers stay on the unit circle until they meet: without friction."""
-    return bool(abs(np.linalg.det(node.reduced) - 1) < CLOSE)
+    size = float(np.linalg.norm(node.reduced))
+    difference = abs(np.linalg.det(node.reduced) - 1)
+    return node.curve.shooting.nature.is_conservative or difference < max(CLOSE, ERROR * size**2)
 
 
 def is_torus(node: Node) -> bool:

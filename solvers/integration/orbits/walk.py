@@ -15,10 +15,9 @@ FIRST, SHORTEST = 0.1, 1e-5
 #: Angles between successive tangents in rad: the largest; the largest with an estimate of the first
 #: tangent; that which steps aim at.
 LARGEST, LARGEST_ESTIMATE, INTENDED = 0.3, 1.0, 0.1
-#: Error of the distance at which a special point or a bound is located.
-LOCATED = 1e-15
-#: Distance of the nodes between which it is located again, relative to the step.
-CLOSE = 0.02
+#: Distance, relative to the step, of nodes between which a special point or a bound is located; its
+#: error, relative to the distance of the nodes, and the first one.
+CLOSE, LOCATED, ROUGH = 0.02, 1e-12, 1e-3
 #: Norm of a monodromy matrix beyond which rounding errors decide on multipliers.
 UNSTABLE = 1e10
 #: Distance from the start, relative to the step, at which a curve is closed.
@@ -127,15 +126,17 @@ def _root(node: Node, new: Node, function: Callable[[Node], float]) -> Node:
 
     It is located again between nodes close to it, from which it is predicted more accurately.
     """
-    distance, length = _between(node, new, function)
+    distance, length = _between(node, new, function, ROUGH)
     near = [max(0.0, distance - CLOSE * length), min(length, distance + CLOSE * length)]
-    node, new = (node.curve.between(node, new, s, None) for s in near)
-    if function(node) * function(new) < 0:
-        distance, _ = _between(node, new, function)
-    return node.curve.between(node, new, distance)
+    inner = [node.curve.between(node, new, s, None) for s in near]
+    if function(inner[0]) * function(inner[1]) < 0:
+        node, new = inner
+    return node.curve.between(node, new, _between(node, new, function, LOCATED)[0])
 
 
-def _between(node: Node, new: Node, function: Callable[[Node], float]) -> tuple[float, float]:
+def _between(
+    node: Node, new: Node, function: Callable[[Node], float], accuracy: float
+) -> tuple[float, float]:
     """Distance from a node, along its tangent, where a function is 0, and that of the next node."""
     length = float(new.difference(node) @ node.tangent)
     known = {0.0: node, length: new}
@@ -143,4 +144,4 @@ def _between(node: Node, new: Node, function: Callable[[Node], float]) -> tuple[
     def value(distance: float) -> float:
         return function(known.get(distance) or node.curve.between(node, new, distance))
 
-    return float(brentq(value, 0.0, length, xtol=LOCATED, rtol=1e-15)), length
+    return float(brentq(value, 0.0, length, xtol=accuracy * length)), length
