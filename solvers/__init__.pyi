@@ -1,3 +1,6 @@
+from solvers.app.fitting import compare as compare
+from solvers.app.fitting import fit as fit
+from solvers.app.fitting import read_measurement as read_measurement
 from solvers.app.modules import build as build
 from solvers.app.modules import load as load
 from solvers.app.scenes import load_scene as load_scene
@@ -28,6 +31,8 @@ from solvers.integration.stop_flag import StopFlag as StopFlag
 from solvers.integration.transition_matrix import transition_matrix as transition_matrix
 from solvers.io.figures import panels as panels
 from solvers.io.figures import save as save
+from solvers.scenes.fitting.fit import Fit as Fit
+from solvers.scenes.fitting.measurement import Measurement as Measurement
 from solvers.scenes.run import SceneResult as SceneResult
 from solvers.scenes.scene import Scene as Scene
 from solvers.sweeps.axes import Grid as Grid

@@ -59,7 +59,7 @@ def test_sums_products_and_other_functions_are_named() -> None:
         "k1, k2: only as k1 + k2; give one of them a value",
     ]
     assert lines(plain, unknown=["m", "k1", "c"]) == [
-        "m, k1, c: only as 2 functions of them; give one of them a value"
+        "m, k1, c: only as 2 functions of m, k1, c; give one of them a value"
     ]
     assert lines(oscillator(potential=k1 * x**2 / 2), unknown=["m", "k1", "c"]) == [
         "m, k1, c: only as c/m, k1/m; give one of them a value"

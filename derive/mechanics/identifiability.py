@@ -30,6 +30,7 @@ from derive.formulas.residues import (
 )
 from derive.system.symbols import TIME
 from derive.system.system import System
+from solvers.io.suggestion import counted
 
 #: Random values of the parameters that decide together.
 VALUES = 2
@@ -56,13 +57,20 @@ class Group:
     combinations: tuple[sp.Expr, ...]
 
     def __str__(self) -> str:
-        names = ", ".join(self.parameters)
-        if not self.determined:
-            return f"{names}: no output depends on {'it' if len(self.parameters) == 1 else 'them'}"
         missing = len(self.parameters) - self.determined
         remedy = "one of them a value" if missing == 1 else f"{missing} of them values"
-        formulas = ", ".join(map(str, self.combinations)) or f"{self.determined} functions of them"
-        return f"{names}: only as {formulas}; give {remedy}"
+        end = f"; give {remedy}" if self.determined else ""
+        return f"{', '.join(self.parameters)}: {self.reason}{end}"
+
+    @property
+    def reason(self) -> str:
+        """The combinations in words."""
+        if not self.determined:
+            return "no output depends on it"
+        if self.combinations:
+            return f"only as {', '.join(map(str, self.combinations))}"
+        of_all = ", ".join(self.parameters)
+        return f"only as {counted(self.determined, 'function')} of {of_all}"
 
 
 @dataclass(frozen=True)

@@ -135,9 +135,8 @@ def specialiser(
         from derive import Derivation
         from derive.codegen.writing import texts
         from derive.mechanics.specialisation import specialised
-        from derive.system import catalogue
 
-        system = _systems.get(module.__name__) or catalogue.load(name)
+        system = system_of(module)
         # where forces have kinks or jumps, every loop needs their switching functions
         needed = (*functions, "switches", "switches_rational")
         return texts(Derivation(specialised(system, values)), needed)
@@ -147,6 +146,13 @@ def specialiser(
     return specialised_module(
         module, params, required_functions(choice.method, choice.form), generator, version
     )
+
+
+def system_of(module: GeneratedModule) -> "System":
+    """The system that a module was generated from."""
+    from derive.system import catalogue
+
+    return _systems.get(module.__name__) or catalogue.load(module.SYSTEM)
 
 
 @cache

@@ -1,0 +1,1 @@
+"""Parameters of a system from measurements of its motions."""

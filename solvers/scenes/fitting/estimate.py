@@ -1,0 +1,132 @@
+"""The fit of an experiment: values of parameters and starts, noise and covariance."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.equations.quantities import Array
+from solvers.scenes.fitting.experiment import Experiment
+from solvers.scenes.fitting.least_squares import Minimum, NotConvergedError, minimise
+from solvers.scenes.fitting.relaxation import relaxed
+from solvers.scenes.fitting.starts import first_nodes
+from solvers.scenes.fitting.statistics import covariance, leverages
+
+#: Estimates of the noise of several outputs, each with the fit weighted by the one before.
+MOST_WEIGHTINGS, SUFFICIENT = 10, 0.01
+#: Mean square of residuals, in units of their rough noise, below which no other guess is tried.
+GOOD = 9.0
+#: Largest standard error of a value that counts as determined, in units of the value.
+LARGEST_ERROR = 1e3
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Values that fit an experiment best.
+
+    Attributes
+    ----------
+    params : ndarray of shape (params,)
+        All parameters.
+    starts : ndarray of shape (runs, state)
+        States at the first time of each run.
+    nodes : ndarray of shape (segments, state)
+        States at the beginnings of all segments.
+    noise : ndarray of shape (outputs,)
+        Standard deviations of the noise; NaN where an output has no values to spare.
+    covariance : ndarray of shape (starts + unknown, starts + unknown)
+        Of all starts, then of the unknown parameters.
+    degrees : int
+        Number of values minus number of unknowns.
+    rough : ndarray of shape (outputs,)
+        Standard deviations of the noise from differences of successive values, without a model.
+    iterations : int
+        Gauss-Newton steps after relaxation.
+    """
+
+    params: Array
+    starts: Array
+    nodes: Array
+    noise: Array
+    covariance: Array
+    degrees: int
+    rough: Array
+    iterations: int
+
+
+def estimate(experiment: Experiment, start: Array, guess: Array) -> Estimate:
+    """The fit from a first guess of the runs' starts and of the unknown parameters.
+
+    `ValueError` where there are fewer values than unknowns, `NotConvergedError` where no fit is
+    found, or where the values do not determine the unknowns.
+    """
+    n, u = len(experiment.module.STATE), len(experiment.unknown)
+    counts, unknowns = experiment.counts, n * len(experiment.runs) + u
+    if counts.sum() <= unknowns:
+        raise ValueError(
+            f"{counts.sum()} measured values do not suffice for {unknowns} unknowns, which are "
+            f"{', '.join((*experiment.unknown, 'and the start of each run'))}: give more values, "
+            "or let fewer parameters be unknown"
+        )
+    noise = experiment.first_noise()
+    positive, iterations, least = experiment.positive, 0, np.inf
+    for first in first_nodes(experiment, start, guess, noise):
+        size = np.maximum(np.sqrt(np.mean(first**2, axis=0)), 1e-6)
+        trial = relaxed(experiment.linearise(noise), first, guess, positive, size)
+        if trial.squares < least:
+            nodes, params, least, scale = trial.nodes, trial.params, trial.squares, size
+        if least < GOOD * counts.sum():
+            break
+    for _ in range(MOST_WEIGHTINGS):
+        linearise = experiment.linearise(noise)
+        minimum = minimise(linearise, nodes, params, positive, scale)
+        nodes, params = minimum.nodes, minimum.params
+        iterations += minimum.iterations
+        before, noise = noise, _noise(experiment, minimum, noise)
+        measured = np.flatnonzero(counts)
+        if len(measured) == 1 or (abs(noise / before - 1)[measured] < SUFFICIENT).all():
+            break
+    # of residuals in units of the noise before, the variance is the ratio
+    ratio = float(minimum.squares / (counts.sum() - unknowns))
+    matrix = ratio * covariance(minimum.step.triangle)
+    largest = np.maximum(abs(guess), abs(params))
+    sizes = np.concatenate([np.tile(scale, len(experiment.runs)), largest])
+    _check(experiment, np.sqrt(np.diag(matrix)), np.maximum(sizes, 1e-6))
+    return Estimate(
+        experiment.all_params(params),
+        nodes[experiment.firsts],
+        nodes,
+        noise,
+        matrix,
+        int(counts.sum()) - unknowns,
+        experiment.first_noise(),
+        iterations,
+    )
+
+
+def _noise(experiment: Experiment, minimum: Minimum, before: Array) -> Array:
+    """Unbiased standard deviations: of each output's values, its share of unknowns is taken off."""
+    owner = np.concatenate(
+        [np.repeat(np.arange(len(before)), mask.sum(axis=1)) for mask in experiment.masks]
+    )
+    residuals = np.concatenate([piece.residuals for piece in minimum.pieces])
+    shares = leverages(minimum.step.jacobian, minimum.step.triangle)
+    squares = np.bincount(owner, residuals**2, len(before))
+    spare = experiment.counts - np.bincount(owner, shares, len(before))
+    common = np.sqrt(squares.sum() / spare.sum())
+    with np.errstate(invalid="ignore", divide="ignore"):
+        own = np.sqrt(squares / spare)
+    # an output with hardly more values than it determines unknowns shares the others' ratio
+    return np.asarray(before * np.where(spare > 1, np.maximum(own, 1e-9), common))
+
+
+def _check(experiment: Experiment, errors: Array, sizes: Array) -> None:
+    """Refuse a fit that leaves a combination of unknowns undetermined."""
+    runs, state = experiment.runs, experiment.module.STATE
+    names = [f"{q} at the start of {run.name}" for run in runs for q in state]
+    free = ~(errors < LARGEST_ERROR * sizes)
+    if free.any():
+        parts = [name for name, one in zip([*names, *experiment.unknown], free, strict=True) if one]
+        raise NotConvergedError(
+            f"the measured values do not determine {', '.join(parts)}: hold a parameter, or "
+            "measure more"
+        )

@@ -1,0 +1,197 @@
+"""Fits recover parameters from noisy data, as closed forms and other programs do."""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.integrate import solve_ivp
+from scipy.optimize import least_squares
+from scipy.special import stdtrit
+
+import generated.double_pendulum as dp
+import generated.driven_pendulum as driven
+import generated.single_pendulum as single
+from derive import Coordinate, Parameter, PointMass, System, velocity
+from solvers import Measurement, build, compare, fit, integrate
+from solvers.equations.module import GeneratedModule
+from solvers.scenes.fitting.estimate import estimate
+from solvers.scenes.fitting.experiment import Experiment
+from solvers.scenes.fitting.least_squares import NotConvergedError
+from solvers.scenes.fitting.measurement import Outputs
+from solvers.scenes.fitting.shooting import Shooting, segments
+
+
+@cache
+def oscillator() -> GeneratedModule:
+    x, (m, k, c) = sp.Symbol("x", real=True), sp.symbols("m k c", positive=True)
+    parameters = [Parameter(m, "kg", 1.0, "mass"), Parameter(k, "N/m", 4.0, "stiffness"),
+        Parameter(c, "N s/m", 0.3, "friction")]  # fmt: skip
+    return build(
+        System("damped", "A damped oscillator", [Coordinate(x, "m", "a length")], parameters,
+            [PointMass(m, (x, 0))], potential=k * x**2 / 2, gravity=(0, 0),
+            dissipation=c * velocity(x) ** 2 / 2)
+    )  # fmt: skip
+
+
+def measured(module: GeneratedModule, y0: Any, params: Any, t: Any, noise: float, seed: int = 0):
+    """Coordinates with noise, by name."""
+    states = integrate(module, (t[0], t[-1]), y0, params, t_eval=t, rtol=1e-11, atol=1e-11).y
+    values = states[: len(module.COORDINATES)]
+    values = values + noise * np.random.default_rng(seed).normal(size=values.shape)
+    return dict(zip(module.COORDINATES, values, strict=True))
+
+
+T = np.arange(0, 6, 1 / 20)
+
+
+def test_a_damped_oscillator_is_fitted_as_by_its_closed_form() -> None:
+    data = measured(oscillator(), {"x": 1.0}, {}, T, 0.05)
+
+    def residuals(unknown: Any) -> Any:
+        k, c, x0, v0 = unknown
+        w = np.sqrt(k - c**2 / 4)
+        motion = np.exp(-c * T / 2) * (x0 * np.cos(w * T) + (v0 + c * x0 / 2) / w * np.sin(w * T))
+        return motion - data["x"]
+
+    truth = least_squares(residuals, (4, 0.3, 1, 0), x_scale="jac", xtol=1e-15, ftol=1e-15)
+    variance = 2 * truth.cost / (len(T) - 4)
+    covariance = variance * np.linalg.inv(truth.jac.T @ truth.jac)
+    result = fit(oscillator(), {"t": T, **data}, ["k", "c"], params={"k": 9.0, "c": 1.0})
+    assert np.allclose([result.params["k"], result.params["c"]], truth.x[:2], rtol=1e-6)
+    assert np.allclose(result.estimate.starts[0], truth.x[2:], atol=1e-6)
+    assert np.allclose(result.errors, np.sqrt(np.diag(covariance))[:2], rtol=1e-4)
+    expected = covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1])
+    assert result.correlations[0, 1] == pytest.approx(expected, abs=1e-3)
+    assert result.noise["x"] == pytest.approx(np.sqrt(variance), rel=1e-6)
+    k = result.intervals["k"]
+    assert (k.high - k.low) / 2 == pytest.approx(stdtrit(len(T) - 4, 0.975) * k.error, rel=1e-12)
+
+
+def test_gaps_are_left_out() -> None:
+    data = measured(oscillator(), {"x": 1.0}, {}, T, 0.02)
+    keep = np.random.default_rng(3).random(len(T)) > 0.3
+    keep[40:60] = False
+    gaps = np.where(keep, data["x"], np.nan)
+    shorter = fit(oscillator(), {"t": T[keep], "x": data["x"][keep]}, ["k", "c"])
+    result = fit(oscillator(), {"t": T, "x": gaps}, ["k", "c"])
+    assert np.allclose(result.estimate.params, shorter.estimate.params, rtol=1e-6)
+    assert result.estimate.degrees == keep.sum() - 4
+    assert np.isnan(result.residuals[0][0, ~keep]).all()
+
+
+def test_a_double_pendulum_is_fitted_as_by_single_shooting_with_scipy() -> None:
+    params = dp.params(m2=0.7, l1=1.3, l2=0.9)
+    data = measured(dp, {"theta1": 1.0, "theta2": -0.5}, params, T, 0.01)
+
+    def residuals(unknown: Any) -> Any:
+        values = dp.params(m2=unknown[0], l1=unknown[1], l2=unknown[2])
+        run = solve_ivp(dp.rhs, (0, T[-1]), unknown[3:], "DOP853", T, args=(values,), rtol=1e-11,
+            atol=1e-11)  # fmt: skip
+        return (run.y[:2] - np.array([*data.values()])).ravel()
+
+    result = fit(dp, {"t": T, **data}, ["m2", "l1", "l2"])
+    start = [0.7, 1.3, 0.9, *result.estimate.starts[0]]
+    truth = least_squares(residuals, start, x_scale="jac", diff_step=1e-6)
+    covariance = np.linalg.inv(truth.jac.T @ truth.jac) * 1e-4
+    errors = np.sqrt(np.diag(covariance))[:3]
+    found = np.array([result.params[name] for name in ("m2", "l1", "l2")])
+    # weights by each angle's own noise move values by a part of their errors
+    assert (abs(found - truth.x[:3]) < 0.2 * errors).all()
+    assert np.allclose(result.errors, errors, rtol=0.1)
+
+
+def test_poor_guesses_of_a_chaotic_motion_converge_where_single_shooting_does_not() -> None:
+    t = np.arange(0, 12, 1 / 30)
+    params = dp.params(m2=0.7, l1=1.3, l2=0.9)
+    data = measured(dp, {"theta1": 2.0, "theta2": 2.2}, params, t, 0.01)
+    first = {"m2": 1.5, "l1": 2.0, "l2": 0.5}
+    result = fit(dp, {"t": t, **data}, [*first], params=first)
+    assert abs(result.params["l1"] - 1.3) < 4 * result.intervals["l1"].error < 0.01
+    outputs = Outputs(("theta1", "theta2"), ("rad", "rad"), dp)
+    one = Experiment(outputs, [Measurement(t, data)], [*first], np.array(dp.params()), [[0]])
+    try:
+        found = estimate(one, np.zeros(4), np.array([*first.values()])).params
+    except NotConvergedError:
+        return
+    assert abs(found[2] - 1.3) > 0.01
+
+
+def test_positions_and_formulas_are_fitted() -> None:
+    params = dp.params(l1=1.3, l2=0.9)
+    motion = integrate(dp, (0, 6), {"theta1": 1.0, "theta2": -0.5}, params, t_eval=T, rtol=1e-11)
+    positions = dp.positions_many(0.0, motion.y, params)
+    (x1, y1), (x2, y2) = positions + 0.003 * np.random.default_rng(1).normal(size=positions.shape)
+    data = {"t": T, "x1 [cm]": 100 * x1, "y1": y1, "x2": x2,
+        "-l1*cos(theta1) - l2*cos(theta2) [mm]": 1000 * y2}  # fmt: skip
+    result = fit(dp, data, ["l1", "l2", "g", "m2"])
+    for name, true in (("l1", 1.3), ("l2", 0.9), ("g", 9.81), ("m2", 1.0)):
+        assert abs(result.params[name] - true) < 4 * result.intervals[name].error < 0.1 * true
+    assert all(0.0025 < noise < 0.0035 for noise in result.noise.values())
+
+
+def test_several_runs_share_parameters_and_angles_may_jump_by_whole_turns() -> None:
+    runs = []
+    for start in (1.0, 2.5):
+        data = measured(single, {"theta": start, "theta_dot": 9.0}, {"l": 0.4}, T + start, 0.02)
+        wrapped = np.mod(data["theta"] + np.pi, 2 * np.pi) - np.pi
+        assert np.ptp(data["theta"]) > 7 > np.ptp(wrapped)
+        runs.append(Measurement(T + start, {"theta": wrapped}, f"run {start}"))
+    result = fit(single, runs, ["l"])
+    assert abs(result.params["l"] - 0.4) < 4 * result.intervals["l"].error < 0.02
+    assert [run.shape for run in result.residuals] == [(1, len(T))] * 2
+    assert result.starts[1]["theta"] == pytest.approx(2.5, abs=0.05)
+
+
+def test_equations_that_depend_on_time_keep_their_clock() -> None:
+    params = {"a": 0.3, "Omega": 3.0, "c": 0.1}
+    t = T + 1.7
+    data = measured(driven, {"theta": 0.5}, params, t, 0.01)
+    result = fit(driven, {"t": t, **data}, ["a", "Omega"], params=params | {"a": 0.2})
+    assert abs(result.params["Omega"] - 3.0) < 4 * result.intervals["Omega"].error < 0.05
+
+
+def test_arcs_have_the_derivatives_that_differences_have() -> None:
+    params, node = np.array(dp.params(m2=0.6)), np.array([[0.4, 1.1, -0.3, 0.8]])
+    parts = segments(0, np.linspace(0, 1, 5), [0])
+    shooting, h = Shooting(dp, [1, 4], parts), 1e-4
+    arc = shooting(node, params)[0]
+    for column in range(6):
+        ends = []
+        for sign in (1, -1):
+            changed, values = node.copy(), params.copy()
+            if column < 4:
+                changed[0, column] += sign * h
+            else:
+                values[[1, 4][column - 4]] += sign * h
+            ends.append(shooting(changed, values)[0])
+        difference = (ends[0].y - ends[1].y) / (2 * h)
+        assert np.allclose(arc.by[:, column], difference, atol=1e-6)
+    assert np.allclose(arc.y[:, -1], arc.end)
+    assert np.allclose(arc.by[:, :, -1], arc.end_by)
+
+
+def test_models_are_compared_by_prediction_and_no_more_than_needed_is_selected() -> None:
+    runs = [measured(oscillator(), {"x": x0}, {"c": 0.05}, T, 0.02, seed) for seed, x0 in
+        ((1, 1.0), (2, 0.6))]  # fmt: skip
+    kept = {"t": T, **runs.pop()}
+    data = {"t": T, **runs[0]}
+    fits = {
+        "friction": fit(oscillator(), data, ["k", "c"]),
+        "none": fit(oscillator(), data, ["k"], params={"c": 1e-9}),
+    }
+    comparison = compare(fits, kept)
+    assert comparison.selected.name == "friction"
+    assert comparison.candidates[1].error > 1.5
+    assert "residuals of x are correlated" in fits["none"].notes[0]
+
+
+def test_combinations_that_cannot_be_known_are_named() -> None:
+    data = {"t": T, **measured(oscillator(), {"x": 1.0}, {}, T, 0.02)}
+    with pytest.raises(ValueError, match="m, k, c: only as c/m, k/m; give one of them a value"):
+        fit(oscillator(), data, ["m", "k", "c"])
+    assert fit(oscillator(), data).held == {"m": "only as c/m, k/m"}
+    # with friction, a known c would determine m
+    with pytest.raises(ValueError, match="m, k: only as k/m"):
+        fit(oscillator(), data, ["m", "k"], params={"c": 0.0})

@@ -1,0 +1,115 @@
+"""``holonomic fit`` from files: units, gaps, files that it writes, and input that it refuses."""
+
+import csv
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import generated.single_pendulum as single
+from solvers import integrate, run_scene
+from solvers.app.cli import main
+
+T = np.arange(0, 5, 1 / 30)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    noise = np.random.default_rng(5).normal(size=len(T))
+    motion = integrate(single, (0, 5), {"theta": 1.0}, {"l": 0.7}, t_eval=T)
+    angles = np.degrees(motion.y[0]) + noise
+    rows = [f"{1000 * t:.6f};{a:.4f};{k}" for k, (t, a) in enumerate(zip(T, angles, strict=True))]
+    rows[20:30] = [f"{1000 * t:.6f};;" for t in T[20:30]]
+    Path("swing.csv").write_text("# a camera\nt [ms];theta [deg];frame\n" + "\n".join(rows) + "\n")
+    return tmp_path
+
+
+def test_a_table_with_units_and_gaps_gives_values_files_and_a_scene(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["fit", "single_pendulum", "swing.csv", "--ignore", "frame", "--json"]) == 0
+    results = json.loads(capsys.readouterr().out)
+    length = results["parameters"]["l"]
+    assert length["interval_95"][0] < 0.7 < length["interval_95"][1]
+    assert length["unit"] == "m"
+    assert length["error"] < 0.001
+    assert results["held"]["g"] == {"value": 9.81, "reason": "only as g/l"}
+    assert results["held"]["m"]["reason"] == "no output depends on it"
+    assert results["degrees_of_freedom"] == len(T) - 10 - 3
+    files = {kind: Path(path) for kind, path in results["files"].items()}
+    assert files["plot"].read_bytes()[1:4] == b"PNG"
+    table = list(csv.DictReader(files["table"].read_text().splitlines()))
+    assert len(table) == len(T)
+    assert table[25]["theta residual"] == ""
+    scene = tomllib.loads(files["scene"].read_text())
+    assert scene["parameters"]["l"] == length["value"]
+    again = run_scene(files["scene"])
+    assert again.y[0, 0] == pytest.approx(1.0, abs=0.02)
+
+
+def test_the_summary_states_values_and_held_parameters(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["fit", "single_pendulum", "swing.csv", "--ignore", "frame"]
+    assert main([*arguments, "--unknown", "l"]) == 0
+    text = capsys.readouterr().out
+    assert "140 values of theta in 1 run, 1 unknown parameter" in text
+    assert "95 % interval" in text
+    assert main([*arguments, "--unknown", "l", "--compare", "l=1"]) == 0
+    assert "selected: single_pendulum, with 1 unknown parameter" in capsys.readouterr().out
+
+
+CASES = {
+    "no quantity": ("t,thet\n0,1\n1,2\n", "'thet' names no quantity of the system (did you mean"),
+    "time": ("t,theta\n0,1\n,2\n", "the time in row 2 is missing"),
+    "order": ("t,theta\n0,1\n2,2\n1,3\n", "t[2] = 1.0 s is not after t[1] = 2.0 s"),
+    "few": ("t,theta\n0,1\n1,2\n", "2 measured values do not suffice for 3 unknowns"),
+    "empty": ("t,theta\n", "holds no data"),
+    "gaps": ("t,theta\n0,\n1,nan\n", "holds no measured value"),
+    "word": ("t,theta\n0,x\n", "line 2, column theta: 'x' is no number"),
+    "cells": ("t,theta\n0\n", "line 2 has 1 cells, but there are 2 columns"),
+    "unit": ("t,theta [kg]\n0,1\n", "the unit kg is not one of rad"),
+    "unknown unit": ("t,theta [foot]\n0,1\n", "unit 'foot' is not known"),
+    "no time": ("theta\n1\n", "has no column of times"),
+    "twice": ("t,theta,theta\n0,1,1\n", "two columns are named 'theta'"),
+    "formula": ("t,l*sin(\n0,1\n", "cannot parse 'l*sin('"),
+    "code": ("t,__import__('os')\n0,1\n", "__import__"),
+    "binary": ("t,theta\n0,\udcff\n", "no text in UTF-8"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_invalid_data_are_refused_with_the_place(
+    case: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, message = CASES[case]
+    Path("bad.csv").write_bytes(text.encode("utf-8", "surrogateescape"))
+    assert main(["fit", "single_pendulum", "bad.csv", "--unknown", "l"]) == 2
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--unknown", "l,g"], "l, g: only as g/l; give one of them a value"),
+        (["--unknown", "m"], "m: no output depends on it"),
+        (["--unknown", "len"], "has no parameter 'len'"),
+        (["--compare", "m=1"], "'m' is not one of the unknown parameters, l"),
+        (["--compare", "l=1 kg"], "--compare l: '1 kg' has another unit"),
+        (["--test", "missing.csv"], "missing.csv: there is no such file"),
+    ],
+)
+def test_invalid_options_are_refused(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["fit", "single_pendulum", "swing.csv", "--ignore", "frame", *arguments]) == 2
+    assert message in capsys.readouterr().err
+    assert not Path("out").exists()
+
+
+def test_unknown_models_and_missing_files_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["fit", "single_pendulm", "swing.csv"]) == 2
+    assert "did you mean 'single_pendulum'?" in capsys.readouterr().err
+    assert main(["fit", "single_pendulum", "none.csv"]) == 2
+    assert main(["fit", "none.toml", "swing.csv"]) == 2
