@@ -24,6 +24,7 @@ from derive.mechanics.outputs import outputs as output_formulas
 from derive.mechanics.reduction import collected, gathered, reduced
 from derive.mechanics.state_space import Formula, Point, StateSpace, state_space
 from derive.system.parts import SystemDefinitionError, formula
+from derive.system.prescribed import motions
 from derive.system.symbols import TIME
 from derive.system.system import System, as_system
 from solvers.io.suggestion import did_you_mean
@@ -44,7 +45,7 @@ class Derivation:
     Raises
     ------
     SystemDefinitionError
-        When `system` is not a `System`; when positions or the potential contain an input; when a
+        When `system` is not a `System`; when positions contain an input that is no motion; when a
         coordinate moves no mass, or moves the masses only
         as others do, or has no inertia that is a positive number.
 
@@ -71,18 +72,16 @@ class Derivation:
         check_independence(self.system, self.mass_matrix)
 
     def _check_inputs(self) -> None:
-        positions = sp.Tuple(*(r for m in self.system.masses for _, r in m.motions))
-        for part, expression in (
-            ("positions", positions),
-            ("the potential", self.system.potential_energy),
-        ):
-            if held := expression.free_symbols & {*self.system.u}:
-                names = ", ".join(sorted(symbol.name for symbol in held))
-                raise SystemDefinitionError(
-                    f"{part} of system {self.system.name!r} depend on {names}, whose derivatives "
-                    "are not known: replace such an input by a function of time, with "
-                    "derive.with_inputs, or let forces depend on it"
-                )
+        system = self.system
+        positions = sp.Tuple(*(r for m in system.masses for _, r in m.motions))
+        prescribed = {s for parts in motions(system.inputs).values() for s in parts}
+        if others := positions.free_symbols & {*system.u} - prescribed:
+            names = ", ".join(sorted(symbol.name for symbol in others))
+            raise SystemDefinitionError(
+                f"positions of system {system.name!r} depend on {names}, whose derivatives are not "
+                "known: declare a prescribed motion, Input(..., motion=True), replace the input by "
+                "a function of time, with derive.with_inputs, or let forces depend on it"
+            )
 
     @cached_property
     def position_jacobians(self) -> tuple[Matrix, ...]:

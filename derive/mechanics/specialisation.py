@@ -7,6 +7,7 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, ExpressionError, number
 from derive.system.parts import SystemDefinitionError, formula
+from derive.system.prescribed import motions
 from derive.system.symbols import TIME
 from derive.system.system import System, as_system
 from solvers.io.suggestion import did_you_mean
@@ -33,7 +34,8 @@ def with_inputs(system: System, formulas: Mapping[str, sp.Expr | float | str]) -
     formulas : mapping of str to sympy.Expr, number or str
         For each input to replace, by name, a function of time, coordinates, velocities and
         parameters, such as ``"-k*x - c*x_dot"``; text is parsed, never executed. In positions
-        and potentials inputs cannot depend on velocities.
+        and potentials inputs cannot depend on velocities. A prescribed motion s is a function of
+        time, which replaces its velocity and acceleration, too.
 
     Returns
     -------
@@ -74,7 +76,11 @@ def with_inputs(system: System, formulas: Mapping[str, sp.Expr | float | str]) -
         except (ExpressionError, SystemDefinitionError) as error:
             raise SystemDefinitionError(f"input {name}: {error}") from error
 
-    return substituted(system, {inputs[name]: value(name) for name in formulas})
+    values = {inputs[name]: value(name) for name in formulas}
+    for s, *others in motions(system.inputs).values():
+        if s in values:  # the motion at any time, which no velocity continues
+            values |= dict.fromkeys(others, sp.S.Zero)
+    return substituted(system, values)
 
 
 def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:

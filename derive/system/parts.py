@@ -181,6 +181,11 @@ class Input:
         Such as ``N`` or ``N m``.
     meaning : str
         A description of one line.
+    motion : bool, optional
+        Whether it is a prescribed motion s, such as that of a pivot, on which positions can depend.
+        Then the system has the inputs ``s``, ``s_dot``, ``s_ddot`` and ``s_time``: position,
+        velocity and acceleration at that time. While they are constant, the acceleration is, and
+        the motion is s + s_dot (t - s_time) + s_ddot (t - s_time)²/2.
 
     Raises
     ------
@@ -198,6 +203,7 @@ class Input:
     symbol: sp.Symbol
     unit: str
     meaning: str
+    motion: bool = False
     default: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:

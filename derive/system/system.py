@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 
 import sympy as sp
 
@@ -19,6 +20,7 @@ from derive.system.parts import (
     formulas,
     items,
 )
+from derive.system.prescribed import as_functions_of_time, parts
 from derive.system.symbols import acceleration, momentum, variation, velocity
 from solvers.io.suggestion import shortened
 
@@ -66,8 +68,9 @@ class System:
         Parameters, such as lengths of rods, whose constraint forces are requested: a rod's
         tension.
     inputs : sequence of Input, optional
-        Quantities in `forces` and `dissipation` that may change during a motion. Positions and
-        potentials may contain inputs that `derive.with_inputs` replaces.
+        Quantities in `forces`, `dissipation` and `potential` that may change during a motion.
+        Positions may contain those that are prescribed motions, or that `derive.with_inputs`
+        replaces.
 
     Raises
     ------
@@ -125,8 +128,35 @@ class System:
                 f"got {len(self.coordinates)} and {len(self.masses)}"
             )
         check_text(f"the title of system {self.name!r}", self.title)
+        self._prescribe()
         self._check_names()
         check(self)
+
+    def _prescribe(self) -> None:
+        """Let motions among the inputs be functions of time with a constant acceleration."""
+        known = {part.symbol for part in self.inputs}
+        values = as_functions_of_time(
+            part
+            for part in self.inputs
+            if not {other.symbol for other in parts(part)} <= known  # or else it is one already
+        )
+        if not values:
+            return
+
+        def at_any_time(expression: sp.Expr) -> sp.Expr:
+            return expression.xreplace(values)
+
+        inputs = [parts(part) if part.symbol in values else (part,) for part in self.inputs]
+        changes: dict[str, object] = {
+            "inputs": tuple(chain(*inputs)),
+            "masses": tuple(mass.mapped(at_any_time) for mass in self.masses),
+            "forces": tuple(map(at_any_time, self.forces)),
+            "dissipation": at_any_time(self.dissipation),
+        }
+        if self.potential is not None:
+            changes["potential"] = at_any_time(self.potential)
+        for field, value in changes.items():
+            object.__setattr__(self, field, value)
 
     @property
     def dimension(self) -> int:

@@ -74,11 +74,11 @@ def _system(stem: str, table: Table) -> System:
     budget = Budget(MAX_SECOND_IN_SYSTEM, MAX_FACTORS_IN_SYSTEM)
     numbers = Formulas(FUNCTIONS, budget)
     parameters = [_parameter(key, name, row, numbers) for key, row in rows.items()]
-    rows = table.tables("inputs", ("unit", "meaning"))
+    rows = table.tables("inputs", ("unit", "meaning", "motion"))
     inputs = [_input(key, name, row) for key, row in rows.items()]
     q = [coordinate.symbol for coordinate in coordinates]
     symbols = [*q, *(p.symbol for p in parameters), *(u.symbol for u in inputs)]
-    symbols += [TIME, *map(velocity, q)]
+    symbols += [TIME, *map(velocity, q), *(velocity(u.symbol) for u in inputs if u.motion)]
     scope = FUNCTIONS | {symbol.name: symbol for symbol in symbols}
     formulas = Formulas(scope, budget)
     formulas = Formulas(scope | _definitions(table, name, formulas), budget)
@@ -163,7 +163,8 @@ def _coordinate(key: str, system: str, row: Table) -> Coordinate:
 
 def _input(key: str, system: str, row: Table) -> Input:
     symbol = _symbol(key, system, positive=False)
-    return Input(symbol, row.text("unit", "1"), row.text("meaning", key))
+    is_motion = row.flag("motion", default=False)
+    return Input(symbol, row.text("unit", "1"), row.text("meaning", key), is_motion)
 
 
 def _parameter(key: str, system: str, row: Table, numbers: Formulas) -> Parameter:

@@ -122,6 +122,13 @@ def inputs(module: GeneratedModule) -> tuple[str, ...]:
     return module.INPUTS if has_function(module, "input_jacobian") else ()
 
 
+def motion_times(module: GeneratedModule) -> tuple[str, ...]:
+    """Inputs that are the times of prescribed motions: ``s_time`` beside ``s`` and its rates."""
+    names = inputs(module)
+    parts = {s: (f"{s}_dot", f"{s}_ddot", f"{s}_time") for s in names}
+    return tuple(time for *rates, time in parts.values() if {*rates, time} <= {*names})
+
+
 def operations_on_state(module: GeneratedModule, name: str) -> int:
     """Operations of a call, without those on parameters alone, which are done once a run."""
     total, on_parameters = module.OPERATIONS[name]

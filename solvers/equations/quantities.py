@@ -14,7 +14,7 @@ Array: TypeAlias = NDArray[np.float64]
 Values: TypeAlias = ArrayLike | Mapping[str, Any]
 #: Types of which every value is real; NumPy converts text, booleans and missing values, too.
 REAL = frozenset((int, float, np.float64))
-Defaults: TypeAlias = Mapping[str, float]
+Defaults: TypeAlias = Mapping[str, float | Array]
 
 
 def real_numbers(name: str, values: object, unit: str = "", *, finite: bool = True) -> Array:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.module import GeneratedModule, inputs
+from solvers.equations.module import GeneratedModule, inputs, motion_times
 from solvers.equations.quantities import REAL, Values, positive, quantities, real_numbers
 from solvers.integration.solution import Array
 from solvers.io.suggestion import shortened
@@ -98,7 +98,7 @@ class Schedule:
         table = held.values
         if not np.ndim(held.times):  # there may be more samples than the time span needs
             table = _first_samples(table, len(times))
-        return cls(module, times, given("values", module, table, times.shape), None)
+        return cls(module, times, given("values", module, table, times.shape, times), None)
 
     def pieces(self, span: tuple[float, float]) -> tuple[int, Array, Array]:
         """The first sample that matters in a time span, and the times between which each does."""
@@ -172,11 +172,20 @@ def _first_samples(table: Any, count: int) -> Any:
 
 def controlled(module: GeneratedModule, controller: Controller, t: float, y: Array) -> Array:
     """The inputs that a controller returns at time `t` and state `y`, or states in columns."""
-    return given(f"inputs at t = {t}", module, controller(t, y.copy()), y.shape[1:])
+    return given(f"inputs at t = {t}", module, controller(t, y.copy()), y.shape[1:], t)
 
 
-def given(what: str, module: GeneratedModule, values: Any, shape: tuple[int, ...] = ()) -> Array:
-    """Values of all inputs, shape (inputs, *shape); those that a mapping leaves out are 0."""
+def given(
+    what: str,
+    module: GeneratedModule,
+    values: Any,
+    shape: tuple[int, ...] = (),
+    t: float | Array = 0.0,
+) -> Array:
+    """Values of all inputs, shape (inputs, *shape).
+
+    Those that a mapping leaves out are 0, and times of prescribed motions `t`.
+    """
     names = inputs(module)
     if not names:
         raise ValueError(
@@ -188,7 +197,8 @@ def given(what: str, module: GeneratedModule, values: Any, shape: tuple[int, ...
         return np.array(values, float)  # at once, since controllers are called often
     if len(names) == 1 and not isinstance(values, Mapping) and np.shape(values) in ((), shape):
         values = [values]  # a single input may be a number
-    array = quantities(module, what, names, values, dict.fromkeys(names, 0.0))
+    defaults = dict.fromkeys(names, 0.0) | dict.fromkeys(motion_times(module), t)
+    array = quantities(module, what, names, values, defaults)
     expected = (len(names), *shape)
     if array.shape == expected[:1]:
         array = array.reshape(-1, *[1] * len(shape))
