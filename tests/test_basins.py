@@ -161,6 +161,12 @@ def test_a_spiral_that_has_nearly_arrived_is_no_longer_orbit() -> None:
     assert [one.period for one in attractors] == [1, 3]
 
 
+def test_a_motion_that_still_moves_by_less_than_the_tolerance_has_not_arrived() -> None:
+    moving = np.array([0.5e-3 * np.arange(12), np.zeros(12)])
+    assert found(np.array([moving]))[0] == [0]
+    assert found(np.array([moving / 10]))[0] == [1]
+
+
 def test_motions_that_do_not_recur_or_failed_have_no_attractor() -> None:
     chaos = np.random.default_rng(0).random((2, 12))
     numbers, attractors = found(np.array([chaos, np.full((2, 12), np.nan)]))

@@ -43,11 +43,14 @@ def test_own_times_equal_to_common_ones_give_the_same_bits() -> None:
 
 
 def test_results_with_own_times_do_not_depend_on_other_motions() -> None:
-    all_of_them = ensemble(sp, (0, ENDS), Y0, sp.DEFAULTS, t_eval=TIMES)
-    some = slice(3, 8)
+    some, ends = slice(3, 8), ENDS.copy()
+    ends[-1] = 300.0  # events are located to a resolution that depends on the end
+    options: dict[str, Any] = {"events": Event(sp, "theta", 0.1), "occurrences": 3}
+    all_of_them = ensemble(sp, (0, ends), Y0, sp.DEFAULTS, t_eval=TIMES, **options)
     fewer = ensemble(sp, (0, ENDS[some]), {"theta": Y0["theta"][some]}, sp.DEFAULTS,
-                     t_eval=TIMES[some], workers=1)  # fmt: skip
+                     t_eval=TIMES[some], workers=1, **options)  # fmt: skip
     assert all_of_them.samples[:, some].tobytes() == fewer.samples.tobytes()
+    assert all_of_them.t_events[some].tobytes() == fewer.t_events.tobytes()
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])

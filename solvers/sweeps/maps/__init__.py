@@ -28,7 +28,7 @@ class Motions:
 
     module: GeneratedModule
     begin: float  # time in s of the starts
-    starts: Array
+    starts: Array  # states there, of shape (n, state)
     params: list[Array]
     ensemble: Ensemble
     events: slice

@@ -6,8 +6,9 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
+from matplotlib.colors import ListedColormap, to_rgba
 
+from solvers.equations.module import has_function
 from solvers.io.figures import COLOURS
 from solvers.io.notation import axis_label, symbol
 from solvers.sweeps.axes import Array, Grid
@@ -131,8 +132,10 @@ def section(panel: Axes, *, results: Results, name: str, selection: Any) -> None
     indices = 0, min(1, len(components) - 1)
     stride = max(1, -(-len(motions) * count // POINTS))
     # larger points where there are few
-    size = float(np.clip(150 / np.sqrt(1 + np.isfinite(motions[:, 0]).sum()), 0.9, 4))
+    size = float(np.clip(150 / np.sqrt(1 + np.isfinite(motions[:, 0]).sum()), 1.1, 4))
     shades = mpl.colormaps["nipy_spectral"](np.linspace(0.02, 0.95, len(motions)))
+    if has_function(results.definition.module, "power"):  # motions share their attractors
+        shades[:] = to_rgba("black")
     for motion, colour in zip(motions[..., ::stride], shades, strict=True):
         x, y = (
             wrapped(motion[k]) if one.wraps_angles and units[components[k]] == "rad" else motion[k]

@@ -1,0 +1,15 @@
+"""
+Bifurcations of a driven pendulum
+=================================
+
+Velocities of a pendulum whose pivot oscillates vertically, once a period of the drive: it swings,
+rotates, and doubles its period again and again until it moves chaotically.
+"""
+
+from tempfile import mkdtemp
+
+from solvers import sweep
+from solvers.sweeps.plots.figure import figure
+
+diagram = sweep("bifurcations", mkdtemp())
+picture = figure(diagram)
