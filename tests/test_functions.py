@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
+from derive.verification.documents.files import judge_file
+from derive.verification.documents.hints import hints
 from derive.verification.hand import judge
 from solvers.app.modules import load
 from solvers.equations.module import GeneratedModule
@@ -17,6 +19,7 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.solution import Status
 from solvers.references.taylor import SeriesError, taylor
+from solvers.runge_kutta.order_conditions import order
 
 SYSTEM = """
 potential = "0"
@@ -188,3 +191,27 @@ def test_names_of_functions_are_reserved(tmp_path: Path) -> None:
         (tmp_path / "named.toml").write_text(text)
         with pytest.raises(ValueError, match=f"{name!r} cannot be a name"):
             load(str(tmp_path / "named.toml"))
+
+
+def test_documents_with_kinks_are_judged(tmp_path: Path) -> None:
+    file, document = tmp_path / "stop.toml", tmp_path / "stop.md"
+    stop = SYSTEM.replace("a = {{ value = 0.7 }}", "F = {{ value = 1.0, unit = 'N' }}")
+    stop = stop.replace(
+        "p = {{ value = 2.3, positive", "k = {{ value = 2.0, unit = 'N/m', positive"
+    )
+    file.write_text(stop.format("-F*sign(x_dot) - k*max(0, x - 1)"))
+    equation = r"\ddot x + F\operatorname{{sgn}}(\dot x) + k{}(0, x - 1) = 0"
+    wrong = {
+        equation.format(r"\max"): "verified",
+        equation.format(r"\operatorname{Max}"): "verified",
+        equation.format(r"\min"): "wrong",
+        equation.format(r"\max").replace("sgn", "sign"): "verified",
+        equation.format(r"\max").replace("- 1", "+ 1"): "wrong",
+    }
+    for formula, verdict in wrong.items():
+        document.write_text(f"$${formula}$$\n")
+        (judged,) = judge_file(str(document), order, hints(str(file), None))[0].formulas
+        assert judged.verdict == verdict, (formula, judged)
+    # without the system, the forces are those of a document with terms that have no meaning
+    document.write_text("A point mass $m$.\n\n$$m\\ddot x = -(k x + F\\max(0, x))$$\n")
+    assert judge_file(str(document), order)[0].formulas

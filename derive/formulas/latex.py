@@ -15,6 +15,7 @@ from derive.formulas.typesetting import ATOM, POWER, PRODUCT, SUM, negated
 #: Functions that have a command of their own in LaTeX, by name.
 COMMANDS = {name: rf"\{name}" for name in "sin cos tan sinh cosh tanh exp det".split()}
 COMMANDS |= {"log": r"\ln", "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan"}
+COMMANDS |= {"Max": r"\max", "Min": r"\min", "sign": r"\operatorname{sgn}"}
 POWERS = ("sin", "cos", "tan")
 
 

@@ -17,6 +17,7 @@ FUNCTIONS = {
     **{f"ar{name}": f"a{name}" for name in "sinh cosh tanh".split()},
     **{name: name for name in "asin acos atan atan2 asinh acosh atanh".split()},
     "ln": "log", "sgn": "sign", "sign": "sign", "cosec": "csc", "arctan2": "atan2",
+    "max": "max", "Max": "max", "min": "min", "Min": "min",
 }  # fmt: skip
 #: Functions that have an inverse, which the exponent -1 denotes.
 INVERTIBLE = frozenset("sin cos tan cot sinh cosh tanh".split())

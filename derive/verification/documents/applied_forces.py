@@ -29,7 +29,7 @@ def without_unknown_terms(
 def _reduced(node: ast.expr, unknown: Collection[str]) -> ast.expr | None:
     """The tree without the terms with unknown names in sums; None if nothing is left."""
     terms = summands(node)
-    if len(terms) == 1 and not isinstance(node, ast.UnaryOp):
+    if terms == [(node, 1)]:
         return _inside(node, unknown)
     known = [(one, sign) for term, sign in terms if (one := _reduced(term, unknown)) is not None]
     if not known:

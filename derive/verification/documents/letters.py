@@ -59,7 +59,7 @@ PARTS: dict[str, tuple[str, ...]] = {
 }
 
 OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
-OPERATORS |= {"asin", "acos", "atan", "sinh", "cosh", "tanh", "sign"}
+OPERATORS |= {"asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "sign", "max", "min"}
 #: Abbreviations of sines and cosines, such as s_1, c_12 and s_1_plus_2.
 ABBREVIATION = re.compile(r"([sc])_(\d(?:_plus_\d|\d)*)\Z")
 #: A column of names.

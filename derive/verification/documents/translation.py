@@ -177,7 +177,9 @@ class Translator:
         if name == "cot":
             inner = self.text(argument)
             return joined_text(PRODUCT, "cos(", inner, ")/sin(", inner, ")")
-        return joined_text(ATOM, f"{name}(", self.text(argument), ")")
+        arguments = argument.items if isinstance(argument, Tuple) else (argument,)
+        pieces = [piece for one in arguments for piece in (", ", self.text(one))]
+        return joined_text(ATOM, f"{name}(", *pieces[1:], ")")
 
     def _application(self, node: Application) -> Text:
         name = self.name(node.head)
