@@ -174,3 +174,12 @@ def test_intervals_of_arithmetic_contain_all_values() -> None:
             (2.0 - p, 2 - u), (1.0 / q, 1 / v), (p * 3.0 - 1.0, 3 * u - 1), (-p, -u),
         ):  # fmt: skip
             assert ((interval.low <= value) & (value <= interval.high)).all()
+
+
+def test_a_denominator_of_several_coordinates_is_no_equation() -> None:
+    y, k = sp.symbols("y k", real=True)
+    well = System(
+        "well", "", [Coordinate(x, "m", ""), Coordinate(y, "m", "")], [Parameter(k, "J", 1.0, "")],
+        [PointMass(1, (x, y))], k * sp.log(1 + x**2 + y**2),
+    )  # fmt: skip
+    assert Derivation(well).equilibria() == [{x: 0, y: 0}]

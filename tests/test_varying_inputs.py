@@ -1,5 +1,6 @@
 """Inputs during an integration: constant, held between samples, or functions of the state."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,9 @@ from scipy.integrate import solve_ivp
 from derive import with_inputs
 from solvers import Event, Held, build, ensemble, integrate, prepare
 from solvers.equations.forms import Form
-from solvers.integration import accuracy_warnings
+from solvers.integration import accuracy_warnings, compiled_loop, validation
+from solvers.integration.compiled.kernel import Batch
+from solvers.integration.problem import Options, shortest_step
 from solvers.integration.solution import Status
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -271,3 +274,15 @@ def test_inputs_need_a_system_that_has_them() -> None:
     with pytest.raises(ValueError, match="runs backwards"):
         integrate(cart, (1, 0), START, {}, inputs=Held(0.1, feedback))
     assert integrate(sp, (0, 1), (0.1, 0.0), {}).inputs is None
+
+
+def test_a_run_that_resumes_has_the_shortest_step_of_its_times() -> None:
+    # a step that times do not resolve ends a motion, such as one at a singularity
+    problem = validation.problem_at_rest(cart, (0.0, 1.0), Options(), {})
+    problem, program = compiled_loop.select(problem, lanes=False)
+    assert program
+    batch = Batch(program, problem)
+    batch.run()
+    assert batch.motions["min_h"][0] == shortest_step(0.0, 1.0)
+    batch.resume(replace(problem, span=(1.0, 1e6)))
+    assert batch.motions["min_h"][0] == shortest_step(1.0, 1e6)

@@ -80,7 +80,10 @@ class Schedule:
         """The samples of `held` over a time span; ValueError where they do not cover it."""
         begin, end = span
         if end < begin:
-            raise ValueError(f"t_span = {span} runs backwards: held inputs need one forwards")
+            raise ValueError(
+                f"t_span = {span} runs backwards: held inputs need one forwards, since they follow "
+                "from the state at the sample before; give a function of time"
+            )
         times = real_numbers("times", held.times, "s")
         if not times.ndim:
             period = float(times)
