@@ -44,6 +44,7 @@ from solvers.sweeps.maps.extremes import Extremes as Extremes
 from solvers.sweeps.maps.final import Final as Final
 from solvers.sweeps.maps.first import First as First
 from solvers.sweeps.maps.lyapunov import Lyapunov as Lyapunov
+from solvers.sweeps.maps.lyapunov_spectrum import Spectrum as Spectrum
 from solvers.sweeps.maps.response import Response as Response
 from solvers.sweeps.maps.samples import Samples as Samples
 from solvers.sweeps.maps.section import Section as Section

@@ -120,7 +120,10 @@ def test_its_sweep_is_summarised_and_drawn(
 def test_its_keys_are_checked_and_an_unknown_kind_lists_it(kind: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     for change, words in (
-        (('"mean speed"', '"mean sped"'), "did you mean 'mean speed'.*'lyapunov', 'mean speed', "),
+        (
+            ('"mean speed"', '"mean sped"'),
+            "did you mean 'mean speed'.*'lyapunov spectrum', 'mean speed'",
+        ),
         (("factor = 2", "fator = 2"), "no key 'fator' .did you mean 'factor'"),
         (("factor = 2", 'factor = "2 kg"'), "maps.speed.factor: '2 kg' has another unit"),
     ):

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule, function
+from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values, positive, real_number
 from solvers.integration import validation
+from solvers.integration.frames import FINISHED, Frames
+from solvers.integration.prepare import NotFinishedError
 from solvers.integration.solution import Array
-from solvers.integration.tangents import Tangents
 
 #: Parts of a run whose means give the standard error.
 PARTS = 20
@@ -87,27 +88,15 @@ def lyapunov_spectrum(
             f"duration = {duration} s must be at least {PARTS} intervals of {interval} s: "
             "lengthen it, or shorten the interval"
         )
-    constants, n = validation.parameters(module, params).tolist(), len(module.STATE)
-    count = round(duration / interval)
-    tangents = Tangents(module, (0.0, duration), y0, constants, np.eye(n), rtol=rtol, atol=atol)
-    halves, growth = (2, n // 2, n), np.empty((count, n))
-    root = _root(module, tangents, constants)
-    tangents.changes[:] = np.linalg.solve(root, np.eye(n).reshape(halves)).reshape(n, n)
-    for k in range(count):
-        tangents.advance(duration * (k + 1) / count)
-        root = _root(module, tangents, constants)
-        q, r = np.linalg.qr((root @ tangents.changes.reshape(halves)).reshape(n, n))
-        tangents.changes[:] = np.linalg.solve(root, q.reshape(halves)).reshape(n, n)
-        growth[k] = np.log(np.abs(np.diag(r)))
-    means = [part.mean(axis=0) for part in np.array_split(growth * (count / duration), PARTS)]
+    constants = validation.parameters(module, params)
+    start = validation.initial_state(module, y0)
+    frames = Frames(module, start[np.newaxis], constants.tolist(), len(start), rtol=rtol, atol=atol)
+    growth = frames.growth(np.array([duration]), round(duration / interval))[:, 0]
+    if frames.status[0] != FINISHED:
+        raise NotFinishedError(frames.status_of(0), float(frames.t[0]), tuple(frames.y[0].tolist()))
+    means = [part.mean(axis=0) for part in np.array_split(growth * (len(growth) / duration), PARTS)]
     # parts may differ by one interval, the mean counts all alike
     exponents = growth.sum(axis=0) / duration
     errors = np.std(means, axis=0, ddof=1) / np.sqrt(PARTS)
     order = np.argsort(-exponents)
-    return LyapunovSpectrum(exponents[order], errors[order], tangents.t, tangents.y)
-
-
-def _root(module: GeneratedModule, tangents: Tangents, params: list[float]) -> Array:
-    """A matrix R with RᵀR = M: R δq and R δq̇ are perturbations in the metric of the mass matrix."""
-    mass_matrix = function(module, "mass_matrix")(tangents.t, tangents.y.tolist(), params)
-    return np.asarray(np.linalg.cholesky(np.array(mass_matrix)).T)
+    return LyapunovSpectrum(exponents[order], errors[order], float(frames.t[0]), frames.y[0])

@@ -55,7 +55,7 @@ def computed(
             events = slice(first, first + len(one.events(module)))
             first = events.stop
             chunk[name][runs] = one.values(
-                Motions(module, sweep.skip, starts, params, motions, events)
+                Motions(module, sweep.skip, starts, params, motions, events, sweep.rtol)
             )
         ends, success = motions.status, motions.success
         for transient in ensembles[:-1]:

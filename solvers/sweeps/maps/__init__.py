@@ -32,6 +32,7 @@ class Motions:
     params: list[Array]
     ensemble: Ensemble
     events: slice
+    rtol: float = 1e-9
 
     def indices(self, components: tuple[str, ...]) -> list[int]:
         """Indices of components of the state."""
