@@ -183,3 +183,50 @@ def test_a_denominator_of_several_coordinates_is_no_equation() -> None:
         [PointMass(1, (x, y))], k * sp.log(1 + x**2 + y**2),
     )  # fmt: skip
     assert Derivation(well).equilibria() == [{x: 0, y: 0}]
+
+
+def test_steady_motions_of_a_spherical_pendulum() -> None:
+    spherical, g = module_of("spherical_pendulum"), 9.81
+    rate = 5.0
+    cone, *others = equilibria(
+        spherical, {"l": 0.8}, {"theta": (0.1, 3.1)}, velocities={"phi_dot": rate}
+    )
+    assert not others
+    angle = math.acos(g / (0.8 * rate**2))
+    assert cone.y == pytest.approx((angle, 0.0, 0.0, rate), abs=1e-12)
+    assert abs(cone.rate[2:]).max() < 1e-12
+    # about it the angle oscillates with this frequency, at constant angular momentum
+    frequency = rate * math.sqrt(1 + 3 * math.cos(angle) ** 2) / (2 * math.pi)
+    assert cone.modes[-1].frequency == pytest.approx(frequency, rel=1e-9)
+    assert cone.stability == "neutral"
+    # the angle is given, and the velocity results
+    (turning,) = equilibria(spherical, {}, {"theta": 0.7}, velocities={"phi_dot": (0.1, 20)})
+    length = dict(zip(spherical.PARAMETERS, spherical.DEFAULTS, strict=True))["l"]
+    assert turning.y[3] == pytest.approx(math.sqrt(g / (length * math.cos(0.7))), rel=1e-12)
+    closed = Derivation(load("spherical_pendulum")).equilibria({"phi_dot": rate})
+    cosines = [sp.cos(e[sp.Symbol("theta", real=True)]) for e in closed]
+    assert any(
+        c == sp.Symbol("g", real=True) / (25 * sp.Symbol("l", positive=True)) for c in cosines
+    )
+
+
+def test_a_pole_on_a_cart_that_moves() -> None:
+    moving = equilibria(module_of("cart_1"), {}, velocities={"x_dot": 3.0})
+    angles = [point.y[1] for point in moving]
+    assert angles == pytest.approx([0.0, math.pi])
+    assert [point.y[2] for point in moving] == [3.0, 3.0]
+    assert [point.stability for point in moving] == ["neutral", "unstable"]
+
+
+@pytest.mark.parametrize(
+    ("velocities", "message"),
+    [
+        ({"theta_dot": 1.0}, "forces depend on theta"),
+        ({"phi": 1.0}, "velocities has 'phi'"),
+        ({"phi_dot": "fast"}, r"velocities\['phi_dot'\]"),
+        ({"phi_dot": (2.0, 1.0)}, r"velocities\['phi_dot'\] = \(2.0, 1.0\) must be a pair"),
+    ],
+)
+def test_invalid_velocities_are_refused(velocities: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        equilibria(module_of("spherical_pendulum"), {}, velocities=velocities)

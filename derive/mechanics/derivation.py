@@ -390,7 +390,8 @@ class Derivation:
         Parameters
         ----------
         at : mapping of str to sympy.Expr, number or str, optional
-            Inputs, by name, that have values; the others remain symbols.
+            Inputs, by name, that have values; the others remain symbols. Velocities of a steady
+            motion, of coordinates on which no force depends; other velocities are 0.
 
         Returns
         -------

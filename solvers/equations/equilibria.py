@@ -1,6 +1,6 @@
 """All equilibria in a box: boxes without one are excluded by intervals, then Newton's method."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -31,8 +31,9 @@ def equilibria(
     box: Mapping[str, object] | None = None,
     *,
     inputs: Values | None = None,
+    velocities: Mapping[str, object] | None = None,
 ) -> list[LinearSystem]:
-    """All equilibria in a box, linearised.
+    """All equilibria in a box, or steady motions with constant velocities, linearised.
 
     Boxes in which intervals of the accelerations do not contain 0 have no equilibrium. The others
     are halved until they are small, and Newton's method starts in each, so that no equilibrium is
@@ -49,6 +50,10 @@ def equilibria(
         have all values from -π to π; other coordinates are necessary.
     inputs : array_like of shape (inputs,), or mapping of str to float, optional
         Constant inputs, in place of those in `params`.
+    velocities : mapping of str to float or (float, float), optional
+        Velocities of a steady motion, such as ``{"phi_dot": 2.0}``, or their ranges. No force may
+        depend on the coordinates that move, which are 0 unless `box` has their values; all other
+        velocities are 0.
 
     Returns
     -------
@@ -61,7 +66,8 @@ def equilibria(
     ------
     ValueError
         When an argument is invalid, the equations depend on time or contain other functions than
-        intervals are known of; when equilibria are not isolated.
+        intervals are known of; when equilibria are not isolated, or a force depends on a coordinate
+        that moves.
 
     Examples
     --------
@@ -73,24 +79,33 @@ def equilibria(
     [0.     3.1416] unstable
     [3.1416 0.    ] unstable
     [3.1416 3.1416] unstable
+
+    A conical pendulum turns 2 times a second:
+
+    >>> import generated.spherical_pendulum as spherical
+    >>> turning = {"phi_dot": 4 * 3.141592653589793}
+    >>> cone = equilibria(spherical, {"l": 1.0}, {"theta": (0.1, 3)}, velocities=turning)
+    >>> cone[0].y.round(4)
+    array([ 1.5086,  0.    ,  0.    , 12.5664])
     """
     if depends_on_time(module):
         raise ValueError(f"the equations of {module.SYSTEM} depend on time: it has no equilibria")
-    low, high = _ranges(module, {} if box is None else box)
+    low, high = _ranges(module, {} if box is None else box, velocities or {})
     constants = with_inputs(module, params, inputs)
     search = _Search(module, constants, low, high)
+    search.check_moving(velocities or {})
     roots: list[Array] = []
     for start in search.candidates():
         root = search.newton(start)
         if root is not None and all(not search.are_close(root, other) for other in roots):
             roots.append(root)
     roots.sort(key=lambda root: np.round(root, 6).tolist())
-    return [linearise(module, [*root, *0 * low], constants) for root in roots]
+    return [linearise(module, root, constants) for root in roots]
 
 
 @dataclass(frozen=True)
 class _Search:
-    """A search for coordinates in a box at which accelerations at rest are 0."""
+    """A search for states in a box at which accelerations are 0."""
 
     module: GeneratedModule
     params: Sequence[float]
@@ -99,7 +114,7 @@ class _Search:
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
-        """The coordinates that are not fixed."""
+        """The components of the state that are not fixed."""
         return self.high > self.low
 
     @cached_property
@@ -109,11 +124,35 @@ class _Search:
     @cached_property
     def scale(self) -> float:
         """The size of accelerations in the box, in the units of each."""
-        points = self.low + np.random.default_rng(0).random((64, len(self.low))) * self.width
-        states = np.concatenate([points, 0 * points], axis=1).T
         with np.errstate(all="ignore"):
-            values = self.module.rhs_many(0.0, states, self.params)[len(self.low) :]
+            values = self.module.rhs_many(0.0, self._some_states, self.params)[self.n :]
         return float(np.nanmax(np.abs(values), initial=1e-300))
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.low) // 2
+
+    @property
+    def _some_states(self) -> Array:
+        """States in the box, in columns."""
+        parts = np.random.default_rng(0).random((64, len(self.low)))
+        return np.asarray((self.low + parts * np.where(self.free, self.width, 0.0)).T)
+
+    def check_moving(self, velocities: Iterable[str]) -> None:
+        """Refuse velocities of coordinates on which accelerations depend."""
+        if not velocities:
+            return
+        with np.errstate(all="ignore"):
+            jacobian = np.abs(self.module.jacobian_many(0.0, self._some_states, self.params))
+        for name in velocities:
+            k = self.module.STATE.index(name) - self.n
+            if np.nanmax(jacobian[self.n :, k], initial=0.0) > 0:
+                coordinate = self.module.COORDINATES[k]
+                raise ValueError(
+                    f"velocities has {name!r}, but forces depend on {coordinate}: a motion with "
+                    "this velocity is not steady"
+                )
 
     def candidates(self) -> Array:
         """Points near which there may be an equilibrium, in rows."""
@@ -139,11 +178,15 @@ class _Search:
         self, rhs: Callable[..., Sequence[Any]], low: Array, high: Array
     ) -> NDArray[np.bool_]:
         """Boxes, in rows, in which the range of every acceleration contains 0."""
-        n = low.shape[1]
-        state = [*(Interval(*bounds) for bounds in zip(low.T, high.T, strict=True)), *[0.0] * n]
+        state = [
+            Interval(*bounds) if is_free else value
+            for is_free, value, *bounds in zip(
+                self.free, self.low.tolist(), low.T, high.T, strict=True
+            )
+        ]
         try:
             with np.errstate(all="ignore"):
-                accelerations = rhs(0.0, state, self.params)[n:]
+                accelerations = rhs(0.0, state, self.params)[self.n :]
         except (TypeError, AttributeError) as error:
             known = ", ".join(FUNCTIONS)
             raise ValueError(
@@ -158,18 +201,18 @@ class _Search:
 
     def newton(self, start: Array) -> Array | None:
         """The equilibrium that Newton's method reaches; None if it leaves the box."""
-        n, q = len(start), start.copy()
+        n, q = self.n, start.copy()
         for _ in range(MOST_STEPS):
-            state = [*q.tolist(), *[0.0] * n]
+            state = q.tolist()
             try:
                 acceleration = np.array(self.module.rhs(0.0, state, self.params)[n:])
                 jacobian = np.array(self.module.jacobian(0.0, state, self.params))
             except (ArithmeticError, ValueError):
                 return None
-            by_free = jacobian[n:, :n][:, self.free]
+            by_free = jacobian[n:, self.free]
             if not (np.isfinite(acceleration).all() and np.isfinite(by_free).all()):
                 return None
-            step = np.zeros(n)
+            step = np.zeros(2 * n)
             step[self.free] = np.linalg.lstsq(by_free, -acceleration, rcond=1e-14)[0]
             is_root = np.abs(acceleration).max(initial=0.0) <= CONVERGED * self.scale
             q = q + np.clip(step, -self.width, self.width)
@@ -184,7 +227,7 @@ class _Search:
 
     def _in_one_turn(self, q: Array) -> Array:
         """An angle at the start of a range that includes a whole turn is that at its end."""
-        turn = np.where(_angles(self.module), 2 * np.pi, np.inf)
+        turn = np.where([*_angles(self.module), *[False] * self.n], 2 * np.pi, np.inf)
         margin = CLOSE * self.width
         return q + np.where((q < self.low + margin) & (q + turn < self.high + margin), turn, 0.0)
 
@@ -198,14 +241,22 @@ def _angles(module: GeneratedModule) -> list[bool]:
     return [f"sin_{name}" in rational for name in module.COORDINATES]
 
 
-def _ranges(module: GeneratedModule, box: Mapping[str, object]) -> tuple[Array, Array]:
-    """Lower and upper ends of all coordinates."""
+def _ranges(
+    module: GeneratedModule, box: Mapping[str, object], velocities: Mapping[str, object]
+) -> tuple[Array, Array]:
+    """Lower and upper ends of all components of the state."""
     names = module.COORDINATES
+    rates = module.STATE[len(names) :]
     for name in box:
         if name not in names:
             hint = did_you_mean(str(name), names)
             raise ValueError(f"box has {name!r}{hint}; coordinates are {', '.join(names)}")
-    ranges = []
+    for name in velocities:
+        if name not in rates:
+            hint = did_you_mean(str(name), rates)
+            raise ValueError(f"velocities has {name!r}{hint}; velocities are {', '.join(rates)}")
+    moving = {q: 0.0 for q, rate in zip(names, rates, strict=True) if rate in velocities}
+    ranges, box = [], moving | dict(box)
     for name in names:
         unit = module.UNITS[name]
         if name not in box and unit != "rad":
@@ -213,11 +264,17 @@ def _ranges(module: GeneratedModule, box: Mapping[str, object]) -> tuple[Array, 
                 f"box lacks {name}: give its range, {name!r}: (low, high) in {unit}, or a number "
                 "where it is fixed"
             )
-        ends = real_numbers(f"box[{name!r}]", box.get(name, (-np.pi, np.pi)), unit)
-        if ends.shape not in ((), (2,)) or (ends.ndim and not ends[0] < ends[1]):
-            raise ValueError(
-                f"box[{name!r}] = {shortened(box[name])} must be a pair (low, high) or a number"
-            )
-        ranges.append(np.broadcast_to(ends, 2))
+        ranges.append(_range(f"box[{name!r}]", box.get(name, (-np.pi, np.pi)), unit))
+    for name in rates:
+        given = velocities.get(name, 0.0)
+        ranges.append(_range(f"velocities[{name!r}]", given, module.UNITS[name]))
     low, high = np.array(ranges).T
     return low.copy(), high.copy()
+
+
+def _range(what: str, values: object, unit: str) -> Array:
+    """Lower and upper end."""
+    ends = real_numbers(what, values, unit)
+    if ends.shape not in ((), (2,)) or (ends.ndim and not ends[0] < ends[1]):
+        raise ValueError(f"{what} = {shortened(values)} must be a pair (low, high) or a number")
+    return np.asarray(np.broadcast_to(ends, 2))
