@@ -74,20 +74,23 @@ def estimate(experiment: Experiment, start: Array, guess: Array) -> Estimate:
         trial = relaxed(experiment.linearise(noise), first, guess, positive, size)
         if trial.squares < least:
             nodes, params, least, scale = trial.nodes, trial.params, trial.squares, size
+            linear = trial.linear
         if least < GOOD * counts.sum():
             break
     for _ in range(MOST_WEIGHTINGS):
         linearise = experiment.linearise(noise)
-        minimum = minimise(linearise, nodes, params, positive, scale)
+        minimum = minimise(linearise, nodes, params, positive, scale, linear)
         nodes, params = minimum.nodes, minimum.params
         iterations += minimum.iterations
         before, noise = noise, _noise(experiment, minimum, noise)
         measured = np.flatnonzero(counts)
         if len(measured) == 1 or (abs(noise / before - 1)[measured] < SUFFICIENT).all():
             break
+        ratio = np.repeat(before / noise, experiment.masks.shape[2])
+        linear = minimum.linear.weighted(np.tile(ratio, (len(nodes), 1)))
     # of residuals in units of the noise before, the variance is the ratio
-    ratio = float(minimum.squares / (counts.sum() - unknowns))
-    matrix = ratio * covariance(minimum.step.triangle)
+    variance = float(minimum.linear.squares / (counts.sum() - unknowns))
+    matrix = variance * covariance(minimum.step.triangle)
     largest = np.maximum(abs(guess), abs(params))
     sizes = np.concatenate([np.tile(scale, len(experiment.runs)), largest])
     _check(experiment, np.sqrt(np.diag(matrix)), np.maximum(sizes, 1e-6))
@@ -105,18 +108,18 @@ def estimate(experiment: Experiment, start: Array, guess: Array) -> Estimate:
 
 def _noise(experiment: Experiment, minimum: Minimum, before: Array) -> Array:
     """Unbiased standard deviations: of each output's values, its share of unknowns is taken off."""
-    owner = np.concatenate(
-        [np.repeat(np.arange(len(before)), mask.sum(axis=1)) for mask in experiment.masks]
+    jacobian = minimum.step.jacobian(minimum.linear)
+    shares = leverages(jacobian.reshape(-1, jacobian.shape[2]), minimum.step.triangle)
+    squares, own = (
+        values.reshape(experiment.masks.shape).sum(axis=(0, 2))
+        for values in (minimum.linear.residuals**2, shares)
     )
-    residuals = np.concatenate([piece.residuals for piece in minimum.pieces])
-    shares = leverages(minimum.step.jacobian, minimum.step.triangle)
-    squares = np.bincount(owner, residuals**2, len(before))
-    spare = experiment.counts - np.bincount(owner, shares, len(before))
+    spare = experiment.counts - own
     common = np.sqrt(squares.sum() / spare.sum())
     with np.errstate(invalid="ignore", divide="ignore"):
-        own = np.sqrt(squares / spare)
+        deviations = np.sqrt(squares / spare)
     # an output with hardly more values than it determines unknowns shares the others' ratio
-    return np.asarray(before * np.where(spare > 1, np.maximum(own, 1e-9), common))
+    return np.asarray(before * np.where(spare > 1, np.maximum(deviations, 1e-9), common))
 
 
 def _check(experiment: Experiment, errors: Array, sizes: Array) -> None:

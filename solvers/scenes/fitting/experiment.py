@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.quantities import Array
-from solvers.scenes.fitting.least_squares import Linearise, Piece
+from solvers.scenes.fitting.least_squares import Linear, Linearise
 from solvers.scenes.fitting.measurement import Measurement, Outputs, wrapped
-from solvers.scenes.fitting.shooting import Arc, Segment, Shooting, segments
+from solvers.scenes.fitting.shooting import Arcs, Segment, Shooting, segments
 
 #: Most segments of a run, fewest samples of one, and fewest values for a component of the state.
-MOST_SEGMENTS, FEWEST_SAMPLES, FEWEST_VALUES = 200, 5, 3
+MOST_SEGMENTS, FEWEST_SAMPLES, FEWEST_VALUES = 100, 5, 3
 #: Smallest standard deviation of the noise, as a part of the spread of the values.
 LEAST_NOISE = 1e-6
 
@@ -52,9 +52,13 @@ class Experiment:
         self.segments: list[Segment] = []
         for k, (run, own) in enumerate(zip(runs, cuts, strict=True)):
             self.segments += segments(k, run.t, own)
-        self.data = [self.tables[s.run][:, s.first : s.first + len(s.times)] for s in self.segments]
-        self.masks = [np.isfinite(data) for data in self.data]
         self.shooting = Shooting(self.module, self.indices, self.segments)
+        shape = (len(self.segments), len(outputs.names), self.shooting.missing.shape[1])
+        self.data = np.full(shape, np.nan)
+        for values, segment in zip(self.data, self.segments, strict=True):
+            last = segment.first + len(segment.times)
+            values[:, : len(segment.times)] = self.tables[segment.run][:, segment.first : last]
+        self.masks = np.isfinite(self.data)
 
     @property
     def positive(self) -> NDArray[np.bool_]:
@@ -70,7 +74,7 @@ class Experiment:
     @property
     def counts(self) -> NDArray[np.int64]:
         """Number of values of each output."""
-        return np.sum([mask.sum(axis=1) for mask in self.masks], axis=0)
+        return self.masks.sum(axis=(0, 2))
 
     def all_params(self, unknown: Array) -> Array:
         """All parameters, with these values of the unknown ones."""
@@ -82,40 +86,47 @@ class Experiment:
         """The segment `k` alone, with these values of the unknown parameters as known ones."""
         other = copy(self)
         other.segments, other.runs = [replace(self.segments[k], run=0)], self.runs[:1]
-        other.data, other.masks = [self.data[k]], [self.masks[k]]
+        count = len(self.segments[k].times)
+        other.data, other.masks = self.data[k : k + 1, :, :count], self.masks[k : k + 1, :, :count]
         other.params, other.unknown, other.indices = self.all_params(unknown), (), []
         other.shooting = Shooting(self.module, [], other.segments)
         return other
 
     def linearise(self, noise: Array) -> Linearise:
         """The residuals in units of the noise, as a function of nodes and unknown parameters."""
+        runs = np.array([segment.run for segment in self.segments])
+        joined = np.append(np.diff(runs) == 0, False)[:, np.newaxis]
+        weights = self.masks / noise[:, np.newaxis]
 
-        def linearised(nodes: Array, unknown: Array) -> list[Piece]:
-            params, pieces = self.all_params(unknown), []
-            for k, arc in enumerate(self.shooting(nodes, params)):
-                is_last = k + 1 == len(nodes) or self.segments[k + 1].run != self.segments[k].run
-                residuals, by = self._residuals(k, arc, params)
-                weights = np.repeat(1 / noise, self.masks[k].sum(axis=1))
-                gap = None if is_last else wrapped(arc.end - nodes[k + 1], self.outputs.angles)
-                own = self.segments[k].run
-                weighted = (weights * residuals, weights[:, np.newaxis] * by)
-                pieces.append(Piece(own, *weighted, gap, arc.end_by))
-            return pieces
+        def linearised(nodes: Array, unknown: Array) -> Linear:
+            params, count = self.all_params(unknown), len(nodes)
+            arcs = self.shooting(nodes, params)
+            differences, by = self._residuals(arcs, params)
+            gaps = wrapped((arcs.ends - np.roll(nodes, -1, axis=0)).T, self.outputs.angles).T
+            return Linear(
+                runs,
+                (weights * np.where(self.masks, differences, 0.0)).reshape(count, -1),
+                (weights[..., np.newaxis] * by).reshape(count, -1, by.shape[-1]),
+                joined * gaps,
+                joined[:, :, np.newaxis] * arcs.ends_by,
+            )
 
         return linearised
 
-    def _residuals(self, k: int, arc: Arc, params: Array) -> tuple[Array, Array]:
-        """Differences of motion and measurement in a segment, and their derivatives."""
-        outputs, mask, times = self.outputs, self.masks[k], self.segments[k].times
-        differences = outputs.values(times, arc.y, params.tolist()) - self.data[k]
-        differences = wrapped(differences, outputs.turns)
+    def _residuals(self, arcs: Arcs, params: Array) -> tuple[Array, Array]:
+        """Differences of motions and measurements, (segments, outputs, times), and derivatives."""
+        outputs, n = self.outputs, arcs.y.shape[1]
         if outputs.formulas is None:
-            by = arc.by[outputs.rows]
+            values, by = arcs.y[:, outputs.rows], arcs.by[:, :, :, outputs.rows]
+            by = np.ascontiguousarray(np.moveaxis(by, (1, 3), (3, 1)))
         else:
-            by_state, by_params = outputs.derivatives(times, arc.y, params.tolist())
-            by = np.einsum("osm,sdm->odm", by_state, arc.by)
-            by[:, len(arc.y) :] += by_params[:, self.indices]
-        return differences[mask], np.moveaxis(by, 1, 2)[mask]
+            times, y = self.shooting.times, np.moveaxis(arcs.y, 1, 0)
+            values = np.moveaxis(outputs.values(times, y, params.tolist()), 0, 1)
+            by_state, by_params = outputs.derivatives(times, y, params.tolist())
+            by = np.einsum("oskm,kdms->komd", by_state, arcs.by)
+            by[..., n:] += np.moveaxis(by_params[:, self.indices], (2, 3, 1), (0, 2, 3))
+        differences = np.moveaxis(values - self.data, 1, 0)
+        return np.moveaxis(wrapped(differences, outputs.turns), 0, 1), by
 
     def first_noise(self) -> Array:
         """Rough standard deviations of the noise, from third differences of successive values."""

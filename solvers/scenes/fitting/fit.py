@@ -155,14 +155,15 @@ def fitted(
     arcs = experiment.shooting(result.nodes, result.params)
     angles = outputs.angles
     motions, turns = [list[Array]() for _ in runs], np.zeros(len(start))
-    for k, (segment, arc) in enumerate(zip(experiment.segments, arcs, strict=True)):
+    for k, segment in enumerate(experiment.segments):
         if k in experiment.firsts:
             turns = np.zeros(len(start))
         else:  # nodes are angles modulo whole turns
-            ahead = arcs[k - 1].end[angles] - result.nodes[k, angles]
+            ahead = arcs.ends[k - 1, angles] - result.nodes[k, angles]
             turns[angles] += 2 * np.pi * np.round(ahead / (2 * np.pi))
-        y, own = arc.y + turns[:, np.newaxis], result.params.tolist()
-        motions[segment.run].append(outputs.values(segment.times, y, own))
+        y, own = arcs.y[k, :, : len(segment.times)], result.params.tolist()
+        values = outputs.values(segment.times, y + turns[:, np.newaxis], own)
+        motions[segment.run].append(values)
     curves = [np.concatenate(parts, axis=1) for parts in motions]
     tables = zip(experiment.tables, curves, strict=True)
     residuals = tuple(wrapped(table - curve, outputs.turns) for table, curve in tables)

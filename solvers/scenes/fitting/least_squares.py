@@ -7,8 +7,8 @@ Modelling of Chemical Reaction Systems, Springer, 1981, 102-125). Steps are shor
 penalty function decreases.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,29 +22,60 @@ MOST_ITERATIONS, MOST_HALVINGS = 100, 12
 #: of the state, below which the iteration ends.
 DECREASE, ROUNDING, CLOSED = 1e-8, 1e-10, 1e-8
 
+Flags = NDArray[np.bool_]
+
 
 class NotConvergedError(ArithmeticError):
     """The iteration found no minimum."""
 
 
-@dataclass(frozen=True)
-class Piece:
-    """The linearised residuals of a segment, and its continuity with the next one.
+def triangle_of(matrices: Array) -> Array:
+    """R of the QR decomposition of a matrix, or of several."""
+    return np.asarray(np.linalg.qr(matrices, mode="r"))
 
-    `residuals` has shape (m,), `by` its derivatives by node and parameters; `gap` is the distance
-    of the segment's end from the next node, `gap_by` its derivatives by this node and parameters.
+
+@dataclass(frozen=True)
+class Linear:
+    """Linearised residuals of all segments, and the gaps between them.
+
+    Attributes
+    ----------
+    runs : ndarray of shape (segments,)
+        The run of each segment.
+    residuals : ndarray of shape (segments, values)
+        In units of the noise; 0 where there is no value.
+    by : ndarray of shape (segments, values, state + unknown)
+        Their derivatives by the node and the parameters.
+    gaps, gaps_by : ndarray of shape (segments, state) and (segments, state, state + unknown)
+        Distance of the end from the next node, and its derivatives by the node and the parameters;
+        both 0 at the end of a run.
     """
 
-    run: int
+    runs: NDArray[np.int64]
     residuals: Array
     by: Array
-    gap: Array | None  # None at the end of a run
-    gap_by: Array
+    gaps: Array
+    gaps_by: Array
+
+    @property
+    def triangles(self) -> Array:
+        """R of the QR decomposition of each segment's derivatives, and of its residuals beside."""
+        both = np.concatenate([self.by, self.residuals[:, :, np.newaxis]], axis=2)
+        return triangle_of(both)
+
+    @property
+    def squares(self) -> float:
+        """The sum of squares of the residuals."""
+        return float(np.sum(self.residuals**2))
+
+    def weighted(self, ratio: Array) -> "Linear":
+        """Residuals times a factor for each of the values, shape (segments, values)."""
+        by = self.by * ratio[:, :, np.newaxis]
+        return replace(self, residuals=self.residuals * ratio, by=by)
 
 
-Flags = NDArray[np.bool_]
-#: Pieces at nodes of shape (segments, state) and unknown parameters; `NotFinishedError` if none.
-Linearise = Callable[[Array, Array], Sequence[Piece]]
+#: Residuals at nodes of shape (segments, state) and unknown parameters; `NotFinishedError` if none.
+Linearise = Callable[[Array, Array], Linear]
 
 
 @dataclass(frozen=True)
@@ -55,40 +86,44 @@ class Step:
     params: Array
     predicted: float  # sum of squares of the residuals
     triangle: Array  # R of the QR decomposition of the condensed problem
-    jacobian: Array  # of all residuals by first nodes and parameters
+    maps: Array  # of first nodes and parameters to each node, shape (segments, state, columns)
+
+    def jacobian(self, linear: Linear) -> Array:
+        """Derivatives by first nodes and parameters, shape (segments, values, columns)."""
+        n, u = self.maps.shape[1], len(self.params)
+        jacobian = linear.by[:, :, :n] @ self.maps
+        jacobian[:, :, self.maps.shape[2] - u :] += linear.by[:, :, n:]
+        return np.asarray(jacobian)
 
 
-def condensed(pieces: Sequence[Piece], n: int, u: int) -> Step:
-    """The least-squares step of all pieces, with the linearised continuity satisfied exactly."""
-    runs = list(dict.fromkeys(piece.run for piece in pieces))
-    columns = len(runs) * n + u
-    # the node of a piece is `own` · (first nodes, parameters) + `offset`
-    own, offset = np.zeros((n, columns)), np.zeros(n)
-    rows, right, nodes = [], [], []
-    begins = True
-    for piece in pieces:
+def condensed(linear: Linear, u: int) -> Step:
+    """The least-squares step of all segments, with linearised continuity satisfied exactly."""
+    runs, n = linear.runs, linear.gaps.shape[1]
+    first = np.concatenate([[True], np.diff(runs) > 0])
+    columns = int(first.sum()) * n + u
+    # a node is `own` · (first nodes, parameters) + `offset`, of which offset is the last column
+    maps = np.zeros((len(runs), n, columns + 1))
+    for k, begins in enumerate(first):
         if begins:
-            own, offset = np.zeros((n, columns)), np.zeros(n)
-            start = runs.index(piece.run) * n
-            own[:, start : start + n] = np.eye(n)
-        nodes.append((own, offset))
-        block = piece.by[:, :n] @ own
-        block[:, columns - u :] += piece.by[:, n:]
-        rows.append(block)
-        right.append(piece.residuals + piece.by[:, :n] @ offset)
-        begins = piece.gap is None
-        if piece.gap is not None:
-            offset = piece.gap_by[:, :n] @ offset + piece.gap
-            own = piece.gap_by[:, :n] @ own
-            own[:, columns - u :] += piece.gap_by[:, n:]
-    jacobian, residuals = np.vstack(rows), np.concatenate(right)
-    scale = np.linalg.norm(jacobian, axis=0)
+            start = int(runs[k] - runs[0]) * n
+            maps[k, range(n), range(start, start + n)] = 1.0
+        else:
+            maps[k] = linear.gaps_by[k - 1, :, :n] @ maps[k - 1]
+            maps[k, :, columns - u : columns] += linear.gaps_by[k - 1, :, n:]
+            maps[k, :, columns] += linear.gaps[k - 1]
+    triangles = linear.triangles
+    rows = triangles[:, :, :n] @ maps
+    rows[:, :, columns - u :] += triangles[:, :, n:]
+    rows = triangle_of(rows).reshape(-1, columns + 1)
+    scale = np.linalg.norm(rows[:, :columns], axis=0)
     scale[scale == 0] = 1.0
-    q, triangle = np.linalg.qr(jacobian / scale)
-    change = np.linalg.lstsq(triangle, -q.T @ residuals, rcond=1e-14)[0] / scale
-    predicted = float(np.sum((residuals + jacobian @ change) ** 2))
-    moves = np.array([own @ change + offset for own, offset in nodes])
-    return Step(moves, change[columns - u :], predicted, triangle * scale, jacobian)
+    both = triangle_of(rows / np.append(scale, 1.0))
+    triangle, right = both[:columns, :columns], both[:columns, columns]
+    change = np.linalg.lstsq(triangle, -right, rcond=1e-14)[0] / scale
+    residuals = rows @ np.append(change, 1.0)
+    moves = maps @ np.append(change, 1.0)
+    predicted = float(residuals @ residuals)
+    return Step(moves, change[columns - u :], predicted, triangle * scale, maps[:, :, :columns])
 
 
 @dataclass(frozen=True)
@@ -97,14 +132,9 @@ class Minimum:
 
     nodes: Array
     params: Array  # the unknown ones
-    pieces: Sequence[Piece]
+    linear: Linear
     step: Step
     iterations: int
-
-    @property
-    def squares(self) -> float:
-        """The sum of squares of the residuals."""
-        return sum(float(piece.residuals @ piece.residuals) for piece in self.pieces)
 
 
 def minimise(
@@ -113,24 +143,29 @@ def minimise(
     params: Array,
     positive: Flags,
     scale: Array,
+    linear: Linear | None = None,
 ) -> Minimum:
     """Nodes and parameters that minimise the sum of squares, with continuous motions.
 
-    `linearise` returns the pieces at nodes of shape (segments, state) and unknown parameters;
-    `positive` tells which of these are; `scale` has the sizes of the state's components.
+    `linearise` returns residuals at nodes of shape (segments, state) and unknown parameters, and
+    `linear` those of the first guess if they are known; `positive` tells which parameters are;
+    `scale` has the sizes of the state's components.
     """
-    n, u = nodes.shape[1], len(params)
     try:
-        pieces = linearise(nodes, params)
+        linear = linear or linearise(nodes, params)
     except NotFinishedError as error:
         raise NotConvergedError(f"the motion of the first guess ends: {error}") from error
-    weight, step = 0.0, condensed(pieces, n, u)
-    squares, gaps = _merit(pieces, scale)
-    for iteration in range(1, MOST_ITERATIONS + 1):
+    weight, u = 0.0, len(params)
+    step, squares, gaps = condensed(linear, u), linear.squares, _gaps(linear, scale)
+    for iteration in range(MOST_ITERATIONS):
+        values = np.count_nonzero(linear.residuals)
+        is_closed = gaps <= CLOSED * len(nodes)
+        if is_closed and squares - step.predicted <= DECREASE * squares + ROUNDING * values:
+            return Minimum(nodes, params, linear, step, iteration)
         if gaps:  # so that the penalty function decreases along the step
-            weight = max(weight, 2 * (step.predicted - squares) / gaps, 0.0)
+            weight = max(weight, 2 * (step.predicted - squares) / gaps)
         size, accepted = longest(params, step.params, positive), None
-        expected = squares - step.predicted + weight * gaps
+        merit, expected = squares + weight * gaps, squares - step.predicted + weight * gaps
         for _ in range(MOST_HALVINGS):
             trial = nodes + size * step.nodes, params + size * step.params
             try:
@@ -138,10 +173,8 @@ def minimise(
             except NotFinishedError:
                 size /= 4
                 continue
-            new_squares, new_gaps = _merit(new, scale)
-            merit = squares + weight * gaps
-            rounding = 1e-10 * merit
-            if new_squares + weight * new_gaps <= merit - 1e-4 * size * expected + rounding:
+            reached = new.squares + weight * _gaps(new, scale)
+            if reached <= merit - 1e-4 * size * expected + 1e-10 * merit:
                 accepted = new
                 break
             size /= 2
@@ -149,25 +182,13 @@ def minimise(
             raise NotConvergedError(
                 f"no step improves the fit after {iteration} iterations: give a better first guess"
             )
-        (nodes, params), pieces = trial, accepted
-        step = condensed(pieces, n, u)
-        squares, gaps = _merit(pieces, scale)
-        values = sum(len(piece.residuals) for piece in pieces)
-        if (
-            size == 1
-            and gaps <= CLOSED * len(pieces)
-            and squares - step.predicted <= DECREASE * squares + ROUNDING * values
-        ):
-            return Minimum(nodes, params, pieces, step, iteration)
-    raise NotConvergedError(
-        f"no minimum in {MOST_ITERATIONS} iterations: give a better first guess"
-    )
+        (nodes, params), linear = trial, accepted
+        step, squares, gaps = condensed(linear, u), linear.squares, _gaps(linear, scale)
+    raise NotConvergedError(f"no minimum after {MOST_ITERATIONS} iterations: give a better guess")
 
 
-def _merit(pieces: Sequence[Piece], scale: Array) -> tuple[float, float]:
-    squares = sum(float(piece.residuals @ piece.residuals) for piece in pieces)
-    gaps = (np.abs(piece.gap / scale).sum() for piece in pieces if piece.gap is not None)
-    return squares, float(sum(gaps))
+def _gaps(linear: Linear, scale: Array) -> float:
+    return float(np.sum(np.abs(linear.gaps / scale)))
 
 
 def longest(params: Array, change: Array, positive: Flags) -> float:

@@ -6,7 +6,6 @@ problem is one of ordinary least squares, whose normal equations are banded but 
 (D. W. Marquardt, J. Soc. Indust. Appl. Math. 11 (1963) 431-441, for the damping).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ from scipy.linalg import solveh_banded
 
 from solvers.equations.quantities import Array
 from solvers.integration.prepare import NotFinishedError
-from solvers.scenes.fitting.least_squares import Flags, Linearise, Piece, longest
+from solvers.scenes.fitting.least_squares import Flags, Linear, Linearise, longest
 
 #: Weights of gaps in units of the noise, for components of the state in units of their size.
 WEIGHTS = (1.0, 10.0, 100.0)
@@ -27,11 +26,12 @@ FALL, RISE = 5, 4
 
 @dataclass(frozen=True)
 class Relaxed:
-    """Nodes and unknown parameters, and the sum of squares with the last penalty."""
+    """Nodes and unknown parameters, the sum of squares with the last penalty, and residuals."""
 
     nodes: Array
     params: Array
     squares: float
+    linear: Linear | None
 
 
 def relaxed(
@@ -39,14 +39,14 @@ def relaxed(
 ) -> Relaxed:
     """Better nodes and parameters; arguments as those of `least_squares.minimise`."""
     try:
-        pieces, damping = linearise(nodes, params), FIRST_DAMPING
+        linear, damping = linearise(nodes, params), FIRST_DAMPING
     except NotFinishedError:
-        return Relaxed(nodes, params, np.inf)
+        return Relaxed(nodes, params, np.inf, None)
     for weight in WEIGHTS:
         weights = weight / scale
-        squares = _squares(pieces, weights)
+        squares = _squares(linear, weights)
         for _ in range(MOST_ITERATIONS):
-            moves, change = _step(pieces, len(params), weights, damping)
+            moves, change = _step(linear, len(params), weights, damping)
             size = longest(params, change, positive)
             trial = nodes + size * moves, params + size * change
             try:
@@ -56,46 +56,38 @@ def relaxed(
                 new_squares = np.inf
             if new_squares < squares:
                 is_sufficient = new_squares > (1 - SUFFICIENT) * squares
-                (nodes, params), pieces, squares = trial, new, new_squares
+                (nodes, params), linear, squares = trial, new, new_squares
                 damping = max(damping / FALL, LEAST_DAMPING)
                 if is_sufficient:
                     break
             elif (damping := damping * RISE) > MOST_DAMPING:
                 break
-    return Relaxed(nodes, params, squares)
+    return Relaxed(nodes, params, squares, linear)
 
 
-def _squares(pieces: Sequence[Piece], weights: Array) -> float:
-    gaps = (weights * piece.gap for piece in pieces if piece.gap is not None)
-    return float(sum(r @ r for r in (*(piece.residuals for piece in pieces), *gaps)))
+def _squares(linear: Linear, weights: Array) -> float:
+    return linear.squares + float(np.sum((weights * linear.gaps) ** 2))
 
 
-def _step(pieces: Sequence[Piece], u: int, weights: Array, damping: float) -> tuple[Array, Array]:
+def _step(linear: Linear, u: int, weights: Array, damping: float) -> tuple[Array, Array]:
     """Changes of nodes and parameters, by damped normal equations."""
-    count, n = len(pieces), len(weights)
-    own, coupling = np.zeros((count, n, n)), np.zeros((count, n, n))
-    border, corner = np.zeros((count, n, u)), np.zeros((u, u))
-    gradient, last = np.zeros((count, n)), np.zeros(u)
-    for k, piece in enumerate(pieces):
-        blocks = [(piece.by, piece.residuals)]
-        if piece.gap is not None:
-            blocks.append((weights[:, np.newaxis] * piece.gap_by, weights * piece.gap))
-            node, params = np.split(blocks[1][0], [n], axis=1)
-            own[k + 1] += np.diag(weights**2)
-            coupling[k] = -weights[:, np.newaxis] * node
-            border[k + 1] -= weights[:, np.newaxis] * params
-            gradient[k + 1] -= weights * blocks[1][1]
-        for by, residuals in blocks:
-            square, slope = by.T @ by, by.T @ residuals
-            own[k] += square[:n, :n]
-            border[k] += square[:n, n:]
-            corner += square[n:, n:]
-            gradient[k] += slope[:n]
-            last += slope[n:]
+    count, n = linear.gaps.shape
+    triangles, rows = linear.triangles, weights[:, np.newaxis]
+    links = np.concatenate([rows * linear.gaps_by, rows * linear.gaps[:, :, np.newaxis]], axis=2)
+    square = np.swapaxes(triangles, 1, 2) @ triangles + np.swapaxes(links, 1, 2) @ links
+    own, border, gradient = square[:, :n, :n], square[:, :n, n:-1], square[:, :n, -1]
+    total = square.sum(axis=0)
+    corner, last = total[n:-1, n:-1], total[n:-1, -1]
+    # the next node of a gap
+    follows = np.diff(linear.runs) == 0
+    own[1:][follows] += np.diag(weights**2)
+    coupling = -rows * links[:-1, :, :n]
+    border[1:] -= rows * links[:-1, :, n:-1]
+    gradient[1:] -= weights * links[:-1, :, -1]
     bands = np.zeros((2 * n, count * n))  # below the diagonal, as LAPACK stores them
     for j in range(n):
         for i in range(n):
-            bands[n + i - j, j : (count - 1) * n : n] = coupling[:-1, i, j]
+            bands[n + i - j, j : (count - 1) * n : n] = coupling[:, i, j]
         for i in range(j, n):
             bands[i - j, j::n] = own[:, i, j]
     bands[0] = bands[0] * (1 + damping) + np.tile(1e-9 * weights**2, count)

@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Array
@@ -17,7 +18,10 @@ from solvers.integration.problem import Options, Outcome
 from solvers.integration.solution import Status
 
 #: Method and tolerances.
-METHOD, RTOL, ATOL = "verner853", 1e-10, 1e-10
+METHOD, RTOL, ATOL = "verner853", 1e-9, 1e-9
+#: Samples of all motions below which threads take longer than they save.
+FEW = 2000
+Flags = NDArray[np.bool_]
 FINISHED = STATUSES.index(Status.FINISHED)
 
 
@@ -42,23 +46,25 @@ def segments(run: int, t: Array, cuts: Sequence[int]) -> list[Segment]:
 
 
 @dataclass(frozen=True)
-class Arc:
-    """The motion of a segment, with derivatives by its node and by the unknown parameters.
+class Arcs:
+    """The motions of all segments, with derivatives by nodes and by the unknown parameters.
+
+    Segments with fewer samples than others repeat their node.
 
     Attributes
     ----------
-    y : ndarray of shape (state, times)
+    y : ndarray of shape (segments, state, times)
         States at the samples.
-    by : ndarray of shape (state, state + unknown, times)
+    by : ndarray of shape (segments, state + unknown, times, state)
         Their derivatives.
-    end, end_by : ndarray of shape (state,) and (state, state + unknown)
-        The same at the end.
+    ends, ends_by : ndarray of shape (segments, state) and (segments, state, state + unknown)
+        The same at the ends.
     """
 
     y: Array
     by: Array
-    end: Array
-    end_by: Array
+    ends: Array
+    ends_by: Array
 
 
 class Shooting:
@@ -71,7 +77,7 @@ class Shooting:
     def __init__(
         self, module: GeneratedModule, unknown: Sequence[int], segments: Sequence[Segment]
     ) -> None:
-        self._unknown, self._segments, self._n = [*unknown], segments, len(module.STATE)
+        self._unknown, self._n = [*unknown], len(module.STATE)
         times = [time for segment in segments for time in (segment.begin, segment.end)]
         options = Options(METHOD, "sensitivity", RTOL, ATOL)
         problem = validation.problem_at_rest(module, (min(times), max(times)), options)
@@ -83,66 +89,76 @@ class Shooting:
             )
         self._problem, self._program = compiled_loop.select(problem, lanes=True)
         self._directions = self._n + len(self._unknown)
-        self._samples = np.full((len(segments), max(len(s.times) for s in segments)), np.inf)
-        for row, segment in zip(self._samples, segments, strict=True):
-            row[: len(segment.times)] = segment.times
+        counts = np.array([len(segment.times) for segment in segments])
+        self.missing: Flags = np.arange(counts.max()) >= counts[:, np.newaxis]
+        self._samples: Array = np.full(self.missing.shape, np.inf)
+        self._samples[~self.missing] = np.concatenate([segment.times for segment in segments])
+        self._begins, self._ends = np.array([(s.begin, s.end) for s in segments]).T
 
-    def __call__(self, nodes: Array, params: Array) -> list[Arc]:
-        """The arcs from nodes of shape (segments, state); `NotFinishedError` if one has no end."""
-        lanes, n = self._directions, self._n
-        sizes = np.abs(params[self._unknown])
-        sizes[sizes == 0] = 1.0
-        starts = np.zeros((len(nodes), lanes, 2 * n))
+    @property
+    def times(self) -> Array:
+        """Times of the samples, shape (segments, times); the begin in place of missing ones."""
+        return np.where(self.missing, self._begins[:, np.newaxis], self._samples)
+
+    def __call__(self, nodes: Array, params: Array) -> Arcs:
+        """The motions from nodes of shape (segments, state); `NotFinishedError` if one ends."""
+        lanes, n, count = self._directions, self._n, len(nodes)
+        sizes = np.ones(lanes)
+        sizes[n:] = np.where(params[self._unknown] == 0, 1.0, np.abs(params[self._unknown]))
+        starts = np.zeros((count, lanes, 2 * n))
         starts[:, :, :n] = nodes[:, np.newaxis]
         starts[:, range(n), range(n, 2 * n)] = 1.0
         changes = np.zeros((len(params), lanes))
-        changes[self._unknown, range(n, lanes)] = sizes
-        columns = [*np.tile(changes, len(nodes)), *params]
+        changes[self._unknown, range(n, lanes)] = sizes[n:]
+        columns = [*np.tile(changes, count), *params]
         run = self._compiled if self._program else self._in_python
-        states, ends = run(starts.reshape(-1, 2 * n), columns)
-        scale = np.concatenate([np.ones(n), 1 / sizes])[:, np.newaxis]
-        arcs = []
-        for k, segment in enumerate(self._segments):
-            own, count = slice(k * lanes, (k + 1) * lanes), len(segment.times)
-            part, end = states[own, :count], ends[own]
-            by = np.moveaxis(part[:, :, n:], 2, 0) * scale
-            arcs.append(Arc(part[0, :, :n].T, by, end[0, :n], end[:, n:].T * scale[:, 0]))
-        return arcs
+        states, by, ends = run(starts.reshape(-1, 2 * n), columns)
+        by = by.reshape(count, lanes, -1, n) / sizes[:, np.newaxis, np.newaxis]
+        y = np.where(self.missing[:, :, np.newaxis], nodes[:, np.newaxis], states)
+        ends = ends.reshape(count, lanes, 2 * n)
+        ends_by = np.moveaxis(ends[:, :, n:], 1, 2) / sizes
+        return Arcs(np.moveaxis(y, 1, 2), by, ends[:, 0, :n], ends_by)
 
-    def _compiled(self, starts: Array, columns: list[Array]) -> tuple[Array, Array]:
-        """States at samples, shape (motions, times, 2 state), and at ends, (motions, 2 state)."""
+    def _compiled(self, starts: Array, columns: list[Array]) -> tuple[Array, Array, Array]:
+        """States and perturbations of all motions at samples, and both at ends."""
         assert self._program is not None
-        problem, lanes = self._problem.with_params(columns), self._directions
-        capacity = self._samples.shape[1]
+        lanes, capacity = self._directions, self._samples.shape[1]
+        problem = self._problem.with_params(columns)
         batch = Batch(self._program, problem, starts, capacity=capacity)
-        batch.motions["t"] = np.repeat([s.begin for s in self._segments], lanes)
-        ends = np.repeat([s.end for s in self._segments], lanes)
-        batch.set_times(ends, np.repeat(self._samples, lanes, axis=0))
+        batch.motions["t"] = np.repeat(self._begins, lanes)
+        batch.set_times(np.repeat(self._ends, lanes), np.repeat(self._samples, lanes, axis=0))
         batch.restart()
-        with ThreadPoolExecutor(workers := processors()) as pool:
-            for thread in [pool.submit(batch.run) for _ in range(workers)]:
-                thread.result()
+        if batch.rows.size < FEW:
+            batch.run()
+        else:
+            with ThreadPoolExecutor(workers := processors()) as pool:
+                for thread in [pool.submit(batch.run) for _ in range(workers)]:
+                    thread.result()
         for motion in batch.motions[batch.motions["status"] != FINISHED]:
             raise failure(STATUSES[motion["status"]], float(motion["t"]))
-        motions = np.repeat(np.arange(len(starts)), capacity)
-        rows = batch.ordinary(batch.rows.ravel(), motions).reshape(len(starts), capacity, -1)
-        return rows, batch.ordinary(batch.motions)
+        form, first = batch.form, batch.rows[::lanes].ravel()
+        states = form.to_ordinary_many(first["t"], first["z"], first["turns"])[:, : self._n]
+        # perturbations are components of the form's state, too
+        shared = [i for k, i in form.shared_columns if k >= self._n]
+        perturbations = batch.rows["z"][:, :, shared[0] : shared[-1] + 1]
+        return states.reshape(-1, capacity, self._n), perturbations, batch.ordinary(batch.motions)
 
-    def _in_python(self, starts: Array, columns: list[Array]) -> tuple[Array, Array]:
-        states = np.full((len(starts), self._samples.shape[1], starts.shape[1]), np.nan)
+    def _in_python(self, starts: Array, columns: list[Array]) -> tuple[Array, Array, Array]:
+        rows = np.zeros((len(starts), self._samples.shape[1], starts.shape[1]))
         ends = np.empty_like(starts)
         for k, start in enumerate(starts):
-            segment = self._segments[k // self._directions]
+            own = k // self._directions
             values = [float(np.broadcast_to(column, len(starts))[k]) for column in columns]
-            span = (segment.begin, segment.end)
+            times = self._samples[own, ~self.missing[own]]
+            span = (float(self._begins[own]), float(self._ends[own]))
             problem = self._problem.with_params(values)
-            problem = replace(problem, start=start, span=span, samples=segment.times)
+            problem = replace(problem, start=start, span=span, samples=times)
             outcome = Outcome.at_start(problem)
             python_loop.run(problem, outcome)
             if outcome.status is not Status.FINISHED:
                 raise failure(outcome.status, outcome.end[0])
-            states[k, : len(segment.times)], ends[k] = outcome.rows()[1], outcome.end[1]
-        return states, ends
+            rows[k, : len(times)], ends[k] = outcome.rows()[1], outcome.end[1]
+        return rows[:: self._directions, :, : self._n], rows[:, :, self._n :], ends
 
 
 def processors() -> int:

@@ -47,10 +47,13 @@ def _from_coordinates(experiment: Experiment, rows: dict[str, int]) -> Array:
             finite = np.flatnonzero(np.isfinite(table[rows[name]]))
             nearest = finite[np.argsort(np.abs(t[finite] - segment.begin), kind="stable")[:SAMPLES]]
             times, degree = t[nearest] - segment.begin, min(2, len(nearest) - 1)
-            fit = np.polynomial.Polynomial.fit(times, table[rows[name], nearest], degree)
-            node[k] = fit(0.0)
-            if k < n and degree:
-                node[n + k] = fit.deriv()(0.0)
+            powers = (times[:, np.newaxis] / (span := np.ptp(times) or 1.0)) ** np.arange(
+                degree + 1
+            )
+            value, *slopes = np.linalg.lstsq(powers, table[rows[name], nearest], rcond=None)[0]
+            node[k] = value
+            if k < n and slopes:
+                node[n + k] = slopes[0] / span
         nodes.append(node)
     return np.array(nodes)
 
@@ -79,7 +82,6 @@ def _fitted(alone: Experiment, guess: Array, noise: Array) -> tuple[float, Array
     except NotConvergedError:
         nodes = guess[np.newaxis]
     try:
-        residuals = linearise(nodes, none)[0].residuals
-        return float(residuals @ residuals), nodes[0], alone.shooting(nodes, alone.params)[0].end
+        return linearise(nodes, none).squares, nodes[0], alone.shooting(nodes, alone.params).ends[0]
     except NotFinishedError:
         return np.inf, guess, guess

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_triangular
 from scipy.special import stdtrit
 
 from solvers.equations.quantities import Array
@@ -22,10 +21,12 @@ def leverages(jacobian: Array, triangle: Array) -> Array:
 
 
 def covariance(triangle: Array) -> Array:
-    """(JᵀJ)⁻¹ from the triangle R of J = QR."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = solve_triangular(triangle, np.eye(len(triangle)), check_finite=False)
-        return np.asarray(inverse @ inverse.T)
+    """(JᵀJ)⁻¹ from the triangle R of J = QR; infinite where R is singular."""
+    try:
+        inverse = np.linalg.inv(triangle)
+    except np.linalg.LinAlgError:
+        return np.full(triangle.shape, np.inf)
+    return np.asarray(inverse @ inverse.T)
 
 
 def quantile(degrees: int, level: float = LEVEL) -> float:
