@@ -10,6 +10,8 @@ from derive.reading.latex.tokens import Token
 SPELLED = re.compile(r"(?:arc)?(?:sin|cos|tan)h?|exp|log")
 SPELLED_ALONE = re.compile(r"(?:ln|sec|csc|cot|det|sgn)(?![a-z])")
 LONGEST = 7
+#: Symbols of a bare argument, so that long runs of letters take no longer than their length.
+LONGEST_ARGUMENT = 100
 AMBIGUOUS = "where the argument of a function ends is ambiguous without brackets"
 #: Kinds of tokens with which an argument can start.
 STARTS = frozenset({"letter", "word", "digit", "command", "open", "bar", "{", "^"})
@@ -42,8 +44,8 @@ def function_at(tokens: list[Token], at: int, end: int) -> tuple[str, int] | Non
 
 def ends_bare_argument(result: list[Symbol]) -> str:
     """The type of the last symbol, a letter, if a bare argument of a function ends with it."""
-    at = len(result) - 1
-    while at >= 0:
+    at, start = len(result) - 1, max(len(result) - LONGEST_ARGUMENT, 0)
+    while at >= start:
         kind = result[at].type
         if kind == "FUNCTION":
             return result[-1].type

@@ -153,12 +153,12 @@ def parts(tokens: list[Token]) -> list[Part]:
 
 
 def _ends_sentence(tokens: list[Token], at: int) -> bool:
-    row = takewhile(lambda token: token.kind != "row", tokens[at + 1 :])
-    behind = [token for token in row if token.kind != "space"]
-    after = behind[0] if behind else None
+    row = (tokens[k] for k in range(at + 1, len(tokens)))
+    behind = (t for t in takewhile(lambda token: token.kind != "row", row) if t.kind != "space")
+    after = next(behind, None)
     if after is None or after.kind in ("gap", "prose", "&", "begin", "end", "."):
         return True
-    return _is_number(behind)
+    return after.kind == "open" and _is_number([after, *behind])
 
 
 def statements(tokens: list[Token]) -> list[list[Token]]:
