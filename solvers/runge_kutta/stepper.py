@@ -6,6 +6,7 @@ order and need no further coefficients.
 
 from collections.abc import Callable
 from functools import cached_property
+from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -112,13 +113,13 @@ class Stepper:
     def derivative(self, t: float, y: Array) -> Array:
         """The right-hand side, counted and checked to be finite."""
         self.nfev += 1
-        if not np.isfinite(y).all():
+        if not all(map(isfinite, y.tolist())):
             raise NotFiniteError(f"the state at t = {t} is {y}")
         try:
             value = evaluated("right-hand side", self._rhs, t, y, y.shape)
         except ArithmeticError as error:
             raise NotFiniteError(f"the right-hand side at t = {t}, y = {y}: {error}") from error
-        if not np.isfinite(value).all():
+        if not all(map(isfinite, value.tolist())):
             raise NotFiniteError(f"the right-hand side at t = {t}, y = {y} is {value}")
         return value
 

@@ -124,12 +124,13 @@ def _linear(method: str, modes: Modes) -> Growth:
 
     def growth(h: float) -> float:
         stepper = Stepper(load(method), lambda _, y: matrix @ y, lambda _, y: matrix)
-        y, sizes = start, []
+        y, sizes, last = start, [], None
         with np.errstate(over="ignore", invalid="ignore"):
             try:
                 for _ in range(2):
                     for _ in range(STEPS // 2):
-                        y = stepper.step(0.0, y, h, stepper.derivative(0.0, y)).y
+                        step = stepper.step(0.0, y, h, stepper.derivative(0.0, y), last)
+                        y, last = step.y, step.last
                     sizes.append(modes.size(y))
             except (NotFiniteError, NoConvergenceError):
                 return inf
