@@ -206,3 +206,34 @@ def test_families_of_more_than_one_dimension_are_refused() -> None:
     assert orbit.defect < 1e-11
     with pytest.raises(ValueError, match="another quantity is conserved"):
         orbit_family(free, orbit)
+
+
+def test_a_figure_marks_stability_and_special_orbits() -> None:
+    rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 6, DAMPED)
+    family = orbit_family(driven, rest, "a", (0.0, 0.2))
+    (doubling,) = family.special
+    branch = orbit_family(driven, doubling, "a", (0.0, 0.2), direction=1)
+    (axes,) = family.figure("theta_dot", [branch]).axes
+    assert axes.get_xlabel() == "$a$ / m"
+    assert axes.get_ylabel() == r"$\dot{\theta}$ / (rad/s)"
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
+        "stable", "unstable", "period doubling", "turning point",
+    ]  # fmt: skip
+    stable, unstable, *_ = axes.get_lines()
+    assert (stable.get_linestyle(), unstable.get_linestyle()) == ("-", "--")
+    located = doubling.orbit.params[2]
+    assert stable.get_xdata()[-1] == unstable.get_xdata()[0] == located
+    with pytest.raises(ValueError, match=r"quantity = 'perod' \(did you mean 'period'\?\)"):
+        family.figure("perod")
+
+
+def test_a_table_of_a_family() -> None:
+    rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 6, DAMPED)
+    family = orbit_family(driven, rest, "a", (0.0, 0.2))
+    table = family.to_table()
+    assert list(table) == [
+        "theta", "theta_dot", "period", "energy", "a", "multiplier_1", "multiplier_2", "stability",
+    ]  # fmt: skip
+    assert {len(column) for column in table.values()} == {len(family.orbits)}
+    assert "period doubling at 0.0680894450" in repr(family)
+    assert "unstable" in repr(family.orbits[-1])

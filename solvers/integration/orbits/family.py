@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,9 @@ from numpy.typing import NDArray
 from solvers.equations.module import GeneratedModule
 from solvers.integration.orbits.orbit import PeriodicOrbit
 from solvers.integration.solution import Array
+
+if TYPE_CHECKING:  # a run does not load matplotlib
+    from matplotlib.figure import Figure
 
 #: Name of the quantity that varies along a family of a conservative system.
 ENERGY = "energy"
@@ -66,7 +70,7 @@ class OrbitFamily:
     @property
     def values(self) -> Array:
         """The parameter, or the energy in J, shape (orbits,)."""
-        return np.array([value(self.module, self.parameter, orbit) for orbit in self.orbits])
+        return np.array([self.value(orbit) for orbit in self.orbits])
 
     @property
     def y(self) -> Array:
@@ -102,8 +106,8 @@ class OrbitFamily:
         return {**states, **numbers, **multipliers, "stability": self.stability}
 
     def __repr__(self) -> str:
-        names = [f"{point.kind} at {self._value(point.orbit):.12g}" for point in self.special]
-        first, last = (self._value(orbit) for orbit in (self.orbits[0], self.orbits[-1]))
+        names = [f"{point.kind} at {self.value(point.orbit):.12g}" for point in self.special]
+        first, last = (self.value(orbit) for orbit in (self.orbits[0], self.orbits[-1]))
         lines = [
             f"{len(self.orbits)} periodic orbits of {self.module.SYSTEM}, {self.parameter} from "
             f"{first:.12g} ({self.ends[0]}) to {last:.12g} ({self.ends[1]})",
@@ -111,12 +115,34 @@ class OrbitFamily:
         ]
         return "\n  ".join(lines)
 
-    def _value(self, orbit: PeriodicOrbit) -> float:
-        return value(self.module, self.parameter, orbit)
+    def value(self, orbit: PeriodicOrbit) -> float:
+        """The parameter of an orbit, or its energy in J."""
+        if self.parameter == ENERGY:
+            return orbit.energy
+        return orbit.params[self.module.PARAMETERS.index(self.parameter)]
 
+    def figure(self, quantity: str = "period", others: "Sequence[OrbitFamily]" = ()) -> "Figure":
+        """A figure of this family, over its parameter or the energy.
 
-def value(module: GeneratedModule, parameter: str, orbit: PeriodicOrbit) -> float:
-    """The parameter of an orbit, or its energy."""
-    if parameter == ENERGY:
-        return orbit.energy
-    return orbit.params[module.PARAMETERS.index(parameter)]
+        Unstable orbits are dashed, and special ones marked. Dashes change at special orbits.
+
+        Parameters
+        ----------
+        quantity : str, optional
+            ``period``, ``energy``, or a component of the state at t = 0.
+        others : sequence of OrbitFamily, optional
+            Families with the same parameter, such as those that branch off.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A figure, which `solvers.save` writes.
+
+        Raises
+        ------
+        ValueError
+            When there is no such quantity, or the families have different parameters.
+        """
+        from solvers.integration.orbits.plots import figure
+
+        return figure([self, *others], quantity)

@@ -62,7 +62,7 @@ class PeriodicOrbit:
             tuple(point.params.tolist()),
             shooting.energy(point),
             shot.monodromy,
-            values[np.argsort(-np.abs(values))].astype(complex),
+            values[np.argsort(-np.round(np.abs(values), 8), kind="stable")].astype(complex),
             float(np.abs(shot.residual).max()),
             shooting.reversal.names if shooting.reversal else (),
         )
