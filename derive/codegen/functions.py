@@ -9,6 +9,7 @@ from derive.codegen.factorisation import LARGE
 from derive.codegen.hamiltonian_form import HamiltonianForm
 from derive.codegen.lagrangian_form import LagrangianForm
 from derive.codegen.lowering import Lowering
+from derive.codegen.output_form import OutputForm
 from derive.codegen.rational import with_fewest_calls
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
@@ -29,6 +30,10 @@ def _equilibrium(derivation: Derivation) -> str:
 
 def _reactions(derivation: Derivation) -> str:
     return ", ".join(symbol.name for symbol in derivation.system.reactions)
+
+
+def _outputs(derivation: Derivation) -> str:
+    return ", ".join(name for name, _ in derivation.system.measured)
 
 
 def _switches(derivation: Derivation) -> str:
@@ -67,6 +72,15 @@ SPECS = (
         "Derivatives of `rhs` with respect to the parameters, without inputs.",
         "Entry [i][j] is the derivative of rhs[i] with respect to parameter j.",
         exists=_is_small),
+    FunctionSpec("outputs", "lagrangian", "outputs",
+        "Outputs {}.",
+        "One number for each.", _outputs),
+    FunctionSpec("outputs_jacobian", "lagrangian", "outputs state",
+        "Derivatives of `outputs` with respect to the state.",
+        "Entry [i][j] is the derivative of output i with respect to y[j]."),
+    FunctionSpec("outputs_parameter_jacobian", "lagrangian", "outputs params",
+        "Derivatives of `outputs` with respect to the parameters, with inputs.",
+        "Entry [i][j] is the derivative of output i with respect to params[j]."),
     FunctionSpec("switches", "lagrangian", "2 switches",
         "Switching functions {}, at whose zeros forces have kinks or jumps.",
         "The functions, then their rates of change along the motion.",
@@ -199,6 +213,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     sizes |= {"state": 2 * len(system.q), "reactions": len(system.reactions), "2": 2, "4": 4}
     # a function whose result has an axis of no entries does not exist
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
+    constants |= {"outputs": len(system.measured), "params": len(system.params)}
     sizes |= {name: count for name, count in constants.items() if count}
     sizes |= {form: len(state) for form, state in states.items()}
     functions = []
@@ -220,7 +235,11 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
 def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
     # The order of nodes in a graph determines the order of terms. With one graph for each function,
     # the code of a function does not depend on which others are generated.
-    form = HamiltonianForm if spec.form == "hamiltonian" else LagrangianForm
+    form: type[EquationsOfMotion] = LagrangianForm
+    if spec.form == "hamiltonian":
+        form = HamiltonianForm
+    elif spec.name.startswith("outputs"):
+        form = OutputForm
     outputs = getattr(form(derivation), spec.name)
     angles = [q.name for q in derivation.system.q]
     system = derivation.system

@@ -100,4 +100,5 @@ def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
         equilibrium=system.equilibrium and tuple(map(substitute, system.equilibrium)),
         reactions=[length for length in system.reactions if length not in values],
         inputs=[part for part in system.inputs if part.symbol not in values],
+        outputs={name: substitute(output) for name, output in system.measured},
     )

@@ -64,6 +64,8 @@ def _parts(system: "System") -> Iterator[Part]:
     forces = sp.Tuple(system.dissipation, *system.forces)
     state = "coordinates, velocities, parameters and t"
     yield Part("the list of forces", forces, moving | {*system.qdot}, state)
+    for name, output in system.measured:
+        yield Part(f"output {name}", output, moving | {*system.qdot}, state)
     yield Part("the list of reactions", sp.Tuple(*system.reactions), constants, fixed)
 
 

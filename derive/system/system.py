@@ -1,9 +1,10 @@
 """A mechanical system: positions of masses as functions of generalized coordinates."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
+from typing import cast
 
 import sympy as sp
 
@@ -71,6 +72,9 @@ class System:
         Quantities in `forces`, `dissipation` and `potential` that may change during a motion.
         Positions may contain those that are prescribed motions, or that `derive.with_inputs`
         replaces.
+    outputs : mapping of str to sympy.Expr, optional
+        Measured quantities, by name, as functions of coordinates, velocities, parameters, inputs
+        and time; the module has them and their derivatives as functions.
 
     Raises
     ------
@@ -110,6 +114,7 @@ class System:
     equilibrium: Sequence[sp.Expr] | None = None
     reactions: Sequence[sp.Symbol] = ()
     inputs: Sequence[Input] = ()
+    outputs: Mapping[str, sp.Expr] | Sequence[tuple[str, sp.Expr]] = ()
 
     def __post_init__(self) -> None:
         for field, kind in KINDS.items():
@@ -122,6 +127,10 @@ class System:
         for field in ("potential", "dissipation"):
             if getattr(self, field) is not None:
                 object.__setattr__(self, field, formula(getattr(self, field)))
+        pairs = self.outputs.items() if isinstance(self.outputs, Mapping) else self.outputs
+        pairs = items("outputs", pairs, "a mapping of names to formulas", tuple)
+        measured = tuple((str(name), formula(value)) for name, value in pairs)
+        object.__setattr__(self, "outputs", measured)
         if not self.coordinates or not self.masses:
             raise SystemDefinitionError(
                 f"system {self.name!r} needs at least one coordinate and one mass, "
@@ -152,11 +161,17 @@ class System:
             "masses": tuple(mass.mapped(at_any_time) for mass in self.masses),
             "forces": tuple(map(at_any_time, self.forces)),
             "dissipation": at_any_time(self.dissipation),
+            "outputs": tuple((name, at_any_time(value)) for name, value in self.measured),
         }
         if self.potential is not None:
             changes["potential"] = at_any_time(self.potential)
         for field, value in changes.items():
             object.__setattr__(self, field, value)
+
+    @property
+    def measured(self) -> tuple[tuple[str, sp.Expr], ...]:
+        """Names and formulas of the outputs."""
+        return cast("tuple[tuple[str, sp.Expr], ...]", self.outputs)
 
     @property
     def dimension(self) -> int:
@@ -240,8 +255,10 @@ class System:
     def _check_names(self) -> None:
         check_module_name(self.name)
         declared = [s.name for s in (*self.q, *self.params)]
-        for name in [self.name, *declared]:
+        measured = [name for name, _ in self.measured]
+        for name in [self.name, *declared, *measured]:
             check_name(name, self.name)
+        check_unique(measured, self.name)
         check_unique(declared, self.name)
         derived = self.qdot + self.qddot + self.p + self.variations + self.parameter_variations
         waves = (f"{wave}_{q.name}" for q in self.q for wave in ("sin", "cos"))

@@ -30,6 +30,7 @@ from solvers.io.toml_input import InputError
 KEYS = (
     *("name", "title", "coordinates", "parameters", "definitions", "masses", "potential"),
     *("gravity", "dissipation", "forces", "equilibrium", "reactions", "inputs"),
+    "outputs",
 )
 #: Units of parameters that are positive by default.
 POSITIVE_UNITS = ("kg", "m")
@@ -96,6 +97,7 @@ def _system(stem: str, table: Table) -> System:
         equilibrium=each("equilibrium"),
         reactions=[*_lengths(table, formulas, "reactions")],
         inputs=inputs,
+        outputs=_outputs(table, formulas),
     )
 
 
@@ -112,6 +114,11 @@ def _definitions(table: Table, system: str, formulas: Formulas) -> dict[str, Any
         except InputError as error:
             raise InputError(f"{error}; a definition may use those above it") from error
     return definitions
+
+
+def _outputs(table: Table, formulas: Formulas) -> dict[str, sp.Expr]:
+    entries = table.entries("outputs").items()
+    return {key: formulas.value(f"outputs.{key}", text) for key, text in entries}
 
 
 def _formula(table: Table, formulas: Formulas, key: str) -> sp.Expr | None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, function
 from solvers.equations.module import inputs as input_names
+from solvers.equations.module import outputs as output_names
 from solvers.equations.quantities import Values, quantities, real_number
 from solvers.io.arguments import check_type
 from solvers.io.suggestion import did_you_mean
@@ -163,8 +164,9 @@ def linearise(
     t : float, optional
         Time in s.
     outputs : sequence of str, optional
-        Names of the components of the state that are measured; all by default.
-        `derive.Derivation.state_space` takes formulas.
+        Names of the system's outputs, or of components of the state, that are measured; by default
+        all outputs, or the state of a system without outputs. `derive.Derivation.state_space`
+        takes formulas.
 
     Returns
     -------
@@ -190,12 +192,14 @@ def linearise(
     constants = with_inputs(module, params, inputs)
     time = real_number("t", t, "s")
     check_type("outputs", outputs, Sequence | None, "a list of names")
-    measured = tuple(names if outputs is None else outputs)
+    declared = output_names(module)
+    measured = tuple((declared or names) if outputs is None else outputs)
+    known = (*names, *declared)
     for name in measured:
-        if name not in names:
+        if name not in known:
             raise ValueError(
-                f"outputs has {name!r}{did_you_mean(str(name), names)}; known are "
-                f"{', '.join(names)}"
+                f"outputs has {name!r}{did_you_mean(str(name), known)}; known are "
+                f"{', '.join(known)}"
             )
     point = (time, state.tolist(), constants)
     try:
@@ -208,10 +212,27 @@ def linearise(
         raise ValueError(f"the equations have no derivative at y = {state}: {error}") from error
     if not all(np.isfinite(part).all() for part in (A, B, rate)):
         raise ValueError(f"the equations have no finite derivative at y = {state}")
-    C = np.array([[float(name == other) for other in names] for name in measured])
-    C = C.reshape(len(measured), len(names))
-    D = np.zeros((len(measured), len(controls)))
+    rows = [known.index(name) for name in measured]
+    C, D = (matrix[rows] for matrix in _of_outputs(module, point))
+    if not (np.isfinite(C).all() and np.isfinite(D).all()):
+        raise ValueError(f"the outputs have no finite derivative at y = {state}")
     return LinearSystem(time, state, constants, rate, A, B, C, D, names, controls, measured)
+
+
+def _of_outputs(
+    module: GeneratedModule, point: tuple[float, list[float], tuple[float, ...]]
+) -> tuple[Array, Array]:
+    """Derivatives of the state, then of the outputs, by the state and by the inputs."""
+    count = len(input_names(module))
+    C, D = np.eye(len(module.STATE)), np.zeros((len(module.STATE), count))
+    if not output_names(module):
+        return C, D
+    C = np.vstack([C, function(module, "outputs_jacobian")(*point)])
+    by_inputs = np.zeros((len(module.OUTPUTS), 0))
+    if count:
+        by_params = np.array(function(module, "outputs_parameter_jacobian")(*point))
+        by_inputs = by_params[:, -count:]
+    return C, np.vstack([D, by_inputs])
 
 
 def with_inputs(

@@ -48,6 +48,8 @@ class GeneratedModule(Protocol):
     @property
     def INPUTS(self) -> tuple[str, ...]: ...  # the last parameters, if the system has inputs
     @property
+    def OUTPUTS(self) -> tuple[str, ...]: ...  # if the system has outputs
+    @property
     def DEFAULTS(self) -> tuple[float, ...]: ...
     @property
     def POSITIVE(self) -> tuple[str, ...]: ...  # parameters and coordinates that must be
@@ -120,6 +122,11 @@ def switching_functions(module: GeneratedModule) -> tuple[str, ...]:
 def inputs(module: GeneratedModule) -> tuple[str, ...]:
     """Names of the inputs, which are the last parameters of systems that have inputs."""
     return module.INPUTS if has_function(module, "input_jacobian") else ()
+
+
+def outputs(module: GeneratedModule) -> tuple[str, ...]:
+    """Names of the outputs."""
+    return module.OUTPUTS if has_function(module, "outputs") else ()
 
 
 def motion_times(module: GeneratedModule) -> tuple[str, ...]:

@@ -260,6 +260,7 @@ def _constants(contents: Contents) -> str:
             float(p.default) for p in system.parameters_and_inputs
         ),
         "POSITIVE": _literal(s.name for s in (*system.params, *system.q) if s.is_positive),
+        **({"OUTPUTS": _literal(name for name, _ in system.measured)} if system.measured else {}),
         **({"SWITCHES": _literal(map(str, switching))} if switching else {}),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),
