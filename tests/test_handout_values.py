@@ -16,7 +16,6 @@ from derive.handout.notation import Notation
 from derive.handout.sections import document
 from derive.handout.tex import equation_rows
 from derive.handout.writing import write_document
-from derive.mechanics.derivation import TIME
 from derive.reading.documents import read_document
 from derive.reading.latex.reader import formulas
 from derive.reading.latex.tree import (
@@ -33,6 +32,7 @@ from derive.reading.latex.tree import (
     Statement,
     Sum,
 )
+from derive.system.symbols import TIME
 from derive.verification.documents.judgement import judge_document
 
 FUNCTIONS = {"sin": cmath.sin, "cos": cmath.cos, "tan": cmath.tan, "exp": cmath.exp}

@@ -49,6 +49,14 @@ class Sensitivities:
         ∂t/∂quantity of these times, infinite or NaN where the event is touched and not crossed.
     y_event_derivatives : list of ndarray of shape (state, k, n)
         Derivatives of these states, with the change of the time.
+
+    Examples
+    --------
+    >>> import generated.double_pendulum as dp
+    >>> from solvers import sensitivities
+    >>> motion = sensitivities(dp, (0, 1), {"theta1": 1.0, "theta2": 0.0}, {}, ["theta1", "l2"])
+    >>> motion.by, motion.derivatives.shape
+    (('theta1', 'l2'), (4, 2))
     """
 
     by: tuple[str, ...]

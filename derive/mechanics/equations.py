@@ -1,0 +1,114 @@
+"""Lagrange's and Hamilton's equations of a system, from its energies."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+
+from derive.mechanics.kinetics import Kinetics, Matrix, derivative
+from derive.mechanics.reduction import collected, reduced
+
+HALF = sp.Rational(1, 2)
+
+
+@dataclass(frozen=True)
+class Equations(Kinetics):
+    """Momenta, forces, reactions and equations of motion of `system`."""
+
+    @cached_property
+    def momenta(self) -> Matrix:
+        """Momenta p = ∂L/∂q̇ = M q̇ + b, a column."""
+        return _product(self.mass_matrix, self.system.qdot) + self.drift
+
+    @cached_property
+    def drift(self) -> Matrix:
+        """Momenta b at q̇ = 0, a column: Σ m Jᵀ ∂r/∂t, 0 if positions do not depend on time."""
+        n = len(self.system.q)
+        return _product(self.inertia[:n, n:], self.rates[n:])
+
+    @cached_property
+    def forcing(self) -> Matrix:
+        """Right side f(q, q̇, t) of M q̈ = f, a column.
+
+        f_i = -Σ_jk Γ_ijk v_j v_k - ∂V/∂q_i + Q_i, with v the rates of all variables and
+        Γ_ijk Christoffel's symbols of the first kind of M̄.
+        """
+        state, forces = self.system.q + self.system.qdot, []
+        for i, (q, applied) in enumerate(zip(self.system.q, self.system.applied, strict=True)):
+            force = applied - self._inertial(i) - self.potential_energy.diff(q)
+            forces.append(collected(force, *state))
+        return Matrix(forces)
+
+    def _inertial(self, i: int) -> sp.Expr:
+        """Σ Γ_ijk v_j v_k for the variable i."""
+        v, n = self.rates, range(len(self.variables))
+        pairs = ((j, k, 1 if j == k else 2) for j in n for k in n[j:])
+        terms = (self._christoffel(i, j, k) * v[j] * v[k] * count for j, k, count in pairs)
+        return sp.Add(*terms)
+
+    def _christoffel(self, i: int, j: int, k: int) -> sp.Expr:
+        """½ (∂M̄_ij/∂q_k + ∂M̄_ik/∂q_j - ∂M̄_jk/∂q_i)."""
+        q, M = self.variables, self.inertia
+        return HALF * (
+            derivative(M[i, j], q[k]) + derivative(M[i, k], q[j]) - derivative(M[j, k], q[i])
+        )
+
+    @cached_property
+    def euler_lagrange(self) -> Matrix:
+        """Residuals d/dt ∂L/∂q̇ - ∂L/∂q - Q, a column, which are zero along a motion."""
+        return _product(self.mass_matrix, self.system.qddot) - self.forcing
+
+    @cached_property
+    def reactions(self) -> Matrix:
+        """Forces that hold the given lengths constant, a column: a rod's tension is positive.
+
+        The multiplier of the constraint that a length l is constant is the force that is
+        required if l is free: -(d/dt ∂L/∂l̇ - ∂L/∂l) at l̇ = l̈ = 0, a function of q, q̇ and q̈.
+        """
+        first, qddot = len(self.variables) - len(self.system.reactions), Matrix(self.system.qddot)
+        forces = []
+        for i, length in enumerate(self.variables[first:], first):
+            inertial = -(self.inertia[i, : len(qddot)] * qddot)[0] - self._inertial(i)
+            forces.append(inertial - self.potential_energy.diff(length))
+        return Matrix(forces)
+
+    @cached_property
+    def _adjugate_and_determinant(self) -> tuple[Matrix, sp.Expr]:
+        # not for generated code, which solves M w = p: the adjugate grows as n!
+        return self.mass_matrix.adjugate(), sp.factor_terms(reduced(self.mass_matrix.det()))
+
+    def _divided_by_mass(self, column: Matrix) -> Matrix:
+        adjugate, determinant = self._adjugate_and_determinant
+        state = self.system.q + self.system.qdot + self.system.p
+        return (adjugate * column).applyfunc(
+            lambda entry: sp.factor_terms(collected(entry, *state)) / determinant
+        )
+
+    @cached_property
+    def accelerations(self) -> Matrix:
+        """q̈ = M⁻¹ f, a column."""
+        return self._divided_by_mass(self.forcing)
+
+    @cached_property
+    def hamiltonian(self) -> sp.Expr:
+        """H(q, p, t) = ½ (p - b)ᵀ M⁻¹ (p - b) + U, the energy as a function of the momenta."""
+        adjugate, determinant = self._adjugate_and_determinant
+        p = Matrix(self.system.p) - self.drift
+        numerator = collected((p.T * adjugate * p)[0, 0], *self.system.q, *self.system.p)
+        return sp.factor_terms(numerator) / (2 * determinant) + self.effective_potential
+
+    @cached_property
+    def hamilton_equations(self) -> tuple[Matrix, Matrix]:
+        """(q̇, ṗ) = (∂H/∂p, -∂H/∂q + Q), two columns; canonical without applied forces."""
+        velocities = self._divided_by_mass(Matrix(self.system.p) - self.drift)
+        known = dict(zip(self.system.qdot, velocities, strict=True))
+        pairs = zip(self.system.q, self.system.applied, strict=True)
+        rates = [force.subs(known) - self.hamiltonian.diff(q) for q, force in pairs]
+        return velocities, Matrix(rates)
+
+
+def _product(matrix: Matrix, column: Sequence[sp.Expr]) -> Matrix:
+    """The product of both; SymPy's own examines at length whether all entries are finite."""
+    rows = (zip(matrix.row(i), column, strict=True) for i in range(matrix.rows))
+    return Matrix([sp.Add(*(a * x for a, x in row)) for row in rows])
