@@ -170,10 +170,15 @@ def test_an_event_is_located_in_a_few_iterations() -> None:
     assert tries < 9
 
 
-def test_a_step_whose_inner_states_fail_is_discarded_whole(tmp_path: Path) -> None:
-    # a hole that the step jumps over, but not the second sample within it
-    hole = "(*(const double *)&t > 0.2099 && *(const double *)&t < 0.2101) ? 0.0/0.0 : params[0]"
-    module = handwritten_module(tmp_path, hole)
+@pytest.mark.parametrize(
+    ("hole", "samples"), [(0.21, [0.21]), (0.165, [0.1, 0.3])], ids=["shorter step", "extension"]
+)
+def test_a_step_whose_inner_states_fail_is_discarded_whole(
+    tmp_path: Path, hole: float, samples: list[float]
+) -> None:
+    # a hole that the step and the event within it jump over, but not the states at samples
+    there = f"fabs(*(const double *)&t - {hole}) < 1e-4 ? 0.0/0.0 : params[0]"
+    module = handwritten_module(tmp_path, there)
     solution = integrate(
         module,
         (0, 5),
@@ -182,8 +187,8 @@ def test_a_step_whose_inner_states_fail_is_discarded_whole(tmp_path: Path) -> No
         method="rk4",
         h=0.5,
         backend="compiled",
-        t_eval=[0.1, 0.21],
-        events=Event(module, "y", 0.4, terminal=True),
+        t_eval=samples,
+        events=Event(module, "y", 0.4),
     )
     assert solution.status is Status.NOT_FINITE
     assert (solution.t.size, solution.t_events[0].size, solution.end[0]) == (0, 0, 0.0)

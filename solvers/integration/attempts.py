@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -78,12 +79,31 @@ class Accepted:
 
         yield curve(extension.natural @ k)
         if extension.rounds:
-            derivative = self.attempts.stepper.derivative
-            yield curve(extension.extend(derivative, t, y, h, k))
+            yield curve(self._extended)
+
+    @cached_property
+    def _extended(self) -> Array:
+        """Bernstein coefficients of the extension of the method's order."""
+        start, stepper, k = self.start, self.attempts.stepper, self.step.k
+        assert k is not None
+        return stepper.extension.extend(
+            stepper.derivative, start.t, start.y, self.end.t - start.t, k
+        )
 
     def states(self, times: Array) -> Array:
-        """The states at several times, in columns."""
-        return np.stack([self.state(float(t)) for t in times], axis=1)
+        """The states at several times, in columns.
+
+        They are as accurate as that at the end: by shorter steps, or by the continuous extension of
+        the method's order where that takes fewer evaluations.
+        """
+        least = self.attempts.stepper.extension.least_samples
+        inside = times != self.end.t
+        if not least or np.count_nonzero(inside) < least:
+            return np.stack([self.state(float(t)) for t in times], axis=1)
+        *_, curve = self.curves()
+        extended = iter(curve(times[inside]).T)
+        states = [next(extended) if is_inside else self.end.y for is_inside in inside]
+        return np.stack([self.attempts.normalise(y) for y in states], axis=1)
 
 
 @dataclass(frozen=True)

@@ -44,11 +44,22 @@ class ContinuousExtension:
     natural: Array  # of shape (degree + 1, stages)
     nodes: Array
     integrals: Array  # of the Lagrange polynomials, up to each node
+    step_evaluations: int = 0  # by a step, if all stages depend on the right-hand side explicitly
 
     @classmethod
     def of(cls, tableau: Tableau) -> "ContinuousExtension":
         """The extension of a method with stages of its own; that of Gauss methods is known."""
         return _extension(tableau)
+
+    @property
+    def least_samples(self) -> int:
+        """Samples in a step from which on it takes fewer evaluations than shorter steps.
+
+        0 if shorter steps are more accurate.
+        """
+        if not self.step_evaluations:
+            return 0
+        return self.rounds * len(self.nodes) // self.step_evaluations + 1
 
     @cached_property
     def first(self) -> Array:
@@ -100,7 +111,8 @@ def _extension(tableau: Tableau) -> ContinuousExtension:
     rounds = max(tableau.order - order, 1) if tableau.is_explicit else 0
     nodes = (leggauss(max(order + rounds, 3))[0] + 1) / 2
     integrals = bernstein_values(len(nodes), nodes) @ _integrals_of_lagrange(nodes)
-    return ContinuousExtension(order, rounds, natural, nodes, integrals)
+    evaluations = tableau.is_explicit * (tableau.stages - tableau.is_fsal)
+    return ContinuousExtension(order, rounds, natural, nodes, integrals, evaluations)
 
 
 def _natural_extension(tableau: Tableau) -> tuple[int, Array]:

@@ -97,7 +97,7 @@ CONSTANTS = """\
 /* {title} */
 #define VARIES_ORDER {varies_order}
 enum {{ STAGES = {stages}, IS_FSAL = {is_fsal}, IS_EXPLICIT = {is_explicit} }};
-enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
+enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order}, LEAST_SAMPLES = {least_samples} }};
 """
 
 METHOD = """\
@@ -319,6 +319,7 @@ def _constants(tableau: Tableau) -> str:
         is_explicit=int(tableau.is_explicit),
         estimates=len(tableau.error_weights),
         error_order=tableau.error_order,
+        least_samples=ContinuousExtension.of(tableau).least_samples,
     )
 
 

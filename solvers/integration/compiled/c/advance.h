@@ -53,8 +53,15 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     motion->rejected += select(advancing & ~*accepted, one, splat(0.0));
     motion->reductions = select(*accepted, splat(0.0), motion->reductions);
     mask attention = *failed | last | ~advancing | less_than(lane_fabs(motion->h), motion->min_h);
+    mask several = {0};
     if (task->event_count) {
-        attention |= *accepted & events_in_step(lanes, &result);
+        attention |= *accepted & events_in_step(lanes, &result, &several);
+    }
+    const mask dense = *accepted & less_than(lane_fabs(lanes->dense_sample - state->t),
+                                             lane_fabs(lanes->h));
+    lanes->dense = dense;
+    if (any(several | dense)) {
+        extend_steps(lanes, &result, several);
     }
     attention |= less_than(splat((double)task->max_steps), motion->steps + 2.0);
     if (task->samples < 0) {

@@ -1,12 +1,40 @@
 /* Events within a step: where they may occur, and parts of it in which each occurs at most once. */
 
-/* Evaluate the events at the end of a step; returns the lanes in which one may occur. */
-static __attribute__((noinline)) mask events_in_step(Lanes *lanes, const StepResult *result)
+/* Extend the steps of the lanes in which an event may occur several times, or which are dense. */
+static __attribute__((noinline)) void extend_steps(
+    Lanes *lanes, const StepResult *result, mask several)
+{
+    const Task *task = lanes->task;
+    const State *start = &lanes->motion.state, *end = &lanes->end;
+    const real *params = lanes->motion.params;
+    Workspace *workspace = lanes->workspace;
+    real changes[EXTENSION_NODES][DIM];
+    lanes->motion.evaluations +=
+        select(several | lanes->dense, splat(ROUNDS*EXTENSION_NODES), splat(0.0));
+    extend(start, end, result, lanes->h, params, changes);
+    for (int e = 0; e < task->event_count && any(several); e++) {
+        const Event *event = &task->events[e];
+        real *coefficients = workspace->coefficients[e];
+        if (ROUNDS > 0 && !event->is_switch) {
+            extended_polynomial(event, start, changes, lanes->before[e], coefficients);
+        }
+        switching_polynomial(event, start, end, lanes->h, params, lanes->before[e],
+                             lanes->after[e], EXTENSION_DEGREE, coefficients);
+    }
+    if (any(lanes->dense)) {
+        extended_states(changes, lanes->dense, workspace->states);
+    }
+}
+
+/* Evaluate the events at the end of a step. Returns the lanes in which one may occur; `several`
+   receives those in which one may do so several times. */
+static __attribute__((noinline)) mask events_in_step(
+    Lanes *lanes, const StepResult *result, mask *several)
 {
     const Task *task = lanes->task;
     const State *start = &lanes->motion.state, *end = &lanes->end;
     Workspace *workspace = lanes->workspace;
-    mask occurring = {0}, several = {0};
+    mask occurring = {0};
     for (int e = 0; e < task->event_count; e++) {
         const Event *event = &task->events[e];
         const real before = lanes->before[e], after = lanes->after[e] =
@@ -15,25 +43,10 @@ static __attribute__((noinline)) mask events_in_step(Lanes *lanes, const StepRes
         const mask recurs = has_several(event, start, end, result, lanes->h, lanes->motion.params,
                                         before, after, workspace->coefficients[e]);
         lanes->several[e] = lanes->advancing & (recurs | ~moves);
-        several |= lanes->several[e];
+        *several |= lanes->several[e];
         occurring |= has_crossed(event, before, after);
     }
-    if (!any(several)) {
-        return occurring;
-    }
-    real changes[EXTENSION_NODES][DIM];
-    lanes->motion.evaluations += select(several, splat(ROUNDS*EXTENSION_NODES), splat(0.0));
-    extend(start, end, result, lanes->h, lanes->motion.params, changes);
-    for (int e = 0; e < task->event_count; e++) {
-        const Event *event = &task->events[e];
-        real *coefficients = workspace->coefficients[e];
-        if (ROUNDS > 0 && !event->is_switch) {
-            extended_polynomial(event, start, changes, lanes->before[e], coefficients);
-        }
-        switching_polynomial(event, start, end, lanes->h, lanes->motion.params, lanes->before[e],
-                             lanes->after[e], EXTENSION_DEGREE, coefficients);
-    }
-    return occurring | several;
+    return occurring | *several;
 }
 
 /* Estimate the event in a bracket by a polynomial, if that has another sign at its ends. */

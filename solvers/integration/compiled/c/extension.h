@@ -3,6 +3,8 @@
    The stages of a step give a natural extension, at no cost; where it comes near the value of an
    event and back, the nodes of an explicit method's extension of its own order are evaluated.
 
+   Where many samples lie in a step, LEAST_SAMPLES or more, this extension gives them, too.
+
    Defined before this file: of the natural extension DEGREE, and NATURAL, the Bernstein coefficients
    of its weights for each method of a family, which have STAGES_OF stages; of the other one ROUNDS,
    EXTENSION_NODES, the nodes EXTENSION_C, FIRST and INTEGRALS, the weights of the states at the
@@ -111,19 +113,23 @@ static __attribute__((noinline)) void extend(
     const State *start, const State *end, const StepResult *result, real h, const real *params,
     real (*changes)[DIM])
 {
-    real z[EXTENSION_NODES][DIM];
+    real z[EXTENSION_NODES][DIM], own[STAGES][DIM];
+    for (int m = 0; m < STAGES; m++) {
+        for (int n = 0; n < DIM; n++) {
+            for (int part = 0; part < PARTS; part++) {
+                PART(own[m][n], part) = stage_change(end, result, &h, part, m, n);
+            }
+        }
+    }
     for (int round = 0; round < ROUNDS; round++) {
+        const int terms = round == 0 ? STAGES : EXTENSION_NODES;
+        real (*from)[DIM] = round == 0 ? own : changes;
         for (int i = 0; i < EXTENSION_NODES; i++) {
-            for (int n = 0; n < DIM; n++) {
-                z[i][n] = start->z[n];
-                for (int m = 0; m < STAGES && round == 0; m++) {
-                    for (int part = 0; part < PARTS; part++) {
-                        PART(z[i][n], part) +=
-                            FIRST[i][m]*stage_change(end, result, &h, part, m, n);
-                    }
-                }
-                for (int m = 0; m < EXTENSION_NODES && round > 0; m++) {
-                    z[i][n] += INTEGRALS[i][m]*changes[m][n];
+            const double *weights = round == 0 ? FIRST[i] : INTEGRALS[i];
+            memcpy(z[i], start->z, sizeof z[i]);
+            for (int m = 0; m < terms; m++) {
+                for (int n = 0; n < DIM; n++) {
+                    z[i][n] += weights[m]*from[m][n];
                 }
             }
         }
@@ -149,5 +155,41 @@ static void extended_polynomial(
             coefficients[k] += EXTENDED[m][k]*(event->is_angle
                 ? event->cosine*changes[m][n] - event->sine*changes[m][n + 1] : changes[m][n]);
         }
+    }
+}
+
+/* The coefficients of the powers x^k (1 - x)^(EXTENSION_NODES - k), k > 0, in the change of the state
+   up to a part x of the step. */
+static void extended_states(const real (*changes)[DIM], mask lanes, real (*coefficients)[DIM])
+{
+    double binomial = 1;
+    for (int k = 1; k <= EXTENSION_NODES; k++) {
+        real sums[DIM];
+        memset(sums, 0, sizeof sums);
+        binomial *= (double)(EXTENSION_NODES - k + 1)/k;
+        for (int m = 0; m < EXTENSION_NODES; m++) {
+            for (int n = 0; n < DIM; n++) {
+                sums[n] += (binomial*EXTENDED[m][k])*changes[m][n];
+            }
+        }
+        for (int n = 0; n < DIM; n++) {
+            coefficients[k - 1][n] = select(lanes, sums[n], coefficients[k - 1][n]);
+        }
+    }
+}
+
+/* The change of the state of a lane up to the part x of the step. */
+static void change_within(const real (*coefficients)[DIM], double x, int lane, double *change)
+{
+    double right[EXTENSION_NODES + 1] = {1}, left = 1;
+    for (int k = 1; k <= EXTENSION_NODES; k++) {
+        right[k] = x*right[k - 1];
+    }
+    memset(change, 0, DIM*sizeof *change);
+    for (int k = EXTENSION_NODES; k > 0; k--) {
+        for (int n = 0; n < DIM; n++) {
+            change[n] += (left*right[k])*LANE(coefficients[k - 1][n], lane);
+        }
+        left *= 1 - x;
     }
 }

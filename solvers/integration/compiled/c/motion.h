@@ -24,10 +24,11 @@ static void write_row(Row *row, const double *state)
     memcpy(row->scale, state + offsetof(State, scale)/sizeof(real), sizeof row->scale);
 }
 
-/* Time of the next sample of a motion. */
-static inline double next_sample_time(const Task *task, const Trajectory *trajectory)
+/* Time of the next sample of a motion, or of a later one. */
+static inline double sample_time(const Task *task, const Trajectory *trajectory, int64_t later)
 {
-    return task->times[(trajectory - task->trajectories)*task->own_times + trajectory->rows];
+    const int64_t motion = trajectory - task->trajectories;
+    return task->times[motion*task->own_times + trajectory->rows + later];
 }
 
 static void append_row(const Task *task, Trajectory *trajectory, const double *state)

@@ -2,9 +2,10 @@
 
 enum { MAX_REDUCTIONS = 25 };
 
-/* Of each event; not set before they are needed, since they are large. */
+/* Not set before they are needed, since they are large. */
 typedef struct {
-    real coefficients[MAX_EVENTS][EXTENSION_DEGREE + 1];
+    real coefficients[MAX_EVENTS][EXTENSION_DEGREE + 1];    /* of the polynomial of each event */
+    real states[EXTENSION_NODES][DIM];                      /* see extended_states() */
     Bracket brackets[LANES][MAX_BRACKETS];
 } Workspace;
 
@@ -16,7 +17,9 @@ typedef struct {
     real h;                                     /* length of the step */
     real before[MAX_EVENTS], after[MAX_EVENTS]; /* event values at its start and end */
     real next_sample;                           /* time of the next sample, or NaN */
+    real dense_sample;                          /* and of the last of LEAST_SAMPLES, or NaN */
     mask several[MAX_EVENTS];                   /* whether an event may occur several times */
+    mask dense;                                 /* whether an extension gives the samples */
     mask advancing, starting, loaded;           /* starting motions are new; loaded ones resume */
     WithinStep within[LANES];
 } Lanes;
@@ -54,7 +57,11 @@ static void update_lane(Lanes *lanes, int lane)
     const Task *task = lanes->task;
     const WithinStep *within = &lanes->within[lane];
     const int has_sample = within->mode == ADVANCE && within->trajectory->rows < task->samples;
-    LANE(lanes->next_sample, lane) = has_sample ? next_sample_time(task, within->trajectory) : NAN;
+    LANE(lanes->next_sample, lane) = has_sample ? sample_time(task, within->trajectory, 0) : NAN;
+    const int64_t later = LEAST_SAMPLES - 1;
+    const int is_dense = LEAST_SAMPLES && within->mode == ADVANCE
+        && within->trajectory->rows + later < task->samples;
+    LANE(lanes->dense_sample, lane) = is_dense ? sample_time(task, within->trajectory, later) : NAN;
     MASK_LANE(lanes->advancing, lane) = within->mode == ADVANCE ? -1 : 0;
 }
 
@@ -105,7 +112,7 @@ static void start_motions(Lanes *lanes)
         WithinStep *within = &lanes->within[lane];
         const int is_sample = MASK_LANE(new, lane) && (task->samples < 0
             || (task->samples > 0
-                && next_sample_time(task, within->trajectory) == LANE(state->t, lane)));
+                && sample_time(task, within->trajectory, 0) == LANE(state->t, lane)));
         if (is_sample) {
             double start[STATE_SIZE];
             read_lane(state, STATE_SIZE, lane, start);

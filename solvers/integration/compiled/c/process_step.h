@@ -62,6 +62,27 @@ static int substep(Lanes *lanes, WithinStep *within, double h)
 
 #endif
 
+/* Append the state of a lane at a part h of its step, by the extension; returns whether it is
+   finite. */
+static int sample_extension(Lanes *lanes, int lane, const WithinStep *within, double h)
+{
+    const State *start = &lanes->motion.state;
+    State state = *start;
+    double change[DIM], numbers[STATE_SIZE], check = 0;
+    change_within(lanes->workspace->states, h/within->full_h, lane, change);
+    for (int n = 0; n < DIM; n++) {
+        move_component(start, &state, n, splat(change[n]));
+        check += change[n] - change[n];
+    }
+    state.t = two_sum(start->t, h + start->t_low, &state.t_low);
+    normalise_angles(&state);
+    rescale_variation(start, &state);
+    count_turns(start, splat(h), &state);
+    read_lane(&state, STATE_SIZE, lane, numbers);
+    append_row(lanes->task, within->trajectory, numbers);
+    return check == 0;
+}
+
 /* Evaluate a lane's step; return whether its motion moves to the end of the step. */
 static int process_step(Lanes *lanes, int lane, int accepted, int failed)
 {
@@ -83,6 +104,7 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
             return 0;
         }
         begin_within_step(within, h, end);
+        within->is_dense = MASK_LANE(lanes->dense, lane) != 0;
         for (int e = 0; e < task->event_count; e++) {
             within->after[e] = LANE(lanes->after[e], lane);
             bracket_crossings(lanes, lane, within, e);
@@ -98,6 +120,13 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
                           LANE(motion->state.t_low, lane))) != 0) {
         if (within->mode == LOCATE && is_narrow(within)) {
             locate_by_cubic(lanes, lane, within);
+            continue;
+        }
+        if (within->mode == SAMPLE && within->is_dense) {
+            if (!sample_extension(lanes, lane, within, next)) {
+                fail_step(motion, within, lane, h);
+                return 0;
+            }
             continue;
         }
 #if INTERPOLATES

@@ -58,7 +58,7 @@ static __attribute__((noinline)) void step(
         end->derivative[n] = k[STAGES - 1][n];
     }
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
-    if (task->event_count > 0) {
+    if (task->event_count > 0 || task->samples >= LEAST_SAMPLES) {
         memcpy(result->k, k, sizeof k);
     }
     for (int n = 0; n < DIM && !task->fixed_h; n++) {

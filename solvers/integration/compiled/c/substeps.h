@@ -48,7 +48,7 @@ static double next_sample_h(const Task *task, WithinStep *within, double t, doub
 {
     Trajectory *trajectory = within->trajectory;
     while (trajectory->rows < task->samples) {
-        const double h = (next_sample_time(task, trajectory) - t) - t_low;
+        const double h = (sample_time(task, trajectory, 0) - t) - t_low;
         if (fabs(h) > fabs(within->h) + within->resolution) {
             return 0;
         }

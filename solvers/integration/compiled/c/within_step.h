@@ -25,6 +25,7 @@ typedef struct {
     double h, end[STATE_SIZE];              /* the same up to a terminal event */
     double after[MAX_EVENTS];               /* event values at its end */
     int terminal;                           /* the event that ends the motion, or -1 */
+    int is_dense;                           /* whether an extension gives the samples */
     Bracket *brackets;                      /* of each event in ascending order */
     int bracket_count;
     Bracket *bracket;                       /* the one being reduced, or NULL */

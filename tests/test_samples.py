@@ -1,0 +1,126 @@
+"""Samples within steps: by a continuous extension where many lie in a step, else shorter steps."""
+
+from functools import cache
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import generated.double_pendulum as dp
+import generated.elastic_pendulum as elastic
+import generated.henon_heiles as henon_heiles
+from solvers.integration.ensemble import ensemble
+from solvers.integration.events import Event
+from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
+from solvers.integration.solution import Solution, Status
+from solvers.references.taylor import taylor
+from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.continuous_extension import ContinuousExtension
+
+METHODS = ["dp54", "verner853", "verner98"]
+STARTS = {
+    dp: (2.0, 1.0, 0.0, 0.5),
+    elastic: (1.1, 0.8, 0.0, 0.3),
+    henon_heiles: (0.1, 0.2, 0.3, 0.1),
+}
+END, TIMES = 2.0, np.linspace(0, 2.0, 201)
+
+
+@cache
+def exact(module: ModuleType) -> np.ndarray:
+    """States at every tenth time, by Taylor series of 28 digits."""
+    states = taylor(module, module.DEFAULTS, STARTS[module], TIMES[::10].tolist(), 28)
+    return np.array(states, float).T
+
+
+def sampled(module: ModuleType, times: np.ndarray, method: str, **options: object) -> Solution:
+    return integrate(
+        module, (0, END), STARTS[module], module.DEFAULTS, method=method, t_eval=times, **options
+    )
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("module", STARTS, ids=lambda module: module.SYSTEM)
+@ignore_predictability()
+def test_many_samples_in_a_step_are_as_accurate_as_shorter_steps(
+    module: ModuleType, method: str, tolerance: float
+) -> None:
+    options = {"rtol": tolerance, "atol": tolerance}
+    many = sampled(module, TIMES, method, **options)
+    few = sampled(module, TIMES[::10], method, **options)
+    errors = [np.abs(y - exact(module)).max() for y in (many.y[:, ::10], few.y)]
+    assert errors[0] <= 1.1 * errors[1] + 1e-15
+
+
+@pytest.mark.parametrize("method", ["verner853", "verner98"])
+def test_the_extension_of_a_lower_order_would_not_be(method: str) -> None:
+    tableau = load(method)
+    extension = ContinuousExtension.of(tableau)
+    assert extension.natural_order + extension.rounds == tableau.order
+    options = {"rtol": 1e-9, "atol": 1e-9, "backend": "python", "form": "lagrangian"}
+    full = sampled(dp, TIMES, method, **options)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            ContinuousExtension,
+            "extend",
+            lambda self, rhs, t, y, h, k: extension.natural @ k,
+        )
+        natural = sampled(dp, TIMES, method, **options)
+    errors = [np.abs(run.y[:, ::10] - exact(dp)).max() for run in (full, natural)]
+    assert errors[1] > 10 * errors[0]
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled", "lanes"])
+@pytest.mark.parametrize("method", METHODS)
+@ignore_predictability()
+def test_samples_take_no_more_evaluations_than_extensions(method: str, backend: str) -> None:
+    tableau, times = load(method), np.linspace(0, END, 801)
+    extension = ContinuousExtension.of(tableau)
+    options = {"rtol": 1e-9, "atol": 1e-9}
+    if backend == "lanes":
+        starts = np.array([STARTS[dp], (1.0, 0.5, 0.2, 0.0)]).T
+        runs = [
+            ensemble(dp, (0, END), starts, dp.DEFAULTS, method=method, t_eval=t, **options)
+            for t in (times, [END])
+        ]
+        more, steps, y = runs[0].nfev - runs[1].nfev, runs[0].steps, runs[0].samples[:, 0]
+    else:
+        many, ends = (sampled(dp, t, method, backend=backend, **options) for t in (times, [END]))
+        more, steps, y = many.nfev - ends.nfev, many.steps, many.y
+    per_step = extension.rounds * len(extension.nodes)
+    assert np.all(more <= steps * max(per_step, extension.least_samples * tableau.stages))
+    assert np.abs(y[:, ::40] - exact(dp)).max() < 1e-8
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+def test_few_samples_in_a_step_take_shorter_steps(backend: str) -> None:
+    options = {"rtol": 1e-9, "atol": 1e-9, "backend": backend}
+    few, ends = (sampled(dp, t, "verner853", **options) for t in ([0.501, 1.001, END], [END]))
+    assert few.nfev - ends.nfev in (2 * 11, 2 * 12)
+
+
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_samples_end_at_a_terminal_event(direction: int, backend: str) -> None:
+    times = direction * np.linspace(0, END, 2001)
+    event = Event(dp, "theta1", 0.0, terminal=True)
+    run = integrate(
+        dp, (0, direction * END), STARTS[dp], dp.DEFAULTS, method="verner98", t_eval=times,
+        events=event, backend=backend,
+    )  # fmt: skip
+    whole = integrate(
+        dp, (0, direction * END), STARTS[dp], dp.DEFAULTS, method="verner98", t_eval=times
+    )
+    assert run.status is Status.EVENT
+    count = int((direction * times <= direction * run.t_events[0][0]).sum())
+    assert len(run.t) == count
+    assert run.y == pytest.approx(whole.y[:, :count], abs=1e-9)
+
+
+@pytest.mark.parametrize("compensated", [False, True])
+def test_fixed_steps_and_compensated_sums_have_samples_by_the_extension(compensated: bool) -> None:
+    options = {"h": 0.02, "compensated": compensated, "backend": "compiled"}
+    run = sampled(dp, TIMES, "verner853", **options)
+    assert np.abs(run.y[:, ::10] - exact(dp)).max() < 1e-11
