@@ -1,38 +1,35 @@
 """Measured quantities as formulas of state, time and parameters."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS
+from derive.mechanics.kinetics import Kinetics
 from derive.mechanics.state_space import Formula, expression
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 from solvers.io.suggestion import did_you_mean, shortened
 
-if TYPE_CHECKING:
-    from derive.mechanics.derivation import Derivation
 
-
-def named_outputs(derivation: "Derivation") -> dict[str, sp.Expr]:
+def named_outputs(kinetics: Kinetics) -> dict[str, sp.Expr]:
     """Quantities that have a name: ``energy``, positions ``x1``, ``y1`` ..., and the state.
 
     The number is that of the mass, in the order of the system; two axes are x and y.
     """
-    system = derivation.system
+    system = kinetics.system
     positions = {
         f"{axis}{k}": part
         for k, mass in enumerate(system.masses, 1)
         for axis, part in zip("xyz", mass.position, strict=False)
     }
     state = {s.name: s for s in (*system.q, *system.qdot)}
-    return {"energy": derivation.energy} | positions | state
+    return {"energy": kinetics.energy} | positions | state
 
 
-def outputs(derivation: "Derivation", formulas: Sequence[Formula]) -> tuple[sp.Expr, ...]:
+def outputs(kinetics: Kinetics, formulas: Sequence[Formula]) -> tuple[sp.Expr, ...]:
     """Formulas, or names of `named_outputs`, as expressions; `SystemDefinitionError` if invalid."""
-    system, named = derivation.system, named_outputs(derivation)
+    system, named = kinetics.system, named_outputs(kinetics)
     symbols = {s.name: s for s in (*system.params, TIME)}
     scope, results = FUNCTIONS | symbols | named, []
     for given in formulas:
