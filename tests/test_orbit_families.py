@@ -189,3 +189,17 @@ def test_orbits_from_a_section_and_with_a_symmetry_agree() -> None:
         periodic_orbit(henon, start, 6.3, {}, symmetry=("y", "x_dot"))
     with pytest.raises(NoPeriodicOrbitError, match=r"does not meet x = 5\.0 again"):
         periodic_orbit(henon, half.y, Event(henon, "x", 5.0), {})
+
+
+def test_a_family_that_breaks_the_symmetry_branches_off() -> None:
+    rest = equilibria(dp, {})[0]
+    start = normal_mode_orbit(dp, rest, rest.modes[1], 0.9)
+    found = []
+    for orbit in (start, periodic_orbit(dp, start.y, start.period, {})):
+        (point,) = orbit_family(dp, orbit, bounds=(-60.0, -28.0)).special
+        family = orbit_family(dp, point, bounds=(-60.0, 0.0), direction=1)
+        assert family.orbits[0].energy == pytest.approx(-30.78800220, abs=1e-7)
+        assert family.orbits[1].stability == "neutral"
+        assert np.abs(family.y[2:, -1]).max() > 0.1  # not at rest
+        found.append([special.orbit.energy for special in family.special])
+    assert found[0] == pytest.approx(found[1], rel=1e-8)

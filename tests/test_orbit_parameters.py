@@ -1,5 +1,6 @@
 """Families of periodic orbits in a parameter, beside closed forms and SciPy's integrators."""
 
+from collections.abc import Mapping
 from types import ModuleType
 
 import numpy as np
@@ -15,8 +16,11 @@ import generated.single_pendulum as single
 from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
 from solvers.app.modules import build
 from solvers.integration.orbits.family import SpecialOrbit
+from solvers.integration.orbits.nature import Nature
 from solvers.integration.orbits.orbit_family import orbit_family
 from solvers.integration.orbits.periodic_orbit import periodic_orbit
+from solvers.integration.orbits.shooting import Point, Shooting
+from solvers.integration.orbits.symmetry import Reversal
 
 DAMPED = {"a": 0.01, "Omega": 6.0, "c": 0.3}
 
@@ -36,8 +40,13 @@ def test_resonances_of_the_driven_pendulum_are_mathieus() -> None:
     assert located == pytest.approx(exact, rel=1e-11)
 
 
-def dop853_multipliers(a: float, guess: np.ndarray, period: float) -> tuple[np.ndarray, complex]:
-    """An orbit of the driven pendulum near a guess, and its multipliers, by SciPy's DOP853."""
+def dop853_matrix(
+    a: float, guess: np.ndarray, period: float, image: float = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """An orbit of the driven pendulum, and its monodromy matrix, by SciPy's DOP853.
+
+    With `image` = -1 the orbit is symmetric: y(t + period) = -y(t).
+    """
 
     def rhs(t: float, z: np.ndarray) -> list[float]:
         theta, rate, *changes = z
@@ -50,6 +59,7 @@ def dop853_multipliers(a: float, guess: np.ndarray, period: float) -> tuple[np.n
     for _ in range(12):
         start = [*y, 1.0, 0.0, 0.0, 1.0]
         end = solve_ivp(rhs, (0, period), start, method="DOP853", rtol=1e-13, atol=1e-13).y[:, -1]
+        end *= image
         matrix = end[2:].reshape(2, 2)
         step = np.linalg.solve(matrix - np.eye(2), y - end[:2])
         y += step
@@ -68,7 +78,7 @@ def test_the_period_of_the_driven_pendulum_doubles() -> None:
     rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 6, DAMPED)
     (loses_rest,) = orbit_family(driven, rest, "a", (0.0, 0.2)).special
     assert loses_rest.kind == "period doubling"
-    symmetric = branch(loses_rest, 0.31)
+    symmetric = branch(loses_rest, 1.0)  # in long steps
     assert symmetric.kind == "branch point"
     assert symmetric.orbit.period == pytest.approx(2 * rest.period, rel=1e-14)
     doubles = branch(symmetric, 0.32)
@@ -81,9 +91,20 @@ def test_the_period_of_the_driven_pendulum_doubles() -> None:
 
     def multiplier(a: float) -> float:  # the determinant of the matrix plus 1
         nonlocal y
-        y, matrix = dop853_multipliers(a, y, 2 * rest.period)
+        y, matrix = dop853_matrix(a, y, 2 * rest.period)
         return float(np.linalg.det(matrix + np.eye(2)))
 
+    # the symmetric orbit is one of the map y -> -y(T), whose period doubles where symmetry breaks
+    half = symmetric.orbit.y
+
+    def symmetric_multiplier(a: float) -> float:
+        nonlocal half
+        half, matrix = dop853_matrix(a, half, rest.period, -1.0)
+        return float(np.linalg.det(matrix + np.eye(2)))
+
+    a = symmetric.orbit.params[2]
+    exact = brentq(symmetric_multiplier, a - 1e-4, a + 1e-4, xtol=1e-12)
+    assert a == pytest.approx(exact, abs=1e-9)
     a = doubles.orbit.params[2]
     exact = brentq(multiplier, a - 1e-4, a + 1e-4, xtol=1e-12)
     assert a == pytest.approx(exact, abs=1e-9)
@@ -178,6 +199,38 @@ def test_orbits_of_one_period_in_a_parameter() -> None:
         modulus = np.sin(orbit.y[0] / 2) ** 2
         exact = 4 * ellipk(modulus) * np.sqrt(orbit.params[1] / 9.81)
         assert orbit.period == pytest.approx(exact, rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("module", "params", "y", "symmetry", "parameter"),
+    [
+        (driven, {"a": 0.2, "Omega": 6.0}, [0.8, 0.0], ("theta_dot",), "a"),
+        (driven, {"a": 0.2, "Omega": 6.0}, [0.0, 2.0], ("theta",), "Omega"),
+        (duffing, {"F": 0.3, "c": 0.0, "Omega": 1.3}, [0.5, 0.0], ("x_dot",), "beta"),
+    ],
+)
+def test_half_a_period_has_the_derivatives_of_the_whole(
+    module: ModuleType,
+    params: dict[str, float],
+    y: list[float],
+    symmetry: tuple[str, ...],
+    parameter: str,
+) -> None:
+    constants, index = np.array(module.params(**params)), module.PARAMETERS.index(parameter)
+
+    def period(by_name: Mapping[str, float]) -> float:
+        return 2 * np.pi / by_name["Omega"]
+
+    orbit = periodic_orbit(module, y, period(params), params, symmetry=symmetry)
+    point = Point(orbit.y, orbit.period, constants)
+    nature = Nature.of(module, orbit.y, constants, index)
+    reversal = Reversal.of(module, symmetry, orbit.y, constants)
+    whole, half = (
+        Shooting(module, nature, 1e-12, 1e-12, r, index, period)(point) for r in (None, reversal)
+    )
+    assert np.abs(whole.residual).max() < 1e-10
+    columns = [0, 1, 3]  # by the start and the parameter
+    assert half.change[:, columns] == pytest.approx(whole.change[:, columns], abs=1e-8)
 
 
 def test_arguments_of_families_are_checked() -> None:

@@ -24,6 +24,8 @@ from solvers.io.suggestion import did_you_mean
 
 #: Longest period relative to that of the start.
 LONGEST = 10.0
+#: Changes that break a symmetry, relative to all, which count as none.
+SYMMETRIC = 1e-6
 #: Change of a parameter with which a period is checked.
 VARIATION = 0.01
 #: Directions in which a family can branch off, by the kind of the special orbit.
@@ -58,7 +60,8 @@ def orbit_family(
         As in `integrate`.
     start : PeriodicOrbit or SpecialOrbit
         An orbit, as `periodic_orbit` returns it, with its parameters and its symmetry. From a
-        branch point or a period doubling of another family, the family that branches off.
+        branch point or a period doubling of another family, the family that branches off, which
+        may have less symmetry.
     parameter : str, optional
         The parameter that varies, or ``energy`` of a conservative system. If a parameter of a
         conservative system varies, all orbits have the same period.
@@ -112,6 +115,10 @@ def orbit_family(
     orbit = start if isinstance(start, PeriodicOrbit) else start.orbit
     params = np.array(orbit.params)
     reversal = Reversal.of(module, orbit.symmetry, orbit.y, params) if orbit.symmetry else None
+    if reversal and isinstance(start, SpecialOrbit) and start.direction is not None:
+        breaks = np.abs(start.direction[reversal.changed]).max()
+        if breaks > SYMMETRIC * np.abs(start.direction).max():
+            reversal = None
     index = None if parameter == ENERGY else module.PARAMETERS.index(parameter)
     shooting = Shooting(
         module, Nature.of(module, orbit.y, params, index), rtol, atol, reversal, index, period

@@ -4,6 +4,7 @@ Yu. A. Kuznetsov, Elements of Applied Bifurcation Theory, 2004, section 10.2.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -32,16 +33,17 @@ def branch_point(node: Node) -> float:
 
 
 def crossing_direction(node: Node) -> Array:
-    """The direction of the family that crosses at a branch point."""
+    """The direction of the family that crosses at a branch point, if symmetry breaks there.
+
+    The parameter, or the energy, is then extreme on that family.
+    """
     curve, free = node.curve, node.curve.shooting.unknowns(node.point)
     equations = curve.equations(node.point, node.shot.change, half=False)
-    null = np.linalg.svd(equations)[2][-2:, : free.sum()]
-    row = node.reference[free]
-    # of both null vectors, the combination orthogonal to the family
-    a, b = null @ row
-    direction = np.zeros(len(free))
-    direction[free] = b * null[0] - a * null[1]
-    return np.asarray(direction * curve.scales)
+    null = np.zeros((2, len(free)))
+    null[:, free] = np.linalg.svd(equations)[2][-2:, : free.sum()]
+    a, b = (replace(node, tangent=vector).rate_of_value for vector in null)
+    direction = (b * null[0] - a * null[1]) * curve.scales
+    return np.asarray(direction / np.linalg.norm(direction))
 
 
 def doubling_direction(node: Node) -> Array:
