@@ -217,7 +217,7 @@ def test_crossings_of_the_benchmark_are_those_of_another_method() -> None:
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize(
     ("method", "most"),  # evaluations by three shorter steps, and at the ends of the bracket
-    [("dp54", 3 * 6 + 2), ("verner98", 3 * 16 + 2), ("radau3", 3 * 10 + 2), ("gauss8", 3 * 24 + 2)],
+    [("dp54", 3 * 6 + 2), ("verner98", 3 * 16 + 2), ("radau5", 3 * 12 + 2), ("gauss8", 3 * 24 + 2)],
 )
 def test_two_or_three_shorter_steps_locate_a_crossing(method: str, most: int, backend: str) -> None:
     options = {"method": method, "rtol": 1e-9, "atol": 1e-9, "t_eval": [END], "backend": backend}

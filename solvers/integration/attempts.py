@@ -68,8 +68,6 @@ class Accepted:
             polynomial = step.polynomial
             yield lambda times: y[:, np.newaxis] + polynomial.change(times - t)
             return
-        k = step.stages.k if step.stages else step.k
-        assert k is not None
 
         def curve(coefficients: Array) -> Callable[[Array], Array]:
             degree = len(coefficients) - 1
@@ -77,9 +75,13 @@ class Accepted:
                 (y + h * (bernstein_values(degree, (times - t) / h) @ coefficients)).T
             )
 
-        yield curve(extension.natural @ k)
-        if extension.rounds:
-            yield curve(self._extended)
+        if step.stages:
+            ends = start.derivative, self.attempts.stepper.derivative(self.end.t, self.end.y)
+            yield curve(extension.with_ends @ np.vstack([*ends, step.stages.k]))
+            return
+        assert step.k is not None
+        yield curve(extension.natural @ step.k)
+        yield curve(self._extended)
 
     @cached_property
     def _extended(self) -> Array:

@@ -71,6 +71,18 @@ class ContinuousExtension:
         """Bernstein coefficients of the integrals of the Lagrange polynomials of the nodes."""
         return _integrals_of_lagrange(self.nodes)
 
+    @cached_property
+    def with_ends(self) -> Array:
+        """Weights of the derivatives at the start and at the end, followed by those of the stages.
+
+        Their polynomial has these slopes, which that of a method of few stages has not.
+        """
+        degree = max(len(self.natural) - 1, 3)
+        weights = elevated(self.natural, degree)
+        slopes = degree * (weights[[1, -1]] - weights[[0, -2]])
+        hermite = elevated(np.array([[0, 0], [1, 0], [0, -1], [0, 0]]) / 3, degree)
+        return np.hstack([hermite, weights - hermite @ slopes])
+
     def extend(
         self, rhs: Callable[[float, Array], Array], t: float, y: Array, h: float, k: Array
     ) -> Array:

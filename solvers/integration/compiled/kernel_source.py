@@ -97,7 +97,8 @@ CONSTANTS = """\
 /* {title} */
 #define VARIES_ORDER {varies_order}
 enum {{ STAGES = {stages}, IS_FSAL = {is_fsal}, IS_EXPLICIT = {is_explicit} }};
-enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order}, LEAST_SAMPLES = {least_samples} }};
+enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
+enum {{ ENDS = {ends}, LEAST_SAMPLES = {least_samples} }};
 """
 
 METHOD = """\
@@ -178,7 +179,7 @@ PARALLEL_FILES = ("stage_vectors.h", "parallel_stages.h", "parallel.h")
 EXTENSION = """\
 enum {{ DEGREE = {degree}, ROUNDS = {rounds}, EXTENSION_NODES = {nodes} }};
 static const int STAGES_OF[] = {{{stages}}};
-static const double NATURAL[][STAGES][DEGREE + 1] = {{
+static const double NATURAL[][STAGES + ENDS][DEGREE + 1] = {{
 {natural}
 }};
 static const double EXTENSION_C[EXTENSION_NODES] = {{{c}}};
@@ -317,6 +318,7 @@ def _constants(tableau: Tableau) -> str:
         stages=tableau.stages,
         is_fsal=int(tableau.is_fsal),
         is_explicit=int(tableau.is_explicit),
+        ends=2 * tableau.needs_jacobian,
         estimates=len(tableau.error_weights),
         error_order=tableau.error_order,
         least_samples=ContinuousExtension.of(tableau).least_samples,
@@ -376,10 +378,13 @@ def _parallel(tableau: Tableau) -> str:
 def _extension(tableau: Tableau) -> str:
     extension, members = ContinuousExtension.of(tableau), tableau.members
     degree = max(len(extension.natural) - 1, 3)  # as that of switching functions
-    naturals = [elevated(ContinuousExtension.of(member).natural, degree) for member in members]
+    extensions = [ContinuousExtension.of(member) for member in members]
+    ends = 2 * tableau.needs_jacobian
+    naturals = [one.with_ends if ends else elevated(one.natural, degree) for one in extensions]
+    naturals = [elevated(natural, degree) for natural in naturals]
     return EXTENSION.format(
         degree=degree,
-        stages=", ".join(str(member.stages) for member in members),
+        stages=", ".join(str(member.stages + ends) for member in members),
         rounds=extension.rounds,
         nodes=len(extension.nodes),
         natural=",\n".join(f"{{{_rows(natural.T)}}}" for natural in naturals),

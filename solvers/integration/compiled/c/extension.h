@@ -6,7 +6,7 @@
    Where many samples lie in a step, LEAST_SAMPLES or more, this extension gives them, too.
 
    Defined before this file: of the natural extension DEGREE, and NATURAL, the Bernstein coefficients
-   of its weights for each method of a family, which have STAGES_OF stages; of the other one ROUNDS,
+   of its weights for each method of a family, STAGES_OF of them; of the other one ROUNDS,
    EXTENSION_NODES, the nodes EXTENSION_C, FIRST and INTEGRALS, the weights of the states at the
    nodes in the first round and later, and EXTENDED, Bernstein coefficients; the method of a step,
    member_of(), and the change of component n that belongs to stage m, stage_change(). */

@@ -68,12 +68,12 @@ static inline int member_of(const State *start)
     return VARIES_ORDER ? (int)start->order[0] : 0;
 }
 
-/* The change of component n that belongs to stage m. */
+/* The change of component n that belongs to an end of the step, or after these to a stage. */
 static inline double stage_change(
     const State *end, const StepResult *result, const double *h, int part, int m, int n)
 {
-    (void)result; (void)part;
-    return *h*end->polynomial[m*DIM + n];
+    (void)part;
+    return *h*(m < ENDS ? result->ends[m][n] : end->polynomial[(m - ENDS)*DIM + n]);
 }
 
 /* The state after h; with step control also the norm of the estimated error. */
@@ -93,6 +93,11 @@ static __attribute__((noinline)) void step(
     memcpy(end->polynomial, k, sizeof k);
     end->length[0] = h;
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
+    if (task->event_count > 0) {
+        memcpy(result->ends[0], derivative, sizeof derivative);
+        RHS(end->t, end->z, params, result->ends[1]);
+        result->evaluations += 1;
+    }
     if (!task->fixed_h) {
         result->squared_error = squared_error_norm(
             method, task, start, h, params, derivative, (const double (*)[DIM])k, end, result);

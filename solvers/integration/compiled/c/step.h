@@ -125,6 +125,7 @@ typedef struct {
     real jacobians;         /* evaluations of the Jacobian */
     real contraction;       /* of the iteration of the stages, by each of its evaluations */
     real k[IS_EXPLICIT*STAGES][DIM];    /* derivatives at the stages of an explicit method */
+    real ends[ENDS][DIM];               /* and at the start and end of a step by Newton's iteration */
 } StepResult;
 
 /* Mean square of `values`, relative to the tolerances at states x and y. */
