@@ -154,7 +154,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "82df38007386ccb2"
+DIGEST = "f7615fd3f072f7e6"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x",

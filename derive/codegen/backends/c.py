@@ -30,9 +30,10 @@ HEADER = """\
 
    Numbers are double. For another type define HOLONOMIC_REAL before including this file: float or
    long double, which then all numbers and functions have, or a vector (`vector_size` of GCC and
-   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, which
-   omits functions that call the mathematical library. For a longer type also define its literals
-   and functions, such as HOLONOMIC_LITERAL(x) as x##Q and HOLONOMIC_CALL(name) as name##q. */
+   Clang), which computes several states at once. With a vector also define HOLONOMIC_VECTOR, and
+   HOLONOMIC_CALL(name) as the name of a function of vectors; without, functions that call the
+   mathematical library are omitted. For a longer type also define its literals and functions, such
+   as HOLONOMIC_LITERAL(x) as x##Q and HOLONOMIC_CALL(name) as name##q. */
 
 #ifndef HOLONOMIC_{guard}_H
 #define HOLONOMIC_{guard}_H
@@ -81,7 +82,7 @@ typedef {system}_real {system}_number;
 
 CALLS = """
 /* Functions of this type. */
-#ifndef HOLONOMIC_VECTOR
+#if !defined HOLONOMIC_VECTOR || defined HOLONOMIC_CALL
 {calls}
 #endif
 """
@@ -312,7 +313,11 @@ class CBackend(Backend):
         """The function, which a vector omits if it calls the mathematical library."""
         text = self.function(function)
         calls = function.lowering.library_functions
-        return f"#ifndef HOLONOMIC_VECTOR\n{text}#endif\n" if calls else text
+        return (
+            f"#if !defined HOLONOMIC_VECTOR || defined HOLONOMIC_CALL\n{text}#endif\n"
+            if calls
+            else text
+        )
 
 
 def _call(system: str, name: str) -> str:

@@ -43,7 +43,8 @@ class Kernel:
     ) -> None:
         tableau = load(method)
         source = equations(module, form, switches=not tableau.is_parallel)
-        vectors = lanes and source.vectorises and tableau.is_explicit
+        # lanes have sines of their own, whose bits are not those of single motions
+        vectors = lanes and tableau.is_explicit and (source.vectorises or not reproducible)
         # a single motion is rescaled in Python instead
         variations = source.ordinary // 2 if lanes and form == "variational" else 0
         extent: dict[str, Any] = {"compensated": compensated, "variations": variations}

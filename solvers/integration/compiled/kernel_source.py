@@ -27,6 +27,7 @@ PROGRAM = """\
 #include <time.h>
 {lanes}
 {lanes_h}
+{functions}
 {constants}
 {equations}
 {layout}
@@ -231,7 +232,7 @@ class Equations:
     angles: Sequence[tuple[int, int]]  # indices of the sine, before the cosine, and the velocity
     from_ordinary: Sequence[str]  # statements: state z and turns from the ordinary state y
     to_ordinary: Sequence[str]  # and y from these
-    vectorises: bool  # the right-hand side calls no function: its numbers may be vectors
+    vectorises: bool  # the right-hand side calls no function of the mathematical library
     perturbed: Sequence[tuple[int, int]]  # indices of each velocity and its perturbation
     switches: int = 0  # switching functions, whose signs are held after the parameters
 
@@ -291,6 +292,7 @@ def program(
     files = ("lanes.h", "step.h", "motion.h")
     return PROGRAM.format(
         lanes="#define HOLONOMIC_VECTOR" if lanes else "#define ONE_LANE",
+        functions=_source("lane_functions.h") if lanes else "",
         constants=_constants(tableau),
         equations=_equations(equations, tableau),
         layout=declarations(sizes),
