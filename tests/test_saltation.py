@@ -1,11 +1,9 @@
 """Perturbations jump where forces jump, in the variational and in the sensitivity form."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 import sympy as sp
-from test_sliding import belt, friction, slope, stacked
+from test_sliding import BELT, block, stacked
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
@@ -32,25 +30,19 @@ def perturbed(
     return np.array(columns).T
 
 
-@cache
-def back() -> tuple[sp.Matrix, list[sp.Symbol]]:
-    """A block that slides up a slope, and back or not: its position and velocity after 3 s."""
-    x, v, alpha, mu = sp.symbols("x x_dot alpha mu")
-    up, down = (sp.Rational("9.81") * (sp.sin(alpha) + s * mu * sp.cos(alpha)) for s in (1, -1))
-    left = 3 + v / up
-    return sp.Matrix([x - v**2 / (2 * up) + down * left**2 / 2, down * left]), [x, v, alpha, mu]
-
-
 @pytest.mark.parametrize("backend", BACKENDS)
-@pytest.mark.parametrize("mu", [0.5, 0.2])
-def test_a_turn_on_a_slope(mu: float, backend: str) -> None:
-    end, symbols = back()
-    values = {"x": 0.1, "x_dot": -2.0, "alpha": 0.3, "mu": mu}
-    if mu == 0.5:  # it stays where it turns
-        up = sp.Rational("9.81") * (sp.sin(symbols[2]) + symbols[3] * sp.cos(symbols[2]))
-        end = sp.Matrix([symbols[0] - symbols[1] ** 2 / (2 * up), 0])
+@pytest.mark.parametrize("friction", [4.0, 2.0])
+def test_a_turn_on_a_slope(friction: float, backend: str) -> None:
+    # the block slides up with W + F, stays if F > W, or slides back with W - F
+    x, v, W, F = symbols = sp.symbols("x x_dot W F")
+    up, down, left = W + F, W - F, 3 + v / (W + F)
+    height = x - v**2 / (2 * up)
+    end = sp.Matrix([height, 0])
+    if friction == 2:
+        end += down * sp.Matrix([left**2 / 2, left])
+    values = {"x": 0.1, "x_dot": -2.0, "W": 3.0, "F": friction}
     exact = end.jacobian(symbols).subs({s: values[s.name] for s in symbols})
-    result = perturbed(slope(), 3.0, values, backend)
+    result = perturbed(block(), 3.0, values, backend)
     assert result == pytest.approx(np.array(exact, float), rel=1e-12, abs=1e-12)
 
 
@@ -71,24 +63,25 @@ def test_two_functions_that_stay_0(backend: str) -> None:
 
 def test_slips_make_a_motion_forget_its_start() -> None:
     # after a phase in which the block moves with the belt, motions differ in time only
-    module, times = belt(), np.linspace(0, 30, 301)
-    motion = integrate(module, (0, 30), (1.0, 0.4), module.DEFAULTS, t_eval=times, **TIGHT)
+    module, times = block(), np.linspace(0, 30, 301)
+    motion = integrate(module, (0, 30), (1.0, 0.4), BELT, t_eval=times, **TIGHT)
     slips = np.flatnonzero(motion.y[1] < 0.2)
     first, last = slips[slips > 50][0], slips[slips > 200][0]
-    result = transition_matrix(module, times[[first, last]], motion.y[:, first], {})
+    result = transition_matrix(module, times[[first, last]], motion.y[:, first], BELT)
     assert result.y == pytest.approx(motion.y[:, last], abs=1e-10)
-    rates = [module.rhs(0.0, motion.y[:, k], module.DEFAULTS) for k in (first, last)]
+    rates = [module.rhs(0.0, motion.y[:, k], module.params(**BELT)) for k in (first, last)]
     assert result.matrix @ rates[0] == pytest.approx(rates[1], abs=1e-9)
     assert np.linalg.svd(result.matrix)[1][1] < 1e-10
 
 
 def test_ensembles_perturb_every_motion() -> None:
-    module, n = friction(), 20
+    module, n = block(), 20
     starts = np.zeros((4, n))
     starts[0], starts[2] = np.linspace(-1, 1, n), 1.0
-    params = np.stack([np.linspace(0.5, 2.0, n), np.full(n, 0.8)])
-    motions = ensemble(module, (0, 9), starts, params, form="variational", **TIGHT)
+    drives = np.linspace(0.5, 2.0, n)
+    options = {"form": "variational", **TIGHT}
+    motions = ensemble(module, (0, 9), starts, {"P": drives, "F": 0.8}, **options)
     for k in range(0, n, 5):
-        options = {"form": "variational", "backend": "python", **TIGHT}
-        single = integrate(module, (0, 9), starts[:, k], params[:, k], **options)
+        own = {"P": drives[k], "F": 0.8}
+        single = integrate(module, (0, 9), starts[:, k], own, backend="python", **options)
         assert motions.y[:, k] == pytest.approx(single.y[:, -1], abs=1e-10)

@@ -21,23 +21,22 @@ from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare
 from solvers.integration.solution import Status
 
-x, y, theta, P, F, G, V, c = sp.symbols("x y theta P F G V c", real=True)
+x, y, W, K, P, F, G, V, c = sp.symbols("x y W K P F G V c", real=True)
 v, w = velocity(x), velocity(y)
 X, Y = Coordinate(x, "m", "position"), Coordinate(y, "m", "position")
 BACKENDS = ("python", "compiled")
 
 
-def system(name: str, force: sp.Expr, *parameters: Parameter) -> GeneratedModule:
-    masses = [PointMass(1, (x, 0))]
-    return build(System(name, "", [X], parameters, masses, sp.S.Zero, forces=[force]))
-
-
 @cache
-def slope() -> GeneratedModule:
-    angle, mu = sp.symbols("alpha mu", real=True)
-    weight = sp.sin(angle) - mu * sp.cos(angle) * sp.sign(v)
-    parameters = Parameter(angle, "rad", 0.3, "of the slope"), Parameter(mu, "", 0.5, "friction")
-    return system("block_on_a_slope", 9.81 * weight, *parameters)
+def block() -> GeneratedModule:
+    """A block on a belt with velocity V, with a spring, a weight and a drive."""
+    relative = V - v
+    friction = F * sp.sign(relative) * (1 - c * sp.Abs(relative))
+    units = {W: "N", K: "N/m", P: "N", F: "N", V: "m/s", c: "s/m"}
+    parameters = [Parameter(symbol, unit, 0.0, "") for symbol, unit in units.items()]
+    force = W - K * x + P * sp.cos(TIME) + friction
+    masses = [PointMass(1, (x, 0))]
+    return build(System("block", "", [X], parameters, masses, sp.S.Zero, forces=[force]))
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -46,7 +45,8 @@ def test_a_block_on_a_slope_stops_and_stays_or_slides_back(mu: float, backend: s
     up, down = (9.81 * (sin(0.3) + sign * mu * cos(0.3)) for sign in (1, -1))
     stop, height = 2 / up, -2 * 2 / (2 * up)
     left = 3 - stop
-    motion = integrate(slope(), (0, 3), (0.0, -2.0), {"mu": mu}, backend=backend, rtol=1e-12)
+    given = {"W": 9.81 * sin(0.3), "F": 9.81 * mu * cos(0.3)}
+    motion = integrate(block(), (0, 3), (0.0, -2.0), given, backend=backend, rtol=1e-12)
     expected = (height, 0.0) if down < 0 else (height + down * left**2 / 2, down * left)
     assert motion.status is Status.FINISHED
     assert motion.y[:, -1] == pytest.approx(expected, rel=1e-12, abs=1e-13)
@@ -75,11 +75,7 @@ def driven(t: float) -> tuple[float, float]:
     raise AssertionError
 
 
-@cache
-def friction() -> GeneratedModule:
-    force = P * sp.cos(TIME) - F * sp.sign(v)
-    parameters = Parameter(P, "N", 1.0, "drive"), Parameter(F, "N", 0.8, "friction")
-    return system("driven_block", force, *parameters)
+DRIVEN = {"P": 1.0, "F": 0.8}
 
 
 @pytest.mark.parametrize(
@@ -89,7 +85,7 @@ def friction() -> GeneratedModule:
 def test_a_driven_block_sticks_and_slips(method: str, backend: str | None) -> None:
     times = [1.0, 2.0, 3.0, 5.1, 9.0, 20.0]  # the block rests at 2.0 and 5.1
     motion = integrate(
-        *(friction(), (0, 20), (0.0, 0.0), friction().DEFAULTS),
+        *(block(), (0, 20), (0.0, 0.0), DRIVEN),
         method=method,
         backend=backend,
         rtol=1e-11,
@@ -101,28 +97,23 @@ def test_a_driven_block_sticks_and_slips(method: str, backend: str | None) -> No
 
 
 def test_prepared_functions_and_ensembles_do_the_same() -> None:
-    module = friction()
-    run = prepare(module, module.DEFAULTS, rtol=1e-11)
+    module = block()
+    run = prepare(module, DRIVEN, rtol=1e-11)
     assert run((0, 20), (0.0, 0.0)) == pytest.approx(driven(20.0), abs=1e-9)
     assert run((0, 2), (0.0, 0.0)) == pytest.approx(driven(2.0), abs=1e-9)
     assert run((0, 20), (0.0, 0.0)) == pytest.approx(driven(20.0), abs=1e-9)
-    assert run((0, 20), (0.7, 0.0), (0.7, 0.8)) == pytest.approx((0.7, 0.0), abs=1e-12)
+    assert run((0, 20), (0.7, 0.0), {"P": 0.7, "F": 0.8}) == pytest.approx((0.7, 0.0), abs=1e-12)
     forces = np.linspace(0.4, 3.0, 37)
-    params = np.stack([forces, np.full(37, 0.8)])
+    params = {"P": forces, "F": 0.8}
     motions = ensemble(module, (0, 20), np.zeros((2, 37)), params, rtol=1e-11)
     assert motions.success.all()
     for k in range(0, 37, 6):
-        single = integrate(module, (0, 20), (0.0, 0.0), params[:, k], rtol=1e-11, backend="python")
+        own = {"P": forces[k], "F": 0.8}
+        single = integrate(module, (0, 20), (0.0, 0.0), own, rtol=1e-11, backend="python")
         assert motions.y[:, k] == pytest.approx(single.y[:, -1], abs=1e-8)
 
 
-@cache
-def belt() -> GeneratedModule:
-    """A block on a belt, held by a spring; friction falls with the relative speed."""
-    relative = V - v
-    force = -x + F * sp.sign(relative) * (1 - c * sp.Abs(relative))
-    parameters = [Parameter(F, "N", 1.0, "friction"), Parameter(V, "m/s", 0.4, "belt")]
-    return system("block_on_a_belt", force, *parameters, Parameter(c, "s/m", 0.2, "slope"))
+BELT = {"K": 1.0, "F": 1.0, "V": 0.4, "c": 0.2}
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -142,7 +133,7 @@ def test_the_period_of_stick_and_slip_on_a_belt(backend: str) -> None:
     slip = brentq(lambda t: speed(t) - 0.4, 3.0, 6.2, xtol=1e-15)
     period = slip + (1 - place(slip)) / 0.4
     motion = integrate(
-        *(belt(), (0, 4 * period), (1.0, 0.4), belt().DEFAULTS),
+        *(block(), (0, 4 * period), (1.0, 0.4), BELT),
         backend=backend,
         rtol=1e-12,
         t_eval=[3.0, period, 2 * period + 3.0, 4 * period],
