@@ -100,7 +100,9 @@ def test_prepared_functions_and_ensembles_do_the_same() -> None:
     module = block()
     run = prepare(module, DRIVEN, rtol=1e-11)
     assert run((0, 20), (0.0, 0.0)) == pytest.approx(driven(20.0), abs=1e-9)
-    assert run((0, 2), (0.0, 0.0)) == pytest.approx(driven(2.0), abs=1e-9)
+    place, rate = run((0, 2), (0.0, 0.0))
+    assert place == pytest.approx(driven(2.0)[0], abs=1e-9)
+    assert abs(rate) < 2e-15  # the block rests up to rounding errors
     assert run((0, 20), (0.0, 0.0)) == pytest.approx(driven(20.0), abs=1e-9)
     assert run((0, 20), (0.7, 0.0), {"P": 0.7, "F": 0.8}) == pytest.approx((0.7, 0.0), abs=1e-12)
     forces = np.linspace(0.4, 3.0, 37)
