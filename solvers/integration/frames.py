@@ -150,7 +150,7 @@ class Frames:
         """The status of a motion."""
         status = STATUSES[self.status[motion]]
         assert status is not None
-        return Status.OUTSIDE_DOMAIN if status is Status.EVENT else status
+        return status.without_events
 
     def _metric_growth(self) -> Array:
         """The growth if the metric of the mass matrix replaced that of the state's components."""

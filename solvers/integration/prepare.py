@@ -182,16 +182,14 @@ class Prepared:
         while STATUSES[code] is None:
             code = self._single(self._task, start, end, None, self._to)
         y, status = self._unpack(self._end), STATUSES[code]
-        if status is Status.EVENT:  # the only events are limits of coordinates
-            status = Status.OUTSIDE_DOMAIN
         if status is not Status.FINISHED:
-            raise self._failure(status, start, end, y)
+            assert status is not None
+            raise self._failure(status.without_events, start, end, y)
         return y
 
     def _failure(
-        self, status: Status | None, start: float, end: float, y: tuple[float, ...]
+        self, status: Status, start: float, end: float, y: tuple[float, ...]
     ) -> NotFinishedError:
-        assert status is not None
         detail = diagnosis(self._problem_of(start, end)) if status is Status.NOT_FINITE else ""
         if detail:
             status = Status.UNSTABLE

@@ -43,6 +43,11 @@ class Status(Enum):
         "small w"
     )
 
+    @property
+    def without_events(self) -> "Status":
+        """The status if no events were requested: a limit of a coordinate ended the motion."""
+        return Status.OUTSIDE_DOMAIN if self is Status.EVENT else self
+
 
 @dataclass(frozen=True, repr=False)
 class Solution:

@@ -100,8 +100,6 @@ class Tangents:
         return np.array(ends)
 
     def _check(self, status: Status | None, t: float, end: Array) -> None:
-        if status is Status.EVENT:  # the only events are limits of coordinates
-            status = Status.OUTSIDE_DOMAIN
+        assert status is not None
         if status is not Status.FINISHED:
-            assert status is not None
-            raise NotFinishedError(status, t, tuple(end[: len(self.y)].tolist()))
+            raise NotFinishedError(status.without_events, t, tuple(end[: len(self.y)].tolist()))
