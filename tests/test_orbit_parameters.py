@@ -201,6 +201,23 @@ def test_orbits_of_one_period_in_a_parameter() -> None:
         assert orbit.period == pytest.approx(exact, rel=1e-11)
 
 
+def test_subharmonic_responses_form_a_closed_family() -> None:
+    def period(by_name: Mapping[str, float]) -> float:
+        return 6 * np.pi / by_name["Omega"]
+
+    params = {"c": 0.02, "F": 1.0, "Omega": 4.5}
+    start = periodic_orbit(duffing, {"x": 1.3}, period(params), params)
+    family = orbit_family(duffing, start, "Omega", period=period)
+    assert family.ends == ("closed", "closed")
+    low, high = sorted(point.orbit.params[5] for point in family.special)
+    assert family.values.min() >= low
+    assert family.values.max() <= high
+    for point in family.special:
+        assert point.kind == "turning point"
+        matrix = differences(point.orbit.y, point.orbit.period, duffing, point.orbit.params)
+        assert np.linalg.det(matrix - np.eye(2)) == pytest.approx(0.0, abs=1e-6)
+
+
 @pytest.mark.parametrize(
     ("module", "params", "y", "symmetry", "parameter"),
     [

@@ -58,7 +58,9 @@ class OrbitFamily:
     special : list of SpecialOrbit
         Special points, in the same order.
     ends : pair of str
-        Why the family ends at its first and its last orbit.
+        Why the family ends at its first and its last orbit: ``start``, ``bound``, ``longest
+        period``, ``equilibrium``, ``closed``, ``number of orbits``, ``no orbit in the shortest
+        step``, or that perturbations grow too much for their multipliers to be known.
     """
 
     module: GeneratedModule

@@ -137,7 +137,9 @@ def orbit_family(
     back = replace(first, tangent=-first.tangent, reference=-first.reference)
     follow = partial(walk, first.curve, limits=limits, branches_off=isinstance(start, SpecialOrbit))
     ahead = follow(first) if direction >= 0 else Walk([], end="start")
-    behind = follow(back) if direction <= 0 else Walk([], end="start")
+    behind = Walk([], end="closed" if ahead.end == "closed" else "start")
+    if direction <= 0 and ahead.end != "closed":
+        behind = follow(back)
     return _family(module, parameter, behind, first, ahead)
 
 
