@@ -72,6 +72,24 @@ def test_the_extension_of_a_lower_order_would_not_be(method: str) -> None:
     assert errors[1] > 10 * errors[0]
 
 
+@pytest.mark.parametrize("backend", ["compiled", "lanes"])
+@pytest.mark.parametrize("method", METHODS)
+@ignore_predictability()
+def test_compiled_samples_of_a_long_step_are_those_in_python(method: str, backend: str) -> None:
+    # the order of the extension in Python is tested beside its order conditions; each of its rounds
+    # changes these samples by 1e-8 or more
+    h, start = 0.3, STARTS[dp]
+    times = np.linspace(0, h, 9)[1:-1]
+    options = {"method": method, "h": h, "t_eval": times, "form": "lagrangian"}
+    expected = integrate(dp, (0, h), start, dp.DEFAULTS, backend="python", **options).y
+    if backend == "lanes":
+        starts = np.array([start, start]).T
+        found = ensemble(dp, (0, h), starts, dp.DEFAULTS, **options).samples[:, 0]
+    else:
+        found = integrate(dp, (0, h), start, dp.DEFAULTS, backend=backend, **options).y
+    assert found == pytest.approx(expected, abs=1e-13)
+
+
 @pytest.mark.parametrize("backend", ["python", "compiled", "lanes"])
 @pytest.mark.parametrize("method", METHODS)
 @ignore_predictability()
