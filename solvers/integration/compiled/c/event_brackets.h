@@ -14,12 +14,17 @@ static __attribute__((noinline)) void extend_steps(
     extend(start, end, result, lanes->h, params, changes);
     for (int e = 0; e < task->event_count && any(several); e++) {
         const Event *event = &task->events[e];
-        real *coefficients = workspace->coefficients[e];
+        real coefficients[EXTENSION_DEGREE + 1];
+        memcpy(coefficients, workspace->coefficients[e], sizeof coefficients);
         if (ROUNDS > 0 && !event->is_switch) {
             extended_polynomial(event, start, changes, lanes->before[e], coefficients);
         }
         switching_polynomial(event, start, end, lanes->h, params, lanes->before[e],
                              lanes->after[e], EXTENSION_DEGREE, coefficients);
+        for (int k = 0; k <= EXTENSION_DEGREE; k++) {   /* other lanes keep their polynomials */
+            real *kept = &workspace->coefficients[e][k];
+            *kept = select(lanes->several[e], coefficients[k], *kept);
+        }
     }
     if (any(lanes->dense)) {
         extended_states(changes, lanes->dense, workspace->states);
