@@ -19,8 +19,7 @@ from solvers.sweeps.maps import Map, Motions
 class First(Map):
     """Time in s at which one of the components `of` first crosses one of its values.
 
-    Two crossings within one step are not detected. Motions with less energy than every position
-    at rest of a `barrier` are not integrated.
+    Motions with less energy than every position at rest of a `barrier` are not integrated.
 
     Parameters
     ----------
