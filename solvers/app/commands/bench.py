@@ -9,7 +9,7 @@ from typing import Any
 from solvers.app.commands import options
 
 SUMMARY = "time compiled loops and other programs"
-PARTS = ("pendulum", "starts", "precision", "events", "pipelines", "chains", "maps")
+PARTS = ("pendulum", "starts", "precision", "events", "fits", "pipelines", "chains", "maps")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -59,6 +59,7 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
         chains,
         double_pendulum,
         events,
+        fits,
         flip_maps,
         pipeline,
         precision,
@@ -80,6 +81,9 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
         case "events":
             crossings = events.figures(module, peer("heyoka"))
             return crossings, events.summary(crossings)
+        case "fits":
+            programs = fits.figures(module, peer)
+            return programs, fits.summary(programs)
         case "pipelines":
             rows = pipeline.pipelines(module, peer, timing.chain, timing.mechanics)
             return rows, [*pipeline.summary(rows), ""]

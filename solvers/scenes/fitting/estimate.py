@@ -6,15 +6,20 @@ import numpy as np
 
 from solvers.equations.quantities import Array
 from solvers.scenes.fitting.experiment import Experiment
-from solvers.scenes.fitting.least_squares import Minimum, NotConvergedError, minimise
+from solvers.scenes.fitting.least_squares import Linear, Minimum, NotConvergedError, minimise
 from solvers.scenes.fitting.relaxation import relaxed
 from solvers.scenes.fitting.starts import first_nodes
-from solvers.scenes.fitting.statistics import covariance, leverages
+from solvers.scenes.fitting.statistics import autocorrelation, covariance, leverages
 
 #: Estimates of the noise of several outputs, each with the fit weighted by the one before.
 MOST_WEIGHTINGS, SUFFICIENT = 10, 0.01
-#: Mean square of residuals, in units of their rough noise, below which no other guess is tried.
-GOOD = 9.0
+#: Gauss-Newton steps before gaps are relaxed.
+FEW = 6
+#: Mean squares of residuals, in units of their rough noise, of a minimum that needs no relaxation,
+#: and of one after which no other guess is tried.
+SMALL, GOOD = 2.0, 9.0
+#: Largest autocorrelation of noise, in standard errors.
+INDEPENDENT = 4.0
 #: Largest standard error of a value that counts as determined, in units of the value.
 LARGEST_ERROR = 1e3
 
@@ -68,15 +73,8 @@ def estimate(experiment: Experiment, start: Array, guess: Array) -> Estimate:
             "or let fewer parameters be unknown"
         )
     noise = experiment.first_noise()
-    positive, iterations, least = experiment.positive, 0, np.inf
-    for first in first_nodes(experiment, start, guess, noise):
-        size = np.maximum(np.sqrt(np.mean(first**2, axis=0)), 1e-6)
-        trial = relaxed(experiment.linearise(noise), first, guess, positive, size)
-        if trial.squares < least:
-            nodes, params, least, scale = trial.nodes, trial.params, trial.squares, size
-            linear = trial.linear
-        if least < GOOD * counts.sum():
-            break
+    nodes, params, linear, scale = _near(experiment, start, guess, noise)
+    positive, iterations = experiment.positive, 0
     for _ in range(MOST_WEIGHTINGS):
         linearise = experiment.linearise(noise)
         minimum = minimise(linearise, nodes, params, positive, scale, linear)
@@ -104,6 +102,40 @@ def estimate(experiment: Experiment, start: Array, guess: Array) -> Estimate:
         experiment.first_noise(),
         iterations,
     )
+
+
+def _near(
+    experiment: Experiment, start: Array, guess: Array, noise: Array
+) -> tuple[Array, Array, Linear | None, Array]:
+    """Nodes and unknown parameters near the minimum, residuals there, and sizes of the state.
+
+    Where a few steps from the first guess do not lead there, gaps are relaxed.
+    """
+    linearise, positive = experiment.linearise(noise), experiment.positive
+    best, least = None, np.inf
+    for nodes in first_nodes(experiment, start, guess, noise):
+        scale = np.maximum(np.sqrt(np.mean(nodes**2, axis=0)), 1e-6)
+        try:
+            direct = minimise(linearise, nodes, guess, positive, scale, most=FEW)
+            if _is_noise(experiment, direct.linear):
+                return direct.nodes, direct.params, direct.linear, scale
+        except NotConvergedError:
+            pass
+        trial = relaxed(linearise, nodes, guess, positive, scale)
+        if best is None or trial.squares < least:
+            best, least = (trial.nodes, trial.params, trial.linear, scale), trial.squares
+        if least < GOOD * experiment.counts.sum():
+            break
+    assert best is not None
+    return best
+
+
+def _is_noise(experiment: Experiment, linear: Linear) -> bool:
+    """Whether residuals are as small as the rough noise, and independent of each other."""
+    rows = np.moveaxis(linear.residuals.reshape(experiment.masks.shape), 1, 0)
+    count = experiment.counts.sum()
+    parts = [autocorrelation([row.ravel()], 2)[1] * np.sqrt(np.count_nonzero(row)) for row in rows]
+    return linear.squares < SMALL * count and max(map(abs, parts)) < INDEPENDENT
 
 
 def _noise(experiment: Experiment, minimum: Minimum, before: Array) -> Array:

@@ -13,7 +13,7 @@ from solvers.scenes.fitting.measurement import Measurement, Outputs, wrapped
 from solvers.scenes.fitting.shooting import Arcs, Segment, Shooting, segments
 
 #: Most segments of a run, fewest samples of one, and fewest values for a component of the state.
-MOST_SEGMENTS, FEWEST_SAMPLES, FEWEST_VALUES = 100, 5, 3
+MOST_SEGMENTS, FEWEST_SAMPLES, FEWEST_VALUES = 200, 5, 3
 #: Smallest standard deviation of the noise, as a part of the spread of the values.
 LEAST_NOISE = 1e-6
 

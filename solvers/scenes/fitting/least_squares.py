@@ -20,7 +20,9 @@ from solvers.integration.prepare import NotFinishedError
 MOST_ITERATIONS, MOST_HALVINGS = 100, 12
 #: Decrease of the sum of squares by a step, as a part of it and for each value, and gaps in units
 #: of the state, below which the iteration ends.
-DECREASE, ROUNDING, CLOSED = 1e-8, 1e-10, 1e-8
+DECREASE, ROUNDING, CLOSED = 1e-12, 1e-12, 1e-8
+#: Decrease below which it may stagnate: values change by a thirtieth of their errors.
+STAGNANT = 1e-3
 
 Flags = NDArray[np.bool_]
 
@@ -123,7 +125,8 @@ def condensed(linear: Linear, u: int) -> Step:
     residuals = rows @ np.append(change, 1.0)
     moves = maps @ np.append(change, 1.0)
     predicted = float(residuals @ residuals)
-    return Step(moves, change[columns - u :], predicted, triangle * scale, maps[:, :, :columns])
+    triangle = triangle * scale
+    return Step(moves, change[columns - u :], predicted, triangle, maps[:, :, :columns])
 
 
 @dataclass(frozen=True)
@@ -144,23 +147,28 @@ def minimise(
     positive: Flags,
     scale: Array,
     linear: Linear | None = None,
+    most: int | None = None,
 ) -> Minimum:
     """Nodes and parameters that minimise the sum of squares, with continuous motions.
 
     `linearise` returns residuals at nodes of shape (segments, state) and unknown parameters, and
     `linear` those of the first guess if they are known; `positive` tells which parameters are;
-    `scale` has the sizes of the state's components.
+    `scale` has the sizes of the state's components; `most` iterations are done.
     """
     try:
         linear = linear or linearise(nodes, params)
     except NotFinishedError as error:
         raise NotConvergedError(f"the motion of the first guess ends: {error}") from error
-    weight, u = 0.0, len(params)
+    weight, before, u = 0.0, np.inf, len(params)
     step, squares, gaps = condensed(linear, u), linear.squares, _gaps(linear, scale)
-    for iteration in range(MOST_ITERATIONS):
+    for iteration in range(most := most or MOST_ITERATIONS):
         values = np.count_nonzero(linear.residuals)
         is_closed = gaps <= CLOSED * len(nodes)
-        if is_closed and squares - step.predicted <= DECREASE * squares + ROUNDING * values:
+        # rounding errors, which chaotic motions amplify, let it stagnate
+        decrease = abs(squares - step.predicted)
+        is_stagnant = before / 2 < decrease < STAGNANT
+        before = decrease
+        if is_closed and (is_stagnant or decrease <= DECREASE * squares + ROUNDING * values):
             return Minimum(nodes, params, linear, step, iteration)
         if gaps:  # so that the penalty function decreases along the step
             weight = max(weight, 2 * (step.predicted - squares) / gaps)
@@ -184,7 +192,7 @@ def minimise(
             )
         (nodes, params), linear = trial, accepted
         step, squares, gaps = condensed(linear, u), linear.squares, _gaps(linear, scale)
-    raise NotConvergedError(f"no minimum after {MOST_ITERATIONS} iterations: give a better guess")
+    raise NotConvergedError(f"no minimum after {most} iterations: give a better first guess")
 
 
 def _gaps(linear: Linear, scale: Array) -> float:

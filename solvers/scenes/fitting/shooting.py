@@ -19,6 +19,8 @@ from solvers.integration.solution import Status
 
 #: Method and tolerances.
 METHOD, RTOL, ATOL = "verner853", 1e-9, 1e-9
+#: Most steps of a segment: parameters that make a motion wild are not tried for long.
+MOST_STEPS = 10_000
 #: Samples of all motions below which threads take longer than they save.
 FEW = 2000
 Flags = NDArray[np.bool_]
@@ -79,7 +81,7 @@ class Shooting:
     ) -> None:
         self._unknown, self._n = [*unknown], len(module.STATE)
         times = [time for segment in segments for time in (segment.begin, segment.end)]
-        options = Options(METHOD, "sensitivity", RTOL, ATOL)
+        options = Options(METHOD, "sensitivity", RTOL, ATOL, max_steps=MOST_STEPS)
         problem = validation.problem_at_rest(module, (min(times), max(times)), options)
         if problem.form.switching_count:
             raise ValueError(

@@ -36,26 +36,42 @@ def first_nodes(
 
 
 def _from_coordinates(experiment: Experiment, rows: dict[str, int]) -> Array:
-    module, nodes = experiment.module, []
-    n = len(module.COORDINATES)
-    for segment in experiment.segments:
-        t, table = experiment.runs[segment.run].t, experiment.tables[segment.run]
-        node = np.zeros(2 * n)
+    module, n = experiment.module, len(experiment.module.COORDINATES)
+    nodes = np.zeros((len(experiment.segments), 2 * n))
+    for run, (measurement, table) in enumerate(
+        zip(experiment.runs, experiment.tables, strict=True)
+    ):
+        own = [k for k, segment in enumerate(experiment.segments) if segment.run == run]
+        begins = np.array([experiment.segments[k].begin for k in own])
         for k, name in enumerate(module.STATE):
-            if name not in rows or (k >= n and not np.isfinite(table[rows[name]]).any()):
-                continue
-            finite = np.flatnonzero(np.isfinite(table[rows[name]]))
-            nearest = finite[np.argsort(np.abs(t[finite] - segment.begin), kind="stable")[:SAMPLES]]
-            times, degree = t[nearest] - segment.begin, min(2, len(nearest) - 1)
-            powers = (times[:, np.newaxis] / (span := np.ptp(times) or 1.0)) ** np.arange(
-                degree + 1
-            )
-            value, *slopes = np.linalg.lstsq(powers, table[rows[name], nearest], rcond=None)[0]
-            node[k] = value
-            if k < n and slopes:
-                node[n + k] = slopes[0] / span
-        nodes.append(node)
-    return np.array(nodes)
+            finite = np.isfinite(table[rows[name]]) if name in rows else np.array([False])
+            if finite.any():
+                t, values = measurement.t[finite], table[rows[name], finite]
+                value, slope = _parabolas(t, values, begins)
+                nodes[own, k] = value
+                if k < n:
+                    nodes[own, n + k] = slope
+    return nodes
+
+
+def _parabolas(t: Array, values: Array, begins: Array) -> tuple[Array, Array]:
+    """Values and slopes, at some times, of parabolas through the samples around them."""
+    count = min(SAMPLES, len(t))
+    # a window that is near and has no gap, beyond which angles may be wrong by whole turns
+    starts = np.searchsorted(t, begins)[:, np.newaxis] - np.arange(count + 1)
+    starts = np.clip(starts, 0, len(t) - count)
+    begins = begins[:, np.newaxis]
+    left, right = t[starts], t[starts + count - 1]
+    extents = right - left + np.maximum(abs(left - begins), abs(right - begins))
+    first = np.take_along_axis(starts, extents.argmin(axis=1)[:, np.newaxis], axis=1)
+    near = first + np.arange(count)
+    times = t[near] - begins
+    span = np.ptp(times, axis=1)
+    span[span == 0] = 1.0
+    powers = (times / span[:, np.newaxis])[:, :, np.newaxis] ** np.arange(min(3, count))
+    fits = np.linalg.pinv(powers) @ values[near][:, :, np.newaxis]
+    slopes = fits[:, 1, 0] / span if count > 1 else np.zeros(len(begins))
+    return fits[:, 0, 0], slopes
 
 
 def _from_fits(
