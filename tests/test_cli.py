@@ -135,7 +135,9 @@ def test_an_unknown_command_or_option_is_invalid_input(capsys: pytest.CaptureFix
     with pytest.raises(SystemExit, match="2"):
         main(["verify", "--yaml"])
     assert main(["bench", "chain"]) == 2
-    assert "PART must be one of pendulum, starts, precision, events, fits, pip" in capsys.readouterr().err
+    assert (
+        "PART must be one of pendulum, starts, precision, events, fits" in capsys.readouterr().err
+    )
 
 
 def test_verify_prints_json_with_every_verdict(
