@@ -132,11 +132,19 @@ def test_its_keys_are_checked_and_an_unknown_kind_lists_it(kind: str, tmp_path: 
             find(str(path), load_module)
 
 
+DRIVEN = """
+system = "duffing"
+initial = { x = 0.0 }
+axes.Omega = { from = 1, to = 2, count = 3 }
+"""
+
+
 @pytest.mark.parametrize("name", map_kinds.names())
 def test_the_example_of_a_kind_is_valid(name: str, tmp_path: Path) -> None:
     example = map_kinds.load(name).example
     comma = ", " if example else ""
-    head = FILE.partition("[maps.speed]")[0]
+    is_driven = "every" in example
+    head = DRIVEN if is_driven else FILE.partition("[maps.speed]")[0]
     path = tmp_path / "mine.toml"
     path.write_text(f'{head}[maps]\nexample = {{ kind = "{name}"{comma}{example} }}\n')
     definition = find(str(path), load_module)

@@ -19,6 +19,7 @@ from derive import Coordinate, Derivation, Parameter, PointMass, System, load, n
 from derive.codegen.functions import Function, contents
 from derive.codegen.writing import texts
 from solvers.equations.forms import Form
+from solvers.equations.module import parameter_names
 
 GENERATED = Path(__file__).parent.parent / "generated"
 STRICT = ["-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic", "-ffp-contract=off"]
@@ -71,7 +72,7 @@ def cases(module: ModuleType, form: str) -> list[tuple[list[float], list[float]]
     found = []
     for _ in range(50):
         y = [generator.uniform(-7, 7) for _ in range(n)]
-        params = [generator.uniform(0.2, 3) for _ in module.PARAMETERS]
+        params = [generator.uniform(0.2, 3) for _ in parameter_names(module, form)]
         if form != "parameters":
             equations = Form(module, form, params)
             y = equations.from_ordinary(0.0, np.array(y[: len(equations.ordinary)])).tolist()

@@ -11,12 +11,12 @@ Mechanics, chapter VI, for time as a coordinate).
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from derive.mechanics.equations import Equations
 from derive.mechanics.equilibria import equilibria
-from derive.mechanics.identifiability import Identifiability, identifiability
 from derive.mechanics.independence import check_independence
 from derive.mechanics.linearisation import Energies, Linearisation
 from derive.mechanics.outputs import outputs as output_formulas
@@ -25,6 +25,9 @@ from derive.system.parts import SystemDefinitionError, formula
 from derive.system.prescribed import motions
 from derive.system.system import as_system
 from solvers.io.suggestion import did_you_mean
+
+if TYPE_CHECKING:
+    from derive.mechanics.identifiability import Identifiability
 
 
 @dataclass(frozen=True)
@@ -123,7 +126,7 @@ class Derivation(Equations):
         self,
         unknown: Sequence[str] | None = None,
         outputs: Sequence[Formula] | None = None,
-    ) -> Identifiability:
+    ) -> "Identifiability":
         """Which parameters a measurement of outputs determines, decided from the equations.
 
         Parameters
@@ -160,6 +163,9 @@ class Derivation(Equations):
                 )
         symbols = [known[name] for name in (known if unknown is None else unknown)]
         formulas = self.system.q if outputs is None else output_formulas(self, outputs)
+        # loads NumPy, which derivations do not need
+        from derive.mechanics.identifiability import identifiability
+
         return identifiability(self.system, self.mass_matrix, self.forcing, formulas, symbols)
 
     def equilibria(self, at: Mapping[str, Formula] | None = None) -> list[dict[sp.Symbol, sp.Expr]]:

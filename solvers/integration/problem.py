@@ -89,6 +89,8 @@ class Problem:
     @property
     def switches(self) -> list[Switch]:
         """Events that end steps where switching functions, whose signs are held, are 0."""
+        if not self.levels:  # a specialised module may have one form only
+            return []
         lagrangian = self.form.in_form("lagrangian")
         return [Switch(lagrangian, k, level) for k, level in enumerate(self.levels)]
 

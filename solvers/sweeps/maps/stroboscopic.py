@@ -42,7 +42,7 @@ class Stroboscopic(CountedMap):
     phase: float = 0.0
     skip: int = 0
 
-    example = 'of = ["theta"], count = 200, every = "2*pi/Omega", phase = "90 deg", skip = 100'
+    example = 'of = ["x"], count = 200, every = "2*pi/Omega", phase = "90 deg", skip = 100'
     plot = "section"
     wraps_angles = True
 

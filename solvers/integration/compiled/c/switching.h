@@ -8,8 +8,9 @@
    signs in turn are at 0. */
 enum { MOST_CHANGES = 20, BRIEF = 100, MOST_BRIEF_PARTS = 20 };
 
-/* Stands for the failures of a step, where no signs agree with their rates. */
-enum { IS_UNDETERMINED = 1000 };
+/* Stand for the failures of a step, where a function has no value, and where no signs agree with
+   their rates. */
+enum { HAS_NO_VALUE = 999, IS_UNDETERMINED = 1000 };
 
 static void slide_with(const Motion *motion, int lane, const double *signs, Sliding *sliding)
 {
@@ -154,6 +155,10 @@ static void start_signs(Motion *motion, int lane)
         slide_with(motion, lane, signs, &sliding);
         for (int k = 0; k < SWITCHES; k++) {
             const double value = LANE(sliding.values[k], lane);
+            if (isnan(value)) {
+                LANE(motion->reductions, lane) = HAS_NO_VALUE;
+                return;
+            }
             is_active[k] = stays[k] || value == 0;
             signs[k] = is_active[k] ? signs[k] : copysign(1.0, value);
         }
