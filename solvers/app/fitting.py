@@ -78,7 +78,7 @@ def fit(
     >>> noise = np.random.default_rng(0).normal(size=len(t))
     >>> result = fit(sp, {"t": t, "theta [deg]": np.degrees(motion.y[0]) + noise})
     >>> result
-    Fit of single_pendulum to 1 run: l = 0.699773 ± 0.00024
+    Fit of single_pendulum to 1 run: l = 0.700832 ± 0.00063
     """
     module, start, values = _model(model)
     values |= dict(zip(module.PARAMETERS, validation.parameters(module, values | dict(params or {}))
