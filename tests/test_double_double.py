@@ -11,8 +11,8 @@ import generated.cart_3 as cart
 import generated.coupled_pendulums as coupled
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.double_double import DoubleDouble, right_hand_side
+from solvers.integration.compiled.equations_source import Equations
 from solvers.integration.compiled.extended_source import NotArithmeticError
-from solvers.integration.compiled.kernel_source import Equations
 from solvers.integration.compiled.layout import SOURCES
 from solvers.integration.compiled.native import equations
 

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from solvers import ensemble
 from solvers.app.modules import load as load_module
 from solvers.integration.compiled.compiler import build
-from solvers.integration.compiled.kernel_source import _source
+from solvers.integration.compiled.layout import source
 
 MANY = """
 void many(const double *x, double *sines, double *cosines, int64_t n);
@@ -49,7 +49,7 @@ position = ["x", "0"]
 
 @pytest.fixture(scope="module")
 def many() -> ctypes.CDLL:
-    files = map(_source, ("lanes.h", "lane_functions.h"))
+    files = map(source, ("lanes.h", "lane_functions.h"))
     text = "\n".join(["#define HOLONOMIC_VECTOR", "#include <string.h>", *files, MANY])
     return build(text).functions
 

@@ -32,6 +32,7 @@ RESERVED = {
     # macros of the compiled loops; a header of the system `lane` would define functions of theirs
     *"ONE_LANE LANE MASK_LANE RHS JACOBIAN COMPENSATED HAS_POLYNOMIAL INTERPOLATES".split(),
     *"VARIES_ORDER HAS_SWITCHES SWITCHING PART PERTURBED HAS_JACOBIAN".split(),
+    *"LANE_BY_LANE PAIR_BY_PAIR SINE_OR_COSINE".split(),
     *"SMOOTH_RHS SMOOTH_JACOBIAN".split(),
     *"lane holonomic".split(),
 }

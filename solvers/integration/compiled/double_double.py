@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal, localcontext
 from functools import singledispatchmethod
 
+from solvers.integration.compiled.equations_source import Equations
 from solvers.integration.compiled.extended_source import (
     NotArithmeticError,
     Precision,
     coefficients_of,
-    source,
 )
-from solvers.integration.compiled.kernel_source import Equations
+from solvers.integration.compiled.layout import source
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS
 
 FUNCTION = """\

@@ -12,8 +12,8 @@ from decimal import Decimal, localcontext
 
 from solvers.equations.forms import Form
 from solvers.equations.module import BINARY, ELEMENTARY
-from solvers.integration.compiled.kernel_source import Equations
-from solvers.integration.compiled.layout import SOURCES, sizes_and_statuses
+from solvers.integration.compiled.equations_source import Equations
+from solvers.integration.compiled.layout import sizes_and_statuses, source
 from solvers.runge_kutta.collocation import collocation, gauss_nodes
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS
 
@@ -177,11 +177,6 @@ class Sequential(Precision):
                 *(self.lower.array(f"LOWER_{name}", arrays[name]) for name in arrays),
             ]
         )
-
-
-def source(name: str) -> str:
-    """The text of a handwritten file."""
-    return (SOURCES / name).read_text(encoding="utf-8")
 
 
 def coefficients_of(stages: int) -> dict[str, Sequence[Sequence[Decimal]]]:

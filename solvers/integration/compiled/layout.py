@@ -27,6 +27,11 @@ MEMBER = re.compile(rf"    {TYPE} (\*?)(\w+)(?:\[(\w+)\])?; *(?:/\*.*\*/)?")
 Member = tuple[str, str, str]
 
 
+def source(name: str) -> str:
+    """The text of a handwritten C file."""
+    return (SOURCES / name).read_text(encoding="utf-8")
+
+
 class LayoutError(RuntimeError):
     """C and Python disagree about the layout of a structure; the message names it."""
 
@@ -61,7 +66,7 @@ def sizes_and_statuses(sizes: Mapping[str, int]) -> str:
 
 
 def _text() -> str:
-    return (SOURCES / "layout.h").read_text(encoding="utf-8")
+    return source("layout.h")
 
 
 def record(structure: str, sizes: Mapping[str, int]) -> np.dtype[np.void]:

@@ -13,7 +13,7 @@ from solvers.equations.module import (
     switching_functions,
 )
 from solvers.integration.compiled.compiler import Library, build
-from solvers.integration.compiled.kernel_source import Equations
+from solvers.integration.compiled.equations_source import Equations
 
 WRAPPER = """
 void rhs(double t, const double *y, double *dy, const double *params);

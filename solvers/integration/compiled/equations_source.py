@@ -1,0 +1,178 @@
+"""The equations of a system in a C program."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from solvers.integration.compiled.layout import MAX_EVENTS, source
+from solvers.runge_kutta.tableau import Tableau
+
+EQUATIONS = """\
+#define HOLONOMIC_REAL real
+{signs}{header}
+#define {smooth}RHS {rhs}
+#define {smooth}JACOBIAN {jacobian}
+#define HAS_SWITCHES {has_switches}
+"""
+
+#: Definitions for equations with switching functions.
+SLIDING = """\
+#define SWITCHING {switching}
+#define PERTURBED {perturbed}
+#define HAS_JACOBIAN {has_jacobian}
+static const int VELOCITY[] = {{{velocities}}}, PERTURBATION[] = {{{perturbations}}};
+{sliding_h}"""
+
+#: Switching functions of a state with momenta.
+SWITCHING_OF_MOMENTA = """
+static void switching_of_momenta(real t, const real *z, const real *params, real *result)
+{{
+    real y[{state}];
+    {system}_lagrangian_state(t, z, params, y);
+    {system}_switches(t, y, params, result);
+}}
+"""
+
+#: Equations of one motion, whose stages are evaluated in the lanes of a vector.
+STAGE_VECTORS = """\
+typedef double stage_vector __attribute__((vector_size(8*STAGES)));
+typedef int64_t stage_mask __attribute__((vector_size(8*STAGES)));
+#define HOLONOMIC_REAL {real}
+{header}
+{rhs_h}
+"""
+
+VECTOR_RHS = """\
+static inline void stage_derivatives(
+    stage_vector t, const stage_vector *z, const stage_vector *params, stage_vector *k)
+{{
+    {rhs}(t, z, params, k);
+}}
+
+static void RHS(double t, const double *z, const double *params, double *derivative)
+{{
+    stage_vector all_params[{parameters} + 1], all_z[{state}], k[{state}];
+    for (int p = 0; p < {parameters}; p++) {{
+        all_params[p] = (stage_vector){{0}} + params[p];
+    }}
+    for (int n = 0; n < {state}; n++) {{
+        all_z[n] = (stage_vector){{0}} + z[n];
+    }}
+    {rhs}((stage_vector){{0}} + t, all_z, all_params, k);
+    for (int n = 0; n < {state}; n++) {{
+        derivative[n] = k[n][0];
+    }}
+}}
+"""
+
+#: The right-hand side calls functions of the mathematical library.
+SCALAR_RHS = """\
+#define RHS {rhs}
+static void stage_derivatives(
+    stage_vector t, const stage_vector *z, const stage_vector *params, stage_vector *k)
+{{
+    double numbers[{parameters} + 1], state[{state}], derivative[{state}];
+    for (int p = 0; p < {parameters}; p++) {{
+        numbers[p] = params[p][0];
+    }}
+    for (int i = 0; i < STAGES; i++) {{
+        for (int n = 0; n < {state}; n++) {{
+            state[n] = z[n][i];
+        }}
+        RHS(t[i], state, numbers, derivative);
+        for (int n = 0; n < {state}; n++) {{
+            k[n][i] = derivative[n];
+        }}
+    }}
+}}
+"""
+
+
+@dataclass(frozen=True)
+class Equations:
+    """One form of a system's equations in C; `state`, `parameters` and `ordinary` are sizes."""
+
+    header: str  # text of the generated header
+    rhs: str  # names of the right-hand side and its Jacobian, which not every form has
+    jacobian: str
+    state: int
+    parameters: int
+    ordinary: int
+    angles: Sequence[tuple[int, int]]  # indices of the sine, before the cosine, and the velocity
+    from_ordinary: Sequence[str]  # statements: state z and turns from the ordinary state y
+    to_ordinary: Sequence[str]  # and y from these
+    vectorises: bool  # the right-hand side calls no function of the mathematical library
+    switches: int = 0  # switching functions, whose signs are held after the parameters
+    perturbed: Sequence[tuple[int, int]] = ()  # indices of each velocity and its perturbation
+
+    @property
+    def switching(self) -> str:
+        """The name of the function of switching functions and their rates."""
+        system, _, form = self.rhs.partition("_rhs")
+        return "switching_of_momenta" if form == "_hamiltonian" else f"{system}_switches{form}"
+
+    @property
+    def switching_of_momenta(self) -> str:
+        """Its definition, if the state contains momenta."""
+        system, _, form = self.rhs.partition("_rhs")
+        if not self.switches or form != "_hamiltonian":
+            return ""
+        return SWITCHING_OF_MOMENTA.format(system=system, state=self.state)
+
+    def sizes(self, tableau: Tableau, *, compensated: bool, variations: int) -> dict[str, int]:
+        """Numbers of components of the arrays in ``layout.h``."""
+        return {
+            "DIM": self.state,
+            "LOW_DIM": compensated * self.state,
+            "FSAL_DIM": tableau.is_fsal * self.state,
+            "ANGLES": len(self.angles),
+            "PARAMETERS": self.parameters + 2 * self.switches,
+            "SWITCHES": self.switches,
+            "POLYNOMIAL_DIM": (not tableau.is_explicit) * tableau.stages * self.state,
+            "LENGTHS": int(not tableau.is_explicit),
+            "ORIGINS": int(tableau.is_parallel),
+            "JACOBIANS": int(tableau.needs_jacobian),
+            "JACOBIAN_DIM": tableau.needs_jacobian * self.state,
+            "VARIABLE_ORDERS": int(bool(tableau.lower)),
+            "VARIATIONS": variations,
+            "SCALES": int(variations > 0),
+            "MAX_EVENTS": MAX_EVENTS,
+        }
+
+
+def equations_text(equations: Equations, tableau: Tableau) -> str:
+    """The right-hand side, in numbers or in vectors of stages."""
+    if not tableau.is_parallel:
+        return EQUATIONS.format(
+            jacobian=equations.jacobian,
+            signs="#define HOLONOMIC_SIGNS\n" if equations.switches else "",
+            smooth="SMOOTH_" if equations.switches else "",
+            has_switches=int(equations.switches > 0),
+            rhs=equations.rhs,
+            header=equations.header + equations.switching_of_momenta,
+        )
+    # functions that convert states of a single motion take numbers, not vectors
+    converts = any("_state(" in line for line in equations.from_ordinary)
+    vectors = equations.vectorises and not converts
+    text = VECTOR_RHS if vectors else SCALAR_RHS
+    real = "stage_vector\n#define HOLONOMIC_VECTOR" if vectors else "double"
+    sizes = {"state": equations.state, "parameters": equations.parameters}
+    return STAGE_VECTORS.format(
+        real=real,
+        header=equations.header,
+        rhs_h=text.format(rhs=equations.rhs, **sizes),
+    )
+
+
+def sliding_text(equations: Equations, tableau: Tableau) -> str:
+    """The functions by which a motion stays on jumps of forces."""
+    if not equations.switches:
+        return ""
+    velocities, perturbations = zip(*equations.perturbed or [(0, 0)], strict=True)
+    return SLIDING.format(
+        switching=equations.switching,
+        perturbed=len(equations.perturbed),
+        has_jacobian=int(tableau.needs_jacobian),
+        velocities=", ".join(map(str, velocities)),
+        perturbations=", ".join(map(str, perturbations)),
+        sliding_h=source("sliding.h"),
+    )

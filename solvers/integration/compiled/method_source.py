@@ -1,0 +1,171 @@
+"""A method in a C program: its stages, written out from the tableau, and continuous extension."""
+
+from collections.abc import Iterable, Sequence
+
+from solvers.integration.compiled.implicit_source import IMPLICIT_FILES, implicit
+from solvers.integration.compiled.layout import source
+from solvers.integration.compiled.literals import real, row
+from solvers.runge_kutta.continuous_extension import ContinuousExtension, elevated
+from solvers.runge_kutta.order_conditions import Number
+from solvers.runge_kutta.parallel_stages import (
+    error_power,
+    legendre_matrix,
+    symplectic_ratios,
+)
+from solvers.runge_kutta.tableau import Tableau
+
+CONSTANTS = """\
+/* {title} */
+#define VARIES_ORDER {varies_order}
+enum {{ STAGES = {stages}, IS_FSAL = {is_fsal}, IS_EXPLICIT = {is_explicit} }};
+enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
+enum {{ ENDS = {ends}, LEAST_SAMPLES = {least_samples} }};
+"""
+
+METHOD = """\
+{solution}
+
+{sums}
+
+{sequential_h}"""
+
+PARALLEL = """\
+static const stage_vector RATIOS[STAGES] = {{
+{ratios}
+}}, LEGENDRE[STAGES] = {{
+{legendre}
+}};
+static const stage_vector NODES = {{{nodes}}}, WEIGHTS = {{{weights}}};
+static const double ERROR_POWER = {error_power};
+{files}"""
+
+PARALLEL_FILES = ("stage_vectors.h", "parallel_stages.h", "parallel.h")
+
+#: Matrices of the continuous extension: columns of the first and last, rows of
+#: others. Each method of a family has a natural extension.
+EXTENSION = """\
+enum {{ DEGREE = {degree}, ROUNDS = {rounds}, EXTENSION_NODES = {nodes} }};
+static const int STAGES_OF[] = {{{stages}}};
+static const double NATURAL[][STAGES + ENDS][DEGREE + 1] = {{
+{natural}
+}};
+static const double EXTENSION_C[EXTENSION_NODES] = {{{c}}};
+static const double FIRST[EXTENSION_NODES][STAGES] = {{
+{first}
+}};
+static const double INTEGRALS[EXTENSION_NODES][EXTENSION_NODES] = {{
+{integrals}
+}};
+static const double EXTENDED[EXTENSION_NODES][EXTENSION_NODES + 1] = {{
+{extended}
+}};
+{extension_h}
+{roots_h}"""
+
+WEIGHTED_SUM = """\
+static inline real {name}(real h, real (*k)[DIM], int n)
+{{
+    return {sum};
+}}
+"""
+
+EXPLICIT = """\
+static inline void stages(
+    real t, const real *z, real h, real (*k)[DIM], const real *params)
+{{
+    real stage[DIM];
+{rows}    (void)t; (void)z; (void)h; (void)stage; (void)k; (void)params;
+}}"""
+
+STAGE = """\
+    for (int n = 0; n < DIM; n++) {{
+        stage[n] = z[n] + {sum};
+    }}
+    RHS(t + h*{c}, stage, params, k[{i}]);
+"""
+
+
+def constants_text(tableau: Tableau) -> str:
+    """Numbers of stages and orders."""
+    return CONSTANTS.format(
+        title=tableau.title,
+        varies_order=int(bool(tableau.lower)),
+        stages=tableau.stages,
+        is_fsal=int(tableau.is_fsal),
+        is_explicit=int(tableau.is_explicit),
+        ends=2 * tableau.needs_jacobian,
+        estimates=len(tableau.error_weights),
+        error_order=tableau.error_order,
+        least_samples=ContinuousExtension.of(tableau).least_samples,
+    )
+
+
+def method_text(tableau: Tableau) -> str:
+    """The stages and the step."""
+    if tableau.is_parallel:
+        return _parallel(tableau)
+    if not tableau.is_explicit:
+        files = {name: source(f"{name}.h") for name in IMPLICIT_FILES}
+        return implicit(tableau, files)
+    first, second, *_ = *tableau.error_weights, (), ()
+    sums = {"increment": tableau.b, "estimate": first, "second_estimate": second}
+    return METHOD.format(
+        sequential_h=source("sequential.h"),
+        solution=_explicit(tableau),
+        sums="\n".join(WEIGHTED_SUM.format(name=name, sum=_sum(w)) for name, w in sums.items()),
+    )
+
+
+def _explicit(tableau: Tableau) -> str:
+    rows = [
+        STAGE.format(sum=_sum(weights), c=real(c), i=i)
+        for i, (weights, c) in enumerate(zip(tableau.A, tableau.c, strict=True))
+        if i
+    ]
+    return EXPLICIT.format(rows="".join(rows))
+
+
+def _parallel(tableau: Tableau) -> str:
+    """Matrices by their columns."""
+    ratios, legendre = symplectic_ratios(tableau), legendre_matrix(tableau)
+    return PARALLEL.format(
+        nodes=", ".join(map(real, tableau.c)),
+        weights=", ".join(map(real, tableau.b)),
+        error_power=real(error_power(tableau.stages)),
+        files="\n".join(map(source, PARALLEL_FILES)),
+        ratios=_rows(ratios.T),
+        legendre=_rows(legendre.T),
+    )
+
+
+def extension_text(tableau: Tableau) -> str:
+    """The continuous extension of a step."""
+    extension, members = ContinuousExtension.of(tableau), tableau.members
+    degree = max(len(extension.natural) - 1, 3)  # as that of switching functions
+    extensions = [ContinuousExtension.of(member) for member in members]
+    ends = 2 * tableau.needs_jacobian
+    naturals = [one.with_ends if ends else elevated(one.natural, degree) for one in extensions]
+    naturals = [elevated(natural, degree) for natural in naturals]
+    return EXTENSION.format(
+        degree=degree,
+        stages=", ".join(str(member.stages + ends) for member in members),
+        rounds=extension.rounds,
+        nodes=len(extension.nodes),
+        natural=",\n".join(f"{{{_rows(natural.T)}}}" for natural in naturals),
+        c=", ".join(map(real, extension.nodes)),
+        first=_rows(extension.first),
+        integrals=_rows(extension.integrals),
+        extended=_rows(extension.extended.T),
+        extension_h=source("extension.h"),
+        roots_h=source("roots.h"),
+    )
+
+
+def _rows(matrix: Iterable[Iterable[Number]]) -> str:
+    return ",\n".join(f"    {row(numbers)}" for numbers in matrix)
+
+
+def _sum(weights: Sequence[Number]) -> str:
+    """Σ h w k, with all products but the last one independent of the last stage."""
+    terms = [f"(h*{real(w)})*k[{j}][n]" for j, w in enumerate(weights) if w != 0]
+    return "\n            + ".join(terms) or "0.0*h"
