@@ -57,10 +57,12 @@ def integrate(
         have their default values.
     method : str, optional
         One of ``solvers.runge_kutta.catalogue.names()``, or a method of SciPy's ``solve_ivp``.
-    form : {"lagrangian", "hamiltonian", "rational", "variational"}, optional
+    form : {"lagrangian", "hamiltonian", "rational", "variational", "sensitivity"}, optional
         The form of the equations; by default the rational form, where it exists, in a compiled
         loop of an explicit method, and Lagrange's form otherwise. The variational form
-        integrates a linear perturbation, too: `y0` is then the state, followed by it.
+        integrates a linear perturbation, too: `y0` is then the state, followed by it. In the
+        sensitivity form parameters are perturbed, too: `params` are then their perturbations,
+        followed by the parameters, or by name, such as ``delta_l``.
     rtol, atol : float, optional
         The error of a step in a component may be atol + rtol * abs(y); in Lagrange's form `atol`
         may be an array of shape (state,). They are unused with fixed steps.

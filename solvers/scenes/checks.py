@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, has_perturbation
 from solvers.io.suggestion import did_you_mean
 from solvers.runge_kutta.catalogue import SCIPY, load
 
@@ -27,7 +27,7 @@ def check_method(
     module: GeneratedModule, method: object, form: object, step: float | None, duration: float
 ) -> None:
     """Refuse a method, a form and a step that are unknown or exclude each other."""
-    forms = [name for name in module.FORMS if name != "variational"]
+    forms = [name for name in module.FORMS if not has_perturbation(name)]
     if form is not None and form not in forms:
         raise ValueError(f"form = {str(form)[:50]!r} must be one of {', '.join(forms)}")
     if step is not None and method is None:

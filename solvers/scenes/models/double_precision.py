@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 
 from solvers.equations.forms import fastest_form
+from solvers.equations.module import has_perturbation
 from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
 from solvers.scenes.models.method_choice import MethodChoice
 from solvers.scenes.models.motion import Array, Motion, golden_points
@@ -79,7 +80,7 @@ def check_times(run: IntegrationRun) -> Array:
 
 def _choices(motion: Motion) -> list[MethodChoice]:
     fastest = fastest_form(motion.module)
-    forms = [form for form in motion.module.FORMS if form != "variational"]
+    forms = [form for form in motion.module.FORMS if not has_perturbation(form)]
     forms.sort(key=lambda form: form != fastest)
     # in the fastest form and the one that differs most from it
     pairs = [*product([BEST], forms), *zip(OTHERS, (forms[0], forms[-1]), strict=True)]

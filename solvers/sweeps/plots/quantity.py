@@ -128,7 +128,7 @@ def brief(record: Mapping[str, Any]) -> str:
 def add_legend(panel: Axes, mappable: ScalarMappable, quantity: Quantity) -> None:
     """Add a colour bar beside a panel, or a legend of the classes that occur."""
     if not quantity.classes:
-        _add_colour_bar(panel, mappable, quantity.label)
+        add_colour_bar(panel, mappable, quantity.label)
         return
     values = quantity.values()
     occurring = [k for k in range(len(quantity.classes)) if (values == k).any()]
@@ -141,7 +141,7 @@ def add_legend(panel: Axes, mappable: ScalarMappable, quantity: Quantity) -> Non
     )
 
 
-def _add_colour_bar(panel: Axes, mappable: ScalarMappable, label: str) -> None:
+def add_colour_bar(panel: Axes, mappable: ScalarMappable, label: str) -> None:
     """Add a colour bar beside a panel; its numbers are written without powers of ten."""
     bar = panel.figure.colorbar(mappable, ax=panel, label=label)
     if isinstance(mappable.norm, LogNorm):
