@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from handwritten import handwritten
 
-from solvers.integration.compiled import compiler, kernel_source
+from solvers.integration.compiled import compiler, method_source
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
@@ -145,10 +145,10 @@ def test_coefficients_of_implicit_methods_are_read_back_from_the_running_loop(
 ) -> None:
     # as above; the time identifies the stage, and the values of the last iteration are read, when
     # the derivatives no longer change: the first ones are rounded on the way to the blocks and back
-    source = kernel_source._source
+    source = method_source.source
     exact = ("CLOSE = 1e-14", "CLOSE = 0.0")
     assert exact[0] in source("simplified_newton.h")
-    monkeypatch.setattr(kernel_source, "_source", lambda file: source(file).replace(*exact))
+    monkeypatch.setattr(method_source, "source", lambda file: source(file).replace(*exact))
     method = load(name)
     module, rest = probe(tmp_path, method.stages), [0.0] * method.stages
     module.OPERATIONS["jacobian"] = (0, 0)

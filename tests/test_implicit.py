@@ -19,7 +19,7 @@ import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form
 from solvers.integration import compiled_loop
-from solvers.integration.compiled import kernel_source
+from solvers.integration.compiled import method_source
 from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.ensemble import ensemble
@@ -295,7 +295,7 @@ MISTAKES = {
 def test_mistakes_increase_the_work(
     mistake: str, van_der_pol: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    source = kernel_source._source
+    source = method_source.source
     used = []
 
     def wrong(file: str) -> str:
@@ -305,7 +305,7 @@ def test_mistakes_increase_the_work(
             text = text.replace(right, replacement)
         return text
 
-    monkeypatch.setattr(kernel_source, "_source", wrong)
+    monkeypatch.setattr(method_source, "source", wrong)
     monkeypatch.setattr(compiled_loop, "kernel", Kernel)  # without the cache of this process
     stiff = integrate(
         van_der_pol, (0, 2000), (2, 0), (1.0, 1.0, 1000.0), method="radau5", rtol=1e-6, atol=1e-6,
@@ -319,7 +319,7 @@ def test_mistakes_increase_the_work(
 @pytest.mark.parametrize("name", IMPLICIT_FILES)
 def test_no_function_is_called_for_a_maximum(name: str) -> None:
     # calls of fmax without AVX, among AVX instructions, took up to nine tenths of a fixed step
-    assert not re.search(r"\bfm(ax|in)\(", kernel_source._source(f"{name}.h"))
+    assert not re.search(r"\bfm(ax|in)\(", method_source.source(f"{name}.h"))
 
 
 SYSTEMS = (

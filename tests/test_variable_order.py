@@ -8,7 +8,7 @@ import pytest
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
 from solvers.integration import python_loop
-from solvers.integration.compiled import kernel_source
+from solvers.integration.compiled import method_source
 from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
@@ -109,10 +109,10 @@ def test_python_and_c_choose_the_same_orders(
     references: list[tuple[Problem, list[int], Outcome]],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    source, (right, wrong) = kernel_source._source, MISTAKES[mistake]
+    source, (right, wrong) = method_source.source, MISTAKES[mistake]
     if right:
         assert any(right in source(f"{name}.h") for name in IMPLICIT_FILES)
-        monkeypatch.setattr(kernel_source, "_source", lambda f: source(f).replace(right, wrong))
+        monkeypatch.setattr(method_source, "source", lambda f: source(f).replace(right, wrong))
     same = []
     for run, expected, reference in references:
         orders, batch = orders_in_c(run)
