@@ -91,6 +91,18 @@ def test_states_are_those_of_taylor_series(
     assert np.abs(back - taylor(module, module.DEFAULTS, start, -times[::11], 26)).max() < 1e-14
 
 
+@pytest.mark.parametrize("precision", ["double-double", "quadruple"])
+def test_times_have_all_digits_too(precision: str) -> None:
+    # 3e-6 rad from the pole the azimuth turns at 1.9e3 rad/s, whose rate is 8e6 rad/s²
+    params = (0.9184626507465876, 1.0564616223797008, 5.2615256837883155)
+    start = (-0.0037327750491228263, 0.004359365602156699, -0.0020685280773522813, 0.00127657421)
+    times = np.array([0.0, *np.linspace(0.8120, 0.8132, 60)])
+    computed = integrate_extended(spherical, params, start, times, precision, 1e-24)
+    exact = taylor(spherical, params, start, times, 36)
+    assert np.abs(exact[:, 3]).max() > 1500
+    assert (np.abs(computed - exact) <= 2 * np.spacing(np.abs(exact)) + 1e-18).all()
+
+
 def test_every_precision_has_its_digits_in_chaos() -> None:
     # doubles reach 3e-8 with compensated sums
     assert 1e-14 < after(20, "long double", 1e-19) < 2e-10

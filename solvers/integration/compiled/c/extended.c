@@ -1,7 +1,8 @@
 /* One motion by Gauss collocation in numbers longer than doubles.
 
    Defined before this file: the motion of extended_motion.h; the types Stages and RefinedStages, with
-   predict(), solve(), refine(), transform(), move() and derivative_at_start(); epsilon(); the indices COLUMN of components of an ordinary state, ORDINARY, PARTS. */
+   predict(), solve(), refine(), transform(), move() and derivative_at_start(); epsilon(); the indices
+   COLUMN of components of an ordinary state; ORDINARY, PARTS. */
 
 enum { STEPS_BETWEEN_CHECKS = 8 };
 

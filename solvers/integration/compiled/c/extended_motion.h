@@ -24,11 +24,13 @@ typedef struct {
     int64_t rows;                   /* samples written */
 } Motion;
 
-/* x + y; `low` is the rounding error of x before, and of the sum afterwards. */
+/* x + y; `low` is the rounding error of x before, and of the sum afterwards. Both are added after y:
+   their sum with y would lose digits of `low`. */
 static inline real compensated_sum(real x, real y, real *low)
 {
-    const real change = y + *low, total = x + change, part = total - x;
-    *low = (x - (total - part)) + (change - part);
+    const real sum = x + y, part = sum - x;
+    const real rest = *low + ((x - (sum - part)) + (y - part)), total = sum + rest;
+    *low = rest - (total - sum);
     return total;
 }
 
