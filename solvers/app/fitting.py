@@ -81,10 +81,9 @@ def fit(
     Fit of single_pendulum to 1 run: l = 0.700832 ± 0.00063
     """
     module, start, values = _model(model)
-    values |= dict(zip(module.PARAMETERS, validation.parameters(module, values | dict(params or {}))
-        .tolist(), strict=True))  # fmt: skip
-    items = [data] if isinstance(data, Measurement | Mapping | str | PathLike) else [*data]
-    runs = [item if isinstance(item, Measurement) else _read(module, item) for item in items]
+    guesses = validation.parameters(module, values | dict(params or {}))
+    values = dict(zip(module.PARAMETERS, guesses.tolist(), strict=True))
+    runs = _measurements(module, data)
     outputs = outputs_of(module, runs)
     names, held = _unknown(module, outputs, unknown, values)
     return fitted(outputs, runs, names, values, start, held)
@@ -126,9 +125,7 @@ def compare(fits: Mapping[str, Fit], kept: Data | Sequence[Data]) -> Comparison:
     friction, with 2 unknown parameters, predicts best; simpler models predict significantly worse
     """
     first = next(iter(fits.values()))
-    items = [kept] if isinstance(kept, Measurement | Mapping | str | PathLike) else [*kept]
-    module = first.outputs.module
-    runs = [item if isinstance(item, Measurement) else _read(module, item) for item in items]
+    runs = _measurements(first.outputs.module, kept)
     return prediction.compared(fits, [(run, None) for run in runs])
 
 
@@ -279,9 +276,15 @@ def named_model(name: str) -> Scene | GeneratedModule:
         ) from None
 
 
-def _read(
-    module: GeneratedModule, item: Mapping[str, ArrayLike] | str | PathLike[str]
-) -> Measurement:
-    if isinstance(item, Mapping):
-        return reading.measurement(item, units(module))
+def _measurements(module: GeneratedModule, data: Data | Sequence[Data]) -> list[Measurement]:
+    items = [data] if isinstance(data, Measurement | Mapping | str | PathLike) else [*data]
+    return [_measurement(module, item) for item in items]
+
+
+def _measurement(module: GeneratedModule, item: Data) -> Measurement:
+    match item:
+        case Measurement():
+            return item
+        case Mapping():
+            return reading.measurement(item, units(module))
     return read_measurement(item, module)

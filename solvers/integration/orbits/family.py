@@ -8,14 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration.orbits.orbit import PeriodicOrbit
+from solvers.integration.orbits.orbit import ENERGY, PeriodicOrbit
 from solvers.integration.solution import Array
 
 if TYPE_CHECKING:  # a run does not load matplotlib
     from matplotlib.figure import Figure
-
-#: Name of the quantity that varies along a family of a conservative system.
-ENERGY = "energy"
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from solvers.integration.orbits.shooting import TINY, Point, Shooting, Shot
 from solvers.integration.solution import Array
 
+#: Name of the quantity that varies along a family of a conservative system.
+ENERGY = "energy"
 #: Distance from the unit circle at which a multiplier counts as on it: close to another one it
 #: has errors of the square root of those of the matrix.
 NEUTRAL = 1e-5

@@ -11,9 +11,9 @@ from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive, real_numbers
 from solvers.integration import validation
 from solvers.integration.orbits.curve import UNIQUE, Curve, Node
-from solvers.integration.orbits.family import ENERGY, OrbitFamily, SpecialOrbit
+from solvers.integration.orbits.family import OrbitFamily, SpecialOrbit
 from solvers.integration.orbits.nature import Nature
-from solvers.integration.orbits.orbit import PeriodicOrbit
+from solvers.integration.orbits.orbit import ENERGY, PeriodicOrbit
 from solvers.integration.orbits.shooting import PeriodOf, Point, Shooting
 from solvers.integration.orbits.special_points import crossing_direction, doubling_direction
 from solvers.integration.orbits.symmetry import Reversal, angles

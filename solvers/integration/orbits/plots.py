@@ -1,17 +1,20 @@
 """Figures of families of periodic orbits."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from solvers.equations.module import title
-from solvers.integration.orbits.family import ENERGY, OrbitFamily, SpecialOrbit
-from solvers.integration.orbits.orbit import PeriodicOrbit
+from solvers.integration.orbits.orbit import ENERGY, PeriodicOrbit
 from solvers.io import figures
 from solvers.io.notation import axis_label, symbol
 from solvers.io.suggestion import did_you_mean
+
+if TYPE_CHECKING:
+    from solvers.integration.orbits.family import OrbitFamily, SpecialOrbit
 
 #: Markers of special orbits, by their kinds.
 MARKERS = {"turning point": "^", "branch point": "s", "period doubling": "o", "Neimark-Sacker": "D"}
@@ -19,7 +22,7 @@ MARKERS = {"turning point": "^", "branch point": "s", "period doubling": "o", "N
 STYLES = {False: ("-", "stable"), True: ("--", "unstable")}
 
 
-def figure(families: Sequence[OrbitFamily], quantity: str) -> Figure:
+def figure(families: "Sequence[OrbitFamily]", quantity: str) -> Figure:
     """A quantity of orbits over the parameter of their families, or over the energy."""
     module, parameter = families[0].module, families[0].parameter
     known = ("period", ENERGY, *module.STATE)
@@ -41,18 +44,18 @@ def figure(families: Sequence[OrbitFamily], quantity: str) -> Figure:
     return result
 
 
-def _label(family: OrbitFamily, name: str) -> str:
+def _label(family: "OrbitFamily", name: str) -> str:
     words = {"period": ("period", "s"), ENERGY: ("energy", "J")}
     return axis_label(*words.get(name, (symbol(name), family.module.UNITS.get(name, "1"))))
 
 
-def _point(family: OrbitFamily, quantity: str, orbit: PeriodicOrbit) -> tuple[float, float]:
+def _point(family: "OrbitFamily", quantity: str, orbit: PeriodicOrbit) -> tuple[float, float]:
     if quantity in family.module.STATE:
         return family.value(orbit), float(orbit.y[family.module.STATE.index(quantity)])
     return family.value(orbit), orbit.period if quantity == "period" else orbit.energy
 
 
-def _draw_curve(axes: Axes, family: OrbitFamily, quantity: str) -> None:
+def _draw_curve(axes: Axes, family: "OrbitFamily", quantity: str) -> None:
     """Lines of stable and of unstable orbits, which end at special orbits."""
     runs: list[tuple[bool, list[PeriodicOrbit]]] = []
     for k, orbit in enumerate(family.orbits):
@@ -70,7 +73,7 @@ def _draw_curve(axes: Axes, family: OrbitFamily, quantity: str) -> None:
         axes.plot(*points.T, style, color=figures.COLOURS[0], label=label)
 
 
-def _draw_special(axes: Axes, family: OrbitFamily, quantity: str) -> None:
+def _draw_special(axes: Axes, family: "OrbitFamily", quantity: str) -> None:
     for colour, (kind, marker) in zip(figures.COLOURS[1:], MARKERS.items(), strict=False):
         own: list[SpecialOrbit] = [point for point in family.special if point.kind == kind]
         if own:

@@ -1,6 +1,7 @@
 """First guesses of the states at nodes, from the samples around them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from contextlib import suppress
 
 import numpy as np
 
@@ -11,8 +12,8 @@ from solvers.scenes.fitting.least_squares import NotConvergedError, minimise
 
 #: Samples of the parabola whose value and slope are those of a coordinate at a node.
 SAMPLES = 7
-#: Attempts from random first guesses of runs' starts, how many each, and their spread.
-ATTEMPTS, GUESSES, SPREAD = 10, 1, 1.5
+#: Attempts from random first guesses of runs' starts, and their spread.
+ATTEMPTS, SPREAD = 10, 1.5
 
 
 def first_nodes(
@@ -29,10 +30,10 @@ def first_nodes(
         yield _from_coordinates(experiment, rows)
         return
     random = np.random.default_rng(0)
-    yield _from_fits(experiment, [start], params, noise)
+    yield _from_fits(experiment, start, params, noise)
     for _ in range(ATTEMPTS):
-        guesses = start + SPREAD * random.normal(size=(GUESSES, len(start)))
-        yield _from_fits(experiment, [*guesses], params, noise)
+        guess = start + SPREAD * random.normal(size=len(start))
+        yield _from_fits(experiment, guess, params, noise)
 
 
 def _from_coordinates(experiment: Experiment, rows: dict[str, int]) -> Array:
@@ -74,30 +75,23 @@ def _parabolas(t: Array, values: Array, begins: Array) -> tuple[Array, Array]:
     return fits[:, 0, 0], slopes
 
 
-def _from_fits(
-    experiment: Experiment, starts: Sequence[Array], params: Array, noise: Array
-) -> Array:
+def _from_fits(experiment: Experiment, start: Array, params: Array, noise: Array) -> Array:
     """One segment after the other, each from the end of the one before."""
-    nodes, end = list[Array](), starts[0]
+    nodes, end = list[Array](), start
     for k in range(len(experiment.segments)):
-        guesses = starts if k in experiment.firsts else [end]
-        alone = experiment.alone(k, params)
-        fits = [_fitted(alone, guess, noise) for guess in guesses]
-        _, node, end = min(fits, key=lambda fit: fit[0])
+        guess = start if k in experiment.firsts else end
+        node, end = _fitted(experiment.alone(k, params), guess, noise)
         nodes.append(node)
     return np.array(nodes)
 
 
-def _fitted(alone: Experiment, guess: Array, noise: Array) -> tuple[float, Array, Array]:
-    """Sum of squares of a segment with known parameters, state at its node and at its end."""
+def _fitted(alone: Experiment, guess: Array, noise: Array) -> tuple[Array, Array]:
+    """States at the node and at the end of a segment with known parameters."""
     linearise, none = alone.linearise(noise), np.empty(0)
+    nodes = guess[np.newaxis]
+    with suppress(NotConvergedError):
+        nodes = minimise(linearise, nodes, none, alone.positive, np.ones(len(guess))).nodes
     try:
-        nodes = minimise(
-            linearise, guess[np.newaxis], none, alone.positive, np.ones(len(guess))
-        ).nodes
-    except NotConvergedError:
-        nodes = guess[np.newaxis]
-    try:
-        return linearise(nodes, none).squares, nodes[0], alone.shooting(nodes, alone.params).ends[0]
+        return nodes[0], alone.shooting(nodes, alone.params).ends[0]
     except NotFinishedError:
-        return np.inf, guess, guess
+        return guess, guess

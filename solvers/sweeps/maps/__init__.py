@@ -1,8 +1,8 @@
 """Map kinds: the numbers that a sweep stores for each motion. Every module here is one kind."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
+from typing import Any, ClassVar, Self
 
 from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.ensemble_solution import Ensemble
@@ -12,14 +12,6 @@ from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.map_table import MapTable
 from solvers.sweeps.sampling import Sampling
-
-if TYPE_CHECKING:  # workers do not load matplotlib
-    from matplotlib.axes import Axes as Panel
-
-    from solvers.sweeps.results import Results
-
-#: Title of a panel, and the function that draws it.
-Panels: TypeAlias = "Iterator[tuple[str, Callable[[Panel], None]]]"
 
 
 @dataclass(frozen=True)
@@ -156,12 +148,6 @@ class Map:
         It is called only by kinds with `records`, after the last motion.
         """
         return stored, []
-
-    def panels(self, name: str, results: "Results") -> Panels:
-        """Panels of a figure, as pairs of a title and a function that draws on axes."""
-        from solvers.sweeps.plots.figure import PANELS
-
-        return PANELS[self.plot](name, results)
 
 
 @dataclass(frozen=True)

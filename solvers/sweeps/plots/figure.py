@@ -1,18 +1,18 @@
 """Figures of sweeps: one or more panels for each map."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
 from math import ceil, prod
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from solvers.io import figures
 from solvers.io.notation import symbol
 from solvers.sweeps.checks import ENERGY
-from solvers.sweeps.maps import Panels
 from solvers.sweeps.plots.diagram import diagram
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
 from solvers.sweeps.plots.quantity import Quantity, letter
@@ -20,6 +20,8 @@ from solvers.sweeps.plots.response import response
 from solvers.sweeps.results import Results
 from solvers.sweeps.status import GOOD
 
+#: Titles of panels, and the functions that draw them.
+Panels: TypeAlias = Iterator[tuple[str, Callable[[Axes], None]]]
 #: Largest number of panels.
 MAX_PANELS = 12
 #: Width and height in inches of the figure of a single panel.
@@ -48,7 +50,8 @@ def figure(results: Results) -> Figure:
     >>> drift = figure(results)
     """
     definition = results.definition
-    every = [panel for name, one in definition.maps.items() for panel in one.panels(name, results)]
+    maps = definition.maps.items()
+    every = [panel for name, one in maps for panel in PANELS[one.plot](name, results)]
     shown = every[:MAX_PANELS]
     columns = min(3, len(shown))
     rows = ceil(len(shown) / columns)
