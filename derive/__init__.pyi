@@ -4,6 +4,7 @@ from derive.mechanics.linearisation import Linearisation as Linearisation
 from derive.mechanics.specialisation import with_inputs as with_inputs
 from derive.mechanics.state_space import StateSpace as StateSpace
 from derive.system.catalogue import load as load
+from derive.system.constraints import Constraint as Constraint
 from derive.system.parts import Coordinate as Coordinate
 from derive.system.parts import Input as Input
 from derive.system.parts import Parameter as Parameter

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.codegen.constrained_factorisation import ConstrainedFactorisation
 from derive.codegen.differentiation import Differentiation
 from derive.codegen.factorisation import Factorisation, Loops, factorisation
 from derive.codegen.graph import Graph
@@ -16,6 +17,7 @@ from derive.codegen.node import Node
 from derive.codegen.rational import angles
 from derive.codegen.translation import Translation
 from derive.mechanics.derivation import Derivation
+from derive.system.symbols import TIME
 
 
 class EquationsOfMotion:
@@ -55,6 +57,35 @@ class EquationsOfMotion:
     @cached_property
     def _factorisation(self) -> Loops | Factorisation:
         return factorisation(self._graph, [[self._inertia[i][j] for j in self._n] for i in self._n])
+
+    @cached_property
+    def _constraint_rates(self) -> list[Node]:
+        """G q̇ + b: rates of constraints of coordinates, and constraints of velocities."""
+        rates, holonomic = [], {*self._derivation.holonomic}
+        for one in self._system.conditions:
+            node = self._node(one.formula)
+            rates.append(self._rate(node) if one.formula in holonomic else node)
+        return rates
+
+    def _rate(self, node: Node) -> Node:
+        """The rate of a function at constant velocities."""
+        pairs = zip(self._system.q, self._qdot, strict=True)
+        terms = [(self._derivative(node, q.name) * v, 1) for q, v in pairs]
+        return self._graph.sum([*terms, (self._derivative(node, TIME.name), 1)])
+
+    @cached_property
+    def _constraint_jacobian(self) -> list[list[Node]]:
+        """G, one row a constraint."""
+        names = [qdot.name for qdot in self._system.qdot]
+        return [[self._derivative(rate, v) for v in names] for rate in self._constraint_rates]
+
+    @cached_property
+    def _constrained(self) -> ConstrainedFactorisation:
+        inertia = [[self._inertia[i][j] for j in self._n] for i in self._n]
+        singular = self._derivation.has_singular_mass_matrix
+        return ConstrainedFactorisation(
+            self._graph, inertia, self._constraint_jacobian, singular=singular
+        )
 
     def _rates(self, velocities: Sequence[Node]) -> list[Node]:
         """Rates of all variables, given those of the coordinates."""
@@ -100,7 +131,8 @@ class EquationsOfMotion:
 
         For a coordinate that does not occur in energies and forces, the positions decide.
         """
-        dynamics = [*self._dependencies, self._potential, *self._applied]
+        conditions = self._nodes([one.formula for one in self._system.conditions])
+        dynamics = [*self._dependencies, self._potential, *self._applied, *conditions]
         names = self._only_as_angles(dynamics)
         names |= self._only_as_angles(self.positions) - self._leaves(dynamics)
         return tuple(q for q in self._system.q if q.name in names)

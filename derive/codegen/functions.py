@@ -40,6 +40,14 @@ def _switches(derivation: Derivation) -> str:
     return ", ".join(map(str, derivation.switching_functions))
 
 
+def _multipliers(derivation: Derivation) -> str:
+    return ", ".join(one.name for one in derivation.system.conditions)
+
+
+def _is_free(derivation: Derivation) -> bool:
+    return not derivation.system.conditions
+
+
 def _is_small(derivation: Derivation) -> bool:
     # of a large system, n² entries of n terms each are too much text
     return len(derivation.system.q) < LARGE
@@ -55,7 +63,7 @@ class FunctionSpec:
     summary: str  # of its docstring; {} stands for the detail
     returns: str
     detail: Callable[[Derivation], str] = lambda derivation: ""
-    exists: Callable[[Derivation], bool] = lambda derivation: True  # a rational one needs an angle
+    exists: Callable[[Derivation], bool] = lambda derivation: True  # if there is such a state
 
 
 SPECS = (
@@ -104,7 +112,23 @@ SPECS = (
         "Energy in J.", _energy),
     FunctionSpec("power", "lagrangian", "",
         "Rate of change of `energy`: power of applied forces, friction and prescribed motion.",
-        "Power in W.", exists=lambda derivation: derivation.power != 0),
+        "Power in W.",
+        exists=lambda derivation: derivation.power != 0 or any(derivation.constraint_drift)),
+    FunctionSpec("constraints", "lagrangian", "residuals",
+        "Residuals of the constraints, which are 0 along a motion.",
+        "Constraints of the coordinates, then rates of these and constraints of velocities."),
+    FunctionSpec("multipliers", "lagrangian", "multipliers",
+        "Multipliers {} of the constraints: their reactions.",
+        "One for each constraint.", _multipliers),
+    FunctionSpec("correction", "lagrangian", "state",
+        "Changes of y that remove small residuals of the constraints, by one step of Newton's "
+        "method.",
+        "Changes of coordinates and of velocities, the smallest by the mass matrix.",
+        exists=lambda derivation: not _is_free(derivation)),
+    FunctionSpec("correction_rational", "rational", "state",
+        "`correction` of the rational state.",
+        "Changes of coordinates, angles among them, and of velocities.",
+        exists=lambda derivation: not _is_free(derivation)),
     FunctionSpec("reactions", "lagrangian", "reactions",
         "Forces that hold {} constant, by Lagrange's multipliers.",
         "One for each: a rod's tension, positive where it pulls.",
@@ -117,7 +141,7 @@ SPECS = (
         "One row a mass: its Cartesian components in m, the last one upwards."),
     FunctionSpec("hamiltonian_state", "lagrangian", "state",
         "State (q, p) of the Hamiltonian form at y = (q, qdot).",
-        "Coordinates, then momenta p = M qdot."),
+        "Coordinates, then momenta p = M qdot.", exists=_is_free),
     FunctionSpec("rhs_hamiltonian", "hamiltonian", "state",
         "Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).",
         "Time derivative of y: velocities from M qdot = p, then -dH/dq."),
@@ -214,13 +238,16 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     # a function whose result has an axis of no entries does not exist
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
     constants |= {"outputs": len(system.measured), "params": len(system.params)}
+    constants |= {"multipliers": len(system.conditions)}
+    constants |= {"residuals": len(system.conditions) + len(derivation.holonomic)}
     sizes |= {name: count for name, count in constants.items() if count}
     sizes |= {form: len(state) for form, state in states.items()}
     functions = []
     for spec in SPECS:
         axes = spec.shape.split()
         is_requested = only is None or spec.name in only
-        if is_requested and {*axes} <= {*sizes} and spec.exists(derivation):
+        has_state = spec.form == "parameters" or spec.form in states
+        if is_requested and has_state and {*axes} <= {*sizes} and spec.exists(derivation):
             detail, lowering = spec.detail(derivation), _lowering(spec, derivation)
             texts = spec.summary.format(detail), spec.returns.format(detail)
             state, shape = states.get(spec.form, ()), tuple(sizes[axis] for axis in axes)
@@ -255,8 +282,9 @@ def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
     rational = (*positions, *(s.name for s in system.qdot))
     states: dict[Form, tuple[str, ...]] = {
         "lagrangian": tuple(s.name for s in system.q + system.qdot),
-        "hamiltonian": tuple(s.name for s in system.q + system.p),
     }
+    if not system.conditions:
+        states["hamiltonian"] = tuple(s.name for s in system.q + system.p)
     if angles:
         states["rational"] = rational
     states["variational"] = (*rational, *(s.name for s in system.variations))

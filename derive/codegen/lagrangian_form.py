@@ -50,8 +50,56 @@ class LagrangianForm(EquationsOfMotion):
         return entries
 
     @cached_property
+    def _constraint_forcing(self) -> list[Node]:
+        """γ of G q̈ = γ."""
+        return [-self._rate(rate) for rate in self._constraint_rates]
+
+    @cached_property
+    def _solution(self) -> tuple[list[Node], list[Node]]:
+        return self._constrained.solve(self._forcing, self._constraint_forcing)
+
+    @property
     def _accelerations(self) -> list[Node]:
-        return self._factorisation.solve(self._forcing)
+        return self._solution[0]
+
+    @property
+    def multipliers(self) -> list[Node]:
+        """λ of M q̈ = f + Gᵀ λ."""
+        return self._solution[1]
+
+    @property
+    def constraints(self) -> list[Node]:
+        """Constraints φ of the coordinates, then G q̇ + b of all."""
+        return [*self._nodes(self._derivation.holonomic), *self._constraint_rates]
+
+    @property
+    def correction(self) -> list[Node]:
+        """The smallest change of q and q̇ that removes linearised residuals, by the mass matrix."""
+        holonomic = {*self._derivation.holonomic}
+        residuals = [
+            self._node(one.formula if one.formula in holonomic else sp.S.Zero)
+            for one in self._system.conditions
+        ]
+        still = [self._graph.node(0) for _ in self._n]
+        of_q, of_qdot = (
+            self._constrained.solve(still, [-residual for residual in values])[0]
+            for values in (residuals, self._constraint_rates)
+        )
+        return [*of_q, *of_qdot]
+
+    @property
+    def correction_rational(self) -> list[Node]:
+        """The same as a function of the rational state; changes of angles stay as they are."""
+        return rationalised(self.correction, [q.name for q in self.angles])
+
+    @property
+    def power(self) -> list[Node]:
+        """The rate of the energy, with the power -λ·b of constraints that move."""
+        if not any(self._derivation.constraint_drift):
+            return super().power
+        drift = self._nodes(self._derivation.constraint_drift)
+        moved = ((reaction * b, -1) for reaction, b in zip(self.multipliers, drift, strict=True))
+        return [self._graph.sum([(self._node(self._derivation.power), 1), *moved])]
 
     @property
     def rhs(self) -> list[Node]:
@@ -142,7 +190,10 @@ class LagrangianForm(EquationsOfMotion):
     def _derivatives(self, variables: Sequence[sp.Symbol]) -> list[Node]:
         """Rows of ∂(q̇, q̈)/∂variables: M ∂q̈ = ∂f - ∂M q̈."""
         columns = [
-            self._factorisation.solve([self._imbalance(i, variable) for i in self._n])
+            self._constrained.solve(
+                [self._imbalance(i, variable) for i in self._n],
+                [self._constraint_imbalance(k, variable) for k in self._constraints],
+            )[0]
             for variable in variables
         ]
         upper = (
@@ -153,25 +204,40 @@ class LagrangianForm(EquationsOfMotion):
         return [*upper, *(column[i] for i in self._n for column in columns)]
 
     def _imbalance(self, i: int, variable: sp.Symbol) -> Node:
-        """(∂f - ∂M q̈)_i by a variable.
+        """(∂f - ∂M q̈ + ∂Gᵀ λ)_i by a variable.
 
-        A common factor F of f_i and M_ij stays as it is, since (f - M q̈)_i ∂F is 0.
+        A common factor F of f_i, M_ij and G_ji stays as it is, since (f - M q̈ + Gᵀ λ)_i ∂F is 0.
         """
         factor = self._row_factors[i]
-        entries = [self._forcing[i], *(self._inertia[i][j] for j in self._n)]
-        by_force, *by_masses = (
-            self._derivative(entry / factor, variable.name) for entry in entries
+        by_force, *others = (
+            self._derivative(entry / factor, variable.name) for entry in self._row(i)
         )
-        products = zip(by_masses, self._accelerations, strict=True)
-        terms = [(by_force, 1), *((change * x, -1) for change, x in products)]
-        return factor * self._graph.sum(terms)
+        products = [*((x, -1) for x in self._accelerations), *((x, 1) for x in self.multipliers)]
+        pairs = zip(others, products, strict=True)
+        return factor * self._graph.sum([(by_force, 1), *((a * x, sign) for a, (x, sign) in pairs)])
+
+    def _row(self, i: int) -> list[Node]:
+        """The entries f_i, M_ij and G_ji of equation i."""
+        columns = (row[i] for row in self._constraint_jacobian)
+        return [self._forcing[i], *(self._inertia[i][j] for j in self._n), *columns]
+
+    @property
+    def _constraints(self) -> range:
+        return range(len(self._system.conditions))
+
+    def _constraint_imbalance(self, k: int, variable: sp.Symbol) -> Node:
+        """(∂γ - ∂G q̈)_k by a variable."""
+        pairs = zip(self._constraint_jacobian[k], self._accelerations, strict=True)
+        terms = [(self._derivative(entry, variable.name) * x, -1) for entry, x in pairs]
+        change = self._derivative(self._constraint_forcing[k], variable.name)
+        return self._graph.sum([(change, 1), *terms])
 
     @cached_property
     def _row_factors(self) -> list[Node]:
-        """The common factor of f_i and row i of M."""
+        """The common factor of f_i, row i of M and column i of G."""
         rows = []
-        for i, force in enumerate(self._forcing):
-            entries = [e for e in (force, *self._inertia[i][: len(self._n)]) if not e.is_number(0)]
+        for i in self._n:
+            entries = [entry for entry in self._row(i) if not entry.is_number(0)]
             powers = [entry.exponents() for entry in entries]
             common = {f: min(p.get(f, 0) for p in powers) for f in powers[0]}
             rows.append(self._graph.product((f, p) for f, p in common.items() if p > 0))
@@ -206,9 +272,13 @@ class LagrangianForm(EquationsOfMotion):
     def _tangent(self, changes: Mapping[sp.Symbol, Node]) -> dict[sp.Symbol, Node]:
         """The rates of change of the perturbation, δq̇ and δq̈."""
         q, qdot = self._system.q, self._system.qdot
-        imbalances = [
-            self._graph.sum([(self._imbalance(i, s) * x, 1) for s, x in changes.items()])
-            for i in self._n
-        ]
-        tangent = [*(changes[s] for s in qdot), *self._factorisation.solve(imbalances)]
+        imbalances, conditions = (
+            [self._graph.sum([(of(i, s) * x, 1) for s, x in changes.items()]) for i in rows]
+            for of, rows in (
+                (self._imbalance, self._n),
+                (self._constraint_imbalance, self._constraints),
+            )
+        )
+        solution, _ = self._constrained.solve(imbalances, conditions)
+        tangent = [*(changes[s] for s in qdot), *solution]
         return dict(zip((*q, *qdot), tangent, strict=True))

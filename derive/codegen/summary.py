@@ -35,7 +35,7 @@ def units(system: System) -> dict[str, str]:
         for changed in (coordinate.symbol.name, qdot.name):
             rows[f"delta_{changed}"] = rows[changed]
         rows[f"sin_{coordinate.symbol.name}"] = rows[f"cos_{coordinate.symbol.name}"] = "1"
-    return rows
+    return rows | {one.name: one.unit for one in system.conditions}
 
 
 def summary(contents: Contents) -> str:
@@ -58,6 +58,11 @@ def summary(contents: Contents) -> str:
             f"{u.symbol} [{u.unit}]: {u.meaning}" for u in system.inputs
         ]
     sections["Masses and their positions"] = [mass.words for mass in system.masses]
+    if system.conditions:
+        sections["Constraints, with their multipliers"] = [
+            f"{one.formula} = 0: {one.name} [{one.unit}], {one.meaning}"
+            for one in system.conditions
+        ]
     is_short = len(system.q) <= READABLE
     if is_short and derivation.lagrangian.count_ops() <= READABLE_OPERATIONS:
         sections["Lagrangian"] = [f"L = {_text(derivation.lagrangian)}"]

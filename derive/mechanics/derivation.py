@@ -64,7 +64,10 @@ class Derivation(Equations):
     def __post_init__(self) -> None:
         as_system(self.system)
         self._check_inputs()
-        check_independence(self.system, self.mass_matrix)
+        inertia, G = self.mass_matrix, self.constraint_jacobian
+        if self.has_singular_mass_matrix:
+            inertia = inertia + G.T * G
+        check_independence(self.system, inertia)
 
     def _check_inputs(self) -> None:
         system = self.system
@@ -77,6 +80,17 @@ class Derivation(Equations):
                 "known: declare a prescribed motion, Input(..., motion=True), replace the input by "
                 "a function of time, with derive.with_inputs, or let forces depend on it"
             )
+
+    @cached_property
+    def has_singular_mass_matrix(self) -> bool:
+        """Whether some motions of the coordinates, which constraints prevent, move no mass."""
+        if not self.system.conditions:
+            return False
+        try:
+            check_independence(self.system, self.mass_matrix)
+        except SystemDefinitionError:
+            return True
+        return False
 
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
         """Small oscillations about an equilibrium, by default the system's own, or zeros.

@@ -6,14 +6,15 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.mechanics.kinetics import Kinetics, Matrix, derivative
+from derive.mechanics.constraints import Constraints
+from derive.mechanics.kinetics import Matrix, derivative
 from derive.mechanics.reduction import collected, reduced
 
 HALF = sp.Rational(1, 2)
 
 
 @dataclass(frozen=True)
-class Equations(Kinetics):
+class Equations(Constraints):
     """Momenta, forces, reactions and equations of motion of `system`."""
 
     @cached_property
@@ -56,8 +57,9 @@ class Equations(Kinetics):
 
     @cached_property
     def euler_lagrange(self) -> Matrix:
-        """Residuals d/dt ∂L/∂q̇ - ∂L/∂q - Q, a column, which are zero along a motion."""
-        return _product(self.mass_matrix, self.system.qddot) - self.forcing
+        """Residuals d/dt ∂L/∂q̇ - ∂L/∂q - Q - Gᵀ λ, a column, which are zero along a motion."""
+        reactions = _product(self.constraint_jacobian.T, self.system.multipliers)
+        return _product(self.mass_matrix, self.system.qddot) - self.forcing - reactions
 
     @cached_property
     def reactions(self) -> Matrix:
@@ -87,8 +89,24 @@ class Equations(Kinetics):
 
     @cached_property
     def accelerations(self) -> Matrix:
-        """q̈ = M⁻¹ f, a column."""
-        return self._divided_by_mass(self.forcing)
+        """q̈ = M⁻¹ f, a column; with constraints that of M q̈ = f + Gᵀ λ and G q̈ = γ."""
+        if not self.system.conditions:
+            return self._divided_by_mass(self.forcing)
+        return self._constrained_solution[: len(self.system.q), :]
+
+    @cached_property
+    def multipliers(self) -> Matrix:
+        """Multipliers λ of the constraints, a column: functions of q, q̇ and t."""
+        return self._constrained_solution[len(self.system.q) :, :]
+
+    @cached_property
+    def _constrained_solution(self) -> Matrix:
+        M, G = self.mass_matrix, self.constraint_jacobian
+        matrix = sp.BlockMatrix([[M, -G.T], [G, sp.zeros(G.rows)]]).as_explicit()
+        column = sp.Matrix([*self.forcing, *self.constraint_forcing])
+        determinant = sp.factor_terms(reduced(matrix.det()))
+        numerator = matrix.adjugate() * column
+        return Matrix(numerator.applyfunc(lambda entry: sp.factor_terms(entry) / determinant))
 
     @cached_property
     def hamiltonian(self) -> sp.Expr:

@@ -101,4 +101,5 @@ def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
         reactions=[length for length in system.reactions if length not in values],
         inputs=[part for part in system.inputs if part.symbol not in values],
         outputs={name: substitute(output) for name, output in system.measured},
+        constraints=[one.with_formula(substitute(one.formula)) for one in system.conditions],
     )

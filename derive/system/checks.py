@@ -30,6 +30,7 @@ def check(system: "System") -> None:
     for part in parts:
         _check_symbols(system, part)
     _check_forces(system)
+    _check_constraints(system)
     _check_weight(system, parts)
 
 
@@ -66,6 +67,8 @@ def _parts(system: "System") -> Iterator[Part]:
     yield Part("the list of forces", forces, moving | {*system.qdot}, state)
     for name, output in system.measured:
         yield Part(f"output {name}", output, moving | {*system.qdot}, state)
+    for one in system.conditions:
+        yield Part(f"constraint {one.name}", one.formula, moving | {*system.qdot}, state)
     yield Part("the list of reactions", sp.Tuple(*system.reactions), constants, fixed)
 
 
@@ -100,6 +103,27 @@ def _check_forces(system: "System") -> None:
         raise SystemDefinitionError(
             f"system {system.name!r} has reactions and applied forces: the components of applied "
             "forces along a constant length are not known; omit one of them"
+        )
+
+
+def _check_constraints(system: "System") -> None:
+    qdot = {*system.qdot}
+    for one in system.conditions:
+        if not one.formula.free_symbols & (qdot | {*system.q}):
+            raise SystemDefinitionError(
+                f"constraint {one.name} of system {system.name!r} is {one.formula} = 0, which "
+                "depends on no coordinate: omit it"
+            )
+        slopes = (sp.expand(one.formula.diff(rate)) for rate in one.formula.free_symbols & qdot)
+        if any(slope.free_symbols & qdot for slope in slopes):
+            raise SystemDefinitionError(
+                f"constraint {one.name} of system {system.name!r} is {one.formula} = 0, which is "
+                "not affine in the velocities: give it as A(q, t) qdot + b(q, t)"
+            )
+    if system.reactions and system.conditions:
+        raise SystemDefinitionError(
+            f"system {system.name!r} has reactions and constraints: give the condition that a "
+            "length is constant as a constraint, whose multiplier is the reaction"
         )
 
 

@@ -9,6 +9,7 @@ from typing import cast
 import sympy as sp
 
 from derive.system.checks import check
+from derive.system.constraints import Constraint, Point, constraints
 from derive.system.naming import check_module_name, check_name, check_unique
 from derive.system.parts import (
     Coordinate,
@@ -75,6 +76,12 @@ class System:
     outputs : mapping of str to sympy.Expr, optional
         Measured quantities, by name, as functions of coordinates, velocities, parameters, inputs
         and time; the module has them and their derivatives as functions.
+    constraints : sequence of sympy.Expr and Constraint, optional
+        Functions that remain 0 along a motion: of coordinates, parameters and time, or affine in
+        the velocities.
+    coincide : sequence of pairs of points, optional
+        Points, each a sequence of components in m, that remain together, such as the ends of two
+        rods at a pin. They become `constraints`.
 
     Raises
     ------
@@ -85,7 +92,8 @@ class System:
         a finite number, or contains an unknown symbol; when positions do not all have two or all
         three components; when `gravity` or `forces` has a wrong number of components, or weight
         needs a parameter named ``g``; when `dissipation` depends on no velocity; when `reactions`
-        are combined with applied forces.
+        are combined with applied forces or constraints; when a constraint depends on no coordinate
+        or velocity, or is not affine in the velocities.
 
     Examples
     --------
@@ -115,6 +123,8 @@ class System:
     reactions: Sequence[sp.Symbol] = ()
     inputs: Sequence[Input] = ()
     outputs: Mapping[str, sp.Expr] | Sequence[tuple[str, sp.Expr]] = ()
+    constraints: Sequence[Constraint | sp.Expr] = ()
+    coincide: Sequence[tuple[Point, Point]] = ()
 
     def __post_init__(self) -> None:
         for field, kind in KINDS.items():
@@ -131,6 +141,8 @@ class System:
         pairs = items("outputs", pairs, "a mapping of names to formulas", tuple)
         measured = tuple((str(name), formula(value)) for name, value in pairs)
         object.__setattr__(self, "outputs", measured)
+        object.__setattr__(self, "constraints", constraints(self.constraints, self.coincide))
+        object.__setattr__(self, "coincide", ())  # now among the constraints
         if not self.coordinates or not self.masses:
             raise SystemDefinitionError(
                 f"system {self.name!r} needs at least one coordinate and one mass, "
@@ -162,6 +174,9 @@ class System:
             "forces": tuple(map(at_any_time, self.forces)),
             "dissipation": at_any_time(self.dissipation),
             "outputs": tuple((name, at_any_time(value)) for name, value in self.measured),
+            "constraints": tuple(
+                one.with_formula(at_any_time(one.formula)) for one in self.conditions
+            ),
         }
         if self.potential is not None:
             changes["potential"] = at_any_time(self.potential)
@@ -172,6 +187,16 @@ class System:
     def measured(self) -> tuple[tuple[str, sp.Expr], ...]:
         """Names and formulas of the outputs."""
         return cast("tuple[tuple[str, sp.Expr], ...]", self.outputs)
+
+    @property
+    def conditions(self) -> tuple[Constraint, ...]:
+        """The constraints."""
+        return cast("tuple[Constraint, ...]", self.constraints)
+
+    @cached_property
+    def multipliers(self) -> tuple[sp.Symbol, ...]:
+        """The multipliers' symbols, one for each constraint."""
+        return tuple(one.symbol for one in self.conditions)
 
     @property
     def dimension(self) -> int:
@@ -256,13 +281,14 @@ class System:
         check_module_name(self.name)
         declared = [s.name for s in (*self.q, *self.params)]
         measured = [name for name, _ in self.measured]
-        for name in [self.name, *declared, *measured]:
+        reactions = [one.name for one in self.conditions]
+        for name in [self.name, *declared, *measured, *reactions]:
             check_name(name, self.name)
         check_unique(measured, self.name)
         check_unique(declared, self.name)
         derived = self.qdot + self.qddot + self.p + self.variations + self.parameter_variations
         waves = (f"{wave}_{q.name}" for q in self.q for wave in ("sin", "cos"))
-        check_unique([*declared, *(s.name for s in derived), *waves], self.name)
+        check_unique([*declared, *reactions, *(s.name for s in derived), *waves], self.name)
 
 
 def as_system(value: object) -> System:

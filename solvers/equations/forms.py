@@ -26,6 +26,9 @@ from solvers.equations.sliding import Evaluate, Sliding, slide
 
 Array = NDArray[np.float64]
 
+#: Steps of Newton's method onto constraints: the first corrects the positions to the square of
+#: their residuals, the second the velocities there.
+CORRECTIONS = 2
 #: Relative step of differences, near the cube root of the rounding error.
 STEP = 1e-5
 
@@ -197,12 +200,43 @@ class Form:
             z[:, i], z[:, i + 1] = np.sin(y[:, k]), np.cos(y[:, k])
         return z
 
-    def normalised(self, z: Array) -> Array:
-        """`z` with sin² + cos² = 1 restored."""
+    def projected(self, t: float, z: Array) -> Array:
+        """The state `z` with sin² + cos² = 1 restored, moved onto the constraints."""
+        z = self._normalised(z)
+        for _ in range(CORRECTIONS * self.has_constraints):
+            change = self._value(self._correction, t, z[: self._corrected], self.constants)
+            for k, i in self.angle_columns:
+                z[i : i + 2] += change[k] * np.array([z[i + 1], -z[i]])
+            for k, i in self.shared_columns:
+                if k < len(change):
+                    z[i] += change[k]
+            z = self._normalised(z)
+        return z
+
+    def _normalised(self, z: Array) -> Array:
         z = z.copy()
         for _, i in self.angle_columns:
             z[i : i + 2] /= np.hypot(z[i], z[i + 1])
         return z
+
+    @property
+    def has_constraints(self) -> bool:
+        """Whether motions have constraints."""
+        return has_function(self.module, "correction")
+
+    @property
+    def correction(self) -> str:
+        """Name of the function that removes residuals of constraints."""
+        return named("correction", "rational" if self.angle_columns else "lagrangian")
+
+    @cached_property
+    def _correction(self) -> Callable[..., Any]:
+        return function(self.module, self.correction)
+
+    @cached_property
+    def _corrected(self) -> int:
+        """Number of components of the state without perturbation."""
+        return len(self.module.STATES["rational" if self.angle_columns else "lagrangian"])
 
     def to_ordinary(
         self, t: float | Array, z: Array, before: Array, elapsed: float | Array

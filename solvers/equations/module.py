@@ -22,7 +22,8 @@ class GeneratedModule(Protocol):
 
     Functions take ``(t, y, params)``; those of the parameters alone take ``(params)``. With
     ``_many`` after its name a function takes arrays whose first axis is the state. The functions
-    below exist for every system, others where they are keys of ``OPERATIONS``.
+    below exist for every system, those of momenta for systems without constraints; others where
+    they are keys of ``OPERATIONS``.
     """
 
     __name__: str
@@ -45,6 +46,8 @@ class GeneratedModule(Protocol):
     def PARAMETERS(self) -> tuple[str, ...]: ...
     @property
     def SWITCHES(self) -> tuple[str, ...]: ...  # if forces have kinks or jumps
+    @property
+    def MULTIPLIERS(self) -> tuple[str, ...]: ...  # of constraints, if the system has any
     @property
     def INPUTS(self) -> tuple[str, ...]: ...  # the last parameters, if the system has inputs
     @property

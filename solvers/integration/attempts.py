@@ -1,6 +1,6 @@
 """Attempts at steps of the methods of `solvers.runge_kutta`."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -46,7 +46,7 @@ class Accepted:
         guess = polynomial.within() if polynomial else start.last
         step = self.attempts.stepper.step
         y = step(start.t, start.y, t - start.t, start.derivative, guess).y
-        return self.attempts.normalise(y)
+        return self.attempts.project(t, y)
 
     def between(self, begin: float, y0: Array, end: float, y1: Array) -> Callable[[Array], Array]:
         """States, in columns, between those at two near times, by the cubic."""
@@ -56,7 +56,7 @@ class Accepted:
         def curve(times: Array) -> Array:
             x = ((times - begin) / width)[:, np.newaxis]
             states = y0 + x * (change + (1 - x) * ((1 - x) * first - x * last))
-            return np.stack([self.attempts.normalise(y) for y in states], axis=1)
+            return self.attempts.projected(times, states)
 
         return curve
 
@@ -105,7 +105,7 @@ class Accepted:
         *_, curve = self.curves()
         extended = iter(curve(times[inside]).T)
         states = [next(extended) if is_inside else self.end.y for is_inside in inside]
-        return np.stack([self.attempts.normalise(y) for y in states], axis=1)
+        return self.attempts.projected(times, states)
 
 
 @dataclass(frozen=True)
@@ -122,11 +122,16 @@ class Rejected:
 
 @dataclass(frozen=True)
 class Attempts:
-    """Attempts at steps of one method; `normalise` is applied to every new state."""
+    """Attempts at steps of one method; `project` is applied to every new state."""
 
     stepper: Stepper
     controller: Controller | None
-    normalise: Callable[[Array], Array] = lambda y: y
+    project: Callable[[float, Array], Array] = lambda t, y: y
+
+    def projected(self, times: Array, states: Iterable[Array]) -> Array:
+        """States at several times, in columns, projected."""
+        pairs = zip(times.tolist(), states, strict=True)
+        return np.stack([self.project(t, y) for t, y in pairs], axis=1)
 
     def attempt(self, start: Point, t: float, h: float, *, is_last: bool) -> Accepted | Rejected:
         """Try the step from `start` to `t`, of size `h`; the last step needs no derivative."""
@@ -134,7 +139,7 @@ class Attempts:
         try:
             step = self.stepper.step(start.t, start.y, t - start.t, start.derivative, start.last)
             norm = controller.norm(step.error, start.y, step.y) if controller else 0.0
-            y, derivative = self.normalise(step.y), step.derivative
+            y, derivative = self.project(t, step.y), step.derivative
             if not np.isfinite(y).all() or not np.isfinite(norm):
                 raise NotFiniteError(f"the state at t = {t} or its error is not finite")
             if controller and norm > 1:

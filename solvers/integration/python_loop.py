@@ -57,7 +57,7 @@ def _attempts(
     """Attempts by each method of a part of a motion; the controllers are those of all parts."""
     form, tolerances = problem.form, (problem.rtol, problem.atol)
     return [
-        Attempts(Stepper(method, form.rhs, form.jacobian, *tolerances), controller, form.normalised)
+        Attempts(Stepper(method, form.rhs, form.jacobian, *tolerances), controller, form.projected)
         for method, controller in zip(members, controllers, strict=True)
     ]
 

@@ -31,14 +31,15 @@ class DenseOutput:
     def state(self, t: float) -> Array:
         """The state at a time."""
         if t == self._solver.t:
-            return self._form.normalised(self._solver.y)
+            return self._form.projected(t, self._solver.y)
         return self.states(np.array([t]))[:, 0]
 
     def states(self, times: Array) -> Array:
         """The states at several times, in columns."""
         z = self._interpolant(times)
         z[:, times == self._solver.t] = self._solver.y[:, np.newaxis]
-        return self._form.normalised(z)
+        pairs = zip(times.tolist(), z.T, strict=True)
+        return np.stack([self._form.projected(t, y) for t, y in pairs], axis=1)
 
     def between(self, _begin: float, _y0: Array, _end: float, _y1: Array) -> Curve:
         """States at several times."""

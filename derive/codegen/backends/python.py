@@ -245,10 +245,11 @@ def _imports_of_many(function: Function) -> str:
 def _constants(contents: Contents) -> str:
     system, functions = contents.system, contents.functions
     parameters = [symbol.name for symbol in system.params]
-    switching = contents.derivation.switching_functions
+    switching, conditions = contents.derivation.switching_functions, system.conditions
     with_rhs = {f.form for f in functions if f.name.startswith("rhs")}
     forms = [form for form in contents.states if form in with_rhs]
     used = {*parameters, *(name for state in contents.states.values() for name in state)}
+    used |= {one.name for one in conditions}
     tables = {
         "COORDINATES": _literal(q.name for q in system.q),
         "STATE": _literal(contents.states["lagrangian"]),
@@ -261,6 +262,7 @@ def _constants(contents: Contents) -> str:
         ),
         "POSITIVE": _literal(s.name for s in (*system.params, *system.q) if s.is_positive),
         **({"OUTPUTS": _literal(name for name, _ in system.measured)} if system.measured else {}),
+        **({"MULTIPLIERS": _literal(one.name for one in conditions)} if conditions else {}),
         **({"SWITCHES": _literal(map(str, switching))} if switching else {}),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),

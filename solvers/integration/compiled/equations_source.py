@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from solvers.equations.forms import CORRECTIONS
 from solvers.integration.compiled.layout import MAX_EVENTS, source
 from solvers.runge_kutta.tableau import Tableau
 
@@ -21,6 +22,46 @@ SLIDING = """\
 #define HAS_JACOBIAN {has_jacobian}
 static const int VELOCITY[] = {{{velocities}}}, PERTURBATION[] = {{{perturbations}}};
 {sliding_h}"""
+
+
+PROJECTION = """\
+enum {{ CORRECTIONS = {corrections} }};
+
+/* Turn an angle by a small change. */
+static inline void turn(State *state, int sine, real change)
+{{
+    const real s = state->z[sine], c = state->z[sine + 1];
+    add_to_component(state, sine, c*change);
+    add_to_component(state, sine + 1, -s*change);
+}}
+
+static inline void correct(State *state, const real *params)
+{{
+{correct}
+    (void)state; (void)params;
+}}
+{projection_h}"""
+
+CORRECT = """\
+    real change[{changes}];
+    {name}(state->t, state->z, params, change);
+{lines}"""
+
+#: The same where the functions of the header take vectors.
+VECTOR_CORRECT = """\
+    stage_vector all_params[{parameters} + 1], z[{state}], all[{changes}];
+    double change[{changes}];
+    for (int p = 0; p < {parameters}; p++) {{
+        all_params[p] = (stage_vector){{0}} + params[p];
+    }}
+    for (int n = 0; n < {state}; n++) {{
+        z[n] = (stage_vector){{0}} + state->z[n];
+    }}
+    {name}((stage_vector){{0}} + state->t, z, all_params, all);
+    for (int n = 0; n < {changes}; n++) {{
+        change[n] = all[n][0];
+    }}
+{lines}"""
 
 #: Switching functions of a state with momenta.
 SWITCHING_OF_MOMENTA = """
@@ -103,6 +144,8 @@ class Equations:
     vectorises: bool  # the right-hand side calls no function of the mathematical library
     switches: int = 0  # switching functions, whose signs are held after the parameters
     perturbed: Sequence[tuple[int, int]] = ()  # indices of each velocity and its perturbation
+    correction: str = ""  # name of the function that removes residuals of constraints
+    corrected: Sequence[str] = ()  # statements that add its `change`s to a state
 
     @property
     def switching(self) -> str:
@@ -150,9 +193,7 @@ def equations_text(equations: Equations, tableau: Tableau) -> str:
             rhs=equations.rhs,
             header=equations.header + equations.switching_of_momenta,
         )
-    # functions that convert states of a single motion take numbers, not vectors
-    converts = any("_state(" in line for line in equations.from_ordinary)
-    vectors = equations.vectorises and not converts
+    vectors = _takes_stage_vectors(equations)
     text = VECTOR_RHS if vectors else SCALAR_RHS
     real = "stage_vector\n#define HOLONOMIC_VECTOR" if vectors else "double"
     sizes = {"state": equations.state, "parameters": equations.parameters}
@@ -160,6 +201,31 @@ def equations_text(equations: Equations, tableau: Tableau) -> str:
         real=real,
         header=equations.header,
         rhs_h=text.format(rhs=equations.rhs, **sizes),
+    )
+
+
+def _takes_stage_vectors(equations: Equations) -> bool:
+    # functions that convert states of a single motion take numbers, not vectors
+    converts = any("_state(" in line for line in equations.from_ordinary)
+    return equations.vectorises and not converts
+
+
+def projection_text(equations: Equations, tableau: Tableau) -> str:
+    """The functions by which states are moved onto the constraints."""
+    correct = ""
+    if equations.correction:
+        is_vector = tableau.is_parallel and _takes_stage_vectors(equations)
+        correct = (VECTOR_CORRECT if is_vector else CORRECT).format(
+            name=equations.correction,
+            changes=len(equations.corrected),
+            state=equations.state,
+            parameters=equations.parameters,
+            lines="\n".join(f"    {line}" for line in equations.corrected),
+        )
+    return PROJECTION.format(
+        corrections=CORRECTIONS if correct else 0,
+        correct=correct,
+        projection_h=source("projection.h"),
     )
 
 

@@ -4,7 +4,12 @@ It consists of the module's generated header, the method's stages written out fr
 tableau, and the handwritten files in the folder ``c``.
 """
 
-from solvers.integration.compiled.equations_source import Equations, equations_text, sliding_text
+from solvers.integration.compiled.equations_source import (
+    Equations,
+    equations_text,
+    projection_text,
+    sliding_text,
+)
 from solvers.integration.compiled.layout import declarations, source
 from solvers.integration.compiled.method_source import constants_text, extension_text, method_text
 from solvers.integration.problem import SHORTEST
@@ -25,6 +30,7 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 {sliding}
 #define COMPENSATED {compensated}
 {step_h}
+{projection}
 {method}
 {motion_h}
 {switching}
@@ -89,6 +95,7 @@ def program(
         compensated=int(compensated),
         method=method_text(tableau),
         sliding=sliding_text(equations, tableau),
+        projection=projection_text(equations, tableau),
         switching=source("switching.h") if equations.switches else "",
         extension=extension_text(tableau),
         loop="\n".join(map(source, LOOP_FILES)),

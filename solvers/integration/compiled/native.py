@@ -64,7 +64,14 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
     if form == "hamiltonian":
         from_ordinary = [f"{path.stem}_hamiltonian_state(t, y, params, z);"]
         to_ordinary = [f"{path.stem}_lagrangian_state(t, z, params, y);"]
-    called = [named("rhs", form), *([named("switches", form)] if switches else [])]
+    corrected = []
+    if layout.has_constraints:
+        changes = len(module.STATE)
+        shared = [(k, i) for k, i in layout.shared_columns if k < changes]
+        corrected = [f"add_to_component(state, {i}, change[{k}]);" for k, i in shared]
+        corrected += [f"turn(state, {i}, change[{k}]);" for k, i in layout.angle_columns]
+    called = [named("rhs", form), *([layout.correction] if corrected else [])]
+    called += [named("switches", form)] if switches else []
     return Equations(
         text,
         rhs,
@@ -77,6 +84,8 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
         to_ordinary=to_ordinary,
         vectorises=not {*called} & {*module.CALLS_FUNCTIONS},
         perturbed=layout.perturbed,
+        correction=f"{path.stem}_{layout.correction}" if corrected else "",
+        corrected=corrected,
         switches=len(switching_functions(module)) if switches else 0,
     )
 

@@ -43,7 +43,7 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
         choose_order(state, result.contraction, factor, end);
 #endif
     }
-    normalise_angles(end);
+    project(end, motion->params);
     rescale_variation(state, end);
     check = count_turns(state, lanes->h, end);
     *failed |= ~less_than(lane_fabs(check), splat(1.0));

@@ -32,7 +32,8 @@ static Cubic cubic_of(Lanes *lanes, int lane, const WithinStep *within, State *s
 }
 
 /* Move the state of a lane to h by a cubic. */
-static void interpolate(const Cubic *cubic, const State *start, double h, int lane, State *state)
+static void interpolate(
+    const Cubic *cubic, const State *start, double h, int lane, const real *params, State *state)
 {
     const double x = (h - cubic->start)/cubic->width;
     for (int n = 0; n < DIM; n++) {
@@ -43,7 +44,7 @@ static void interpolate(const Cubic *cubic, const State *start, double h, int la
         LANE(state->z_low[n], lane) = 0;
     }
     state->t = two_sum(start->t, h + start->t_low, &state->t_low);
-    normalise_angles(state);
+    project(state, params);
     count_turns(start, splat(h), state);
 }
 
@@ -58,10 +59,10 @@ static void locate_by_cubic(Lanes *lanes, int lane, WithinStep *within)
     within->side = 0;
     while (is_wide(within)) {
         const double h = next_event_h(within);
-        interpolate(&cubic, start, h, lane, &state);
+        interpolate(&cubic, start, h, lane, lanes->motion.params, &state);
         const real value = event_value(event, &state, lanes->motion.params);
         reduce_bracket(within, h, LANE(value, lane));
     }
-    interpolate(&cubic, start, bracket->far, lane, &state);
+    interpolate(&cubic, start, bracket->far, lane, lanes->motion.params, &state);
     read_lane(&state, STATE_SIZE, lane, within->far_state);
 }

@@ -44,7 +44,7 @@ static int state_within(Lanes *lanes, WithinStep *within, double h, State *state
     for (int n = 0; n < DIM; n++) {
         check += state->z[n] - state->z[n];
     }
-    normalise_angles(state);
+    project(state, motion->params);
     rescale_variation(start, state);
     return check + count_turns(start, h, state) == 0;
 }
@@ -75,7 +75,7 @@ static int sample_extension(Lanes *lanes, int lane, const WithinStep *within, do
         check += change[n] - change[n];
     }
     state.t = two_sum(start->t, h + start->t_low, &state.t_low);
-    normalise_angles(&state);
+    project(&state, lanes->motion.params);
     rescale_variation(start, &state);
     count_turns(start, splat(h), &state);
     read_lane(&state, STATE_SIZE, lane, numbers);

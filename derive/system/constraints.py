@@ -1,0 +1,91 @@
+"""Constraints: functions of the state that remain 0, and points that remain together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self, TypeAlias
+
+import sympy as sp
+
+from derive.system.parts import SystemDefinitionError, check_text, formula, formulas, items
+from solvers.io.suggestion import shortened
+
+#: Components of a position.
+Point: TypeAlias = Sequence[sp.Expr]
+AXES = {2: ("x", "y"), 3: ("x", "y", "z")}
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """A function of the state that remains 0, and the reaction that keeps it so.
+
+    Parameters
+    ----------
+    formula : sympy.Expr
+        A function of coordinates, parameters and ``derive.TIME``; or an affine function of the
+        velocities (``derive.velocity(x)``), such as that of a rolling wheel.
+    name : str
+        Name of the multiplier λ: the generalized reaction is λ ∂formula/∂q, or λ ∂formula/∂q̇.
+    unit : str, optional
+        Unit of the multiplier: N, if the formula is a length or a velocity.
+    meaning : str, optional
+        A description of the multiplier, of one line.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When `formula` is no real expression; when `unit` or `meaning` is not one line that
+        generated files can contain.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> from derive import Constraint
+    >>> x, y = symbols("x y", real=True)
+    >>> l = symbols("l", positive=True)
+    >>> Constraint(x**2 + y**2 - l**2, "rod", "N/m", "tension per length, negative").name
+    'rod'
+    """
+
+    formula: sp.Expr
+    name: str
+    unit: str = "1"
+    meaning: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "formula", formula(self.formula))
+        object.__setattr__(self, "meaning", self.meaning or f"reaction of {self.formula} = 0")
+        check_text(f"the unit of {self.name}", self.unit)
+        check_text(f"the meaning of {self.name}", self.meaning)
+
+    @property
+    def symbol(self) -> sp.Symbol:
+        """The multiplier."""
+        return sp.Symbol(self.name, real=True)
+
+    def with_formula(self, value: sp.Expr) -> Self:
+        """The same constraint with another formula."""
+        return replace(self, formula=value)
+
+
+def constraints(given: object, pairs: object) -> tuple[Constraint, ...]:
+    """Constraints from formulas, and from pairs of points that remain together."""
+    result = [
+        one if isinstance(one, Constraint) else Constraint(one, f"lambda_{k}")
+        for k, one in enumerate(items("constraints", given, "formulas that remain 0"), 1)
+    ]
+    contents = "pairs of points, such as ((x, y), (l*cos(theta), l*sin(theta)))"
+    for k, pair in enumerate(items("coincide", pairs, contents), 1):
+        first, second = _points(pair, contents)
+        for axis, a, b in zip(AXES[len(first)], first, second, strict=True):
+            meaning = f"force along {axis} on the first of the points {k}"
+            result.append(Constraint(a - b, f"pin_{k}_{axis}", "N", meaning))
+    return tuple(result)
+
+
+def _points(pair: object, contents: str) -> tuple[tuple[sp.Expr, ...], ...]:
+    points = [formulas("coincide", point, contents) for point in items("coincide", pair, contents)]
+    if len(points) != 2 or len(points[0]) != len(points[1]) or len(points[0]) not in AXES:
+        raise SystemDefinitionError(
+            f"coincide contains {shortened(pair)}: give {contents}, of two or three components each"
+        )
+    return tuple(points)
