@@ -146,7 +146,7 @@ def test_the_operations_of_the_readme_are_those_of_the_module() -> None:
 
 
 def test_the_system_file_of_the_readme_runs(tmp_path: Path) -> None:
-    (file,) = blocks(DERIVE, "toml")
+    file = blocks(DERIVE, "toml")[0]
     (tmp_path / "bead.toml").write_text(file)
     module = load_module(str(tmp_path / "bead.toml"))
     assert module.TIMED

@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 from valid_files import BEAD
 
-from derive import Coordinate, Derivation, Parameter, PointMass, RigidBody, System, load
+from derive import Constraint, Coordinate, Derivation, Parameter, PointMass, RigidBody, System, load
 from derive.codegen.translation import NAMES
 from derive.commands.derive import main
 from derive.system.parts import SystemDefinitionError
@@ -130,6 +130,61 @@ def test_a_scene_runs_a_system_file(tmp_path: Path) -> None:
     written(tmp_path, BEAD.replace("value = 0.2", "value = 0.4"), "bead")
     other = run_scene(find(str(tmp_path / "scene.toml"), load_module))
     assert abs(other.y - found.y).max() > 1e-2
+
+
+def test_constraints_of_a_file_are_those_of_python(tmp_path: Path) -> None:
+    text = """
+    constraints = ["x - l*sin(theta)", { formula = "y_dot - l*theta_dot*sin(theta)", name = "up" }]
+    coincide = [[["x", "y"], ["l*sin(theta)", "-l*cos(theta)"]]]
+    [coordinates]
+    x = { unit = "m" }
+    y = { unit = "m" }
+    theta = {}
+    [parameters]
+    m = { value = 2, unit = "kg" }
+    l = { value = 1.5, unit = "m" }
+    g = { value = "981/100", unit = "m/s^2" }
+    [[masses]]
+    mass = "m"
+    position = ["x", "y"]
+    """
+    found = read_system(written(tmp_path, text))
+    (x, y, theta), (_, vy, rate), length = found.q, found.qdot, found.params[1]
+    end = (length * sp.sin(theta), -length * sp.cos(theta))
+    up = Constraint(vy - length * rate * sp.sin(theta), "up")
+    expected = replace(found, constraints=[x - end[0], up], coincide=[((x, y), end)])
+    assert found.conditions == expected.conditions
+    assert [one.name for one in found.conditions] == ["lambda_1", "up", "pin_1_x", "pin_1_y"]
+    tables = text.replace("constraints = [", "coincide = []\n#").replace("coincide = [[[", "#")
+    listed = tables + '\n[[constraints]]\nformula = "x - l*sin(theta)"\nunit = "N"'
+    (one,) = read_system(written(tmp_path, listed)).conditions
+    assert (one.formula, one.name, one.unit) == (x - end[0], "lambda_1", "N")
+
+
+@pytest.mark.parametrize(("line", "words"), [
+    ('constraints = "x"', "constraints = 'x' must be a list in square brackets"),
+    ('constraints = [["x"]]', r"formula = \['x'\] in constraints 1 must be a text"),
+    ("constraints = [{ name = 'rod' }]", "'formula' is missing in constraints 1"),
+    ("constraints = [{ formul = 'x' }]", "'formul' in constraints 1 .did you mean 'formula'"),
+    ('constraints = ["x", "hight"]', "constraints 2: unknown name 'hight' .did you mean 'height'"),
+    ('constraints = ["__import__(\'os\')"]', "constraints 1: .*is not allowed"),
+    ('constraints = [{ formula = "x", name = "os;rm" }]', "'os;rm' cannot be a name"),
+    ('constraints = [{ formula = "x", name = "m" }]', "uses a name twice: m"),
+    ('constraints = [{ formula = "x", unit = 3 }]', "unit = 3 in constraints 1"),
+    ('constraints = ["x_dot**2 - 1"]', "constraint lambda_1 .* is not affine in the velocities"),
+    ('constraints = ["k"]', "depends on no coordinate"),
+    ('coincide = "x"', r"coincide = 'x' must be a list of lists \[first, second\]"),
+    ('coincide = ["x", "x"]', r"coincide 1 = 'x' must be a list \[first, second\]"),
+    ('coincide = [["x", "x"]]', "first = 'x' in coincide 1 must be a list in square brackets"),
+    ('coincide = [[["x", "k"]]]', r"coincide 1 = .* must be a list \[first, second\]"),
+    ('coincide = [[["x", "k"], ["x"]]]', "coincide contains .* two or three components each"),
+    ('coincide = [[["x", "k"], ["x", "hight"]]]', "coincide 1: unknown name 'hight'"),
+])  # fmt: skip
+def test_invalid_constraints_are_refused(line: str, words: str, tmp_path: Path) -> None:
+    path = written(tmp_path, f"{line}\n{BEAD.lstrip()}")
+    with pytest.raises(SystemDefinitionError, match=words) as refusal:
+        read_system(path)
+    assert str(refusal.value).startswith(str(path))
 
 
 @pytest.mark.parametrize(("change", "words"), [

@@ -13,6 +13,7 @@ import sympy as sp
 
 from derive.formulas.budget import MAX_FACTORS_IN_SYSTEM, MAX_SECOND_IN_SYSTEM, Budget
 from derive.formulas.expression import FUNCTIONS, ExpressionError, number
+from derive.system.constraints import Constraint
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import (
     Coordinate,
@@ -30,7 +31,7 @@ from solvers.io.toml_input import InputError
 KEYS = (
     *("name", "title", "coordinates", "parameters", "definitions", "masses", "potential"),
     *("gravity", "dissipation", "forces", "equilibrium", "reactions", "inputs"),
-    "outputs",
+    *("outputs", "constraints", "coincide"),
 )
 #: Units of parameters that are positive by default.
 POSITIVE_UNITS = ("kg", "m")
@@ -98,6 +99,8 @@ def _system(stem: str, table: Table) -> System:
         reactions=[*_lengths(table, formulas, "reactions")],
         inputs=inputs,
         outputs=_outputs(table, formulas),
+        constraints=[*_constraints(table, formulas)],
+        coincide=[*_pairs(table, formulas)],
     )
 
 
@@ -135,6 +138,22 @@ def _lengths(table: Table, formulas: Formulas, key: str) -> Iterator[sp.Symbol]:
         if not isinstance(value, sp.Symbol):
             raise InputError(f"{key}: {text[:50]!r} must be the name of a constant length")
         yield value
+
+
+def _constraints(table: Table, formulas: Formulas) -> Iterator[Constraint]:
+    known = ("formula", "name", "unit", "meaning")
+    for k, row in enumerate(table.listed("constraints", known, short="formula"), 1):
+        formula = formulas.value(row.name, row.formula("formula"))
+        name, meaning = row.text("name", f"lambda_{k}"), row.text("meaning", "")
+        yield Constraint(formula, name, row.text("unit", "1"), meaning)
+
+
+def _pairs(table: Table, formulas: Formulas) -> Iterator[tuple[Any, ...]]:
+    for row in table.rows("coincide", ("first", "second")):
+        first, second = (
+            [formulas.value(row.name, text) for text in row.formulas(key)] for key in row.values
+        )
+        yield first, second
 
 
 def _by_coordinate(

@@ -1,6 +1,6 @@
 """Tables of TOML files, read strictly: unknown keys are refused."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -77,9 +77,26 @@ class Table:
             raise InputError(f"{key} = {shortened(inner)} must be a table: write [{key}]")
         return {name: Table(f"{key}.{name}", values, known) for name, values in inner.items()}
 
-    def listed(self, key: str, known: Collection[str]) -> "list[Table]":
-        """The tables of a list."""
+    def listed(self, key: str, known: Collection[str], short: str = "") -> "list[Table]":
+        """The tables of a list, in which a text or number may be short for one key's value."""
         inner = self.values.get(key, [])
         if not isinstance(inner, list):
-            raise InputError(f"{key} = {shortened(inner)} must be tables: write [[{key}]]")
+            form = "a list in square brackets" if short else f"tables: write [[{key}]]"
+            raise InputError(f"{key} = {shortened(inner)} must be {form}")
+        if short:
+            inner = [one if isinstance(one, Mapping) else {short: one} for one in inner]
         return [Table(f"{key} {k}", values, known) for k, values in enumerate(inner, 1)]
+
+    def rows(self, key: str, columns: Sequence[str]) -> "list[Table]":
+        """The lists of a list as tables, with these names of their entries."""
+        inner = self.values.get(key, [])
+        form = f"[{', '.join(columns)}]"
+        if not isinstance(inner, list):
+            raise InputError(f"{key} = {shortened(inner)} must be a list of lists {form}")
+        tables = []
+        for k, entries in enumerate(inner, 1):
+            if not isinstance(entries, list) or len(entries) != len(columns):
+                raise InputError(f"{key} {k} = {shortened(entries)} must be a list {form}")
+            values = dict(zip(columns, entries, strict=True))
+            tables.append(Table(f"{key} {k}", values, columns))
+        return tables
