@@ -44,6 +44,10 @@ def _multipliers(derivation: Derivation) -> str:
     return ", ".join(one.name for one in derivation.system.conditions)
 
 
+def _redundant(derivation: Derivation) -> str:
+    return ", ".join(one.name for one in derivation.redundant)
+
+
 def _is_free(derivation: Derivation) -> bool:
     return not derivation.system.conditions
 
@@ -117,6 +121,13 @@ SPECS = (
     FunctionSpec("constraints", "lagrangian", "residuals",
         "Residuals of the constraints, which are 0 along a motion.",
         "Constraints of the coordinates, then rates of these and constraints of velocities."),
+    FunctionSpec("constraint_jacobian", "lagrangian", "multipliers q",
+        "Jacobian G of the constraints, whose rates are G qdot + b.",
+        "Entry [i][j] is the derivative of constraint i with respect to coordinate j, or of a "
+        "constraint of velocities with respect to velocity j."),
+    FunctionSpec("redundant_constraints", "lagrangian", "redundant",
+        "Residuals of the constraints {}, which follow from the others, with default parameters.",
+        "One for each; where it is not 0, the parameters are such that none follows.", _redundant),
     FunctionSpec("multipliers", "lagrangian", "multipliers",
         "Multipliers {} of the constraints: their reactions.",
         "One for each constraint.", _multipliers),
@@ -239,6 +250,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
     constants |= {"outputs": len(system.measured), "params": len(system.params)}
     constants |= {"multipliers": len(system.conditions)}
+    constants |= {"redundant": len(derivation.redundant)}
     constants |= {"residuals": len(system.conditions) + len(derivation.holonomic)}
     sizes |= {name: count for name, count in constants.items() if count}
     sizes |= {form: len(state) for form, state in states.items()}

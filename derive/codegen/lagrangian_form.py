@@ -73,6 +73,16 @@ class LagrangianForm(EquationsOfMotion):
         return [*self._nodes(self._derivation.holonomic), *self._constraint_rates]
 
     @property
+    def constraint_jacobian(self) -> list[Node]:
+        """Rows of G."""
+        return [entry for row in self._constraint_jacobian for entry in row]
+
+    @property
+    def redundant_constraints(self) -> list[Node]:
+        """Constraints that follow from the others."""
+        return self._nodes([one.formula for one in self._derivation.redundant])
+
+    @property
     def correction(self) -> list[Node]:
         """The smallest change of q and q̇ that removes linearised residuals, by the mass matrix."""
         holonomic = {*self._derivation.holonomic}

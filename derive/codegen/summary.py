@@ -63,6 +63,10 @@ def summary(contents: Contents) -> str:
             f"{one.formula} = 0: {one.name} [{one.unit}], {one.meaning}"
             for one in system.conditions
         ]
+    if derivation.redundant:
+        sections["Redundant constraints, which follow from the others with default parameters"] = [
+            f"{one.formula} = 0: {one.name}, left out" for one in derivation.redundant
+        ]
     is_short = len(system.q) <= READABLE
     if is_short and derivation.lagrangian.count_ops() <= READABLE_OPERATIONS:
         sections["Lagrangian"] = [f"L = {_text(derivation.lagrangian)}"]

@@ -8,19 +8,22 @@ Lifshitz, Mechanics, § 5 and § 40; C. Lanczos, The Variational Principles of
 Mechanics, chapter VI, for time as a coordinate).
 """
 
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from derive.mechanics.constraints import Constraints
 from derive.mechanics.equations import Equations
 from derive.mechanics.equilibria import equilibria
 from derive.mechanics.independence import check_independence
 from derive.mechanics.linearisation import Energies, Linearisation
 from derive.mechanics.outputs import outputs as output_formulas
 from derive.mechanics.state_space import Formula, Point, StateSpace, state_space
+from derive.system.constraints import Constraint
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.prescribed import motions
 from derive.system.system import as_system
@@ -28,6 +31,10 @@ from solvers.io.suggestion import did_you_mean
 
 if TYPE_CHECKING:
     from derive.mechanics.identifiability import Identifiability
+
+
+class RedundancyWarning(UserWarning):
+    """Constraints follow from others, and are left out."""
 
 
 @dataclass(frozen=True)
@@ -39,12 +46,25 @@ class Derivation(Equations):
     system : System
         A system.
 
+    Attributes
+    ----------
+    system : System
+        The system, without redundant constraints.
+    redundant : tuple of Constraint
+        Constraints that follow from the others, with the default values of parameters.
+
     Raises
     ------
     SystemDefinitionError
         When `system` is not a `System`; when positions contain an input that is no motion; when a
         coordinate moves no mass, or moves the masses only
-        as others do, or has no inertia that is a positive number.
+        as others do, or has no inertia that is a positive number; when no configuration satisfies
+        the constraints, with default parameters, or none at which they are independent.
+
+    Warns
+    -----
+    derive.mechanics.derivation.RedundancyWarning
+        When constraints are redundant.
 
     Notes
     -----
@@ -61,13 +81,33 @@ class Derivation(Equations):
     -g*sin(theta)/l
     """
 
+    redundant: tuple[Constraint, ...] = field(init=False, default=(), repr=False, compare=False)
+
     def __post_init__(self) -> None:
         as_system(self.system)
         self._check_inputs()
+        if self.system.conditions:
+            self._leave_out_redundant()
         inertia, G = self.mass_matrix, self.constraint_jacobian
         if self.has_singular_mass_matrix:
             inertia = inertia + G.T * G
         check_independence(self.system, inertia)
+
+    def _leave_out_redundant(self) -> None:
+        # loads NumPy, which derivations without constraints do not need
+        from derive.mechanics.redundancy import independent
+
+        kept, redundant = independent(Constraints(self.system))
+        if redundant:
+            names = ", ".join(one.name for one in redundant)
+            warnings.warn(
+                f"constraints of system {self.system.name!r} are redundant and left out: {names}; "
+                "they follow from the others, so that their reactions are not determined",
+                RedundancyWarning,
+                stacklevel=4,
+            )
+            object.__setattr__(self, "system", replace(self.system, constraints=kept))
+            object.__setattr__(self, "redundant", redundant)
 
     def _check_inputs(self) -> None:
         system = self.system

@@ -77,6 +77,8 @@ def constraints(given: object, pairs: object) -> tuple[Constraint, ...]:
     for k, pair in enumerate(items("coincide", pairs, contents), 1):
         first, second = _points(pair, contents)
         for axis, a, b in zip(AXES[len(first)], first, second, strict=True):
+            if a == b:  # as along the axis of a planar loop in space
+                continue
             meaning = f"force along {axis} on the first of the points {k}"
             result.append(Constraint(a - b, f"pin_{k}_{axis}", "N", meaning))
     return tuple(result)

@@ -49,6 +49,8 @@ class GeneratedModule(Protocol):
     @property
     def MULTIPLIERS(self) -> tuple[str, ...]: ...  # of constraints, if the system has any
     @property
+    def RESIDUALS(self) -> tuple[str, ...]: ...  # of ``constraints``: those of rates end in _dot
+    @property
     def INPUTS(self) -> tuple[str, ...]: ...  # the last parameters, if the system has inputs
     @property
     def OUTPUTS(self) -> tuple[str, ...]: ...  # if the system has outputs

@@ -8,6 +8,7 @@ from derive.codegen.assignments import Factorisation, Solution, Statement, Value
 from derive.codegen.backend import DIGEST, Backend
 from derive.codegen.functions import Contents, Function
 from derive.codegen.summary import broken_sum, summary, units
+from derive.mechanics.derivation import Derivation
 
 WIDTH = 92
 
@@ -262,7 +263,7 @@ def _constants(contents: Contents) -> str:
         ),
         "POSITIVE": _literal(s.name for s in (*system.params, *system.q) if s.is_positive),
         **({"OUTPUTS": _literal(name for name, _ in system.measured)} if system.measured else {}),
-        **({"MULTIPLIERS": _literal(one.name for one in conditions)} if conditions else {}),
+        **(_of_constraints(contents.derivation) if conditions else {}),
         **({"SWITCHES": _literal(map(str, switching))} if switching else {}),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),
@@ -271,6 +272,14 @@ def _constants(contents: Contents) -> str:
     }
     texts = [f'SYSTEM = "{system.name}"', f'DIGEST = "{DIGEST}"']
     return "\n".join([*texts, *(f"{k} = {v}" for k, v in tables.items())])
+
+
+def _of_constraints(derivation: Derivation) -> dict[str, str]:
+    """Names of the multipliers and of the results of `constraints`."""
+    names = {one.name: one.formula in derivation.holonomic for one in derivation.system.conditions}
+    rates = (f"{name}_dot" if is_position else name for name, is_position in names.items())
+    residuals = [*(name for name, is_position in names.items() if is_position), *rates]
+    return {"MULTIPLIERS": _literal(names), "RESIDUALS": _literal(residuals)}
 
 
 def _literal(values: Iterable[object], depth: int = 0) -> str:
