@@ -11,6 +11,7 @@ from derive.codegen.tree import Difference, Tree
 from derive.codegen.writing import texts
 from derive.commands import document
 from derive.commands.arguments import add_arguments
+from derive.mechanics.constraints import Constraints
 from derive.mechanics.derivation import Derivation
 from derive.system.catalogue import UnknownSystemError, load
 from derive.system.parts import SystemDefinitionError
@@ -46,6 +47,8 @@ def run(arguments: Namespace, others: Iterable[Tree] = ()) -> int:
         if document.is_requested(arguments):
             return document.run(arguments)
         trees = [planned(arguments.systems, arguments.output), *others]
+        if not arguments.check:
+            _state(arguments.systems)
         return max([_check(tree, arguments) if arguments.check else _write(tree) for tree in trees])
     except (UnknownSystemError, SystemDefinitionError, UnsupportedFunctionError) as error:
         print(f"holonomic derive: {error}", file=sys.stderr)
@@ -60,6 +63,13 @@ def run(arguments: Namespace, others: Iterable[Tree] = ()) -> int:
             file=sys.stderr,
         )
         return 4
+
+
+def _state(systems: list[str]) -> None:
+    """Print the decisions on constraints of velocities."""
+    for name in systems:
+        if decision := str(Constraints(load(name)).integrability):
+            print(f"{name}: constraints of velocities: {decision}")
 
 
 def _write(tree: Tree) -> int:

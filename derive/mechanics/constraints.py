@@ -5,6 +5,7 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.mechanics.integrability import Integrability, integrability
 from derive.mechanics.kinetics import Kinetics, Matrix, derivative
 from derive.mechanics.reduction import collected
 from derive.system.symbols import TIME
@@ -25,6 +26,17 @@ class Constraints(Kinetics):
         """Constraints φ(q, t) of the coordinates."""
         formulas = (one.formula for one in self.system.conditions)
         return tuple(phi for phi in formulas if not phi.free_symbols & {*self.system.qdot})
+
+    @property
+    def velocity_constraints(self) -> tuple[sp.Expr, ...]:
+        """Constraints A(q, t) q̇ + b(q, t) of the velocities."""
+        holonomic = {*self.holonomic}
+        return tuple(c.formula for c in self.system.conditions if c.formula not in holonomic)
+
+    @cached_property
+    def integrability(self) -> Integrability:
+        """The decision which constraints of velocities are constraints of positions."""
+        return integrability(self.system, self.holonomic, self.velocity_constraints)
 
     @cached_property
     def constraint_rates(self) -> Matrix:
