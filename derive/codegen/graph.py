@@ -18,6 +18,7 @@ from math import gcd
 from typing import Any, TypeVar
 
 from derive.codegen.node import (
+    ONE,
     Call,
     Component,
     Constant,
@@ -33,6 +34,7 @@ from derive.codegen.node import (
     Solution,
     Sum,
     Switch,
+    Terms,
     operands,
 )
 
@@ -47,11 +49,21 @@ class Graph:
     def __init__(self) -> None:
         self._nodes: dict[tuple[Any, ...], Any] = {}
 
-    def _intern(self, kind: type[Kind], *content: Any) -> Kind:
-        key = (kind, *content)
+    def _intern(
+        self, kind: type[Kind], *content: Any, identity: Iterable[Any] | None = None
+    ) -> Kind:
+        key = (kind, *(content if identity is None else identity))
         if key not in self._nodes:
             self._nodes[key] = kind(*content, graph=self, rank=len(self._nodes))
         return self._nodes[key]
+
+    def _constant(self, value: Fraction) -> Constant:
+        # identified by integers: to hash and compare fractions takes long
+        return self._intern(Constant, value, identity=(value.numerator, value.denominator))
+
+    def _sum(self, terms: Terms) -> Sum:
+        identity = (x for node, c in terms for x in (node, c.numerator, c.denominator))
+        return self._intern(Sum, terms, identity=identity)
 
     def leaf(self, name: str) -> Node:
         """The input of this name."""
@@ -59,7 +71,7 @@ class Graph:
 
     def node(self, value: Operand) -> Node:
         """`value` as a node."""
-        return value if isinstance(value, Node) else self._intern(Constant, Fraction(value))
+        return value if isinstance(value, Node) else self._constant(Fraction(value))
 
     def irrational(self, value: Fraction) -> Node:
         """The irrational number that is `value` to some 50 digits."""
@@ -119,11 +131,12 @@ class Graph:
 
     def product(self, factors: Iterable[tuple[Node, int]]) -> Node:
         """The product of powers; common factors are cancelled."""
-        coefficient = Fraction(1)
+        coefficient = ONE
         powers: dict[Node, int] = {}
         for factor, power in factors:
             number, rest = factor.scaled()
-            coefficient *= number**power
+            if number is not ONE:  # operations with fractions take long
+                coefficient *= number**power
             if rest is not None:
                 for node, inner in rest.factors():
                     powers[node] = powers.get(node, 0) + inner * power
@@ -142,9 +155,9 @@ class Graph:
     def _scale(self, node: Node, coefficient: Fraction) -> Node:
         if isinstance(node, Constant):
             return self.node(node.value * coefficient)
-        if coefficient == 1:
+        if coefficient is ONE or coefficient == 1:
             return node
-        return self._intern(Sum, ((node, coefficient),))
+        return self._sum(((node, coefficient),))
 
     def sum(self, terms: Iterable[tuple[Node, Number]]) -> Node:
         """The sum of coefficient times node; its content is moved outside."""
@@ -153,7 +166,8 @@ class Graph:
         for node, number in terms:
             coefficient, rest = node.scaled()
             key = one if rest is None else rest
-            collected[key] = collected.get(key, Fraction(0)) + coefficient * number
+            value = Fraction(number) if coefficient is ONE else coefficient * number
+            collected[key] = collected[key] + value if key in collected else value
         nonzero = {node: c for node, c in collected.items() if c}
         if len(nonzero) > 1:
             nonzero = self._pythagoras(nonzero)
@@ -195,7 +209,7 @@ class Graph:
                 node = self._monomial({n: p - common.get(n, 0) for n, p in monomial.items()})
             rest.append((node, coefficient / content))
         rest.sort(key=lambda item: item[0].rank)
-        primitive = self._intern(Sum, tuple(rest))
+        primitive = self._sum(tuple(rest))
         # the remaining sum may be one of the common factors
         powers = {**common, primitive: common.get(primitive, 0) + 1}
         return self._scale(self._monomial(powers), content)
