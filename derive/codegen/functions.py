@@ -121,6 +121,9 @@ SPECS = (
     FunctionSpec("constraints", "lagrangian", "residuals",
         "Residuals of the constraints, which are 0 along a motion.",
         "Constraints of the coordinates, then rates of these and constraints of velocities."),
+    FunctionSpec("constraints_jacobian", "lagrangian", "residuals state",
+        "Derivatives of `constraints` with respect to the state.",
+        "Entry [i][j] is the derivative of residual i with respect to y[j]."),
     FunctionSpec("constraint_jacobian", "lagrangian", "multipliers q",
         "Jacobian G of the constraints, whose rates are G qdot + b.",
         "Entry [i][j] is the derivative of constraint i with respect to coordinate j, or of a "

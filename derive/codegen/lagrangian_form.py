@@ -73,6 +73,12 @@ class LagrangianForm(EquationsOfMotion):
         return [*self._nodes(self._derivation.holonomic), *self._constraint_rates]
 
     @property
+    def constraints_jacobian(self) -> list[Node]:
+        """Rows of derivatives of `constraints` with respect to (q, q̇)."""
+        names = [s.name for s in (*self._system.q, *self._system.qdot)]
+        return [self._derivative(one, name) for one in self.constraints for name in names]
+
+    @property
     def constraint_jacobian(self) -> list[Node]:
         """Rows of G."""
         return [entry for row in self._constraint_jacobian for entry in row]

@@ -132,12 +132,20 @@ class Derivation(Equations):
             return True
         return False
 
+    def _check_free(self, results: str) -> None:
+        if self.system.conditions:
+            raise SystemDefinitionError(
+                f"{results} of system {self.system.name!r}, which has constraints, are found in "
+                "numbers only: use solvers.equilibria and solvers.linearise with the built module"
+            )
+
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
         """Small oscillations about an equilibrium, by default the system's own, or zeros.
 
         A `SystemDefinitionError` states that a force is not 0 there, or that small motions depend
         on time, have applied or gyroscopic forces, or no finite mass and stiffness matrix.
         """
+        self._check_free("small oscillations")
         if equilibrium is None:
             return self._default_linearisation
         return self._energies.linearised(tuple(map(formula, equilibrium)))
@@ -173,6 +181,7 @@ class Derivation(Equations):
         >>> hanging.C
         Matrix([[l, 0]])
         """
+        self._check_free("the state space")
         point = Point.of(self.system, at or {})
         return state_space(point, self.mass_matrix, self.forcing, outputs)
 
@@ -252,6 +261,7 @@ class Derivation(Equations):
         {theta: -acos(g/(Omega**2*R)) + 2*pi}
         {theta: acos(g/(Omega**2*R))}
         """
+        self._check_free("equilibria")
         point = Point.of(self.system, at or {})
         moving = {*self.system.qdot}
         values = {s: x for s, x in point.values.items() if s in moving or s.name in (at or {})}
@@ -264,6 +274,8 @@ class Derivation(Equations):
     @cached_property
     def is_linearisable(self) -> bool:
         """Whether masses and springs alone describe small motions."""
+        if self.system.conditions:
+            return False
         try:
             self.linearisation()
         except SystemDefinitionError:
@@ -272,7 +284,12 @@ class Derivation(Equations):
 
     @cached_property
     def equilibrium(self) -> tuple[sp.Expr, ...] | None:
-        """The system's equilibrium, or zeros if they are one; None if none is known."""
+        """The system's equilibrium, or zeros if they are one; None if none is known.
+
+        None for systems with constraints, whose equilibria `solvers.equilibria` finds in numbers.
+        """
+        if self.system.conditions:
+            return None
         try:
             self._energies.check_equilibrium(self._default_equilibrium)
         except SystemDefinitionError:

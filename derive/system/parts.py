@@ -46,6 +46,8 @@ def formulas(name: str, values: object, contents: str) -> tuple[sp.Expr, ...]:
 
 def items(name: str, values: object, contents: str, kind: type = object) -> tuple[Any, ...]:
     """`values` as a tuple; refused if they are no sequence, or one is not of the given kind."""
+    if isinstance(values, sp.MatrixBase):
+        values = values.flat()  # a position may be a column
     if not isinstance(values, Iterable) or isinstance(values, str):
         given = shortened(values)
         raise SystemDefinitionError(f"{name} = {given} is not a sequence: give {contents}")

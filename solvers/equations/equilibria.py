@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 
 from solvers.equations.intervals import FUNCTIONS, Interval, bounds_of, select
 from solvers.equations.linear_system import LinearSystem, linearise, with_inputs
-from solvers.equations.module import GeneratedModule, depends_on_time, with_functions
+from solvers.equations.module import (
+    GeneratedModule,
+    depends_on_time,
+    function,
+    has_function,
+    with_functions,
+)
 from solvers.equations.quantities import Values, real_numbers
 from solvers.io.suggestion import did_you_mean, shortened
 
@@ -122,11 +128,30 @@ class _Search:
         return np.where(self.free, self.high - self.low, 1.0)
 
     @cached_property
-    def scale(self) -> float:
-        """The size of accelerations in the box, in the units of each."""
+    def scale(self) -> Array:
+        """The size of accelerations in the box, and of each residual of constraints."""
+        arguments = 0.0, self._some_states, self.params
         with np.errstate(all="ignore"):
-            values = self.module.rhs_many(0.0, self._some_states, self.params)[self.n :]
-        return float(np.nanmax(np.abs(values), initial=1e-300))
+            accelerations = self.module.rhs_many(*arguments)[self.n :]
+            sizes = [np.full(self.n, np.nanmax(np.abs(accelerations), initial=1e-300))]
+            if self.has_constraints:
+                residuals = function(self.module, "constraints_many")(*arguments)
+                sizes.append(np.nanmax(np.abs(residuals), axis=1, initial=1e-300))
+        return np.concatenate(sizes)
+
+    @property
+    def has_constraints(self) -> bool:
+        return has_function(self.module, "constraints")
+
+    def residuals(self, state: list[float]) -> tuple[Array, Array]:
+        """Accelerations and residuals of constraints, and their derivatives by the state."""
+        arguments = 0.0, state, self.params
+        values = [self.module.rhs(*arguments)[self.n :]]
+        rows = [self.module.jacobian(*arguments)[self.n :]]
+        if self.has_constraints:
+            values.append(function(self.module, "constraints")(*arguments))
+            rows.append(function(self.module, "constraints_jacobian")(*arguments))
+        return np.concatenate(values), np.concatenate(rows)
 
     @property
     def n(self) -> int:
@@ -157,12 +182,16 @@ class _Search:
     def candidates(self) -> Array:
         """Points near which there may be an equilibrium, in rows."""
         low, high = self.low[np.newaxis], self.high[np.newaxis]
-        rhs = with_functions(self.module.rhs, {**FUNCTIONS, "select": select})
+        names = ["rhs", *(["constraints"] if self.has_constraints else [])]
+        functions = [
+            with_functions(function(self.module, name), {**FUNCTIONS, "select": select})
+            for name in names
+        ]
         for _, k in product(range(HALVINGS), np.flatnonzero(self.free)):
             middle = (low[:, k] + high[:, k]) / 2
             low, high = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
             high[::2, k] = low[1::2, k] = middle
-            possible = self._may_vanish(rhs, low, high)
+            possible = self._may_vanish(functions, low, high)
             low, high = low[possible], high[possible]
             if len(low) > MOST_BOXES:
                 raise ValueError(
@@ -175,9 +204,9 @@ class _Search:
         return np.asarray(centres[np.unique(cells, axis=0, return_index=True)[1]])
 
     def _may_vanish(
-        self, rhs: Callable[..., Sequence[Any]], low: Array, high: Array
+        self, functions: Sequence[Callable[..., Sequence[Any]]], low: Array, high: Array
     ) -> NDArray[np.bool_]:
-        """Boxes, in rows, in which the range of every acceleration contains 0."""
+        """Boxes, in rows, in which the range of every acceleration and constraint contains 0."""
         state = [
             Interval(*bounds) if is_free else value
             for is_free, value, *bounds in zip(
@@ -186,7 +215,7 @@ class _Search:
         ]
         try:
             with np.errstate(all="ignore"):
-                accelerations = rhs(0.0, state, self.params)[self.n :]
+                rates, *residuals = (f(0.0, state, self.params) for f in functions)
         except (TypeError, AttributeError) as error:
             known = ", ".join(FUNCTIONS)
             raise ValueError(
@@ -194,8 +223,8 @@ class _Search:
                 f"must be among {known}"
             ) from error
         possible = np.ones(len(low), bool)
-        for acceleration in accelerations:
-            least, largest = bounds_of(acceleration)
+        for value in chain(rates[self.n :], *residuals):
+            least, largest = bounds_of(value)
             possible &= ~(least > 0) & ~(largest < 0)
         return possible
 
@@ -205,16 +234,16 @@ class _Search:
         for _ in range(MOST_STEPS):
             state = q.tolist()
             try:
-                acceleration = np.array(self.module.rhs(0.0, state, self.params)[n:])
-                jacobian = np.array(self.module.jacobian(0.0, state, self.params))
+                residuals, jacobian = self.residuals(state)
             except (ArithmeticError, ValueError):
                 return None
-            by_free = jacobian[n:, self.free]
-            if not (np.isfinite(acceleration).all() and np.isfinite(by_free).all()):
+            by_free = jacobian[:, self.free] / self.scale[:, np.newaxis]
+            parts = residuals / self.scale
+            if not (np.isfinite(parts).all() and np.isfinite(by_free).all()):
                 return None
             step = np.zeros(2 * n)
-            step[self.free] = np.linalg.lstsq(by_free, -acceleration, rcond=1e-14)[0]
-            is_root = np.abs(acceleration).max(initial=0.0) <= CONVERGED * self.scale
+            step[self.free] = np.linalg.lstsq(by_free, -parts, rcond=1e-14)[0]
+            is_root = np.abs(parts).max(initial=0.0) <= CONVERGED
             q = q + np.clip(step, -self.width, self.width)
             if is_root and (np.abs(step) <= CONVERGED * self.width).all():
                 break

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import linalg
 
-from solvers.equations.module import GeneratedModule, function
+from solvers.equations.module import GeneratedModule, function, has_function
 from solvers.equations.module import inputs as input_names
 from solvers.equations.module import outputs as output_names
 from solvers.equations.quantities import Values, quantities, real_number
@@ -20,6 +21,8 @@ Array = NDArray[np.float64]
 #: Real parts of eigenvalues, relative to the largest eigenvalue, that count as 0: a double
 #: eigenvalue 0, as of a free coordinate, has errors of the square root of rounding errors.
 NEUTRAL = 1e-7
+#: Residuals of constraints at which a state violates them.
+VIOLATED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,8 @@ class Mode:
 class LinearSystem:
     """x' = A x + B w and z = C x + D w, for small changes x of a state and w of the inputs.
 
+    Constraints determine some components of the state by the others, which are x.
+
     Attributes
     ----------
     t : float
@@ -62,6 +67,10 @@ class LinearSystem:
         Matrices of shape (state, state), (state, inputs), (outputs, state), (outputs, inputs).
     states, inputs, outputs : tuple of str
         Names of the components of x, w and z.
+    names : tuple of str
+        Names of the components of `y`.
+    tangent : ndarray of shape (len(y), len(x))
+        Derivatives of `y` with respect to x: the unit matrix without constraints.
 
     Examples
     --------
@@ -83,6 +92,8 @@ class LinearSystem:
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    names: tuple[str, ...]
+    tangent: Array
 
     @property
     def eigenvalues(self) -> NDArray[np.complex128]:
@@ -110,7 +121,7 @@ class LinearSystem:
         for value, vector in zip(values.astype(complex), vectors.T, strict=True):
             if value.imag < 0:
                 continue
-            shape = vector[: len(vector) // 2].astype(complex)
+            shape = (self.tangent @ vector)[: len(self.y) // 2].astype(complex)
             # an eigenvector (q, λ q) has coordinates
             shape = shape / shape[np.argmax(np.abs(shape))]
             number, size = complex(value), float(abs(value))
@@ -135,7 +146,7 @@ class LinearSystem:
         return control.ss(self.A, self.B, self.C, self.D, **lists)
 
     def __repr__(self) -> str:
-        state = ", ".join(f"{n} = {x:.6g}" for n, x in zip(self.states, self.y, strict=True))
+        state = ", ".join(f"{n} = {x:.6g}" for n, x in zip(self.names, self.y, strict=True))
         values = ", ".join(f"{value:.4g}" for value in self.eigenvalues)
         return f"LinearSystem at {state}: {self.stability}, eigenvalues {values} 1/s"
 
@@ -175,7 +186,7 @@ def linearise(
     Raises
     ------
     ValueError
-        When an argument is invalid, or the Jacobian is not finite.
+        When an argument is invalid, the state violates a constraint, or the Jacobian is not finite.
 
     Examples
     --------
@@ -216,7 +227,48 @@ def linearise(
     C, D = (matrix[rows] for matrix in _of_outputs(module, point))
     if not (np.isfinite(C).all() and np.isfinite(D).all()):
         raise ValueError(f"the outputs have no finite derivative at y = {state}")
-    return LinearSystem(time, state, constants, rate, A, B, C, D, names, controls, measured)
+    tangent, independent = _tangent(module, point)
+    A, B, C = A[independent] @ tangent, B[independent], C @ tangent
+    states = tuple(names[k] for k in independent)
+    return LinearSystem(
+        time, state, constants, rate, A, B, C, D, states, controls, measured, names, tangent
+    )
+
+
+def _tangent(
+    module: GeneratedModule, point: tuple[float, list[float], tuple[float, ...]]
+) -> tuple[Array, list[int]]:
+    """All small changes of a state by those that constraints leave free, and their indices."""
+    n = len(module.STATE)
+    if not has_function(module, "constraints"):
+        return np.eye(n), [*range(n)]
+    _check_constraints(module, point)
+    G = np.array(function(module, "constraints_jacobian")(*point))
+    # of coordinates and of velocities, those that determine the others best
+    parts = [np.arange(n // 2), np.arange(n // 2, n)]
+    holonomic = len(G) - len(module.MULTIPLIERS)
+    rows = [slice(0, holonomic), slice(holonomic, None)]
+    chosen = [
+        own[linalg.qr(G[row][:, own], pivoting=True, mode="r")[1][: len(G[row])]]
+        for own, row in zip(parts, rows, strict=True)
+    ]
+    dependent = np.concatenate(chosen)
+    others = np.setdiff1d(np.arange(n), dependent)
+    tangent = np.zeros((n, len(others)))
+    tangent[others] = np.eye(len(others))
+    tangent[dependent] = -np.linalg.solve(G[:, dependent], G[:, others])
+    return tangent, others.tolist()
+
+
+def _check_constraints(
+    module: GeneratedModule, point: tuple[float, list[float], tuple[float, ...]]
+) -> None:
+    residuals = np.array(function(module, "constraints")(*point))
+    if not np.abs(residuals).max() <= VIOLATED:
+        raise ValueError(
+            f"y = {point[1]} violates the constraints of {module.SYSTEM} by {residuals}: give a "
+            "state that satisfies them"
+        )
 
 
 def _of_outputs(
