@@ -5,6 +5,14 @@ from derive.mechanics.specialisation import with_inputs as with_inputs
 from derive.mechanics.state_space import StateSpace as StateSpace
 from derive.system.catalogue import load as load
 from derive.system.constraints import Constraint as Constraint
+from derive.system.links import Block as Block
+from derive.system.links import Cart as Cart
+from derive.system.links import Plate as Plate
+from derive.system.links import Rail as Rail
+from derive.system.links import Rod as Rod
+from derive.system.links import Spring as Spring
+from derive.system.links import Thread as Thread
+from derive.system.links import Wheel as Wheel
 from derive.system.parts import Coordinate as Coordinate
 from derive.system.parts import Input as Input
 from derive.system.parts import Parameter as Parameter

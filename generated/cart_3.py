@@ -154,7 +154,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "f7615fd3f072f7e6"
+DIGEST = "20f98e0c4c85a947"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x",
@@ -247,6 +247,13 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m0", "m1", "m2", "m3", "l1", "l2", "l3", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m0", "m1", "m2", "m3", "l1", "l2", "l3")
+LINKS = (
+    ("plate", (0, 1, 2, 3)),
+    ("ring", (4, 5, 6)),
+    ("ring", (7, 8, 9)),
+    ("rail", (10, 11)),
+    ("rod", (12, 13, 14, 15)),
+)
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
@@ -255,6 +262,7 @@ CALLS_FUNCTIONS = (
     "energy",
     "mass_matrix",
     "positions",
+    "points",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
@@ -269,6 +277,7 @@ OPERATIONS = {
     "energy": (66, 15),
     "mass_matrix": (27, 12),
     "positions": (20, 0),
+    "points": (36, 4),
     "hamiltonian_state": (53, 7),
     "rhs_hamiltonian": (138, 14),
     "jacobian_hamiltonian": (453, 14),
@@ -1490,6 +1499,124 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -x3,
         x2 + l3*sin(theta3),
         -(x3 + l3*cos(theta3)),
+    )
+
+
+def points(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Points of `LINKS`, which pictures join.
+
+    36 operations, 4 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 8 floats
+        x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
+        theta3_dot in rad/s.
+    params : iterable of 8 floats
+        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        One row a point: its Cartesian components in m, the last one upwards.
+    """
+    # inputs
+    x, theta1, theta2, theta3, _, _, _, _ = y.tolist() if hasattr(y, "tolist") else y
+    _, _, _, _, l1, l2, l3, _ = params.tolist() if hasattr(params, "tolist") else params
+    # terms of the parameters alone
+    c0 = -0.125*l1
+    c1 = 0.125*l1
+    c2 = -0.1875*l1
+    c3 = -0.25*l1
+    # intermediate terms
+    x0 = x - 0.25*l1
+    x1 = 0.25*l1 + x
+    x2 = x - 0.125*l1
+    x3 = 0.125*l1 + x
+    x4 = x + l1*sin(theta1)
+    x5 = l1*cos(theta1)
+    x6 = x4 + l2*sin(theta2)
+    x7 = x5 + l2*cos(theta2)
+    # outputs
+    return (
+        (x0, c0),
+        (x1, c0),
+        (x1, c1),
+        (x0, c1),
+        (x2, c2),
+        (x - 0.0625*l1, c2),
+        (x2, c0),
+        (x3, c2),
+        (0.1875*l1 + x, c2),
+        (x3, c0),
+        (0.0, c3),
+        (1.0, c3),
+        (x, 0.0),
+        (x4, -x5),
+        (x6, -x7),
+        (x6 + l3*sin(theta3), -(x7 + l3*cos(theta3))),
+    )
+
+
+def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`points` over arrays: the result has shape (16, 2, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    x, theta1, theta2, theta3, _, _, _, _ = y
+    _, _, _, _, l1, l2, l3, _ = params
+    # terms of the parameters alone
+    c0 = -0.125*l1
+    c1 = 0.125*l1
+    c2 = -0.1875*l1
+    c3 = -0.25*l1
+    # intermediate terms
+    x0 = x - 0.25*l1
+    x1 = 0.25*l1 + x
+    x2 = x - 0.125*l1
+    x3 = 0.125*l1 + x
+    x4 = x + l1*sin(theta1)
+    x5 = l1*cos(theta1)
+    x6 = x4 + l2*sin(theta2)
+    x7 = x5 + l2*cos(theta2)
+    # outputs
+    return _stacked(
+        (16, 2),
+        y[0],
+        x0,
+        c0,
+        x1,
+        c0,
+        x1,
+        c1,
+        x0,
+        c1,
+        x2,
+        c2,
+        x - 0.0625*l1,
+        c2,
+        x2,
+        c0,
+        x3,
+        c2,
+        0.1875*l1 + x,
+        c2,
+        x3,
+        c0,
+        0.0,
+        c3,
+        1.0,
+        c3,
+        x,
+        0.0,
+        x4,
+        -x5,
+        x6,
+        -x7,
+        x6 + l3*sin(theta3),
+        -(x7 + l3*cos(theta3)),
     )
 
 

@@ -102,7 +102,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "b09dba806874328c"
+DIGEST = "8e0436fec78e5b36"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -145,6 +145,7 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "l", "k", "d", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m", "l", "k", "d")
+LINKS = (("rod", (0, 1)), ("rod", (2, 3)), ("spring", (1, 3)))
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
@@ -152,6 +153,7 @@ CALLS_FUNCTIONS = (
     "parameter_jacobian",
     "energy",
     "positions",
+    "points",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
     "energy_hamiltonian",
@@ -167,6 +169,7 @@ OPERATIONS = {
     "energy": (38, 4),
     "mass_matrix": (2, 2),
     "positions": (11, 0),
+    "points": (11, 0),
     "hamiltonian_state": (4, 2),
     "rhs_hamiltonian": (49, 5),
     "jacobian_hamiltonian": (92, 7),
@@ -725,6 +728,59 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         y[0],
         l*sin(theta1),
         -l*cos(theta1),
+        d + l*sin(theta2),
+        -l*cos(theta2),
+    )
+
+
+def points(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Points of `LINKS`, which pictures join.
+
+    11 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
+    params : iterable of 5 floats
+        m in kg; l in m; k in N/m; d in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        One row a point: its Cartesian components in m, the last one upwards.
+    """
+    # inputs
+    theta1, theta2, _, _ = y.tolist() if hasattr(y, "tolist") else y
+    _, l, _, d, _ = params.tolist() if hasattr(params, "tolist") else params
+    # outputs
+    return (
+        (0.0, 0.0),
+        (l*sin(theta1), -l*cos(theta1)),
+        (d, 0.0),
+        (d + l*sin(theta2), -l*cos(theta2)),
+    )
+
+
+def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`points` over arrays: the result has shape (4, 2, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, _, _ = y
+    _, l, _, d, _ = params
+    # outputs
+    return _stacked(
+        (4, 2),
+        y[0],
+        0.0,
+        0.0,
+        l*sin(theta1),
+        -l*cos(theta1),
+        d,
+        0.0,
         d + l*sin(theta2),
         -l*cos(theta2),
     )

@@ -97,7 +97,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_bar_pendulum"
-DIGEST = "7b90c3cbc1cea8e6"
+DIGEST = "1b338c7e41b7a77f"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -140,6 +140,7 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m1", "m2", "l1", "l2", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m1", "m2", "l1", "l2")
+LINKS = (("rod", (0, 1, 2)),)
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
@@ -148,6 +149,7 @@ CALLS_FUNCTIONS = (
     "energy",
     "mass_matrix",
     "positions",
+    "points",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
@@ -162,6 +164,7 @@ OPERATIONS = {
     "energy": (31, 12),
     "mass_matrix": (12, 8),
     "positions": (15, 0),
+    "points": (12, 0),
     "hamiltonian_state": (19, 4),
     "rhs_hamiltonian": (47, 11),
     "jacobian_hamiltonian": (89, 11),
@@ -714,6 +717,62 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -0.5*x1,
         x0 + 0.5*l2*sin(theta2),
         -(x1 + 0.5*l2*cos(theta2)),
+    )
+
+
+def points(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Points of `LINKS`, which pictures join.
+
+    12 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
+    params : iterable of 5 floats
+        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        One row a point: its Cartesian components in m, the last one upwards.
+    """
+    # inputs
+    theta1, theta2, _, _ = y.tolist() if hasattr(y, "tolist") else y
+    _, _, l1, l2, _ = params.tolist() if hasattr(params, "tolist") else params
+    # intermediate terms
+    x0 = l1*sin(theta1)
+    x1 = l1*cos(theta1)
+    # outputs
+    return (
+        (0.0, 0.0),
+        (x0, -x1),
+        (x0 + l2*sin(theta2), -(x1 + l2*cos(theta2))),
+    )
+
+
+def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`points` over arrays: the result has shape (3, 2, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta1, theta2, _, _ = y
+    _, _, l1, l2, _ = params
+    # intermediate terms
+    x0 = l1*sin(theta1)
+    x1 = l1*cos(theta1)
+    # outputs
+    return _stacked(
+        (3, 2),
+        y[0],
+        0.0,
+        0.0,
+        x0,
+        -x1,
+        x0 + l2*sin(theta2),
+        -(x1 + l2*cos(theta2)),
     )
 
 

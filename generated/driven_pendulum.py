@@ -75,7 +75,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "a9cbeb6ee83df65a"
+DIGEST = "1be50dff1db845b4"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -101,6 +101,7 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "l", "a", "Omega", "c", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 0.1, 100.0, 0.0, 9.81)
 POSITIVE = ("m", "l")
+LINKS = (("rod", (0, 1)),)
 TIMED = (
     "rhs",
     "jacobian",
@@ -108,6 +109,7 @@ TIMED = (
     "energy",
     "power",
     "positions",
+    "points",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
@@ -124,6 +126,7 @@ CALLS_FUNCTIONS = (
     "energy",
     "power",
     "positions",
+    "points",
     "hamiltonian_state",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
@@ -142,6 +145,7 @@ OPERATIONS = {
     "power": (22, 6),
     "mass_matrix": (2, 2),
     "positions": (8, 0),
+    "points": (8, 0),
     "hamiltonian_state": (10, 2),
     "rhs_hamiltonian": (25, 8),
     "jacobian_hamiltonian": (34, 10),
@@ -582,6 +586,47 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     _, l, a, Omega, _, _ = params
     # outputs
     return _stacked((1, 2), y[0], l*sin(theta), a*cos(Omega*t) - l*cos(theta))
+
+
+def points(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Points of `LINKS`, which pictures join.
+
+    8 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s.
+    y : iterable of 2 floats
+        theta in rad; theta_dot in rad/s.
+    params : iterable of 6 floats
+        m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        One row a point: its Cartesian components in m, the last one upwards.
+    """
+    # inputs
+    theta, _ = y.tolist() if hasattr(y, "tolist") else y
+    _, l, a, Omega, _, _ = params.tolist() if hasattr(params, "tolist") else params
+    # intermediate terms
+    x0 = a*cos(Omega*t)
+    # outputs
+    return ((0.0, x0), (l*sin(theta), x0 - l*cos(theta)))
+
+
+def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`points` over arrays: the result has shape (2, 2, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    theta, _ = y
+    _, l, a, Omega, _, _ = params
+    # intermediate terms
+    x0 = a*cos(Omega*t)
+    # outputs
+    return _stacked((2, 2), y[0], 0.0, x0, l*sin(theta), x0 - l*cos(theta))
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -71,7 +71,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "67fe932fa47e47c3"
+DIGEST = "5c0b01a6dc3113cb"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -97,13 +97,15 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "R", "Omega", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 4.0, 9.81)
 POSITIVE = ("m", "R")
-TIMED = ("positions",)
+LINKS = (("ring", (0, 1, 2)),)
+TIMED = ("positions", "points")
 CALLS_FUNCTIONS = (
     "rhs",
     "jacobian",
     "parameter_jacobian",
     "energy",
     "positions",
+    "points",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
     "energy_hamiltonian",
@@ -116,6 +118,7 @@ OPERATIONS = {
     "energy": (15, 3),
     "mass_matrix": (2, 2),
     "positions": (10, 0),
+    "points": (5, 0),
     "hamiltonian_state": (3, 2),
     "rhs_hamiltonian": (14, 5),
     "jacobian_hamiltonian": (16, 6),
@@ -452,6 +455,57 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x1 = R*sin(theta)
     # outputs
     return _stacked((1, 3), y[0], cos(x0)*x1, sin(x0)*x1, -R*cos(theta))
+
+
+def points(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Points of `LINKS`, which pictures join.
+
+    5 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s.
+    y : iterable of 2 floats
+        theta in rad; theta_dot in rad/s.
+    params : iterable of 4 floats
+        m in kg; R in m; Omega in rad/s; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        One row a point: its Cartesian components in m, the last one upwards.
+    """
+    # inputs
+    _, R, Omega, _ = params.tolist() if hasattr(params, "tolist") else params
+    # intermediate terms
+    x0 = Omega*t
+    # outputs
+    return ((0.0, 0.0, 0.0), (R*cos(x0), R*sin(x0), 0.0), (0.0, 0.0, R))
+
+
+def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`points` over arrays: the result has shape (3, 3, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    _, R, Omega, _ = params
+    # intermediate terms
+    x0 = Omega*t
+    # outputs
+    return _stacked(
+        (3, 3),
+        y[0],
+        0.0,
+        0.0,
+        0.0,
+        R*cos(x0),
+        R*sin(x0),
+        0.0,
+        0.0,
+        0.0,
+        R,
+    )
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:

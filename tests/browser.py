@@ -38,8 +38,7 @@ def track_of(method: str, h: float | None = None) -> Track:
         method,
         motion.t,
         positions,
-        ((-1, 0), (0, 1)),
-        (),
+        (("rod", (-1, 0)), ("rod", (0, 1))),
         motion.energy / motion.energy[0] - 1,
         UNIT,
     )
@@ -51,7 +50,12 @@ def at_rest(
     n = 501
     positions = np.tile(np.reshape(position, (1, 2, 1)), n)
     return Track(
-        "at rest", np.linspace(0, end, n), positions, (), ((-1, 0),), np.full(n, error), UNIT
+        "at rest",
+        np.linspace(0, end, n),
+        positions,
+        (("spring", (-1, 0)),),
+        np.full(n, error),
+        UNIT,
     )
 
 

@@ -236,8 +236,8 @@ def test_the_energy_chart_ends_at_the_powers_of_ten_around_all_errors(player: Pl
 
 def test_marks_are_round_and_paths_end_at_their_times(player: Player) -> None:
     t = np.linspace(0, 5, 6)
-    player.open([Track("across", t, np.array([[t, 0 * t]]), (), (), t, UNIT)])
-    sources = "".join((page.SOURCES / name).read_text() for name in page.SCRIPTS[:3])
+    player.open([Track("across", t, np.array([[t, 0 * t]]), (), t, UNIT)])
+    sources = "".join((page.SOURCES / name).read_text() for name in page.SCRIPTS[:5])
     spacings, marks, path, ranges, corners = player.driver.execute_script(f"""{sources}
         const view = new View(boundingBox(), 400, 300);
         return [[0.02, 0.021, 0.3, 0.5, 6, 10].map(roundSpacing),
@@ -265,7 +265,7 @@ def test_each_run_has_its_canvas_and_its_entry_in_the_legend(
 
 def test_traces_fade_over_two_seconds(player: Player) -> None:
     t = np.linspace(0, 5, 301)
-    across = Track("across", t, np.array([[t, 0 * t - 0.55]]), (), (), t, UNIT)
+    across = Track("across", t, np.array([[t, 0 * t - 0.55]]), (), t, UNIT)
     player.open([across])
     player.find("#time-slider").send_keys("\ue010")  # the key End
     player.settle()
@@ -326,11 +326,51 @@ def test_springs_and_the_dark_scheme_are_drawn(player: Player) -> None:
         images[scheme] = player.pixels(PANELS)
     assert (images["light"][2, -2] == 255).all()
     assert images["dark"][2, -2].max() < 50
-    player.open([replace(at_rest((0, -1)), springs=(), links=((-1, 0),))])
+    player.open([replace(at_rest((0, -1)), links=(("rod", (-1, 0)),))])
     rod = player.pixels(PANELS)
     # a zigzag reaches further to the sides than a rod
     across = [np.ptp(np.nonzero((view == ROD).all(-1))[1]) for view in (images["light"], rod)]
     assert across[0] > across[1] + 6
+
+
+def test_the_view_of_a_motion_in_space_turns_by_keys_and_pointer(player: Player) -> None:
+    t = np.linspace(0, 5, 6)
+    corner = np.tile(np.reshape([1.0, 0.0, 0.0], (1, 3, 1)), 6)
+    side = np.roll(corner[0], 1, axis=0)
+    links = (("thread", (1, 2, 3)),)  # so that the origin is in the middle
+    player.open([Track("still", t, corner, links, t, UNIT, np.stack([-corner[0], side, -side]))])
+
+    def angles() -> np.ndarray:
+        return np.array([float(player.js(f"document.documentElement.dataset.{name}"))
+                         for name in ("azimuth", "elevation")])  # fmt: skip
+
+    def bob() -> np.ndarray:
+        """Place of the mass from the pivot, up and to the right."""
+        image = player.pixels(PANELS)
+        place = np.median(np.nonzero((image == BOBS[0]).all(-1)), axis=1)
+        return (place - middle) * [-1, 1]
+
+    player.js("document.querySelector('#panels canvas').focus()")
+    player.press("\ue014" * 5 + "\ue015" * 2)  # arrows to the right and down
+    assert player.time == 0
+    assert angles() == pytest.approx([0.0, 0.25])
+    image = player.pixels(PANELS)
+    middle = np.array([(image.shape[0] - 36 + 24) / 2, (image.shape[1] + 44 - 14) / 2])
+    radius = bob()
+    assert radius[0] == pytest.approx(0, abs=1)
+    assert radius[1] > 40
+    player.press("\ue012" * 5)
+    # by -0.5 about the vertical: cos to the right, sin towards the reader
+    row, column = bob()
+    assert column == pytest.approx(np.cos(0.5) * radius[1], abs=1.5)
+    assert row == pytest.approx(-np.sin(0.5) * np.sin(0.25) * radius[1], abs=1.5)
+    player.drag(PANELS, 300, 340)
+    assert angles() == pytest.approx([0.1, 0.25])
+    player.press("\ue013" * 20)  # upwards, no further than the zenith
+    assert angles()[1] == pytest.approx(np.pi / 2)
+    assert player.find("#turning").is_displayed()
+    player.open([at_rest()])
+    assert not player.find("#turning").is_displayed()
 
 
 def test_text_is_shown_and_never_executed(player: Player) -> None:

@@ -39,7 +39,7 @@ def test_a_page_is_small_and_as_exact_as_a_screen(tracks: list[Track], tmp_path:
 def test_many_samples_are_reduced_evenly(tmp_path: Path) -> None:
     n = 3 * MOST_SAMPLES
     t = np.linspace(1e4, 1e4 + 6, n)
-    track = Track("many", t, np.array([[t, t]]), (), (), t, UNIT)
+    track = Track("many", t, np.array([[t, t]]), (), t, UNIT)
     Page("", "", [track]).write(tmp_path / "page.html")
     (values,) = motions(tmp_path / "page.html")
     assert len(values["t"]) == len(values["positions"][0][0]) == MOST_SAMPLES
@@ -64,8 +64,11 @@ HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
         ({"positions": REST.positions * HOLE}, r"positions\[0, 0, 7\] is nan"),
         ({"t": REST.t[::-1]}, r"t\[1\] = 4.99 follows t\[0\] = 5.0, .* increase: sort"),
         ({"t": np.minimum(REST.t, 4.9)}, r"t\[491\] = 4.9 follows t\[490\] = 4.9"),
-        ({"links": ((0, 1),)}, r"links holds \(0, 1\), .* -1: number"),
-        ({"springs": ((-2, 0),)}, r"springs holds \(-2, 0\)"),
+        ({"links": (("rod", (0, 1)),)}, r"links has a rod of points \(0, 1\): number .* pivot -1"),
+        ({"links": (("spring", (-2, 0)),)}, r"links has a spring of points \(-2, 0\)"),
+        ({"links": (("wheel", (0, -1)),)}, r"links has a wheel of points \(0, -1\): give 3"),
+        ({"links": (("chain", (0, -1)),)}, r"links has the kind 'chain': known are rod,"),
+        ({"points": np.zeros((1, 3, 501))}, r"points has shape \(1, 3, 501\), but positions"),
     ],
 )
 def test_tracks_that_cannot_be_played_are_refused(
@@ -89,7 +92,7 @@ def test_energy_errors_of_different_units_share_no_axis() -> None:
 
 
 def test_two_samples_suffice_and_the_unit_is_plain_text() -> None:
-    ends = Track("a", np.array([0.0, 1.0]), np.ones((1, 2, 2)), (), (), np.zeros(2), "<b>T</b>")
+    ends = Track("a", np.array([0.0, 1.0]), np.ones((1, 2, 2)), (), np.zeros(2), "<b>T</b>")
     assert "relative to the &lt;b&gt;T&lt;/b&gt;" in Page("", "", [ends]).html
 
 

@@ -102,6 +102,11 @@ class EquationsOfMotion:
         return self._nodes([r for mass in self._system.masses for r in mass.position])
 
     @property
+    def points(self) -> list[Node]:
+        """Positions of the points of links."""
+        return self._nodes([r for point in self._system.points for r in point])
+
+    @property
     def energy(self) -> list[Node]:
         """½ q̇ᵀ M q̇ + U of (q, q̇)."""
         return [self._node(self._derivation.energy)]

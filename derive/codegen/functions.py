@@ -153,6 +153,9 @@ SPECS = (
     FunctionSpec("positions", "lagrangian", "masses axes",
         "Positions of the masses.",
         "One row a mass: its Cartesian components in m, the last one upwards."),
+    FunctionSpec("points", "lagrangian", "points axes",
+        "Points of `LINKS`, which pictures join.",
+        "One row a point: its Cartesian components in m, the last one upwards."),
     FunctionSpec("hamiltonian_state", "lagrangian", "state",
         "State (q, p) of the Hamiltonian form at y = (q, qdot).",
         "Coordinates, then momenta p = M qdot.", exists=_is_free),
@@ -252,6 +255,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     # a function whose result has an axis of no entries does not exist
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
     constants |= {"outputs": len(system.measured), "params": len(system.params)}
+    constants |= {"points": len(system.points)}
     constants |= {"multipliers": len(system.conditions)}
     constants |= {"redundant": len(derivation.redundant)}
     constants |= {"residuals": len(system.conditions) + len(derivation.holonomic)}

@@ -102,4 +102,5 @@ def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
         inputs=[part for part in system.inputs if part.symbol not in values],
         outputs={name: substitute(output) for name, output in system.measured},
         constraints=[one.with_formula(substitute(one.formula)) for one in system.conditions],
+        links=[link.mapped(substitute) for link in system.links],
     )

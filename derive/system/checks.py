@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -69,6 +70,7 @@ def _parts(system: "System") -> Iterator[Part]:
         yield Part(f"output {name}", output, moving | {*system.qdot}, state)
     for one in system.conditions:
         yield Part(f"constraint {one.name}", one.formula, moving | {*system.qdot}, state)
+    yield Part("the list of links", sp.Tuple(*chain(*system.points)), moving, place)
     yield Part("the list of reactions", sp.Tuple(*system.reactions), constants, fixed)
 
 

@@ -10,6 +10,7 @@ import sympy as sp
 
 from derive.system.checks import check
 from derive.system.constraints import Constraint, Point, constraints
+from derive.system.links import Link, Shape
 from derive.system.naming import check_module_name, check_name, check_unique
 from derive.system.parts import (
     Coordinate,
@@ -33,6 +34,7 @@ KINDS = {
     "inputs": Input,
     "masses": PointMass,
     "reactions": sp.Symbol,
+    "links": Link,
 }
 
 
@@ -82,6 +84,9 @@ class System:
     coincide : sequence of pairs of points, optional
         Points, each a sequence of components in m, that remain together, such as the ends of two
         rods at a pin. They become `constraints`.
+    links : sequence of Rod, Thread, Spring, Rail, Plate, Wheel, Block and Cart, optional
+        How pictures join the masses and other points; by default rods between masses at a constant
+        distance.
 
     Raises
     ------
@@ -125,6 +130,7 @@ class System:
     outputs: Mapping[str, sp.Expr] | Sequence[tuple[str, sp.Expr]] = ()
     constraints: Sequence[Constraint | sp.Expr] = ()
     coincide: Sequence[tuple[Point, Point]] = ()
+    links: Sequence[Link] = ()
 
     def __post_init__(self) -> None:
         for field, kind in KINDS.items():
@@ -178,6 +184,7 @@ class System:
                 one.with_formula(at_any_time(one.formula)) for one in self.conditions
             ),
         }
+        changes["links"] = tuple(link.mapped(at_any_time) for link in self.links)
         if self.potential is not None:
             changes["potential"] = at_any_time(self.potential)
         for field, value in changes.items():
@@ -197,6 +204,16 @@ class System:
     def multipliers(self) -> tuple[sp.Symbol, ...]:
         """The multipliers' symbols, one for each constraint."""
         return tuple(one.symbol for one in self.conditions)
+
+    @cached_property
+    def shapes(self) -> tuple[Shape, ...]:
+        """The lines and areas of the links: kinds, and the points that determine them."""
+        return tuple(chain(*(link.shapes(self.masses) for link in self.links)))
+
+    @cached_property
+    def points(self) -> tuple[tuple[sp.Expr, ...], ...]:
+        """The points of the links."""
+        return tuple(dict.fromkeys(point for _, points in self.shapes for point in points))
 
     @property
     def dimension(self) -> int:

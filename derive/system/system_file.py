@@ -14,6 +14,7 @@ import sympy as sp
 from derive.formulas.budget import MAX_FACTORS_IN_SYSTEM, MAX_SECOND_IN_SYSTEM, Budget
 from derive.formulas.expression import FUNCTIONS, ExpressionError, number
 from derive.system.constraints import Constraint
+from derive.system.link_file import read_links
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import (
     Coordinate,
@@ -31,7 +32,7 @@ from solvers.io.toml_input import InputError
 KEYS = (
     *("name", "title", "coordinates", "parameters", "definitions", "masses", "potential"),
     *("gravity", "dissipation", "forces", "equilibrium", "reactions", "inputs"),
-    *("outputs", "constraints", "coincide"),
+    *("outputs", "constraints", "coincide", "links"),
 )
 #: Units of parameters that are positive by default.
 POSITIVE_UNITS = ("kg", "m")
@@ -101,6 +102,7 @@ def _system(stem: str, table: Table) -> System:
         outputs=_outputs(table, formulas),
         constraints=[*_constraints(table, formulas)],
         coincide=[*_pairs(table, formulas)],
+        links=[*read_links(table, formulas.value)],
     )
 
 

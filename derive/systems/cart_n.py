@@ -6,7 +6,7 @@ r"""A chain of N pendulums on a cart.
 """
 from sympy import Symbol, cos, sin, symbols
 
-from derive import Coordinate, Parameter, PointMass, System
+from derive import Cart, Coordinate, Parameter, PointMass, Rail, Rod, System
 
 
 def system(n: int) -> System:
@@ -21,7 +21,9 @@ def system(n: int) -> System:
         parameters=[Parameter(s, "kg", 1.0, "mass") for s in (m0, *m)]
         + [Parameter(s, "m", 1.0, "length of a rod") for s in l]
         + [Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
-        masses=[PointMass(s, (sum(xs[:k + 1]), sum(ys[:k]))) for k, s in enumerate((m0, *m))])
+        masses=[PointMass(s, (sum(xs[:k + 1]), sum(ys[:k]))) for k, s in enumerate((m0, *m))],
+        links=[Cart(0, l[0] / 2, l[0] / 4), Rail((0, -l[0] / 4), (1, -l[0] / 4)),
+               Rod(*range(n + 1))])
 
 
 PUBLISHED = r'''

@@ -7,7 +7,7 @@ r"""Two equal pendulums side by side, their bobs joined by a spring relaxed at e
 """
 from sympy import cos, sin, sqrt, symbols
 
-from derive import Coordinate, Parameter, PointMass, System
+from derive import Coordinate, Parameter, PointMass, Rod, Spring, System
 
 theta1, theta2, g = symbols("theta1 theta2 g", real=True)
 m, l, k, d = symbols("m l k d", positive=True)
@@ -20,7 +20,8 @@ system = System(
                 Parameter(k, "N/m", 1.0, "stiffness"), Parameter(d, "m", 1.0, "distance of pivots"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[PointMass(m, (x1, y1)), PointMass(m, (d + x2, y2))], gravity=(0, -g),
-    potential=k * (sqrt((d + x2 - x1)**2 + (y2 - y1)**2) - d)**2 / 2)
+    potential=k * (sqrt((d + x2 - x1)**2 + (y2 - y1)**2) - d)**2 / 2,
+    links=[Rod((0, 0), 0), Rod((d, 0), 1), Spring(0, 1)])
 
 PUBLISHED = r'''
 source = "Hooke's law for a spring between the bobs"

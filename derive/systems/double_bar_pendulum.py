@@ -4,11 +4,10 @@ r"""Two uniform bars, one hinged below the other, in a vertical plane.
    θ1\\ l1, m1
       \\
    θ2// l2, m2
-    //
 """
 from sympy import cos, sin, symbols
 
-from derive import Coordinate, Parameter, RigidBody, System
+from derive import Coordinate, Parameter, RigidBody, Rod, System
 
 theta1, theta2, g = symbols("theta1 theta2 g", real=True)
 m1, m2, l1, l2 = symbols("m1 m2 l1 l2", positive=True)
@@ -22,7 +21,8 @@ system = System(
                 Parameter(l1, "m", 1.0, "first length"), Parameter(l2, "m", 1.0, "second length"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[RigidBody(m1, (x1, y1), m1 * l1**2 / 12, theta1),
-            RigidBody(m2, (x2, y2), m2 * l2**2 / 12, theta2)])
+            RigidBody(m2, (x2, y2), m2 * l2**2 / 12, theta2)],
+    links=[Rod((0, 0), (2 * x1, 2 * y1), (2 * x2 - 2 * x1, 2 * y2 - 2 * y1))])
 
 PUBLISHED = r'''
 source = "Wikipedia, Double pendulum: two equal bars"

@@ -7,7 +7,7 @@ r"""A pendulum whose pivot oscillates vertically: P. L. Kapitza's, which can sta
 """
 from sympy import cos, sin, symbols
 
-from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
+from derive import TIME, Coordinate, Parameter, PointMass, Rod, System, velocity
 
 theta, a, Omega, c, g = symbols("theta a Omega c g", real=True)
 m, l = symbols("m l", positive=True)
@@ -19,7 +19,7 @@ system = System(
                 Parameter(a, "m", 0.1, "amplitude"), Parameter(Omega, "rad/s", 100.0, "frequency"),
                 Parameter(c, "N m s", 0.0, "friction"), Parameter(g, "m/s^2", 9.81, "gravity")],
     masses=[PointMass(m, (l * sin(theta), a * cos(Omega * TIME) - l * cos(theta)))],
-    dissipation=c * velocity(theta)**2 / 2)
+    dissipation=c * velocity(theta)**2 / 2, links=[Rod((0, a * cos(Omega * TIME)), 0)])
 
 PUBLISHED = r'''
 source = "L. D. Landau, E. M. Lifshitz, Mechanics, § 5, problem 3 (c)"

@@ -8,7 +8,7 @@ r"""A bead on a hoop that rotates about its vertical diameter.
 """
 from sympy import cos, sin, symbols
 
-from derive import TIME, Coordinate, Parameter, PointMass, System
+from derive import TIME, Coordinate, Parameter, PointMass, System, Wheel
 
 theta, Omega, g = symbols("theta Omega g", real=True)
 m, R = symbols("m R", positive=True)
@@ -20,7 +20,8 @@ system = System(
                 Parameter(Omega, "rad/s", 4.0, "angular velocity of the hoop"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[PointMass(m, (R * sin(theta) * cos(Omega * TIME), R * sin(theta) * sin(Omega * TIME),
-                          -R * cos(theta)))])
+                          -R * cos(theta)))],
+    links=[Wheel((0, 0, 0), R, plane=((cos(Omega * TIME), sin(Omega * TIME), 0), (0, 0, 1)))])
 
 PUBLISHED = r'''
 source = "J. R. Taylor, Classical Mechanics (2005), example 7.6"

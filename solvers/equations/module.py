@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 Numbers = Iterable[float]
 Arrays = Sequence[Any] | NDArray[Any]
 Array = NDArray[Any]
+Links = tuple[tuple[str, tuple[int, ...]], ...]
 Rows = tuple[tuple[float, ...], ...]
 
 #: The functions of `math` that generated functions call, of one argument and of two.
@@ -50,6 +51,8 @@ class GeneratedModule(Protocol):
     def MULTIPLIERS(self) -> tuple[str, ...]: ...  # of constraints, if the system has any
     @property
     def RESIDUALS(self) -> tuple[str, ...]: ...  # of ``constraints``: those of rates end in _dot
+    @property
+    def LINKS(self) -> Links: ...  # kinds and numbers of ``points``, if the system has links
     @property
     def INPUTS(self) -> tuple[str, ...]: ...  # the last parameters, if the system has inputs
     @property
@@ -139,6 +142,11 @@ def motion_times(module: GeneratedModule) -> tuple[str, ...]:
     names = inputs(module)
     parts = {s: (f"{s}_dot", f"{s}_ddot", f"{s}_time") for s in names}
     return tuple(time for *rates, time in parts.values() if {*rates, time} <= {*names})
+
+
+def links(module: GeneratedModule) -> Links:
+    """How pictures join the points of a system: kinds, and numbers of points."""
+    return module.LINKS if has_function(module, "points") else ()
 
 
 def operations_on_state(module: GeneratedModule, name: str) -> int:

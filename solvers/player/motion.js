@@ -25,18 +25,19 @@ function valueAt(t, values, time) {
   return values[k] + ((time - t[k]) / (t[k + 1] - t[k])) * (values[k + 1] - values[k]);
 }
 
-/** Position of a mass in m; mass -1 is the pivot. */
-function positionAt(track, mass, time) {
-  if (mass < 0) return [0, 0];
-  return track.positions[mass].map((axis) => valueAt(track.t, axis, time));
+/** Position of a mass or, after the masses, of another point in m; -1 is the pivot. */
+function positionAt(track, number, time) {
+  if (number < 0) return track.positions[0].map(() => 0);
+  const point = track.positions[number] ?? track.points[number - track.positions.length];
+  return point.map((axis) => (typeof axis === "number" ? axis : valueAt(track.t, axis, time)));
 }
 
 /** Path of a mass between two times: all samples between them, and both ends. */
 function pathOf(track, mass, from, to) {
-  const [x, y] = track.positions[mass];
+  const axes = track.positions[mass];
   const path = [positionAt(track, mass, from)];
   for (let k = sampleAt(track.t, from) + 1; k < track.t.length && track.t[k] < to; k += 1) {
-    path.push([x[k], y[k]]);
+    path.push(axes.map((axis) => axis[k]));
   }
   path.push(positionAt(track, mass, to));
   return path;
@@ -50,8 +51,8 @@ function hasEnded(track, time) {
 function largestDistance(time) {
   const positions = tracks.map((track) => positionAt(track, track.positions.length - 1, time));
   let largest = 0;
-  for (const [ax, ay] of positions) {
-    for (const [bx, by] of positions) largest = Math.max(largest, Math.hypot(ax - bx, ay - by));
+  for (const a of positions) {
+    for (const b of positions) largest = Math.max(largest, Math.hypot(...a.map((x, axis) => x - b[axis])));
   }
   return largest;
 }
@@ -66,16 +67,45 @@ function rangeOf(values) {
   return [low, high];
 }
 
-/** The box around all positions of all runs and the pivot: its centre, width and height in m. */
+/** Masses, and the points of links but rails, which have no ends; without these points the pivot. */
+function visiblePoints(track) {
+  const numbers = new Set(track.links.flatMap(([kind, ...ends]) => (kind === "rail" ? [] : ends)));
+  const { positions, points } = track;
+  const origin = points.length === 0 ? [positions[0].map(() => 0)] : [];
+  return [...positions, ...points.filter((_, k) => numbers.has(positions.length + k)), ...origin];
+}
+
+/** The box around all points of all runs: its centre, width and height in m, in space also its ground. */
 function boundingBox() {
-  const masses = tracks.flatMap((track) => track.positions);
-  const edges = [0, 1].map((axis) => rangeOf([0, ...masses.flatMap((mass) => mass[axis])]));
-  const [width, height] = edges.map(([low, high]) => high - low);
-  // masses that never leave the pivot need a scale, too
-  const least = Math.max(width, height) * 1e-3 || 1;
-  return {
-    centre: edges.map(([low, high]) => (low + high) / 2),
-    width: Math.max(width, least),
-    height: Math.max(height, least),
-  };
+  const points = tracks.flatMap(visiblePoints);
+  const edges = points[0].map((_, axis) => rangeOf(points.flatMap((point) => point[axis])));
+  const sides = edges.map(([low, high]) => high - low);
+  // masses that never move need a scale, too
+  const least = Math.max(...sides) * 1e-3 || 1;
+  const centre = edges.map(([low, high]) => (low + high) / 2);
+  if (sides.length === 2) {
+    return { centre, width: Math.max(sides[0], least), height: Math.max(sides[1], least) };
+  }
+  // squares on the ground below the motion
+  const spacing = roundSpacing(Math.max(...sides, least) / 6);
+  const around = ([low, high]) => [spacing * Math.floor(low / spacing), spacing * Math.ceil(high / spacing)];
+  const [[left, right], [near, far]] = edges.map(around);
+  const ground = { left, right, near, far, bottom: edges[2][0], spacing };
+  const corners = [left, right].flatMap((x) => [near, far].map((y) => [x, y, ground.bottom]));
+  // the view turns, and its scale does not change
+  const diameter = Math.max(2 * farthest(points, centre), 1.6 * farthest(corners, centre), least);
+  return { centre, width: diameter, height: diameter, ground };
+}
+
+/** The largest distance of points in space from a centre. */
+function farthest(points, centre) {
+  const at = (axis, k) => (typeof axis === "number" ? axis : axis[k]);
+  let largest = 0;
+  for (const point of points) {
+    const samples = Math.max(...point.map((axis) => axis.length ?? 1));
+    for (let k = 0; k < samples; k += 1) {
+      largest = Math.max(largest, Math.hypot(...point.map((axis, n) => at(axis, k) - centre[n])));
+    }
+  }
+  return largest;
 }

@@ -14,7 +14,10 @@ from solvers.player.track import Track
 
 SOURCES = Path(__file__).parent
 #: The parts of the player; each uses those before it.
-SCRIPTS = ("motion.js", "canvas.js", "panel.js", "energy_chart.js", "player.js")
+SCRIPTS = (
+    *("motion.js", "camera.js", "canvas.js", "shapes.js", "panel.js", "energy_chart.js"),
+    "player.js",
+)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-// One run: its masses, rods and springs at one time, over a grid in metres.
+// One run: its masses and links at one time, over a grid in metres.
 
 /** Duration of traces in s. */
 const TRACE_SECONDS = 2;
@@ -13,7 +13,10 @@ class Panel {
     this.box = box;
     this.canvas = document.createElement("canvas");
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", `Motion of ${track.label}`);
+    this.isInSpace = box.centre.length === 3;
+    const view = this.isInSpace ? " in space; the arrow keys turn the view" : "";
+    this.canvas.setAttribute("aria-label", `Motion of ${track.label}${view}`);
+    if (this.isInSpace) addTurning(this.canvas);
     // a wide motion has a wide canvas; ratio and scale are the same for all runs
     const ratio = Math.min(Math.max(box.width / box.height, 1), 1.6);
     this.canvas.style.aspectRatio = String(ratio);
@@ -26,16 +29,24 @@ class Panel {
   draw(time) {
     const { context, width, height } = clearedCanvas(this.canvas);
     const view = new View(this.box, width, height);
-    drawMetres(context, view);
+    if (this.isInSpace) drawGround(context, view, this.box.ground);
+    else drawMetres(context, view);
+    // rails have no ends
+    context.save();
+    context.beginPath();
+    context.rect(view.left, view.top, view.right - view.left, view.bottom - view.top);
+    context.clip();
     // a run that ends earlier than the others stays at its last position, and is pale
     const opacity = hasEnded(this.track, time) ? 0.35 : 1;
     for (const mass of this.track.positions.keys()) this.drawTrace(context, view, mass, time, opacity);
     context.globalAlpha = opacity;
     this.drawLinks(context, view, time);
-    for (const mass of this.track.positions.keys()) {
-      disc(context, view.toPixels(positionAt(this.track, mass, time)), MASS_RADIUS, colour(massColour(mass)));
+    const masses = [...this.track.positions.keys()].map((mass) => [mass, positionAt(this.track, mass, time)]);
+    masses.sort(([, a], [, b]) => depth(b) - depth(a)); // near masses in front of far ones
+    for (const [mass, position] of masses) {
+      disc(context, view.toPixels(position), MASS_RADIUS, colour(massColour(mass)));
     }
-    context.globalAlpha = 1;
+    context.restore();
   }
 
   drawTrace(context, view, mass, time, opacity) {
@@ -54,15 +65,18 @@ class Panel {
   }
 
   drawLinks(context, view, time) {
-    const ends = (pair) => pair.map((mass) => view.toPixels(positionAt(this.track, mass, time)));
-    context.strokeStyle = colour("rod");
-    context.lineWidth = 3;
+    const { track } = this;
+    const at = (number) => view.toPixels(positionAt(track, number, time));
     context.lineCap = "round";
-    for (const pair of this.track.links) line(context, ...ends(pair));
-    context.lineWidth = 2;
-    for (const pair of this.track.springs) zigzag(context, ...ends(pair));
+    context.lineJoin = "round";
+    for (const [kind, ...ends] of track.links) drawLink(context, kind, ends.map(at));
     context.lineCap = "butt";
-    disc(context, view.toPixels([0, 0]), 4, colour("rod"));
+    // joints; without further points the pivot
+    const lines = track.links.filter(([kind]) => ["rod", "thread", "spring"].includes(kind));
+    const ends = lines.flatMap(([, ...numbers]) => numbers);
+    const joints = ends.filter((number) => number >= track.positions.length);
+    const pivots = track.points.length === 0 ? [-1] : [];
+    for (const number of [...joints, ...pivots]) disc(context, at(number), 4, colour("rod"));
   }
 }
 
@@ -77,11 +91,12 @@ class View {
     const room = [this.right - this.left, this.bottom - this.top].map((side) => side - 3 * MASS_RADIUS);
     this.scale = Math.max(Math.min(room[0] / box.width, room[1] / box.height), 0);
     this.middle = [(this.left + this.right) / 2, (this.top + this.bottom) / 2];
-    this.centre = box.centre;
+    this.centre = flattened(box.centre);
   }
 
   /** Metres to pixels; y points up, and the rows of pixels are counted down. */
-  toPixels([x, y]) {
+  toPixels(position) {
+    const [x, y] = flattened(position);
     return [
       this.middle[0] + this.scale * (x - this.centre[0]),
       this.middle[1] - this.scale * (y - this.centre[1]),
@@ -106,28 +121,37 @@ function drawMetres(context, view) {
   context.fillText("y / m", view.left - 6, 10);
 }
 
+/** Squares on the ground below a motion in space, and the directions of the axes. */
+function drawGround(context, view, { left, right, near, far, bottom, spacing }) {
+  const lines = (low, high, draw) => {
+    for (let k = 0; low + k * spacing <= high + spacing / 2; k += 1) draw(low + k * spacing);
+  };
+  const at = (x, y) => view.toPixels([x, y, bottom]);
+  context.strokeStyle = colour("grid");
+  context.lineWidth = 1;
+  lines(left, right, (x) => line(context, at(x, near), at(x, far)));
+  lines(near, far, (y) => line(context, at(left, y), at(right, y)));
+  context.fillStyle = colour("muted");
+  context.textAlign = "right";
+  context.textBaseline = "middle";
+  context.fillText(`squares of ${withDecimals(spacing, spacing)} m`, view.right, view.bottom + 20);
+  drawAxes(context, [view.left, view.bottom]);
+}
+
+/** Arrows along x, y and z, and their letters. */
+function drawAxes(context, [left, bottom]) {
+  context.strokeStyle = colour("muted");
+  context.textAlign = "center";
+  ["x", "y", "z"].forEach((letter, axis) => {
+    const [right, up] = flattened([0, 1, 2].map((other) => Number(other === axis)));
+    line(context, [left, bottom], [left + 22 * right, bottom - 22 * up]);
+    context.fillText(letter, left + 32 * right, bottom - 32 * up);
+  });
+}
+
 function disc(context, centre, radius, fill) {
   context.fillStyle = fill;
   context.beginPath();
   context.arc(...centre, radius, 0, 2 * Math.PI);
   context.fill();
-}
-
-/** A spring: the number of teeth does not depend on its length, so that its extension is visible. */
-function zigzag(context, [ax, ay], [bx, by]) {
-  const [dx, dy] = [bx - ax, by - ay];
-  const length = Math.hypot(dx, dy) || 1;
-  const [acrossX, acrossY] = [(-7 * dy) / length, (7 * dx) / length];
-  const teeth = 16;
-  context.beginPath();
-  context.moveTo(ax, ay);
-  context.lineTo(ax + 0.1 * dx, ay + 0.1 * dy);
-  for (let k = 0; k < teeth; k += 1) {
-    const along = 0.1 + (0.8 * (k + 0.5)) / teeth;
-    const side = k % 2 ? 1 : -1;
-    context.lineTo(ax + along * dx + side * acrossX, ay + along * dy + side * acrossY);
-  }
-  context.lineTo(ax + 0.9 * dx, ay + 0.9 * dy);
-  context.lineTo(bx, by);
-  context.stroke();
 }

@@ -59,7 +59,7 @@ function show() {
     errors[number].textContent = scientific(Math.abs(valueAt(track.t, track.energy_error, time)));
   });
   element("distance").textContent = distanceText(time);
-  Object.assign(document.documentElement.dataset, { time, playing: clock.playing });
+  Object.assign(document.documentElement.dataset, { time, playing: clock.playing, ...camera });
 }
 
 function distanceText(time) {
@@ -128,6 +128,7 @@ function addListeners() {
 }
 
 element("panels").append(...panels.map((panel) => panel.figure));
+element("turning").hidden = !panels[0].isInSpace;
 element("distance").hidden = tracks.length < 2;
 element("trace-seconds").textContent = String(TRACE_SECONDS);
 slider.min = String(startTime);

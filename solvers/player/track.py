@@ -1,14 +1,18 @@
 """A run of a system for the page that plays it: sampled positions and energy errors."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import floor, log10
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Pairs = tuple[tuple[int, int], ...]
+#: Kinds of links, and numbers of the points that each joins.
+Links = tuple[tuple[str, tuple[int, ...]], ...]
+#: Fewest points of each kind: a ring or wheel has a centre and two points of its rim, a quarter
+#: turn apart, the first of which a wheel's spoke meets.
+KINDS = {"rod": 2, "thread": 2, "spring": 2, "rail": 2, "plate": 3, "ring": 3, "wheel": 3}
 
 #: More samples make a page slow without a visible difference.
 MOST_SAMPLES = 20_000
@@ -24,26 +28,27 @@ class Track:
         Label of the run, such as ``"rk4, h = 0.05 s"``.
     t : ndarray of shape (n,)
         Increasing times in s, two at least.
-    positions : ndarray of shape (masses, 2, n)
-        In m; x points to the right and y up.
-    links : tuple of pairs of int
-        Indices of masses that a rod joins; -1 is the pivot, which is the origin.
-    springs : tuple of pairs of int
-        Indices of masses that a spring joins, likewise.
+    positions : ndarray of shape (masses, axes, n)
+        In m: (x, up) in the plane, (x, y, up) in space.
+    links : tuple of pairs of str and tuple of int
+        A kind, one of `KINDS`, and numbers of the points that it joins: the masses, then `points`.
+        The number -1 is the pivot, which is the origin.
     energy_error : ndarray of shape (n,)
         Energy error, with its sign.
     energy_unit : str
         Its unit ``"J"``, or the name of the energy that it is relative to, such as ``"energy above
         rest"``.
+    points : ndarray of shape (points, axes, n), optional
+        Further points of links, in m.
     """
 
     label: str
     t: Array
     positions: Array
-    links: Pairs
-    springs: Pairs
+    links: Links
     energy_error: Array
     energy_unit: str
+    points: Array = field(default_factory=lambda: np.empty((0, 2, 0)))
 
     def check(self) -> None:
         """Raise `ValueError` where this run cannot be played."""
@@ -56,15 +61,22 @@ class Track:
         if len(times) != 1 or times[0] < 2:
             yield f"t has shape {times}, but it must be (n,) with n at least 2: give the times in s"
         n, masses = times[0], positions[0] if positions else 0
-        if len(positions) != 3 or masses < 1 or positions[1:] != (2, n):
+        axes = positions[1:2]
+        if len(positions) != 3 or masses < 1 or axes not in [(2,), (3,)] or positions[2] != n:
             yield (
-                f"positions has shape {positions}, but with {n} times it must be (masses, 2, {n}): "
-                "positions_many of a generated module gives that for y of shape (state, n)"
+                f"positions has shape {positions}, but with {n} times it must be (masses, 2, {n}) "
+                f"or (masses, 3, {n}): positions_many of a generated module gives that for y of "
+                "shape (state, n)"
             )
+        count = len(self.points)
+        if count and self.points.shape[1:] != positions[1:]:
+            text = f"points has shape {self.points.shape}, but positions {positions}"
+            yield f"{text}: give as many axes and times"
         if errors != (n,):
             text = f"energy_error has shape {errors}, but with {n} times it must be ({n},)"
             yield f"{text}: give one number for each time"
         arrays = {"t": self.t, "positions": self.positions, "energy_error": self.energy_error}
+        arrays["points"] = self.points
         for name, array in arrays.items():
             for index in np.argwhere(~np.isfinite(array)).tolist():
                 text = f"{name}{index} is {np.asarray(array)[tuple(index)]}"
@@ -74,12 +86,17 @@ class Track:
             text = f"t[{k + 1}] = {self.t[k + 1]} follows t[{k}] = {self.t[k]}"
             remedy = "sort the samples by time, and keep one of equal ones"
             yield f"{text}, but times must increase: {remedy}"
-        for name, pairs in (("links", self.links), ("springs", self.springs)):
-            for pair in pairs:
-                if len(pair) != 2 or not all(-1 <= end < masses for end in pair):
-                    text = f"{name} holds {pair}, but a pair joins two of the masses"
-                    remedy = "number the masses as in positions"
-                    yield f"{text} 0 to {masses - 1} and the pivot, -1: {remedy}"
+        for kind, numbers in self.links:
+            if kind not in KINDS:
+                yield f"links has the kind {kind!r}: known are {', '.join(KINDS)}"
+            elif len(numbers) < KINDS[kind]:
+                yield f"links has a {kind} of points {numbers}: give {KINDS[kind]} at least"
+            elif not all(-1 <= number < masses + count for number in numbers):
+                yield (
+                    f"links has a {kind} of points {numbers}: number the masses from 0 to "
+                    f"{masses - 1}, further points after them, up to {masses + count - 1}, and "
+                    "the pivot -1"
+                )
 
     def json_values(self) -> dict[str, object]:
         """Values for JSON, with no more samples and digits than a screen can show."""
@@ -91,10 +108,15 @@ class Track:
             "label": self.label,
             "t": [round(time, decimals) for time in self.t[indices].tolist()],
             "positions": [[_rounded(axis[indices], 6) for axis in mass] for mass in self.positions],
-            "links": [list(pair) for pair in self.links],
-            "springs": [list(pair) for pair in self.springs],
+            "links": [[kind, *numbers] for kind, numbers in self.links],
+            "points": [[_or_constant(axis[indices]) for axis in point] for point in self.points],
             "energy_error": _rounded(self.energy_error[indices], 5),
         }
+
+
+def _or_constant(values: Array) -> list[float] | float:
+    """Values of a point's component; one number for all, if it is fixed."""
+    return _rounded(values[:1], 6)[0] if np.ptp(values) == 0 else _rounded(values, 6)
 
 
 def _rounded(values: Array, digits: int) -> list[float]:

@@ -1,11 +1,12 @@
-"""Geometry of a result: positions of masses, rods and springs, and the energy error."""
+"""Geometry of a result: positions of masses, links between them, and the energy error."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from solvers.equations.energy import energy_unit
-from solvers.player.track import Pairs, Track
+from solvers.equations.module import function, links
+from solvers.player.track import Links, Track
 from solvers.scenes.run import SceneResult, energies
 
 #: Largest relative change of a rod's length.
@@ -31,21 +32,40 @@ def projected(positions: np.ndarray) -> np.ndarray:
     return np.stack([right, np.cos(ELEVATION) * z + np.sin(ELEVATION) * depth], axis=1)
 
 
-def rods_and_springs(result: SceneResult) -> tuple[Pairs, Pairs]:
-    """Pairs of indices of joined masses, the previous mass first; -1 is the origin.
+def links_and_points(result: SceneResult) -> tuple[Links, np.ndarray]:
+    """Links, and points beyond the masses, shape (points, axes, samples).
 
-    Rods join neighbours at a constant distance, a spring a single mass whose distance from the
-    origin is a coordinate.
+    Links are those of the system. Of a system without them rods join masses to the one before, or
+    the first to the origin, -1, at a constant distance, and a spring joins a single mass to the
+    origin if its distance is a coordinate.
     """
+    module, masses = result.scene.module, mass_positions(result)
+    if not (stated := links(module)):
+        return _default_links(result), np.empty((0, *masses.shape[1:]))
+    points = function(module, "points_many")(result.t, result.y, result.scene.params)
+    numbers: dict[int, int] = {}
+    others: list[np.ndarray] = []
+    for k, point in enumerate(points):
+        if same := [n for n, mass in enumerate(masses) if np.array_equal(mass, point)]:
+            numbers[k] = same[0]
+        elif np.isfinite(point).all():  # else it is that of an absent mass
+            numbers[k] = len(masses) + len(others)
+            others.append(point)
+    kept = ((kind, ends) for kind, ends in stated if {*ends} <= {*numbers})
+    numbered = tuple((kind, tuple(numbers[end] for end in ends)) for kind, ends in kept)
+    return numbered, np.reshape(others, (len(others), *masses.shape[1:]))
+
+
+def _default_links(result: SceneResult) -> Links:
     positions = mass_positions(result)
     lengths = np.linalg.norm(np.diff(positions, axis=0, prepend=0.0), axis=1)
     is_rigid = np.ptp(lengths, axis=1) <= RIGID * lengths.max(axis=1)
-    rods = tuple((k - 1, k) for k in np.flatnonzero(is_rigid).tolist())
+    rods = tuple(("rod", (k - 1, k)) for k in np.flatnonzero(is_rigid).tolist())
     if len(positions) != 1 or rods:
-        return rods, ()
+        return rods
     coordinates = result.y[: len(result.y) // 2]
     is_spring = any(np.allclose(lengths[0], coordinate, rtol=RIGID) for coordinate in coordinates)
-    return (), ((-1, 0),) if is_spring else ()
+    return (("spring", (-1, 0)),) if is_spring else ()
 
 
 def energy_errors(results: Sequence[SceneResult]) -> tuple[list[np.ndarray], str]:
@@ -68,9 +88,10 @@ def energy_errors(results: Sequence[SceneResult]) -> tuple[list[np.ndarray], str
 
 
 def tracks(results: Sequence[SceneResult]) -> list[Track]:
-    """The motions for the page that plays them: masses joined by rods, or by springs."""
+    """The motions for the page that plays them, with the links between masses."""
     errors, unit = energy_errors(results)
     return [
-        Track(r.scene.label, r.t, projected(mass_positions(r)), *rods_and_springs(r), error, unit)
+        Track(r.scene.label, r.t, mass_positions(r), joined, error, unit, points)
         for r, error in zip(results, errors, strict=True)
+        for joined, points in [links_and_points(r)]
     ]

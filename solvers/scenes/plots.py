@@ -1,7 +1,7 @@
 """Plots of a scene: coordinates over time, phase curves, paths and the energy error."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain, cycle, groupby, pairwise
+from itertools import cycle, groupby, pairwise
 from math import ceil
 from textwrap import fill
 from typing import Any
@@ -11,12 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from solvers.equations.module import links
 from solvers.io.figures import COLOURS, panels
 from solvers.io.notation import axis_label, symbol
 from solvers.scenes.checks import curves_of
-from solvers.scenes.geometry import energy_errors, mass_positions, projected, rods_and_springs
+from solvers.scenes.geometry import energy_errors, links_and_points, mass_positions, projected
 from solvers.scenes.models.motion import Array
 from solvers.scenes.run import SceneResult
+from solvers.scenes.shapes import draw_link
 
 #: The name of a curve if there are several, its horizontal and its vertical values.
 Curve = tuple[str, Array, Array]
@@ -141,11 +143,14 @@ def _curves(result: SceneResult, picture: str) -> list[Curve]:
 
 
 def _draw_links(panel: Axes, result: SceneResult) -> None:
-    """Rods and springs at the end of the motion."""
-    masses = projected(mass_positions(result))[:, :, -1]
-    for pair in chain(*rods_and_springs(result)):
-        ends = [np.zeros(2) if k < 0 else masses[k] for k in pair]
-        panel.plot(*np.transpose(ends), color="#bbbbbb", linewidth=1.5, zorder=0)
+    """The links at the end of the motion."""
+    links, points = links_and_points(result)
+    masses = projected(mass_positions(result))
+    size = float(np.ptp(masses, axis=(0, 2)).max()) or 1.0
+    # the last one is the origin, -1
+    places = np.concatenate([masses[..., -1], projected(points)[..., -1], np.zeros((1, 2))])
+    for kind, numbers in links:
+        draw_link(panel, kind, places[[*numbers]], size, "#999999")
 
 
 def _label_axes(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
@@ -155,7 +160,7 @@ def _label_axes(panel: Axes, picture: str, results: Sequence[SceneResult]) -> No
         x, y = ("horizontal", "vertical, oblique view") if in_space else ("x", "y")
         panel.set(xlabel=f"{x} / m", ylabel=f"{y} / m")
         panel.set_aspect("equal", adjustable="datalim")
-        if "positions" not in module.TIMED:  # else the pivot may move
+        if "positions" not in module.TIMED and not links(module):  # else the pivot may move
             panel.plot(0, 0, "k+", markersize=8)
     elif picture == "energy":
         label = axis_label("energy error", energy_errors(results)[1])

@@ -9,6 +9,7 @@ from derive.codegen.backend import DIGEST, Backend
 from derive.codegen.functions import Contents, Function
 from derive.codegen.summary import broken_sum, summary, units
 from derive.mechanics.derivation import Derivation
+from derive.system.system import System
 
 WIDTH = 92
 
@@ -247,6 +248,7 @@ def _constants(contents: Contents) -> str:
     system, functions = contents.system, contents.functions
     parameters = [symbol.name for symbol in system.params]
     switching, conditions = contents.derivation.switching_functions, system.conditions
+    names = {f.name for f in functions}
     with_rhs = {f.form for f in functions if f.name.startswith("rhs")}
     forms = [form for form in contents.states if form in with_rhs]
     used = {*parameters, *(name for state in contents.states.values() for name in state)}
@@ -264,6 +266,7 @@ def _constants(contents: Contents) -> str:
         "POSITIVE": _literal(s.name for s in (*system.params, *system.q) if s.is_positive),
         **({"OUTPUTS": _literal(name for name, _ in system.measured)} if system.measured else {}),
         **(_of_constraints(contents.derivation) if conditions else {}),
+        **({"LINKS": _links(system)} if "points" in names else {}),
         **({"SWITCHES": _literal(map(str, switching))} if switching else {}),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),
@@ -280,6 +283,13 @@ def _of_constraints(derivation: Derivation) -> dict[str, str]:
     rates = (f"{name}_dot" if is_position else name for name, is_position in names.items())
     residuals = [*(name for name, is_position in names.items() if is_position), *rates]
     return {"MULTIPLIERS": _literal(names), "RESIDUALS": _literal(residuals)}
+
+
+def _links(system: System) -> str:
+    """Kinds and numbers of points of the links."""
+    number = {point: k for k, point in enumerate(system.points)}
+    rows = [(kind, tuple(number[point] for point in points)) for kind, points in system.shapes]
+    return _tuple([f'("{kind}", {numbers})' for kind, numbers in rows])
 
 
 def _literal(values: Iterable[object], depth: int = 0) -> str:

@@ -22,6 +22,8 @@ from solvers.sweeps.sweep import Sweep
 
 #: Relative and absolute tolerance of both programs, and the step size of Euler's method in s.
 TOLERANCE, STEP = 1e-12, 0.01
+#: The two rods.
+RODS = (("rod", (-1, 0)), ("rod", (0, 1)))
 
 
 def motion(scene: Scene) -> Stage:
@@ -64,7 +66,7 @@ def _track(scene: Scene, label: str, run: Solution) -> Track:
     assert run.energy is not None
     error = energy_error(scene.module, scene.params, run.energy)
     unit = energy_unit(scene.module, scene.params, float(run.energy[0])).name
-    return Track(label, run.t, positions, ((-1, 0), (0, 1)), (), error, unit)
+    return Track(label, run.t, positions, RODS, error, unit)
 
 
 def flips(definition: Sweep, folder: Path) -> Stage:

@@ -1,0 +1,392 @@
+"""Links: rods, springs, wheels and other parts that pictures show between points."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar, Self, TypeAlias
+
+import sympy as sp
+
+from derive.system.parts import PointMass, SystemDefinitionError, formula, formulas, items
+from solvers.io.suggestion import shortened
+
+#: A place in a picture: the number of a mass, from 0, or the components of a position in m.
+Place: TypeAlias = int | Sequence[sp.Expr]
+Point: TypeAlias = tuple[sp.Expr, ...]
+#: A drawn line or area: its kind, and the points that determine it.
+Shape: TypeAlias = tuple[str, tuple[Point, ...]]
+
+POINT = "the number of a mass, from 0, or the components of a position"
+
+
+class Link(ABC):
+    """A part of a picture, whose points move with the system."""
+
+    @abstractmethod
+    def shapes(self, masses: Sequence[PointMass]) -> Iterator[Shape]:
+        """Its lines and areas."""
+
+    @abstractmethod
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> Self:
+        """A copy with `function` applied to every expression."""
+
+
+@dataclass(frozen=True, init=False)
+class Line(Link):
+    """A line through points, such as a `Rod`."""
+
+    points: tuple[int | Point, ...]
+    kind: ClassVar[str]
+    fewest: ClassVar[int] = 2
+
+    def __init__(self, *points: Place) -> None:
+        name = type(self).__name__
+        object.__setattr__(self, "points", tuple(_place(name, point) for point in points))
+        if len(points) < self.fewest:
+            raise SystemDefinitionError(
+                f"{name} has {len(points)} points: give {self.fewest} at least, each {POINT}"
+            )
+
+    def shapes(self, masses: Sequence[PointMass]) -> Iterator[Shape]:
+        """The line."""
+        yield self.kind, tuple(_position(self, point, masses) for point in self.points)
+
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> Self:
+        """A copy with `function` applied to every expression."""
+        return type(self)(*(_mapped(point, function) for point in self.points))
+
+
+class Rod(Line):
+    """A rigid bar through two or more points.
+
+    Parameters
+    ----------
+    *points : int or sequence of sympy.Expr
+        Two points at least: each the number of a mass, from 0, or the components of a position in
+        m, functions of coordinates, parameters and ``derive.TIME``.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When there are fewer points, or a point is neither of these.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> from derive import Rod
+    >>> x, y = symbols("x y", real=True)
+    >>> Rod((0, 0), (x, y), 0).points
+    ((0, 0), (x, y), 0)
+    """
+
+    kind = "rod"
+
+
+class Thread(Line):
+    """A thread, belt or cable through two or more points, such as those of pulleys.
+
+    Parameters
+    ----------
+    *points : int or sequence of sympy.Expr
+        Two points at least: each the number of a mass, from 0, or the components of a position in
+        m, functions of coordinates, parameters and ``derive.TIME``.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When there are fewer points, or a point is neither of these.
+
+    Examples
+    --------
+    >>> from derive import Thread
+    >>> Thread(0, (0, 0), (1, 0), 1).points
+    (0, (0, 0), (1, 0), 1)
+    """
+
+    kind = "thread"
+
+
+class Spring(Line):
+    """A spring through two or more points.
+
+    Parameters
+    ----------
+    *points : int or sequence of sympy.Expr
+        Two points at least: each the number of a mass, from 0, or the components of a position in
+        m, functions of coordinates, parameters and ``derive.TIME``.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When there are fewer points, or a point is neither of these.
+
+    Examples
+    --------
+    >>> from derive import Spring
+    >>> Spring(0, 1).points
+    (0, 1)
+    """
+
+    kind = "spring"
+
+
+class Rail(Line):
+    """A guide: the straight line through two points, without ends.
+
+    Parameters
+    ----------
+    *points : int or sequence of sympy.Expr
+        Two points at least: each the number of a mass, from 0, or the components of a position in
+        m, functions of coordinates, parameters and ``derive.TIME``.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When there are fewer points, or a point is neither of these.
+
+    Examples
+    --------
+    >>> from derive import Rail
+    >>> Rail((0, 0), (1, 0)).kind
+    'rail'
+    """
+
+    kind = "rail"
+
+
+class Plate(Line):
+    """A rigid area with three or more corners.
+
+    Parameters
+    ----------
+    *points : int or sequence of sympy.Expr
+        Three points at least: each the number of a mass, from 0, or the components of a position in
+        m, functions of coordinates, parameters and ``derive.TIME``.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When there are fewer points, or a point is neither of these.
+
+    Examples
+    --------
+    >>> from derive import Plate
+    >>> Plate(0, 1, (0, 0)).points
+    (0, 1, (0, 0))
+    """
+
+    kind = "plate"
+    fewest = 3
+
+
+@dataclass(frozen=True)
+class Centred(Link):
+    """A link with a size about a centre."""
+
+    centre: Place
+
+    def __post_init__(self) -> None:
+        name = type(self).__name__
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name == "centre":
+                value = _place(name, value)
+            elif field.name == "plane":
+                value = value and _axes(value)
+            elif value is not None:
+                value = formula(value)
+            object.__setattr__(self, field.name, value)
+
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> Self:
+        """A copy with `function` applied to every expression."""
+        return replace(
+            self, **{name: _mapped(value, function) for name, value in vars(self).items()}
+        )
+
+    def _frame(self, masses: Sequence[PointMass]) -> tuple[Point, sp.Expr | None]:
+        """The centre, and the angle: that of the body at the centre, if none is given."""
+        centre, angle = _position(self, self.centre, masses), getattr(self, "angle", None)
+        if angle is None and isinstance(self.centre, int):
+            angle = getattr(masses[self.centre], "angle", None)
+        return centre, angle
+
+
+@dataclass(frozen=True)
+class Wheel(Centred):
+    """A wheel, disc or ring; a spoke shows its angle.
+
+    Parameters
+    ----------
+    centre : int or sequence of sympy.Expr
+        The number of a mass, from 0, or the components of a position in m.
+    radius : sympy.Expr or number
+        In m.
+    angle : sympy.Expr or number, optional
+        Of the spoke in rad, from the first axis of the plane to the second one; by default that of
+        the rigid body at the centre. Without either there is no spoke.
+    plane : pair of sequences of sympy.Expr, optional
+        Perpendicular unit vectors that span the wheel; by default along the first and last axis.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When a value is no formula, or the centre no point.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> from derive import Wheel
+    >>> x = symbols("x", real=True)
+    >>> R = symbols("R", positive=True)
+    >>> Wheel((x, R), R, angle=-x / R).radius
+    R
+    """
+
+    radius: sp.Expr
+    angle: sp.Expr | None = None
+    plane: tuple[Sequence[sp.Expr], Sequence[sp.Expr]] | None = None
+
+    def shapes(self, masses: Sequence[PointMass]) -> Iterator[Shape]:
+        """The centre, and two points of the rim a quarter turn apart."""
+        centre, angle = self._frame(masses)
+        kind, turn = ("ring", sp.S.Zero) if angle is None else ("wheel", angle)
+        first, second = self.plane or _plane(len(centre))
+        if not len(first) == len(second) == len(centre):
+            raise SystemDefinitionError(
+                f"Wheel has a plane of {len(first)} and {len(second)} components: give two unit "
+                f"vectors of {len(centre)}, as of the masses"
+            )
+        rim = (
+            tuple(
+                c + self.radius * (sp.cos(turn + quarter) * a + sp.sin(turn + quarter) * b)
+                for c, a, b in zip(centre, first, second, strict=True)
+            )
+            for quarter in (0, sp.pi / 2)
+        )
+        yield kind, (centre, *rim)
+
+
+@dataclass(frozen=True)
+class Block(Centred):
+    """A rectangle about a centre, such as a sliding block.
+
+    Parameters
+    ----------
+    centre : int or sequence of sympy.Expr
+        The number of a mass, from 0, or the components of a position in m.
+    width, height : sympy.Expr or number
+        In m.
+    angle : sympy.Expr or number, optional
+        From the first axis to the width, in rad; by default that of the rigid body at the centre,
+        or else 0.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When a value is no formula, or the centre no point.
+
+    Examples
+    --------
+    >>> from derive import Block
+    >>> Block(0, 0.5, 0.25).height
+    1/4
+    """
+
+    width: sp.Expr
+    height: sp.Expr
+    angle: sp.Expr | None = None
+
+    def shapes(self, masses: Sequence[PointMass]) -> Iterator[Shape]:
+        """The four corners."""
+        yield (
+            "plate",
+            tuple(
+                self._at(masses, across * self.width / 2, up * self.height / 2)
+                for across, up in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+            ),
+        )
+
+    def _at(self, masses: Sequence[PointMass], across: sp.Expr, up: sp.Expr) -> Point:
+        """The point at these distances from the centre along width and height."""
+        centre, angle = self._frame(masses)
+        cos, sin = sp.cos(angle or 0), sp.sin(angle or 0)
+        along = (across * cos - up * sin, across * sin + up * cos)
+        return tuple(
+            c + a * along[0] + b * along[1]
+            for c, a, b in zip(centre, *_plane(len(centre)), strict=True)
+        )
+
+
+@dataclass(frozen=True)
+class Cart(Block):
+    """A `Block` on two wheels; the ground is `height` below its centre.
+
+    Parameters
+    ----------
+    centre : int or sequence of sympy.Expr
+        The number of a mass, from 0, or the components of a position in m.
+    width, height : sympy.Expr or number
+        Of the rectangle, in m; the wheels have half the height.
+    angle : sympy.Expr or number, optional
+        Of the ground, as in `Block`.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When a value is no formula, or the centre no point.
+
+    Examples
+    --------
+    >>> from derive import Cart
+    >>> Cart(0, 0.5, 0.25).width
+    1/2
+    """
+
+    def shapes(self, masses: Sequence[PointMass]) -> Iterator[Shape]:
+        """The box, and the wheels below it."""
+        yield from super().shapes(masses)
+        radius = self.height / 4
+        for side in (-1, 1):
+            across, up = side * self.width / 4, -self.height / 2 - radius
+            offsets = ((0, 0), (radius, 0), (0, radius))
+            yield "ring", tuple(self._at(masses, across + a, up + b) for a, b in offsets)
+
+
+def _plane(dimension: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Unit vectors along the first and the last axis."""
+    return (1, *[0] * (dimension - 1)), (*[0] * (dimension - 1), 1)
+
+
+def _axes(plane: object) -> tuple[Point, ...]:
+    axes = items("plane", plane, "two unit vectors")
+    if len(axes) != 2:
+        raise SystemDefinitionError(f"plane has {len(axes)} vectors: give two unit vectors")
+    return tuple(formulas("plane", axis, "the components of a unit vector") for axis in axes)
+
+
+def _place(name: str, point: object) -> int | Point:
+    if isinstance(point, bool) or not isinstance(point, int | Sequence) or isinstance(point, str):
+        raise SystemDefinitionError(f"{name} contains {shortened(point)}: give {POINT}")
+    return point if isinstance(point, int) else formulas(name, point, POINT)
+
+
+def _position(link: Link, place: Place, masses: Sequence[PointMass]) -> Point:
+    name, dimension = type(link).__name__, len(masses[0].position)
+    if not isinstance(place, int):
+        if len(place) != dimension:
+            raise SystemDefinitionError(
+                f"{name} has a point of {len(place)} components: give {dimension}, as of the masses"
+            )
+        return tuple(place)
+    if not 0 <= place < len(masses):
+        raise SystemDefinitionError(
+            f"{name} names mass {place}: masses are numbered from 0 to {len(masses) - 1}"
+        )
+    return masses[place].position
+
+
+def _mapped(value: Any, function: Callable[[sp.Expr], sp.Expr]) -> Any:
+    """The value with `function` applied to the expressions in it."""
+    if isinstance(value, tuple):
+        return tuple(_mapped(item, function) for item in value)
+    return function(value) if isinstance(value, sp.Basic) else value
