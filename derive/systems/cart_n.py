@@ -22,8 +22,7 @@ def system(n: int) -> System:
         + [Parameter(s, "m", 1.0, "length of a rod") for s in l]
         + [Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
         masses=[PointMass(s, (sum(xs[:k + 1]), sum(ys[:k]))) for k, s in enumerate((m0, *m))],
-        links=[Cart(0, l[0] / 2, l[0] / 4), Rail((0, -l[0] / 4), (1, -l[0] / 4)),
-               Rod(*range(n + 1))])
+        links=[Cart(0, l[0] / 2, h := l[0] / 4), Rail((0, -h), (1, -h)), Rod(*range(n + 1))])
 
 
 PUBLISHED = r'''
