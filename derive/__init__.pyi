@@ -1,6 +1,7 @@
 from derive.codegen.writing import write as write
 from derive.mechanics.derivation import Derivation as Derivation
 from derive.mechanics.linearisation import Linearisation as Linearisation
+from derive.mechanics.reduced_coordinates import reduced as reduced
 from derive.mechanics.specialisation import with_inputs as with_inputs
 from derive.mechanics.state_space import StateSpace as StateSpace
 from derive.system.catalogue import load as load

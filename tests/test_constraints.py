@@ -47,7 +47,7 @@ def pinned() -> System:
     q = [*PLANE, Coordinate(theta, "rad", "of the rod")]
     end = (length * sp.sin(theta), -length * sp.cos(theta))
     return System("pinned", "Pendulum with a pin", q, [KG, ROD, GRAVITY],
-        [PointMass(m, (x, y))], coincide=[((x, y), end)])  # fmt: skip
+        [PointMass(m, (x, y))], coincide=[((x, y), end)], keep_coordinates=True)  # fmt: skip
 
 
 def lifted() -> System:

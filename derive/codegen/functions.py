@@ -41,7 +41,7 @@ def _switches(derivation: Derivation) -> str:
 
 
 def _multipliers(derivation: Derivation) -> str:
-    return ", ".join(one.name for one in derivation.system.conditions)
+    return ", ".join(one.name for one in derivation.system.all_conditions)
 
 
 def _redundant(derivation: Derivation) -> str:
@@ -124,7 +124,7 @@ SPECS = (
     FunctionSpec("constraints_jacobian", "lagrangian", "residuals state",
         "Derivatives of `constraints` with respect to the state.",
         "Entry [i][j] is the derivative of residual i with respect to y[j]."),
-    FunctionSpec("constraint_jacobian", "lagrangian", "multipliers q",
+    FunctionSpec("constraint_jacobian", "lagrangian", "conditions q",
         "Jacobian G of the constraints, whose rates are G qdot + b.",
         "Entry [i][j] is the derivative of constraint i with respect to coordinate j, or of a "
         "constraint of velocities with respect to velocity j."),
@@ -256,7 +256,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
     constants |= {"outputs": len(system.measured), "params": len(system.params)}
     constants |= {"points": len(system.points)}
-    constants |= {"multipliers": len(system.conditions)}
+    constants |= {"multipliers": len(system.all_conditions), "conditions": len(system.conditions)}
     constants |= {"redundant": len(derivation.redundant)}
     constants |= {"residuals": len(system.conditions) + len(derivation.holonomic)}
     sizes |= {name: count for name, count in constants.items() if count}

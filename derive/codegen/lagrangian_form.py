@@ -9,6 +9,7 @@ import sympy as sp
 from derive.codegen.equations_of_motion import EquationsOfMotion
 from derive.codegen.node import Node
 from derive.codegen.rational import rationalised
+from derive.codegen.translation import Translation
 from derive.system.symbols import TIME
 
 HALF = Fraction(1, 2)
@@ -63,9 +64,20 @@ class LagrangianForm(EquationsOfMotion):
         return self._solution[0]
 
     @property
-    def multipliers(self) -> list[Node]:
+    def _multipliers(self) -> list[Node]:
         """λ of M q̈ = f + Gᵀ λ."""
         return self._solution[1]
+
+    @property
+    def multipliers(self) -> list[Node]:
+        """The same, and those of eliminated constraints."""
+        symbols = (*self._system.qddot, *self._system.multipliers)
+        values = zip(symbols, [*self._accelerations, *self._multipliers], strict=True)
+        known = {symbol.name: value for symbol, value in values}
+        known |= {one.name: self._graph.node(0) for one in self._derivation.redundant}
+        node = Translation(self._graph, known, self._derivation.switching_functions)
+        known |= {one.constraint.name: node(one.reaction) for one in self._system.eliminated}
+        return [known[one.name] for one in self._system.all_conditions]
 
     @property
     def constraints(self) -> list[Node]:
@@ -114,7 +126,7 @@ class LagrangianForm(EquationsOfMotion):
         if not any(self._derivation.constraint_drift):
             return super().power
         drift = self._nodes(self._derivation.constraint_drift)
-        moved = ((reaction * b, -1) for reaction, b in zip(self.multipliers, drift, strict=True))
+        moved = ((reaction * b, -1) for reaction, b in zip(self._multipliers, drift, strict=True))
         return [self._graph.sum([(self._node(self._derivation.power), 1), *moved])]
 
     @property
@@ -228,7 +240,7 @@ class LagrangianForm(EquationsOfMotion):
         by_force, *others = (
             self._derivative(entry / factor, variable.name) for entry in self._row(i)
         )
-        products = [*((x, -1) for x in self._accelerations), *((x, 1) for x in self.multipliers)]
+        products = [*((x, -1) for x in self._accelerations), *((x, 1) for x in self._multipliers)]
         pairs = zip(others, products, strict=True)
         return factor * self._graph.sum([(by_force, 1), *((a * x, sign) for a, (x, sign) in pairs)])
 

@@ -6,6 +6,7 @@ from textwrap import indent
 import sympy as sp
 
 from derive.codegen.functions import Contents, Form
+from derive.mechanics.derivation import Derivation
 from derive.system.system import System
 
 #: Unit of the momentum conjugate to a coordinate of this unit.
@@ -35,7 +36,7 @@ def units(system: System) -> dict[str, str]:
         for changed in (coordinate.symbol.name, qdot.name):
             rows[f"delta_{changed}"] = rows[changed]
         rows[f"sin_{coordinate.symbol.name}"] = rows[f"cos_{coordinate.symbol.name}"] = "1"
-    return rows | {one.name: one.unit for one in system.conditions}
+    return rows | {one.name: one.unit for one in system.all_conditions}
 
 
 def summary(contents: Contents) -> str:
@@ -67,12 +68,47 @@ def summary(contents: Contents) -> str:
         sections["Redundant constraints, which follow from the others with default parameters"] = [
             f"{one.formula} = 0: {one.name}, left out" for one in derivation.redundant
         ]
+    if system.all_conditions:
+        sections["Degrees of freedom"] = [mobility(derivation)]
+    if system.eliminated:
+        sections["Eliminated coordinates, which are outputs"] = [
+            f"{one.coordinate.symbol} [{one.coordinate.unit}]: {one.formula}, "
+            f"{one.coordinate.meaning}"
+            for one in system.eliminated
+        ]
+        sections["Multipliers of eliminated constraints"] = [
+            f"{one.constraint.name} [{one.constraint.unit}]: {one.constraint.meaning}"
+            for one in system.eliminated
+        ]
     is_short = len(system.q) <= READABLE
     if is_short and derivation.lagrangian.count_ops() <= READABLE_OPERATIONS:
         sections["Lagrangian"] = [f"L = {_text(derivation.lagrangian)}"]
         residuals = map(_text, derivation.euler_lagrange)
         sections["Equations of motion"] = [f"{residual} = 0" for residual in residuals]
     return "\n\n".join(_section(title, lines) for title, lines in sections.items())
+
+
+def mobility(derivation: Derivation) -> str:
+    """Numbers of coordinates, constraints and degrees of freedom, and eliminated coordinates."""
+    system, eliminated = derivation.system, derivation.system.eliminated
+    counts = [
+        _count(len(system.q) + len(eliminated), "coordinate"),
+        _count(len(system.all_conditions), "constraint"),
+        _count(derivation.degrees_of_freedom, "degree", " of freedom"),
+    ]
+    if not eliminated:
+        return ", ".join(counts)
+    gone, kept = _names(one.coordinate.symbol for one in eliminated), _names(system.q)
+    return f"{', '.join(counts)}: {gone} follow{'s' * (len(eliminated) == 1)} from {kept}"
+
+
+def _count(number: int, noun: str, rest: str = "") -> str:
+    return f"{number} {noun}{'s' * (number != 1)}{rest}"
+
+
+def _names(symbols: Iterable[sp.Symbol]) -> str:
+    *first, last = (symbol.name for symbol in symbols)
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def broken_sum(text: str, width: int) -> str:

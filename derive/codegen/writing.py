@@ -9,6 +9,7 @@ from derive.codegen.backend import DIGEST, find_backends
 from derive.codegen.functions import Contents, contents
 from derive.codegen.tree import Tree
 from derive.mechanics.derivation import Derivation
+from derive.mechanics.reduced_coordinates import reduced
 from derive.system.system import System
 
 #: Digits of the digest of generated files.
@@ -30,6 +31,8 @@ def files(generated: Contents) -> dict[str, str]:
 
 def write(system: System, folder: str | PathLike[str]) -> Path:
     """Write the module and the C header of a system, each completely or not at all.
+
+    Coordinates that constraints determine are eliminated before (`reduced`).
 
     Parameters
     ----------
@@ -60,5 +63,5 @@ def write(system: System, folder: str | PathLike[str]) -> Path:
     >>> print(write(load("chain_2"), "build"))
     build/chain_2.py
     """
-    Tree(Path(folder), texts(Derivation(system)), complete=False).write()
+    Tree(Path(folder), texts(Derivation(reduced(system))), complete=False).write()
     return Path(folder) / f"{system.name}.py"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from shlex import quote
 
+from derive.codegen.summary import mobility
 from derive.codegen.translation import UnsupportedFunctionError
 from derive.codegen.tree import Difference, Tree
 from derive.codegen.writing import texts
@@ -13,6 +14,7 @@ from derive.commands import document
 from derive.commands.arguments import add_arguments
 from derive.mechanics.constraints import Constraints
 from derive.mechanics.derivation import Derivation
+from derive.mechanics.reduced_coordinates import reduced
 from derive.system.catalogue import UnknownSystemError, load
 from derive.system.parts import SystemDefinitionError
 from derive.system.shipped import names
@@ -66,8 +68,10 @@ def run(arguments: Namespace, others: Iterable[Tree] = ()) -> int:
 
 
 def _state(systems: list[str]) -> None:
-    """Print the decisions on constraints of velocities."""
+    """Print degrees of freedom, and the decisions on constraints of velocities."""
     for name in systems:
+        if (system := reduced(load(name))).all_conditions:
+            print(f"{name}: {mobility(Derivation(system))}")
         if decision := str(Constraints(load(name)).integrability):
             print(f"{name}: constraints of velocities: {decision}")
 
@@ -88,7 +92,7 @@ def planned(systems: list[str], output: Path | None) -> Tree:
     """The files that the command writes to a folder."""
     files: dict[str, str] = {}
     for name in systems or names():
-        system = load(name)
+        system = reduced(load(name))
         if output is None and name not in names():
             raise SystemDefinitionError(
                 f"{name} does not ship: give a folder for its module, with --output DIR"

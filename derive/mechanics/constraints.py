@@ -22,6 +22,11 @@ class Constraints(Kinetics):
     """
 
     @property
+    def degrees_of_freedom(self) -> int:
+        """Number of independent velocities: of coordinates, less that of constraints."""
+        return len(self.system.q) - len(self.system.conditions)
+
+    @property
     def holonomic(self) -> tuple[sp.Expr, ...]:
         """Constraints φ(q, t) of the coordinates."""
         formulas = (one.formula for one in self.system.conditions)

@@ -26,7 +26,7 @@ from derive.mechanics.state_space import Formula, Point, StateSpace, state_space
 from derive.system.constraints import Constraint
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.prescribed import motions
-from derive.system.system import as_system
+from derive.system.system import System, as_system
 from solvers.io.suggestion import did_you_mean
 
 if TYPE_CHECKING:
@@ -35,6 +35,17 @@ if TYPE_CHECKING:
 
 class RedundancyWarning(UserWarning):
     """Constraints follow from others, and are left out."""
+
+
+def warn_of_redundancy(system: System, redundant: Sequence[Constraint]) -> None:
+    """Warn that constraints are left out."""
+    names = ", ".join(one.name for one in redundant)
+    warnings.warn(
+        f"constraints of system {system.name!r} are redundant and left out: {names}; they follow "
+        "from the others, so that their reactions are not determined",
+        RedundancyWarning,
+        stacklevel=5,
+    )
 
 
 @dataclass(frozen=True)
@@ -99,13 +110,7 @@ class Derivation(Equations):
 
         kept, redundant = independent(Constraints(self.system))
         if redundant:
-            names = ", ".join(one.name for one in redundant)
-            warnings.warn(
-                f"constraints of system {self.system.name!r} are redundant and left out: {names}; "
-                "they follow from the others, so that their reactions are not determined",
-                RedundancyWarning,
-                stacklevel=4,
-            )
+            warn_of_redundancy(self.system, redundant)
             object.__setattr__(self, "system", replace(self.system, constraints=kept))
             object.__setattr__(self, "redundant", redundant)
 

@@ -103,4 +103,5 @@ def substituted(system: System, values: Mapping[sp.Symbol, sp.Expr]) -> System:
         outputs={name: substitute(output) for name, output in system.measured},
         constraints=[one.with_formula(substitute(one.formula)) for one in system.conditions],
         links=[link.mapped(substitute) for link in system.links],
+        eliminated=[one.mapped(substitute) for one in system.eliminated],
     )

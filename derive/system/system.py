@@ -10,6 +10,7 @@ import sympy as sp
 
 from derive.system.checks import check
 from derive.system.constraints import Constraint, Point, constraints
+from derive.system.eliminated import Eliminated
 from derive.system.links import Link, Shape
 from derive.system.naming import check_module_name, check_name, check_unique
 from derive.system.parts import (
@@ -35,6 +36,7 @@ KINDS = {
     "masses": PointMass,
     "reactions": sp.Symbol,
     "links": Link,
+    "eliminated": Eliminated,
 }
 
 
@@ -87,6 +89,10 @@ class System:
     links : sequence of Rod, Thread, Spring, Rail, Plate, Wheel, Block and Cart, optional
         How pictures join the masses and other points; by default rods between masses at a constant
         distance.
+    keep_coordinates : bool, optional
+        Whether generated modules keep coordinates that constraints determine (`derive.reduced`).
+    eliminated : sequence of Eliminated, optional
+        Coordinates that were eliminated, with their constraints, as `derive.reduced` states them.
 
     Raises
     ------
@@ -131,6 +137,8 @@ class System:
     constraints: Sequence[Constraint | sp.Expr] = ()
     coincide: Sequence[tuple[Point, Point]] = ()
     links: Sequence[Link] = ()
+    keep_coordinates: bool = False
+    eliminated: Sequence[Eliminated] = ()
 
     def __post_init__(self) -> None:
         for field, kind in KINDS.items():
@@ -199,6 +207,14 @@ class System:
     def conditions(self) -> tuple[Constraint, ...]:
         """The constraints."""
         return cast("tuple[Constraint, ...]", self.constraints)
+
+    @property
+    def all_conditions(self) -> tuple[Constraint, ...]:
+        """The constraints with those that were eliminated, in their first order."""
+        conditions = [*self.conditions]
+        for one in sorted(self.eliminated, key=lambda one: one.index):
+            conditions.insert(one.index, one.constraint)
+        return tuple(conditions)
 
     @cached_property
     def multipliers(self) -> tuple[sp.Symbol, ...]:

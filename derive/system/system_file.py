@@ -32,7 +32,7 @@ from solvers.io.toml_input import InputError
 KEYS = (
     *("name", "title", "coordinates", "parameters", "definitions", "masses", "potential"),
     *("gravity", "dissipation", "forces", "equilibrium", "reactions", "inputs"),
-    *("outputs", "constraints", "coincide", "links"),
+    *("outputs", "constraints", "coincide", "keep_coordinates", "links"),
 )
 #: Units of parameters that are positive by default.
 POSITIVE_UNITS = ("kg", "m")
@@ -103,6 +103,7 @@ def _system(stem: str, table: Table) -> System:
         constraints=[*_constraints(table, formulas)],
         coincide=[*_pairs(table, formulas)],
         links=[*read_links(table, formulas.value)],
+        keep_coordinates=table.flag("keep_coordinates", default=False),
     )
 
 

@@ -82,6 +82,8 @@ def _shipped(name: str) -> GeneratedModule | None:
 def build(system: "System") -> GeneratedModule:
     """The generated module of a system, built in the user's cache if it is not there yet.
 
+    Coordinates that constraints determine are eliminated before (`derive.reduced`).
+
     Parameters
     ----------
     system : derive.System
@@ -111,7 +113,7 @@ def build(system: "System") -> GeneratedModule:
     >>> build(derive.load("chain_4")).COORDINATES
     ('theta1', 'theta2', 'theta3', 'theta4')
     """
-    from derive import Derivation
+    from derive import Derivation, reduced
     from derive.codegen.writing import texts
     from derive.system.system import as_system
 
@@ -119,7 +121,7 @@ def build(system: "System") -> GeneratedModule:
     system = as_system(system)
     assumptions = [(s.name, sorted(s.assumptions0.items())) for s in (*system.q, *system.params)]
     key = f"{system!r}{assumptions}{generator_text()}"
-    module = cached_module(system.name, key, lambda: texts(Derivation(system)))
+    module = cached_module(system.name, key, lambda: texts(Derivation(reduced(system))))
     _systems[module.__name__] = system
     return module
 
@@ -149,10 +151,11 @@ def specialiser(
 
 
 def system_of(module: GeneratedModule) -> "System":
-    """The system that a module was generated from."""
+    """The system that a module was generated from, without eliminated coordinates."""
+    from derive import reduced
     from derive.system import catalogue
 
-    return _systems.get(module.__name__) or catalogue.load(module.SYSTEM)
+    return reduced(_systems.get(module.__name__) or catalogue.load(module.SYSTEM))
 
 
 @cache

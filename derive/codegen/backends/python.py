@@ -247,7 +247,7 @@ def _imports_of_many(function: Function) -> str:
 def _constants(contents: Contents) -> str:
     system, functions = contents.system, contents.functions
     parameters = [symbol.name for symbol in system.params]
-    switching, conditions = contents.derivation.switching_functions, system.conditions
+    switching, conditions = contents.derivation.switching_functions, system.all_conditions
     names = {f.name for f in functions}
     with_rhs = {f.form for f in functions if f.name.startswith("rhs")}
     forms = [form for form in contents.states if form in with_rhs]
@@ -279,10 +279,14 @@ def _constants(contents: Contents) -> str:
 
 def _of_constraints(derivation: Derivation) -> dict[str, str]:
     """Names of the multipliers and of the results of `constraints`."""
-    names = {one.name: one.formula in derivation.holonomic for one in derivation.system.conditions}
+    system = derivation.system
+    multipliers = {"MULTIPLIERS": _literal(one.name for one in system.all_conditions)}
+    if not system.conditions:  # all were eliminated
+        return multipliers
+    names = {one.name: one.formula in derivation.holonomic for one in system.conditions}
     rates = (f"{name}_dot" if is_position else name for name, is_position in names.items())
     residuals = [*(name for name, is_position in names.items() if is_position), *rates]
-    return {"MULTIPLIERS": _literal(names), "RESIDUALS": _literal(residuals)}
+    return multipliers | {"RESIDUALS": _literal(residuals)}
 
 
 def _links(system: System) -> str:
