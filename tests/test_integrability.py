@@ -1,13 +1,16 @@
 """Constraints of velocities: which are constraints of positions, by Frobenius' theorem."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import sympy as sp
 
-from derive import TIME, Coordinate, Input, Parameter, PointMass, System, velocity
+from derive import TIME, Coordinate, Derivation, Input, Parameter, PointMass, System, velocity
 from derive.commands.derive import main
 from derive.mechanics.constraints import Constraints
+from derive.system.parts import SystemDefinitionError
+from holonomic import build, integrate
 
 x, y, z, theta, phi = sp.symbols("x y z theta phi", real=True)
 m, R, a = sp.symbols("m R a", positive=True)
@@ -140,3 +143,19 @@ def test_the_command_prints_the_decision(
     path.write_text(WHEEL)
     assert main([str(path), "--output", str(tmp_path)]) == 0
     assert "constraints of velocities: 1 integrable" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("constraint", "reason"),
+    [(dx * s - dy * c, "not integrable"), (x**2 + y**2 - R**2, "not independent")],
+)
+def test_hamilton_s_form_is_refused_with_the_reason(constraint: sp.Expr, reason: str) -> None:
+    system = constrained(constraint).system
+    d = Derivation(replace(system, masses=[PointMass(m, (x, y)), PointMass(m, (theta, z + phi)),
+        PointMass(m, (phi, z))]))  # fmt: skip
+    for name in ("hamiltonian", "hamilton_equations"):
+        with pytest.raises(SystemDefinitionError, match=reason):
+            getattr(d, name)
+    module = build(d.system)
+    with pytest.raises(ValueError, match="constraints leave its coordinates and momenta not indep"):
+        integrate(module, (0, 1), [0.0] * 10, module.DEFAULTS, form="hamiltonian")

@@ -9,6 +9,7 @@ import sympy as sp
 from derive.mechanics.constraints import Constraints
 from derive.mechanics.kinetics import Matrix, derivative
 from derive.mechanics.reduction import collected, reduced
+from derive.system.parts import SystemDefinitionError
 
 HALF = sp.Rational(1, 2)
 
@@ -108,9 +109,30 @@ class Equations(Constraints):
         numerator = matrix.adjugate() * column
         return Matrix(numerator.applyfunc(lambda entry: sp.factor_terms(entry) / determinant))
 
+    def _check_canonical(self) -> None:
+        """Refuse Hamilton's form of a system with constraints."""
+        names = ", ".join(one.name for one in self.system.conditions)
+        if self.integrability.nonholonomic:
+            raise SystemDefinitionError(
+                f"system {self.system.name!r} has no Hamiltonian form: constraints of velocities "
+                f"are not integrable ({names}); momenta of the remaining velocities are conjugate "
+                "to no coordinates, and the motion preserves no volume of phase space in general; "
+                "use Lagrange's form, which has the multipliers"
+            )
+        if names:
+            raise SystemDefinitionError(
+                f"system {self.system.name!r} has no Hamiltonian form: its coordinates and their "
+                f"momenta are not independent ({names}); give coordinates that satisfy the "
+                "constraints, or use Lagrange's form, which has the multipliers"
+            )
+
     @cached_property
     def hamiltonian(self) -> sp.Expr:
-        """H(q, p, t) = ½ (p - b)ᵀ M⁻¹ (p - b) + U, the energy as a function of the momenta."""
+        """H(q, p, t) = ½ (p - b)ᵀ M⁻¹ (p - b) + U, the energy as a function of the momenta.
+
+        A `SystemDefinitionError` states the reason why a system with constraints has none.
+        """
+        self._check_canonical()
         adjugate, determinant = self._adjugate_and_determinant
         p = Matrix(self.system.p) - self.drift
         numerator = collected((p.T * adjugate * p)[0, 0], *self.system.q, *self.system.p)
@@ -119,6 +141,7 @@ class Equations(Constraints):
     @cached_property
     def hamilton_equations(self) -> tuple[Matrix, Matrix]:
         """(q̇, ṗ) = (∂H/∂p, -∂H/∂q + Q), two columns; canonical without applied forces."""
+        self._check_canonical()
         velocities = self._divided_by_mass(Matrix(self.system.p) - self.drift)
         known = dict(zip(self.system.qdot, velocities, strict=True))
         pairs = zip(self.system.q, self.system.applied, strict=True)

@@ -67,6 +67,8 @@ class Model:
     def has_inverse(self) -> bool:
         """Whether accelerations and Hamiltonian are derived as formulas, which takes seconds."""
         M = self.derivation.mass_matrix
+        if self.derivation.system.conditions:
+            return False
         return M.rows <= (LARGEST_DIAGONAL if M.is_diagonal() else LARGEST_INVERSE)
 
     @cached_property

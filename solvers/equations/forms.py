@@ -53,7 +53,12 @@ class Form:
         signs: Sequence[float] = (),
     ) -> None:
         if name not in module.FORMS:
-            raise ValueError(f"form {name!r}: {module.SYSTEM} has {', '.join(module.FORMS)}")
+            reason = ""
+            if name == "hamiltonian" and has_function(module, "multipliers"):
+                reason = "; constraints leave its coordinates and momenta not independent"
+            raise ValueError(
+                f"form {name!r}: {module.SYSTEM} has {', '.join(module.FORMS)}{reason}"
+            )
         self.name, self.module, self.params = name, module, tuple(params)
         self.feedback, self.signs = feedback, tuple(signs)
         self.function, jacobian = function(module, named("rhs", name)), named("jacobian", name)
