@@ -9,6 +9,7 @@ import sympy as sp
 from derive.formulas.expansion import is_expandable
 from derive.formulas.expression import ExpressionError
 from derive.formulas.numeric import independent, solved
+from derive.verification.constrained_motions import equations
 from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on
 from derive.verification.other_solutions import has_other_solutions
@@ -27,12 +28,15 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
         raise ExpressionError(f"an equation has one equals sign, not {text.count('=')}")
     system, verdict = model.derivation.system, partial(Verdict, label, printed=text)
     value = difference(text, model.context.scope)
-    if not depends_on(value.xreplace(model.momenta), system.qddot):
+    unknown = (*system.qddot, *system.multipliers)
+    if not depends_on(value.xreplace(model.momenta), unknown):
+        if system.conditions and (note := model.agreement(value)) is not None:
+            return verdict(verdict="verified", note=joined("it follows from the constraints", note))
         if depends_on(value, system.p) and (note := model.context.agreement(value)) is not None:
             return verdict(verdict="definition", note=joined("it defines a momentum", note))
         return verdict(verdict="wrong", note="it contains no acceleration")
-    coefficients = [value.diff(a) for a in system.qddot]
-    is_linear = all(model.context.is_zero(c.diff(a)) for c in coefficients for a in system.qddot)
+    coefficients = [value.diff(a) for a in unknown]
+    is_linear = all(model.context.is_zero(c.diff(a)) for c in coefficients for a in unknown)
     if not model.motions.is_small(value):
         witness = model.motions.witness(value, sp.S.Zero)
         if is_linear and is_expandable(value, waves=2):
@@ -56,27 +60,35 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
     return verdict(verdict="verified", note=note)
 
 
-def judge_set(model: Model, equations: Sequence[Verdict]) -> list[Verdict]:
+def judge_set(model: Model, judged: Sequence[Verdict]) -> list[Verdict]:
     """Add to correct equations a verdict on all of them if they depend on each other.
 
     If they are independent but fewer than the coordinates, a note on the last one states so.
     """
-    if any(one.verdict in ("wrong", "unreadable") for one in equations):
-        return [*equations]
-    system, numbered = model.derivation.system, enumerate(equations, 1)
+    if any(one.verdict in ("wrong", "unreadable") for one in judged):
+        return [*judged]
+    system, numbered = model.derivation.system, enumerate(judged, 1)
     rows = {number: row for number, one in numbered if (row := _row(model, one.printed))}
-    kept = independent([*rows.values(), *sp.eye(len(system.q)).tolist()])
+    n, size = len(system.q), len(system.q) + len(system.conditions)
+    units = sp.eye(size).tolist()
+    # the constraints hold, whether or not the source states them again
+    kept = [k - (size - n) for k in independent([*units[n:], *rows.values(), *units[:n]])]
     missing = [k - len(rows) for k in kept if k >= len(rows)]
+    if not any(
+        depends_on(difference(one.printed, model.context.scope), system.multipliers)
+        for one in judged
+    ):
+        missing = missing[size - n :]  # equations without multipliers do not determine these
     if not missing:
-        return [*equations]
+        return [*judged]
     names = ", ".join(system.q[k].name for k in missing)
     lacking = f"the set is incomplete: independent equations are missing, such as for {names}"
     if dependent := [number for k, number in enumerate(rows) if k not in kept]:
         follows = f"equation {dependent[0]} follows from the equations before it"
         correction = "; ".join(f"{model.derivation.euler_lagrange[k]} = 0" for k in missing)
-        printed, note = f"{len(equations)} equations", joined(follows, lacking)
-        return [*equations, Verdict("euler_lagrange", "wrong", printed, correction, note=note)]
-    return [*equations[:-1], replace(equations[-1], note=joined(equations[-1].note, lacking))]
+        printed, note = f"{len(judged)} equations", joined(follows, lacking)
+        return [*judged, Verdict("euler_lagrange", "wrong", printed, correction, note=note)]
+    return [*judged[:-1], replace(judged[-1], note=joined(judged[-1].note, lacking))]
 
 
 def _row(model: Model, text: str) -> tuple[sp.Expr, ...]:
@@ -86,8 +98,11 @@ def _row(model: Model, text: str) -> tuple[sp.Expr, ...]:
     """
     system, L = model.derivation.system, model.lagrangian
     value = difference(text, model.context.scope)
-    if depends_on(value.xreplace(model.momenta), system.qddot):
-        return _factors(model, [value.diff(a) for a in system.qddot])
+    unknown = (*system.qddot, *system.multipliers)
+    if depends_on(value.xreplace(model.momenta), unknown):
+        return _factors(model, [value.diff(a) for a in unknown])
+    if system.conditions:
+        return ()
     rates = [L.diff(q) + f for q, f in zip(system.q, system.applied, strict=True)]
     momenta = zip(system.p, rates, strict=True)
     if all(model.context.is_zero(rate) for p, rate in momenta if p in value.free_symbols):
@@ -96,8 +111,13 @@ def _row(model: Model, text: str) -> tuple[sp.Expr, ...]:
 
 
 def _factors(model: Model, coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
-    """Solve Mᵀ λ = c: an equation with coefficients c is Σ λ_i times the derived equation i."""
-    matrix, column = model.derivation.mass_matrix, sp.Matrix(coefficients)
+    """Solve Mᵀ x = c: an equation with coefficients c is Σ x_i times the derived equation i.
+
+    Those of constraints, differentiated, are the last.
+    """
+    derivation, column = model.derivation, sp.Matrix(coefficients)
+    constrained = bool(derivation.system.conditions)
+    matrix = equations(derivation).T if constrained else derivation.mass_matrix
     return solved(matrix, column, model.motions.evaluators[0])
 
 
@@ -111,7 +131,9 @@ def _agreement(model: Model, value: sp.Expr, coefficients: Sequence[sp.Expr]) ->
         note = model.motions.agreement(value)
         return note if note is None else joined(reason, note)
     # a multiple of one equation of motion: no accelerations need to be solved for
-    i = combined[0]
-    M, equation = model.derivation.mass_matrix, model.derivation.euler_lagrange[i]
+    i, M = combined[0], model.derivation.mass_matrix
+    if i >= M.rows or not M[i, i]:
+        return model.motions.agreement(value)
+    equation = model.derivation.euler_lagrange[i]
     note = model.context.agreement(value * M[i, i] - coefficients[i] * equation)
     return model.motions.agreement(value) if note is None else note

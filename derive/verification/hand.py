@@ -16,6 +16,7 @@ from derive.system.tables import Table, read
 from derive.verification.derived import QUANTITIES
 from derive.verification.equations_of_motion import judge_set
 from derive.verification.model import Model
+from derive.verification.multipliers import with_multipliers
 from derive.verification.notation import meanings, names_of_coordinates, normalised, parsed
 from derive.verification.quantities import judge_formula
 from derive.verification.verdict import Verdict
@@ -63,6 +64,8 @@ def _judged(label: str, values: Mapping[str, Any], folder: Path) -> HandDerivati
     system = load(folder / name if name.endswith(".toml") else name)
     names = table.entries("names")
     model = Model(Derivation(_with_equal_parameters(table, system)), meanings(names, system))
+    texts = table.formulas("euler_lagrange") if "euler_lagrange" in table.values else []
+    model = with_multipliers(model, texts)
     verdicts = tuple(_verdicts(table, model))
     if not verdicts:
         raise InputError(f"{label} has no equations: give at least one of {', '.join(EQUATIONS)}")

@@ -13,6 +13,7 @@ from derive.formulas.sampling import STATES, sample
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
+from derive.verification.constrained_motions import motion
 from derive.verification.engine import Context, State
 
 #: Coordinates of the largest systems whose mass matrix, any or a diagonal one, is inverted in
@@ -66,9 +67,9 @@ class Model:
     @cached_property
     def has_inverse(self) -> bool:
         """Whether accelerations and Hamiltonian are derived as formulas, which takes seconds."""
-        M = self.derivation.mass_matrix
         if self.derivation.system.conditions:
             return False
+        M = self.derivation.mass_matrix
         return M.rows <= (LARGEST_DIAGONAL if M.is_diagonal() else LARGEST_INVERSE)
 
     @cached_property
@@ -84,6 +85,10 @@ class Model:
     def motions(self) -> Context:
         """The names of formulas, and generic states with the accelerations of motions."""
         system, derivation = self.derivation.system, self.derivation
+        if system.conditions:
+            dependent = frozenset((*system.q, *system.qdot, *system.qddot, *system.multipliers))
+            moved = tuple(motion(derivation, state) for state in self.context.states)
+            return replace(self.context, states=moved, implicit=dependent)
         states = []
         for state, evaluator in zip(self.context.states, self.context.evaluators, strict=True):
             values = solved(derivation.mass_matrix, derivation.forcing, evaluator)
@@ -120,7 +125,7 @@ class Model:
     def _state(self, index: int, scale: sp.Expr = sp.S.One) -> State:
         """One of several states at which nothing vanishes, with the momenta of its velocities."""
         system = self.derivation.system
-        moving = (*system.q, *system.qdot, *system.qddot, TIME)
+        moving = (*system.q, *system.qdot, *system.qddot, TIME, *system.multipliers)
         values = sample((*system.params, *moving), index)
         # at later states, angles exceed a right angle, so that sqrt(cos(x)**2) and cos(x) differ
         values |= {symbol: values[symbol] * scale * sp.Rational(1 + index, 5) for symbol in moving}
@@ -135,8 +140,8 @@ class Model:
 
 
 def variables(system: System) -> tuple[sp.Symbol, ...]:
-    """Coordinates, velocities, accelerations, momenta and time."""
-    return (*system.q, *system.qdot, *system.qddot, *system.p, TIME)
+    """Coordinates, velocities, accelerations, momenta, time and multipliers."""
+    return (*system.q, *system.qdot, *system.qddot, *system.p, TIME, *system.multipliers)
 
 
 def own_names(system: System) -> Scope:

@@ -10,9 +10,12 @@ from derive.verification.engine import joined
 from derive.verification.equations_of_motion import judge_equation
 from derive.verification.equivalence import TOTAL_ENERGY, equivalence
 from derive.verification.model import Model
+from derive.verification.substitution import mistake
+from derive.verification.terms import difference
 from derive.verification.verdict import Verdict
 
 #: Quantities that follow from a Lagrangian and differ between equivalent ones.
+ENERGIES = ("kinetic_energy", "potential_energy", "energy")
 FROM_LAGRANGIAN = ("momenta", "energy", "hamiltonian", "hamilton")
 
 
@@ -37,7 +40,10 @@ def judge_formula(
         result = _judged(own, label, changed, kind, name)
         return result.verdict in ("verified", "equivalent")
 
-    return advised(verdict, own, kind, name, holds)
+    result = advised(verdict, own, kind, name, holds)
+    if verdict.witness and (reason := mistake(model, kind, difference(text, model.context.scope))):
+        return replace(result, note=joined(result.note, reason))
+    return result
 
 
 def _judged(model: Model, label: str, text: str, kind: str, name: str) -> Verdict:
@@ -60,7 +66,10 @@ def _judge_quantity(model: Model, label: str, text: str, kind: str, name: str) -
     if invalid := sorted(symbol.name for symbol in value.free_symbols & foreign):
         raise ExpressionError(f"{', '.join(invalid)} cannot occur in a formula of this kind")
     derived = QUANTITIES[kind](model, name)
-    if (note := context.agreement(value - derived)) is not None:
+    # energies, but not the Lagrangian, may contain the constraints
+    is_energy = system.conditions and kind in ENERGIES
+    agreement = model.agreement if is_energy else context.agreement
+    if (note := agreement(value - derived)) is not None:
         return verdict(verdict="verified", note=note)
     total = derivation.kinetic_energy + derivation.potential_energy
     if kind == "energy" and (note := context.agreement(value - total)) is not None:

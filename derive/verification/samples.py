@@ -13,10 +13,14 @@ from derive.formulas import functions
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
+from derive.verification.constrained_motions import equations
 from derive.verification.model import Model
 
 #: Numbers at all states; NaN where there is no real number.
 Numbers: TypeAlias = list[float]
+
+#: Steps of Newton's method onto constraints.
+NEWTON = 12
 
 #: By their names in formulas and in SymPy.
 FUNCTIONS: dict[str, Callable[..., float]] = {
@@ -43,6 +47,9 @@ class Samples:
             self._known[symbol] = [
                 random.choice(signs) * random.uniform(lowest, 1.5) for _ in range(count)
             ]
+        self._independent = tuple(self._known)
+        if along_motions and derivation.system.conditions:
+            self._move(derivation)
         if along_motions:
             self._solve(derivation)
         self._known |= {p: self(value) for p, value in model.momenta.items()}
@@ -81,16 +88,45 @@ class Samples:
             result = [a if chosen else b for chosen, a, b in pairs]
         return result
 
+    def _move(self, derivation: Derivation) -> None:
+        """Move states onto constraints."""
+        system, phi = derivation.system, sp.Matrix(derivation.holonomic)
+        for _ in range(NEWTON if derivation.holonomic else 0):
+            self._shift(system.q, phi.jacobian(system.q), phi)
+        self._shift(system.qdot, derivation.constraint_jacobian, derivation.constraint_rates)
+
+    def _shift(
+        self, symbols: Sequence[sp.Symbol], gradients: sp.MatrixBase, residuals: sp.MatrixBase
+    ) -> None:
+        """Change symbols as little as removes linear residuals."""
+        rows, column = self._at(gradients, residuals)
+        moved = dict(self._known)
+        moved |= {symbol: list(self._known[symbol]) for symbol in symbols}
+        for k in range(self.count):
+            J = fp.matrix([[entry[k] for entry in row] for row in rows])
+            change = J.T * fp.lu_solve(J * J.T, fp.matrix([one[k] for one in column]))
+            for symbol, x in zip(symbols, change, strict=True):
+                moved[symbol][k] -= x
+        self._known = {symbol: moved[symbol] for symbol in self._independent}
+
     def _solve(self, derivation: Derivation) -> None:
-        """Set accelerations to those of the motion."""
-        qddot, M, f = derivation.system.qddot, derivation.mass_matrix, derivation.forcing
-        rows, column = [[self(entry) for entry in row] for row in M.tolist()], [*map(self, f)]
+        """Set accelerations and multipliers to those of the motion."""
+        system, M, f = derivation.system, derivation.mass_matrix, derivation.forcing
+        if system.conditions:
+            M = equations(derivation)
+            f = sp.Matrix([*f, *derivation.constraint_forcing])
+        rows, column = self._at(M, f)
         solutions = [
             fp.lu_solve([[entry[k] for entry in row] for row in rows], [one[k] for one in column])
             for k in range(self.count)
         ]
-        for i, symbol in enumerate(qddot):
+        for i, symbol in enumerate((*system.qddot, *system.multipliers)):
             self._known[symbol] = [solution[i] for solution in solutions]
+
+    def _at(
+        self, matrix: sp.MatrixBase, column: sp.MatrixBase
+    ) -> tuple[list[list[Numbers]], list[Numbers]]:
+        return [[self(entry) for entry in row] for row in matrix.tolist()], [*map(self, column)]
 
 
 def _number(expression: sp.Expr) -> float:
@@ -126,4 +162,6 @@ def applied(name: str, *arguments: Numbers) -> Numbers:
 
 
 def _symbols(system: System) -> Sequence[sp.Symbol]:
-    return (*system.params, *system.q, *system.qdot, *system.qddot, TIME)
+    return (
+        *system.params, *system.q, *system.qdot, *system.qddot, TIME, *system.multipliers
+    )  # fmt: skip

@@ -1,0 +1,69 @@
+"""Motions of systems with constraints: states that satisfy these, accelerations and multipliers."""
+
+import sympy as sp
+
+from derive.formulas.expression import ExpressionError
+from derive.formulas.numeric import Approximation, Evaluator, mp
+from derive.mechanics.derivation import Derivation
+from derive.verification.engine import State
+
+#: Steps of Newton's method, and the residual before the last one.
+MOST_STEPS, TINY = 60, mp.mpf("1e-60")
+#: Largest ratio of accelerations that is rounding.
+ZERO = mp.mpf("1e-80")
+
+
+def motion(derivation: Derivation, state: State) -> State:
+    """The state near `state` on the constraints, with its accelerations and multipliers.
+
+    An `ExpressionError` reports constraints without a solution nearby.
+    """
+    system, phi = derivation.system, sp.Matrix(derivation.holonomic)
+    values = dict(state)
+    if derivation.holonomic:
+        gradients = phi.jacobian(system.q)
+        for _ in range(MOST_STEPS):
+            evaluator = Evaluator(values)
+            largest = max(abs(evaluator(entry).number) for entry in phi)
+            _move(values, system.q, gradients, phi, evaluator)
+            if largest < TINY:
+                break
+        else:
+            raise ExpressionError("no generic state satisfies the constraints")
+    G, drift = derivation.constraint_jacobian, derivation.constraint_rates
+    _move(values, system.qdot, G, drift, Evaluator(values))
+    unknown = (*system.qddot, *system.multipliers)
+    right = sp.Matrix([*derivation.forcing, *derivation.constraint_forcing])
+    evaluator = Evaluator({s: value for s, value in values.items() if s not in unknown})
+    solution = mp.lu_solve(*(_numbers(evaluator, one) for one in (equations(derivation), right)))
+    least = ZERO * max(map(abs, solution))
+    values |= {
+        s: Approximation(x).rounded() if abs(x) > least else sp.S.Zero
+        for s, x in zip(unknown, solution, strict=True)
+    }
+    momenta = zip(system.p, derivation.momenta, strict=True)
+    return values | {p: evaluator(value).rounded() for p, value in momenta}
+
+
+def equations(derivation: Derivation) -> sp.Matrix:
+    """The coefficients of accelerations and multipliers in M q̈ - Gᵀ λ = f and G q̈ = γ."""
+    M, G = sp.Matrix(derivation.mass_matrix), sp.Matrix(derivation.constraint_jacobian)
+    return M.row_join(-G.T).col_join(G.row_join(sp.zeros(G.rows)))
+
+
+def _move(
+    values: dict[sp.Symbol, sp.Expr],
+    symbols: tuple[sp.Symbol, ...],
+    gradients: sp.MatrixBase,
+    residuals: sp.MatrixBase,
+    evaluator: Evaluator,
+) -> None:
+    """Change symbols as little as removes linear residuals."""
+    J = _numbers(evaluator, gradients)
+    change = J.T * mp.lu_solve(J * J.T, _numbers(evaluator, residuals))
+    for symbol, x in zip(symbols, change, strict=True):
+        values[symbol] = Approximation(evaluator(symbol).number - x).rounded()
+
+
+def _numbers(evaluator: Evaluator, matrix: sp.MatrixBase) -> mp.matrix:
+    return mp.matrix([[evaluator(entry).number for entry in row] for row in matrix.tolist()])
