@@ -58,11 +58,14 @@ class Estimate:
     iterations: int
 
 
-def estimate(experiment: Experiment, start: Array, guess: Array) -> Estimate:
+def estimate(
+    experiment: Experiment, start: Array, guess: Array, *, relaxes: bool = True
+) -> Estimate:
     """The fit from a first guess of the runs' starts and of the unknown parameters.
 
     `ValueError` where there are fewer values than unknowns, `NotConvergedError` where no fit is
-    found, or where the values do not determine the unknowns.
+    found, or where the values do not determine the unknowns. Without `relaxes` only a few steps
+    from one guess are tried.
     """
     n, u = len(experiment.module.STATE), len(experiment.unknown)
     counts, unknowns = experiment.counts, n * len(experiment.runs) + u
@@ -73,7 +76,7 @@ def estimate(experiment: Experiment, start: Array, guess: Array) -> Estimate:
             "or let fewer parameters be unknown"
         )
     noise = experiment.first_noise()
-    nodes, params, linear, scale = _near(experiment, start, guess, noise)
+    nodes, params, linear, scale = _near(experiment, start, guess, noise, relaxes)
     positive, iterations = experiment.positive, 0
     for _ in range(MOST_WEIGHTINGS):
         linearise = experiment.linearise(noise)
@@ -105,7 +108,7 @@ def estimate(experiment: Experiment, start: Array, guess: Array) -> Estimate:
 
 
 def _near(
-    experiment: Experiment, start: Array, guess: Array, noise: Array
+    experiment: Experiment, start: Array, guess: Array, noise: Array, relaxes: bool
 ) -> tuple[Array, Array, Linear | None, Array]:
     """Nodes and unknown parameters near the minimum, residuals there, and sizes of the state.
 
@@ -121,12 +124,15 @@ def _near(
                 return direct.nodes, direct.params, direct.linear, scale
         except NotConvergedError:
             pass
+        if not relaxes:
+            break
         trial = relaxed(linearise, nodes, guess, positive, scale)
         if best is None or trial.squares < least:
             best, least = (trial.nodes, trial.params, trial.linear, scale), trial.squares
         if least < GOOD * experiment.counts.sum():
             break
-    assert best is not None
+    if best is None:
+        raise NotConvergedError(f"no fit after {FEW} iterations: give a better first guess")
     return best
 
 

@@ -33,6 +33,8 @@ class Experiment:
         Values of the known parameters; those of the others are ignored.
     cuts : sequence of sequence of int, optional
         For each run the samples at which segments begin; by default as many as the values allow.
+    most : int, optional
+        Most segments of a run.
     """
 
     def __init__(
@@ -42,13 +44,14 @@ class Experiment:
         unknown: Sequence[str],
         params: Array,
         cuts: Sequence[Sequence[int]] | None = None,
+        most: int = MOST_SEGMENTS,
     ) -> None:
         self.outputs, self.module, self.params = outputs, outputs.module, params
         self.runs, self.unknown = list(runs), tuple(unknown)
         self.tables = [unwrapped(outputs, run) for run in runs]
         self.indices = [self.module.PARAMETERS.index(name) for name in unknown]
         n = len(self.module.STATE)
-        cuts = cuts or [_cuts(table, n) for table in self.tables]
+        cuts = cuts or [_cuts(table, n, most) for table in self.tables]
         self.segments: list[Segment] = []
         for k, (run, own) in enumerate(zip(runs, cuts, strict=True)):
             self.segments += segments(k, run.t, own)
@@ -150,14 +153,14 @@ def unwrapped(outputs: Outputs, run: Measurement) -> Array:
     return table
 
 
-def _cuts(table: Array, n: int) -> list[int]:
+def _cuts(table: Array, n: int, most: int) -> list[int]:
     """Samples at which segments begin, each with enough values for its node."""
     values = np.isfinite(table).sum(axis=0)
     total, samples = int(values.sum()), table.shape[1]
-    enough = max(FEWEST_VALUES * n, total / MOST_SEGMENTS)
+    enough = max(FEWEST_VALUES * n, total / most)
     cuts, collected = [0], 0
     for k in range(samples):
-        if collected >= enough and k - cuts[-1] >= max(FEWEST_SAMPLES, samples / MOST_SEGMENTS):
+        if collected >= enough and k - cuts[-1] >= max(FEWEST_SAMPLES, samples / most):
             cuts.append(k)
             collected = 0
         collected += int(values[k])

@@ -10,6 +10,7 @@ from solvers.equations.quantities import Array
 from solvers.io.suggestion import counted
 from solvers.scenes.fitting.estimate import Estimate, estimate
 from solvers.scenes.fitting.experiment import Experiment
+from solvers.scenes.fitting.least_squares import NotConvergedError
 from solvers.scenes.fitting.measurement import Measurement, Outputs, wrapped
 from solvers.scenes.fitting.statistics import Interval, autocorrelation
 
@@ -17,6 +18,8 @@ from solvers.scenes.fitting.statistics import Interval, autocorrelation
 NOTABLE = 4.0
 #: Ratio of residuals to the scatter from sample to sample from which a note warns.
 LARGE = 5.0
+#: Most segments of a run with which a fit is tried first.
+FEW_SEGMENTS = 25
 
 
 @dataclass(frozen=True, repr=False)
@@ -150,8 +153,14 @@ def fitted(
     """The fit of `unknown` parameters; `params` and `start`, of every run, are first guesses."""
     module = outputs.module
     values = np.array([params[name] for name in module.PARAMETERS], float)
-    experiment = Experiment(outputs, runs, unknown, values)
-    result = estimate(experiment, start, values[experiment.indices])
+    arguments = outputs, runs, unknown, values
+    experiment = Experiment(*arguments, most=FEW_SEGMENTS)
+    guess = values[experiment.indices]
+    try:
+        result = estimate(experiment, start, guess, relaxes=False)
+    except NotConvergedError:  # shorter segments tolerate a worse guess, and take longer
+        experiment = Experiment(*arguments)
+        result = estimate(experiment, start, guess)
     arcs = experiment.shooting(result.nodes, result.params)
     angles = outputs.angles
     motions, turns = [list[Array]() for _ in runs], np.zeros(len(start))
