@@ -54,9 +54,12 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     motion->reductions = select(*accepted, splat(0.0), motion->reductions);
     mask attention = *failed | last | ~advancing | less_than(lane_fabs(motion->h), motion->min_h);
     mask several = {0};
+    mask crossed = {0};
     if (task->event_count) {
-        attention |= *accepted & events_in_step(lanes, &result, &several);
+        crossed = *accepted & events_in_step(lanes, &result, &several);
+        attention |= crossed;
     }
+    lanes->crossed = crossed;
     const mask dense = *accepted & less_than(lane_fabs(lanes->dense_sample - state->t),
                                              lane_fabs(lanes->h));
     lanes->dense = dense;

@@ -178,18 +178,19 @@ static void extended_states(const real (*changes)[DIM], mask lanes, real (*coeff
     }
 }
 
-/* The change of the state of a lane up to the part x of the step. */
-static void change_within(const real (*coefficients)[DIM], double x, int lane, double *change)
+/* The change of the state up to the part x of the step. */
+static inline void change_within(const real (*coefficients)[DIM], real x, real *change)
 {
-    double right[EXTENSION_NODES + 1] = {1}, left = 1;
+    real right[EXTENSION_NODES + 1], left = splat(1.0);
+    right[0] = left;
     for (int k = 1; k <= EXTENSION_NODES; k++) {
         right[k] = x*right[k - 1];
     }
     memset(change, 0, DIM*sizeof *change);
     for (int k = EXTENSION_NODES; k > 0; k--) {
         for (int n = 0; n < DIM; n++) {
-            change[n] += (left*right[k])*LANE(coefficients[k - 1][n], lane);
+            change[n] += (left*right[k])*coefficients[k - 1][n];
         }
-        left *= 1 - x;
+        left *= 1.0 - x;
     }
 }

@@ -53,6 +53,10 @@ void run(Task *task)
         }
         mask accepted, failed;
         const mask attention = advance(&lanes, &accepted, &failed) | ((mask){0} - returning);
+        const mask plain = lanes.dense & ~lanes.crossed;
+        if (any(plain)) {
+            sample_lanes(&lanes, plain, lanes.h, lanes.h);
+        }
         const int processed = any(attention) ? LANES : 0;
         for (int lane = 0; lane < processed; lane++) {
             if (MASK_LANE(attention, lane)) {

@@ -20,6 +20,7 @@ typedef struct {
     real dense_sample;                          /* and of the last of LEAST_SAMPLES, or NaN */
     mask several[MAX_EVENTS];                   /* whether an event may occur several times */
     mask dense;                                 /* whether an extension gives the samples */
+    mask crossed;                               /* whether events may occur in the step */
     mask advancing, starting, loaded;           /* starting motions are new; loaded ones resume */
     WithinStep within[LANES];
 } Lanes;

@@ -62,25 +62,51 @@ static int substep(Lanes *lanes, WithinStep *within, double h)
 
 #endif
 
-/* Append the state of a lane at a part h of its step, by the extension; returns whether it is
-   finite. */
-static int sample_extension(Lanes *lanes, int lane, const WithinStep *within, double h)
+/* Append the samples before `limit` within steps of length `full`, of several lanes at once, by the
+   extension; returns the lanes where they are not finite. */
+static __attribute__((noinline)) mask sample_lanes(
+    Lanes *lanes, mask sampled, real full, real limit)
 {
+    const Task *task = lanes->task;
     const State *start = &lanes->motion.state;
-    State state = *start;
-    double change[DIM], numbers[STATE_SIZE], check = 0;
-    change_within(lanes->workspace->states, h/within->full_h, lane, change);
-    for (int n = 0; n < DIM; n++) {
-        move_component(start, &state, n, splat(change[n]));
-        check += change[n] - change[n];
+    mask failed = {0};
+    for (;;) {
+        real h = splat(0.0), change[DIM], check = h;
+        for (int lane = 0; lane < LANES; lane++) {
+            const WithinStep *within = &lanes->within[lane];
+            if (!MASK_LANE(sampled, lane) || within->trajectory->rows >= task->samples) {
+                MASK_LANE(sampled, lane) = 0;
+                continue;
+            }
+            const double t = sample_time(task, within->trajectory, 0);
+            const double next = (t - LANE(start->t, lane)) - LANE(start->t_low, lane);
+            const int is_inside = fabs(next) < fabs(LANE(limit, lane)) - within->resolution;
+            MASK_LANE(sampled, lane) = -is_inside;
+            LANE(h, lane) = is_inside ? next : 0;
+        }
+        if (!any(sampled)) {
+            return failed;
+        }
+        State state = *start;
+        change_within(lanes->workspace->states, h/full, change);
+        for (int n = 0; n < DIM; n++) {
+            move_component(start, &state, n, change[n]);
+            check += change[n] - change[n];
+        }
+        state.t = two_sum(start->t, h + start->t_low, &state.t_low);
+        project(&state, lanes->motion.params);
+        rescale_variation(start, &state);
+        count_turns(start, h, &state);
+        failed |= sampled & ~less_than(lane_fabs(check), splat(1.0));
+        sampled &= ~failed;
+        for (int lane = 0; lane < LANES; lane++) {
+            if (MASK_LANE(sampled, lane)) {
+                double numbers[STATE_SIZE];
+                read_lane(&state, STATE_SIZE, lane, numbers);
+                append_row(task, lanes->within[lane].trajectory, numbers);
+            }
+        }
     }
-    state.t = two_sum(start->t, h + start->t_low, &state.t_low);
-    project(&state, lanes->motion.params);
-    rescale_variation(start, &state);
-    count_turns(start, splat(h), &state);
-    read_lane(&state, STATE_SIZE, lane, numbers);
-    append_row(lanes->task, within->trajectory, numbers);
-    return check == 0;
 }
 
 /* Evaluate a lane's step; return whether its motion moves to the end of the step. */
@@ -123,7 +149,9 @@ static int process_step(Lanes *lanes, int lane, int accepted, int failed)
             continue;
         }
         if (within->mode == SAMPLE && within->is_dense) {
-            if (!sample_extension(lanes, lane, within, next)) {
+            mask one = {0};
+            MASK_LANE(one, lane) = -1;
+            if (any(sample_lanes(lanes, one, splat(within->full_h), splat(within->h)))) {
                 fail_step(motion, within, lane, h);
                 return 0;
             }
