@@ -14,11 +14,15 @@ from derive.system.links import Rod as Rod
 from derive.system.links import Spring as Spring
 from derive.system.links import Thread as Thread
 from derive.system.links import Wheel as Wheel
+from derive.system.orientation import Orientation as Orientation
+from derive.system.orientation import quaternion as quaternion
+from derive.system.orientation import rotation_matrix as rotation_matrix
+from derive.system.orientation import rotations as rotations
 from derive.system.parts import Coordinate as Coordinate
 from derive.system.parts import Input as Input
 from derive.system.parts import Parameter as Parameter
 from derive.system.parts import PointMass as PointMass
-from derive.system.parts import RigidBody as RigidBody
+from derive.system.rigid_body import RigidBody as RigidBody
 from derive.system.shipped import names as names
 from derive.system.symbols import TIME as TIME
 from derive.system.symbols import velocity as velocity

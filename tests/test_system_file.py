@@ -305,7 +305,7 @@ def test_inconsistent_forces_drives_and_reactions_are_refused() -> None:
     ):
         with pytest.raises(SystemDefinitionError, match=words):
             system(**changes)
-    with pytest.raises(SystemDefinitionError, match="rigid bodies move in the plane"):
+    with pytest.raises(SystemDefinitionError, match="orientation of a body in space"):
         RigidBody(m, (x, x, x), m, x)
 
 

@@ -107,6 +107,11 @@ class EquationsOfMotion:
         return self._nodes([r for point in self._system.points for r in point])
 
     @property
+    def angular_momentum(self) -> list[Node]:
+        """Σ m r × ṙ + R J ω about the origin."""
+        return self._nodes(self._derivation.angular_momentum)
+
+    @property
     def energy(self) -> list[Node]:
         """½ q̇ᵀ M q̇ + U of (q, q̇)."""
         return [self._node(self._derivation.energy)]

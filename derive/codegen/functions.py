@@ -10,6 +10,7 @@ from derive.codegen.hamiltonian_form import HamiltonianForm
 from derive.codegen.lagrangian_form import LagrangianForm
 from derive.codegen.lowering import Lowering
 from derive.codegen.output_form import OutputForm
+from derive.codegen.quaternion_form import QuaternionForm
 from derive.codegen.rational import with_fewest_calls
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
@@ -156,6 +157,10 @@ SPECS = (
     FunctionSpec("points", "lagrangian", "points axes",
         "Points of `LINKS`, which pictures join.",
         "One row a point: its Cartesian components in m, the last one upwards."),
+    FunctionSpec("angular_momentum", "lagrangian", "axes",
+        "Angular momentum about the origin.",
+        "Its Cartesian components in kg m^2/s.",
+        exists=lambda derivation: bool(derivation.bodies)),
     FunctionSpec("hamiltonian_state", "lagrangian", "state",
         "State (q, p) of the Hamiltonian form at y = (q, qdot).",
         "Coordinates, then momenta p = M qdot.", exists=_is_free),
@@ -286,6 +291,8 @@ def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
         form = HamiltonianForm
     elif spec.name.startswith("outputs"):
         form = OutputForm
+    elif derivation.has_quaternions and _is_small(derivation):
+        form = QuaternionForm
     outputs = getattr(form(derivation), spec.name)
     angles = [q.name for q in derivation.system.q]
     system = derivation.system

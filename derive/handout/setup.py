@@ -1,6 +1,6 @@
 """The first sections of a document: the system, its velocities and its energies."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
@@ -8,7 +8,8 @@ from derive.handout.document import Block, Paragraph, Table
 from derive.handout.notation import unit_words, words
 from derive.handout.numbering import Numbering
 from derive.mechanics.derivation import Derivation
-from derive.system.parts import Coordinate, Input, Parameter, RigidBody
+from derive.system.parts import Coordinate, Input, Parameter
+from derive.system.rigid_body import RigidBody
 
 
 def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:
@@ -36,9 +37,25 @@ def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     bodies = [mass for mass in masses if isinstance(mass, RigidBody)]
     if bodies:
         yield Paragraph("These are centres of mass of rigid bodies.")
-        values = ((body.mass, body.inertia, body.angle) for body in bodies)
+        values = ((b.mass, b.inertia, b.orientation) for b in bodies if b.axes is None)
         rows = tuple(tuple(map(formulas.text, row)) for row in values)
-        yield Table(("mass", "moment of inertia", "orientation"), rows)
+        if rows:
+            yield Table(("mass", "moment of inertia", "orientation"), rows)
+        yield from _in_space([body for body in bodies if body.axes], formulas)
+
+
+def _in_space(bodies: Sequence[RigidBody], formulas: Numbering) -> Iterator[Block]:
+    """Inertia of bodies in space, and their axes."""
+    for body in bodies:
+        mass = formulas.text(body.mass)
+        entries = [entry for k in range(3) for entry in body.tensor[k, k:]]
+        yield Paragraph(
+            f"The tensor of inertia of {mass} about its centre of mass, in body axes, has the "
+            f"entries xx, xy, xz, yy, yz and zz: {formulas.text(*entries)}."
+        )
+        rows = body.axes.matrix.tolist() if body.axes else []
+        columns = (formulas.text(*(row[k] for row in rows)) for k in range(3))
+        yield Paragraph(f"The body axes of {mass} in space: {'; '.join(columns)}.")
 
 
 def meaning(part: Coordinate | Parameter | Input) -> str:
@@ -56,7 +73,9 @@ def energies(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     """Kinetic and potential energy, friction and applied forces."""
     letter = formulas.notation.letter
     turning = ""
-    if any(isinstance(mass, RigidBody) for mass in d.system.masses):
+    if d.bodies:
+        turning = " and the energy of its rotation"
+    elif any(isinstance(mass, RigidBody) for mass in d.system.masses):
         turning = " and half its moment of inertia times the square of its angular velocity"
     yield Paragraph(
         "The kinetic energy is the sum over all masses of half the mass times the square of its "

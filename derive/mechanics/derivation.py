@@ -116,7 +116,7 @@ class Derivation(Equations):
 
     def _check_inputs(self) -> None:
         system = self.system
-        positions = sp.Tuple(*(r for m in system.masses for _, r in m.motions))
+        positions = sp.Tuple(*(r for mass in system.masses for r in mass.placement))
         prescribed = {s for parts in motions(system.inputs).values() for s in parts}
         if others := positions.free_symbols & {*system.u} - prescribed:
             names = ", ".join(sorted(symbol.name for symbol in others))

@@ -1,5 +1,6 @@
 """Energies of a system, from the positions of its masses."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TypeAlias
@@ -8,6 +9,7 @@ import sympy as sp
 
 from derive.formulas.switching import decisive_numbers, switching_functions
 from derive.mechanics.reduction import gathered, reduced
+from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME
 from derive.system.system import System
 
@@ -42,7 +44,7 @@ class Kinetics:
     @cached_property
     def variables(self) -> tuple[sp.Symbol, ...]:
         """Coordinates, time if positions depend on it, and lengths with requested reactions."""
-        positions = sp.Tuple(*(r for m in self.system.masses for _, r in m.motions))
+        positions = sp.Tuple(*(r for mass in self.system.masses for r in mass.placement))
         time = (TIME,) if TIME in positions.free_symbols else ()
         return (*self.system.q, *time, *self.system.reactions)
 
@@ -69,22 +71,66 @@ class Kinetics:
             [tuple(change(r, v) for r in position) for v in self.variables]
             for _, position in motions
         ]
+        inertias = [inertia for inertia, _ in motions]
+        for body in self.bodies:
+            turns = [self._turn(body, v) for v in self.variables]
+            for moment, axes in body.turns:
+                inertias.append(moment)
+                tangents.append([tuple(_dot(axis, turn) for axis in axes) for turn in turns])
         dots: dict[object, sp.Expr] = {}
 
         def entry(i: int, j: int) -> sp.Expr:
             # masses below a joint share their dot products, which are reduced once
-            inertias: dict[sp.Expr, sp.Expr] = {}
-            for (inertia, _), tangent in zip(motions, tangents, strict=True):
+            totals: dict[sp.Expr, sp.Expr] = {}
+            for inertia, tangent in zip(inertias, tangents, strict=True):
                 pair = (tangent[i], tangent[j])
                 if pair not in dots:
-                    products = (a * b for a, b in zip(*pair, strict=True))
-                    dots[pair] = sp.factor_terms(reduced(sp.Add(*products)))
-                inertias[dots[pair]] = inertias.get(dots[pair], sp.S.Zero) + inertia
-            return sp.Add(*(total * dot for dot, total in inertias.items()))
+                    dots[pair] = sp.factor_terms(reduced(_dot(*pair)))
+                totals[dots[pair]] = totals.get(dots[pair], sp.S.Zero) + inertia
+            return sp.Add(*(total * dot for dot, total in totals.items()))
 
         n = len(self.variables)
         upper = {(i, j): entry(i, j) for i in range(n) for j in range(i, n)}
         return Matrix(n, n, lambda i, j: upper[min(i, j), max(i, j)])
+
+    @property
+    def bodies(self) -> list[RigidBody]:
+        """Bodies in space."""
+        masses = self.system.masses
+        return [mass for mass in masses if isinstance(mass, RigidBody) and mass.axes]
+
+    @property
+    def has_quaternions(self) -> bool:
+        """Whether the orientation of a body is a unit quaternion."""
+        return any(body.quaternion for body in self.bodies)
+
+    def angular_velocity(self, body: RigidBody) -> Matrix:
+        """Angular velocity ω of a body in space, a column of components in body axes."""
+        pairs = zip(self.variables, self.rates, strict=True)
+        moving = [(self._turn(body, v), rate) for v, rate in pairs if rate != 0]
+        parts = ([turn[k] * rate for turn, rate in moving] for k in range(3))
+        return Matrix([sp.Add(*part) for part in parts])
+
+    def _turn(self, body: RigidBody, variable: sp.Symbol) -> tuple[sp.Expr, ...]:
+        """The angular velocity for each unit of the variable's rate."""
+        orientation = body.axes
+        return tuple(map(reduced, orientation.turn(variable))) if orientation else ()
+
+    @cached_property
+    def angular_momentum(self) -> Matrix:
+        """Σ m r × ṙ + R J ω about the origin, a column; of systems in space."""
+        total = sp.zeros(3, 1)
+        for mass in self.system.masses:
+            for inertia, position in mass.motions:
+                total += inertia * Matrix(position).cross(self._velocity(position))
+        for body in self.bodies:
+            if body.axes and body.turns:
+                total += body.axes.matrix * body.tensor * self.angular_velocity(body)
+        return Matrix(total)
+
+    def _velocity(self, position: Sequence[sp.Expr]) -> Matrix:
+        r, q = Matrix(position), self.system.q
+        return r.jacobian(q) * Matrix(self.system.qdot) + r.diff(TIME)
 
     @cached_property
     def mass_matrix(self) -> Matrix:
@@ -122,7 +168,7 @@ class Kinetics:
     @property
     def _formulas(self) -> tuple[sp.Expr, ...]:
         masses = self.system.masses
-        positions = (r for mass in masses for _, motion in mass.motions for r in motion)
+        positions = (r for mass in masses for r in mass.placement)
         return (*positions, self.potential_energy, *self.system.applied)
 
     @cached_property
@@ -146,6 +192,10 @@ class Kinetics:
         """Rate of the energy: work of the applied forces, and -∂L/∂t."""
         work = (f * v for f, v in zip(self.system.applied, self.system.qdot, strict=True))
         return sp.Add(*work) - self.lagrangian.diff(TIME)
+
+
+def _dot(a: Sequence[sp.Expr | int], b: Sequence[sp.Expr]) -> sp.Expr:
+    return sp.Add(*(x * y for x, y in zip(a, b, strict=True)))
 
 
 def derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:

@@ -61,6 +61,11 @@ def _parts(system: "System") -> Iterator[Part]:
             remedy = f"{fixed}; inertia that varies follows from positions of constant masses"
             yield Part(f"mass {inertia}", inertia, constants, remedy)
             yield Part(f"the position of mass {inertia}", sp.Tuple(*position), moving, place)
+        if mass.turns:
+            for moment, _ in mass.turns:
+                yield Part(f"the inertia of body {mass.mass}", moment, constants, fixed)
+            orientation = sp.Tuple(*mass.placement)
+            yield Part(f"the orientation of body {mass.mass}", orientation, moving, place)
     yield Part("the potential", system.potential_energy, moving, place)
     yield Part("the equilibrium", sp.Tuple(*(system.equilibrium or ())), constants, fixed)
     forces = sp.Tuple(system.dissipation, *system.forces)

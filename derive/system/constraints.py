@@ -67,8 +67,10 @@ class Constraint:
         return replace(self, formula=value)
 
 
-def constraints(given: object, pairs: object) -> tuple[Constraint, ...]:
-    """Constraints from formulas, and from pairs of points that remain together."""
+def constraints(
+    given: object, pairs: object, of_bodies: Sequence[sp.Expr]
+) -> tuple[Constraint, ...]:
+    """Constraints from formulas, from pairs of points that remain together, and of orientations."""
     result = [
         one if isinstance(one, Constraint) else Constraint(one, f"lambda_{k}")
         for k, one in enumerate(items("constraints", given, "formulas that remain 0"), 1)
@@ -81,6 +83,11 @@ def constraints(given: object, pairs: object) -> tuple[Constraint, ...]:
                 continue
             meaning = f"force along {axis} on the first of the points {k}"
             result.append(Constraint(a - b, f"pin_{k}_{axis}", "N", meaning))
+    for k, condition in enumerate(dict.fromkeys(of_bodies), 1):
+        # a system that is a copy of another has them
+        if not any(sp.cancel(one.formula / condition).is_number for one in result):
+            meaning = "keeps the coordinates of a body those of an orientation"
+            result.append(Constraint(condition, f"rigid_{k}", "J", meaning))
     return tuple(result)
 
 

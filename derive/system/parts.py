@@ -1,4 +1,4 @@
-"""The parts of a system: coordinates, parameters, inputs, point masses and rigid bodies."""
+"""The parts of a system: coordinates, parameters, inputs and point masses."""
 
 import sys
 from collections.abc import Callable, Iterable
@@ -262,6 +262,24 @@ class PointMass:
         return ((self.mass, self.position),)
 
     @property
+    def turns(self) -> tuple[tuple[sp.Expr, tuple[tuple[int, ...], ...]], ...]:
+        """Pairs of a moment of inertia and combinations of the angular velocity's components.
+
+        Half the moment times the sum of their squares is energy.
+        """
+        return ()
+
+    @property
+    def placement(self) -> tuple[sp.Expr, ...]:
+        """The functions of coordinates and time that place the mass."""
+        return tuple(r for _, position in self.motions for r in position)
+
+    @property
+    def conditions(self) -> tuple[sp.Expr, ...]:
+        """Functions of the coordinates that remain 0."""
+        return ()
+
+    @property
     def words(self) -> str:
         """Mass and position."""
         return f"{self.mass} at ({', '.join(map(str, self.position))})"
@@ -270,62 +288,3 @@ class PointMass:
         """A copy with `function` applied to every expression."""
         values = {name: function(value) for name, value in vars(self).items() if name != "position"}
         return replace(self, position=tuple(map(function, self.position)), **values)
-
-
-@dataclass(frozen=True)
-class RigidBody(PointMass):
-    """A rigid body in the plane: mass, centre of mass (x, up), moment of inertia, orientation.
-
-    Parameters
-    ----------
-    mass : sympy.Expr or number
-        In kg, a function of parameters.
-    position : sequence of sympy.Expr or numbers
-        The centre of mass, (x, up) in m.
-    inertia : sympy.Expr or number
-        Moment of inertia about the centre of mass in kg m²: m l²/12 for a uniform bar.
-    angle : sympy.Expr or number
-        The orientation of the body in rad, up to a constant.
-
-    Raises
-    ------
-    SystemDefinitionError
-        When the mass is not positive, or the moment of inertia is negative; when the position
-        does not have two components, or a value is neither a real expression nor a finite number.
-
-    Examples
-    --------
-    >>> from sympy import cos, sin, symbols
-    >>> from derive import RigidBody
-    >>> m, length, theta = symbols("m l theta", real=True, positive=True)
-    >>> centre = (length * sin(theta) / 2, -length * cos(theta) / 2)
-    >>> RigidBody(m, centre, inertia=m * length**2 / 12, angle=theta).inertia
-    l**2*m/12
-    """
-
-    inertia: sp.Expr
-    angle: sp.Expr
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        object.__setattr__(self, "inertia", formula(self.inertia))
-        object.__setattr__(self, "angle", formula(self.angle))
-        if self.inertia.is_negative:
-            raise SystemDefinitionError(
-                f"moment of inertia {self.inertia} is negative: give a positive one, or 0"
-            )
-        if len(self.position) != 2:
-            raise SystemDefinitionError(
-                f"the position of body {self.mass} has {len(self.position)} components: "
-                "give two (x, up), since rigid bodies move in the plane"
-            )
-
-    @property
-    def motions(self) -> tuple[tuple[sp.Expr, tuple[sp.Expr, ...]], ...]:
-        """The centre of mass, and the orientation."""
-        return ((self.mass, self.position), (self.inertia, (self.angle,)))
-
-    @property
-    def words(self) -> str:
-        """Mass, position, moment of inertia and orientation."""
-        return f"{super().words}, moment of inertia {self.inertia}, orientation {self.angle}"

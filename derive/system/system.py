@@ -155,7 +155,9 @@ class System:
         pairs = items("outputs", pairs, "a mapping of names to formulas", tuple)
         measured = tuple((str(name), formula(value)) for name, value in pairs)
         object.__setattr__(self, "outputs", measured)
-        object.__setattr__(self, "constraints", constraints(self.constraints, self.coincide))
+        of_bodies = [one for mass in self.masses for one in mass.conditions]
+        all_constraints = constraints(self.constraints, self.coincide, of_bodies)
+        object.__setattr__(self, "constraints", all_constraints)
         object.__setattr__(self, "coincide", ())  # now among the constraints
         if not self.coordinates or not self.masses:
             raise SystemDefinitionError(

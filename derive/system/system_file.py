@@ -21,9 +21,9 @@ from derive.system.parts import (
     Input,
     Parameter,
     PointMass,
-    RigidBody,
     SystemDefinitionError,
 )
+from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
 from derive.system.tables import Table, read

@@ -6,8 +6,9 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, has_function
+from solvers.equations.module import GeneratedModule, function, has_function
 
 #: Conditions of the mass matrix: above the first digits are lost, above the second all of them.
 DOUBTFUL, SINGULAR = 1e12, 1e15
@@ -67,7 +68,13 @@ def check_condition(
         "its own"
     )
     if worst >= SINGULAR:
-        raise ValueError(f"{text}; leave that coordinate out, or make masses more similar")
+        way_out = "leave that coordinate out, or make masses more similar"
+        if has_function(module, "angular_momentum"):  # of bodies in space
+            way_out = (
+                "if axes of rotation coincide there (gimbal lock), give the orientation by a "
+                f"quaternion or by another sequence of rotations; otherwise {way_out}"
+            )
+        raise ValueError(f"{text}; {way_out}")
     if worst >= DOUBTFUL:
         lost = f"about {np.log10(worst):.0f} digits are lost"
         warnings.warn(f"{text}; {lost}", MassMatrixWarning, stacklevel=stacklevel)
@@ -87,12 +94,27 @@ def _worst(
     return worst, weakest
 
 
+def _inertia(
+    module: GeneratedModule, t: float, y: Sequence[float], params: Sequence[float]
+) -> NDArray[np.float64]:
+    """The mass matrix, with the inertia that constraints add where it is singular by design."""
+    matrix, G = function(module, "mass_matrix"), np.zeros((0, 0))
+    M = np.array(matrix(t, y[: len(module.STATE)], params))
+    if has_function(module, "constraint_jacobian"):
+        usual = np.array(matrix(t, y[: len(module.STATE)], module.DEFAULTS))
+        G = np.array(function(module, "constraint_jacobian")(t, y, params))
+        if np.linalg.matrix_rank(usual) < len(usual) and G.any():
+            # constraints prevent motions that move no mass, such as of a quaternion's norm
+            M = M + G.T @ G * (np.trace(M) / np.sum(G**2))
+    return M
+
+
 def _condition(
     module: GeneratedModule, t: float, y: Sequence[float], params: Sequence[float]
 ) -> tuple[float, str]:
     """The condition, whatever the units of coordinates, and the coordinate of least inertia."""
     try:
-        M = np.array(module.mass_matrix(t, y[: len(module.STATE)], params))
+        M = _inertia(module, t, y, params)
     except ArithmeticError:
         return 0.0, ""
     inertial = np.flatnonzero(np.diag(M))

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
 
 import sympy as sp
 
 from derive.formulas.expression import ExpressionError
+from derive.mechanics.kinetics import Kinetics
 from derive.verification.documents.letters import KINDS_OF_ENERGIES, QUANTITIES, TOTAL
 from derive.verification.documents.scope import DocumentScope
 from derive.verification.documents.statements import DocumentFormula
@@ -88,8 +90,7 @@ class PartialEnergies:
         """Energies of the masses, and the rest."""
         d = self._scope.derivation
         kinetic = [
-            sp.Add(*(inertia * self._speed_squared(r) / 2 for inertia, r in mass.motions))
-            for mass in d.system.masses
+            Kinetics(replace(d.system, masses=[mass])).kinetic_energy for mass in d.system.masses
         ]
         terms = sp.Add.make_args(sp.expand(d.potential_energy))
         of_one = [
@@ -97,14 +98,6 @@ class PartialEnergies:
         ]
         potential = [*terms, *of_one, d.potential_energy]
         return {"kinetic_energy": kinetic, "potential_energy": potential}
-
-    def _speed_squared(self, position: tuple[sp.Expr, ...]) -> sp.Expr:
-        system = self._scope.derivation.system
-        rates = [
-            sp.Add(*(r.diff(q) * v for q, v in zip(system.q, system.qdot, strict=True)))
-            for r in position
-        ]
-        return sp.Add(*(rate**2 for rate in rates))
 
     def _is_constant(self, difference: sp.Expr) -> bool:
         """Whether a difference does not depend on the state."""

@@ -8,7 +8,8 @@ import sympy as sp
 from sympy import cos, sin, symbols
 
 from derive.system.catalogue import load
-from derive.system.parts import Coordinate, Parameter, PointMass, RigidBody
+from derive.system.parts import Coordinate, Parameter, PointMass
+from derive.system.rigid_body import RigidBody
 from derive.system.system import System
 
 #: Systems that ship and are tried, the commonest first.
