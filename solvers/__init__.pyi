@@ -31,6 +31,7 @@ from solvers.integration.stop_flag import StopFlag as StopFlag
 from solvers.integration.transition_matrix import transition_matrix as transition_matrix
 from solvers.io.figures import panels as panels
 from solvers.io.figures import save as save
+from solvers.scenes.export import export_motion as export_motion
 from solvers.scenes.fitting.fit import Fit as Fit
 from solvers.scenes.fitting.measurement import Measurement as Measurement
 from solvers.scenes.run import SceneResult as SceneResult

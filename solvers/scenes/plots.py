@@ -47,8 +47,8 @@ def figure(results: Sequence[SceneResult]) -> Figure:
     columns = min(len(pictures), 3 if len(pictures) <= MOST else 4)
     rows = ceil(len(pictures) / columns)
     width = max(PANEL * columns, 7.0)
-    note = _plain(fill(full_note(results), int(width * CHARACTERS)))
-    title = _plain(main.scene.title)
+    note = plain(fill(full_note(results), int(width * CHARACTERS)))
+    title = plain(main.scene.title)
     size = (width, ROW * rows + 0.6 + 0.16 * note.count("\n"))
     chart, axes = panels(title, rows=rows, columns=columns, size=size)
     for panel, picture in zip(axes, pictures, strict=False):
@@ -68,7 +68,7 @@ def figure(results: Sequence[SceneResult]) -> Figure:
     return chart
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Text in which a dollar sign starts no formula."""
     return text.replace("$", r"\$")
 
@@ -112,7 +112,7 @@ def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
     for n, (result, curves, style) in enumerate(runs):
         shift = 2 * n % len(COLOURS)  # two curves of a run have colours of their own
         colours = COLOURS[shift:] + COLOURS[:shift]
-        label = _plain(result.scene.label) if len(results) > 1 else ""
+        label = plain(result.scene.label) if len(results) > 1 else ""
         for (name, x, y), colour in zip(curves, colours, strict=False):
             text = ", ".join(filter(None, [name, label]))
             panel.plot(x, y, style, color=colour, linewidth=width, label=text)
@@ -121,7 +121,7 @@ def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
                 label = ""
         if picture == "path":
             _draw_links(panel, result)
-    _label_axes(panel, picture, results)
+    label_axes(panel, picture, results)
 
 
 def _runs(results: Sequence[SceneResult], picture: str) -> Iterator[list[Curve]]:
@@ -153,7 +153,8 @@ def _draw_links(panel: Axes, result: SceneResult) -> None:
         draw_link(panel, kind, places[[*numbers]], size, "#999999")
 
 
-def _label_axes(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
+def label_axes(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:
+    """Label the axes of a picture of runs, and scale them."""
     module = results[0].scene.module
     if picture == "path":
         in_space = mass_positions(results[0]).shape[1] == 3

@@ -23,12 +23,15 @@ AREAS = ("plate", "wheel")
 TEETH = 16
 
 
-def draw_link(axes: Axes, kind: str, points: Array, size: float, colour: str) -> None:
+def draw_link(
+    axes: Axes, kind: str, points: Array, size: float, colour: str, alpha: float = 1.0
+) -> None:
     """Draw a link through points of shape (points, 2) below curves, in a picture of a size in m."""
     x, y = outline(kind, points, size).T
     if kind in AREAS:
-        axes.fill(x, y, facecolor=colour, alpha=0.15, linewidth=0, zorder=0)
-    line = Line2D(x, y, color=colour, linewidth=WIDTHS[kind], solid_joinstyle="round", zorder=0)
+        axes.fill(x, y, facecolor=colour, alpha=0.15 * alpha, linewidth=0, zorder=0)
+    line = Line2D(x, y, color=colour, linewidth=WIDTHS[kind], alpha=alpha, zorder=0)
+    line.set_solid_joinstyle("round")
     if kind == "rail":  # without ends, so that it determines no limits of the axes
         axes.add_artist(line)
     else:

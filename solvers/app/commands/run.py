@@ -2,6 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from solvers.app.commands import options
@@ -21,6 +22,10 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     options.add_scenes(parser, DEFAULT)
     options.add_output(parser, "tables, plots and pages")
+    meaning = "also write the motion as FILE.gif, .mp4, .svg, .pdf or .png, for slides"
+    parser.add_argument("--export", type=Path, metavar="FILE", help=meaning)
+    meaning = "seconds of the motion in a second of FILE.gif or .mp4 (default: 1)"
+    parser.add_argument("--speed", type=float, metavar="X", default=1.0, help=meaning)
     options.add_json(parser)
     options.add_examples(parser, "holonomic run separatrix --json")
 
@@ -29,16 +34,27 @@ def run(arguments: Namespace) -> int:
     """Run the scenes, write their files and print summaries."""
     from solvers.app.modules import specialiser
     from solvers.io.progress import Progress
+    from solvers.scenes.export import check_export, export_motion
     from solvers.scenes.output import write_files
     from solvers.scenes.run import run_scene
     from solvers.scenes.summary import figures, summary
 
-    results = []
-    for scene in options.selected_scenes(arguments, DEFAULT, _files):
+    scenes, results = options.selected_scenes(arguments, DEFAULT, _files), []
+    if export := arguments.export:
+        if scenes[1:]:
+            raise ValueError(
+                f"--export {export} is one file, but {len(scenes)} scenes run: run one"
+            )
+        longest = max(one.duration for one in (scenes[0], *scenes[0].beside))
+        check_export(export, longest, arguments.speed)
+    for scene in scenes:
         with Progress() as report:
             first, *beside = (run_scene(one, specialiser, report) for one in (scene, *scene.beside))
             report("plots")
             paths = write_files([first, *beside], arguments.output)
+            if export:
+                report("export")
+                paths["export"] = export_motion([first, *beside], export, speed=arguments.speed)
         files = {kind: str(path) for kind, path in paths.items()}
         results.append(figures(first) | {"beside": [*map(figures, beside)], "files": files})
         if not arguments.json:

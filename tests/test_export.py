@@ -1,0 +1,162 @@
+"""Exported motions: films with the right frames at the right speed, pictures, whole files."""
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.animation import FFMpegWriter
+from PIL import Image
+
+from solvers import SceneResult, export_motion, load_scene, run_scene
+from solvers.app.cli import main
+from solvers.scenes import export
+from solvers.scenes.export import at, frame_times
+
+BLUE = (0x00, 0x72, 0xB2)
+
+
+@pytest.fixture(scope="module")
+def swing() -> SceneResult:
+    return run_scene(replace(load_scene("single"), duration=0.9))
+
+
+def frames(path: Path) -> tuple[list[int], np.ndarray]:
+    """Durations in ms, and pixels of shape (frames, rows, columns, 3)."""
+    durations, images = [], []
+    with Image.open(path) as film:
+        for k in range(film.n_frames):  # type: ignore[attr-defined]
+            film.seek(k)
+            durations.append(film.info["duration"])
+            images.append(np.asarray(film.convert("RGB")))
+    return durations, np.array(images)
+
+
+def bob(image: np.ndarray) -> np.ndarray:
+    """Row and column of the mass, whose path is paler."""
+    distance = np.abs(image.astype(int) - BLUE).max(axis=-1)
+    return np.median(np.nonzero(distance < 12), axis=1)
+
+
+def test_a_film_has_exact_times_and_the_right_speed(swing: SceneResult, tmp_path: Path) -> None:
+    path = export_motion(swing, tmp_path / "new" / "swing.gif", speed=0.9)
+    durations, images = frames(path)
+    assert set(durations) == {40}
+    times = np.arange(26) * 0.9 / 25
+    assert len(images) == len(times)  # of a second
+    assert frame_times(0.9, 0.9) == pytest.approx(times)
+    angle = np.interp(times, swing.t, swing.y[0])
+    pixels = np.array([bob(image) for image in images])
+    # one scale for both axes fits all frames
+    rows = np.array([*np.stack([-2 * np.cos(angle) * -1, 0 * angle, 0 * angle + 1]).T,
+                     *np.stack([2 * np.sin(angle), 0 * angle + 1, 0 * angle]).T])  # fmt: skip
+    wanted = np.concatenate([pixels[:, 0], pixels[:, 1]])
+    fit, *_ = np.linalg.lstsq(rows, wanted, rcond=None)
+    assert np.abs(rows @ fit - wanted).max() < 1.5
+    later = np.roll(rows, 1, axis=0)  # a frame too late
+    assert np.abs(later @ np.linalg.lstsq(later, wanted, rcond=None)[0] - wanted).max() > 3
+    assert [file.name for file in path.parent.iterdir()] == ["swing.gif"]
+
+
+@pytest.mark.parametrize(("duration", "speed", "count"), [
+    (2.0, 1.0, 51), (0.1, 1.0, 3), (0.3, 1.0, 8), (10.0, 4.0, 63), (0.7, 0.1, 176),
+])  # fmt: skip
+def test_the_last_frame_is_the_last_whole_one(duration: float, speed: float, count: int) -> None:
+    times = frame_times(duration, speed)
+    assert len(times) == count
+    assert np.diff(times) == pytest.approx(speed / 25)
+    assert duration - speed / 25 < times[-1] <= duration
+
+
+def test_states_between_samples_are_smooth_and_the_end_stays(swing: SceneResult) -> None:
+    coarse = replace(swing, t=swing.t[::5], y=swing.y[:, ::5])
+    between = at(coarse, swing.t)
+    assert np.abs(between.y[0] - swing.y[0]).max() < 1e-8
+    assert np.abs(np.interp(swing.t, coarse.t, coarse.y[0]) - swing.y[0]).max() > 1e-6
+    assert at(swing, np.array([5.0])).y[:, 0] == pytest.approx(swing.y[:, -1])
+
+
+@pytest.mark.parametrize("suffix", [".svg", ".pdf", ".png"])
+def test_pictures_for_slides(suffix: str, swing: SceneResult, tmp_path: Path) -> None:
+    path = export_motion([swing, swing], tmp_path / f"swing{suffix}")
+    data = path.read_bytes()
+    assert data.startswith({".svg": b"<?xml", ".pdf": b"%PDF", ".png": b"\x89PNG"}[suffix])
+    assert export_motion([swing, swing], path).read_bytes() == data
+    if suffix == ".svg":
+        text = data.decode()
+        assert "t = 0 to 0.9 s, every 0.11" in text
+        assert "<image" not in text
+        rods = re.findall(r"<path [^>]*stroke: #4a5259", text)
+        assert len(rods) >= 2 * export.INSTANTS
+
+
+def test_a_motion_without_a_mass_is_exported(tmp_path: Path) -> None:
+    result = run_scene(replace(load_scene("weightless"), duration=0.2, beside=()))
+    assert frames(export_motion(result, tmp_path / "a.gif"))[0] == [40] * 6
+
+
+def test_a_failed_export_leaves_the_old_file_and_nothing_else(
+    swing: SceneResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "swing.gif"
+    path.write_bytes(b"old")
+
+    def stop(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    for target, name in ((os, "replace"), (export._Panel, "draw")):
+        with monkeypatch.context() as patch:
+            patch.setattr(target, name, stop)
+            with pytest.raises(OSError, match="No space"):
+                export_motion(replace(swing, t=swing.t[:9], y=swing.y[:, :9]), path)
+        assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [
+            ("swing.gif", b"old")
+        ]
+
+
+@pytest.mark.parametrize(("name", "speed", "words"), [
+    ("a.mpg", 1.0, r"'a.mpg': its name must end in one of .gif, .mp4, .pdf"),
+    ("a", 1.0, "must end in one of"),
+    ("a.gif", 0.0, "speed = 0.0 must be positive"),
+    ("a.gif", 0.001, r"has 22501 frames, up to 3000 .* speed to 0.0075 or more"),
+])  # fmt: skip
+def test_wrong_exports_are_refused(name: str, speed: float, words: str, swing: SceneResult) -> None:
+    with pytest.raises(ValueError, match=words):
+        export_motion(swing, name, speed=speed)
+
+
+def test_mp4_without_ffmpeg_names_the_way_out(
+    swing: SceneResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
+    with pytest.raises(ValueError, match=r"ffmpeg, which is not found: install it, .*or export a"):
+        export_motion(swing, "a.mp4")
+
+
+@pytest.mark.skipif(not shutil.which("ffmpeg"), reason="needs ffmpeg")
+def test_an_mp4_has_the_same_frames(swing: SceneResult, tmp_path: Path) -> None:
+    path = export_motion(swing, tmp_path / "swing.mp4")
+    command = ["ffmpeg", "-i", str(path), "-f", "null", "-"]
+    shown = subprocess.run(command, capture_output=True, text=True, check=True).stderr
+    assert "25 fps" in shown
+    assert re.findall(r"frame= *(\d+)", shown)[-1] == "23"
+
+
+def test_the_command_exports_one_scene(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "single", "--export", "single.svg"]) == 0
+    assert "out/single.html, single.svg" in capsys.readouterr().out
+    assert (tmp_path / "single.svg").exists()
+    refused: Callable[..., int] = lambda *rest: main(["run", "single", *rest])  # noqa: E731
+    assert refused("report", "--export", "a.gif") == 2
+    assert "--export a.gif is one file, but 2 scenes run: run one" in capsys.readouterr().err
+    assert refused("--export", "a.gif", "--speed", "1e-3") == 2
+    assert "increase speed" in capsys.readouterr().err
+    assert not (tmp_path / "a.gif").exists()
