@@ -97,7 +97,7 @@ def test_pictures_for_slides(suffix: str, swing: SceneResult, tmp_path: Path) ->
 
 
 def test_an_absent_mass_is_left_out() -> None:
-    scene = replace(load_scene("weightless"), duration=0.2, beside=())
+    scene = replace(load_scene("one_bob"), duration=0.2, beside=())
     result = run_scene(scene)
     assert np.isnan(result.y).any()
     moved = at(result, np.array([0.05, 0.1]))
