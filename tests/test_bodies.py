@@ -1,6 +1,7 @@
 """Rigid bodies in space: beside point masses, elliptic functions, and what is conserved."""
 
 from dataclasses import replace
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -15,6 +16,7 @@ from derive import (
     PointMass,
     RigidBody,
     System,
+    load,
     quaternion,
     rotation_matrix,
     rotations,
@@ -368,3 +370,68 @@ def test_a_positive_component_of_a_quaternion_may_follow_from_the_others() -> No
     rates = other.rhs(0.0, state, other.DEFAULTS)
     short = module.rhs(0.0, state[[1, 2, 3, 5, 6, 7]], module.DEFAULTS)
     assert np.allclose(short, np.array(rates)[[1, 2, 3, 5, 6, 7]], rtol=1e-12)
+
+
+GYRO = """
+[coordinates]
+phi = {}
+theta = {}
+psi = {}
+[parameters]
+m = { value = 1.2, unit = "kg" }
+l = { value = 0.5, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+A = { value = 1, unit = "kg m^2", positive = true }
+C = { value = 2.5, unit = "kg m^2", positive = true }
+[[masses]]
+mass = "m"
+position = ["l*sin(theta)*sin(phi)", "-l*sin(theta)*cos(phi)", "l*cos(theta)"]
+inertia = ["A", "A", "C"]
+orientation = { rotations = "zxz", angles = ["phi", "theta", "psi"] }
+"""
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "gyro.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_file_may_have_bodies_in_space(tmp_path: Path) -> None:
+    system = load(str(written(tmp_path, GYRO)))
+    assert Derivation(system).lagrangian == Derivation(top(ORIENTATIONS["zxz"], ANGLES)).lagrangian
+    text = GYRO.replace("psi = {}", 'psi = {}\nw = { unit = "1" }')
+    text = text.replace('rotations = "zxz", angles = [', 'quaternion = ["w", ')
+    assert load(str(written(tmp_path, text))).masses[0].orientation == quaternion(
+        w, phi, theta, psi
+    )
+    rows = '[["cos(phi)", "-sin(phi)", 0], ["sin(phi)", "cos(phi)", 0], [0, 0, 1]]'
+    text = GYRO.replace('rotations = "zxz", angles = ["phi", "theta", "psi"]', f"matrix = {rows}")
+    text = text.replace('["A", "A", "C"]', '[["A", 0, 0], [0, "A", 0.1], [0, 0.1, "C"]]')
+    body = load(str(written(tmp_path, text))).masses[0]
+    assert body.orientation.rows == rotations("z", [phi]).rows
+    assert body.tensor == sp.Matrix([[A, 0, 0], [0, A, 0.1], [0, 0.1, C]]).xreplace(
+        {sp.Float(0.1): sp.Rational(1, 10)}
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('rotations = "zxz", ', "", "give rotations = "),
+        ('rotations = "zxz"', 'rotation = "zxz"', "unknown key 'rotation' in orientation of mas"),
+        ('"zxz"', '"zxq"', "is no sequence of rotations"),
+        ('inertia = ["A", "A", "C"]', 'inertia = "A"', "must be a list"),
+        ('inertia = ["A", "A", "C"]', "", "must be a list"),
+        ('["A", "A", "C"]', '["A", "A", "theta"]', "inertia of body m depends on theta"),
+        ('orientation = {', 'angle = "phi"\norientation = {', "an angle and an orientation"),
+        ("orientation =", "# ", "three moments of inertia but no orientation"),
+        ('rotations = "zxz", angles', "quaternion", "has 3 components: give four"),
+    ],
+)  # fmt: skip
+def test_invalid_bodies_of_files_are_refused(
+    old: str, new: str, words: str, tmp_path: Path
+) -> None:
+    assert old in GYRO
+    with pytest.raises(SystemDefinitionError, match=words):
+        load(str(written(tmp_path, GYRO.replace(old, new))))

@@ -13,6 +13,7 @@ import sympy as sp
 
 from derive.formulas.budget import MAX_FACTORS_IN_SYSTEM, MAX_SECOND_IN_SYSTEM, Budget
 from derive.formulas.expression import FUNCTIONS, ExpressionError, number
+from derive.system.body_tables import rigid_body
 from derive.system.constraints import Constraint
 from derive.system.link_file import read_links
 from derive.system.naming import IDENTIFIER, check_name
@@ -23,7 +24,6 @@ from derive.system.parts import (
     PointMass,
     SystemDefinitionError,
 )
-from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
 from derive.system.tables import Table, read
@@ -171,16 +171,13 @@ def _by_coordinate(
 
 
 def _masses(table: Table, formulas: Formulas) -> Iterator[PointMass]:
-    for row in table.listed("masses", ("mass", "position", "inertia", "angle")):
+    for row in table.listed("masses", ("mass", "position", "inertia", "angle", "orientation")):
         mass, *position = (
             formulas.value(row.name, text)
             for text in (row.formula("mass"), *row.formulas("position"))
         )
-        if "inertia" in row.values or "angle" in row.values:
-            inertia, angle = (
-                formulas.value(row.name, row.formula(k)) for k in ("inertia", "angle")
-            )
-            yield RigidBody(mass, tuple(position), inertia, angle)
+        if {"inertia", "angle", "orientation"} & {*row.values}:
+            yield rigid_body(row, formulas.value, mass, tuple(position))
         else:
             yield PointMass(mass, tuple(position))
 
