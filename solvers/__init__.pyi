@@ -7,6 +7,7 @@ from solvers.app.scenes import load_scene as load_scene
 from solvers.app.scenes import load_sweep as load_sweep
 from solvers.app.scenes import run_scene as run_scene
 from solvers.app.scenes import sweep as sweep
+from solvers.equations.consistent_start import consistent_start as consistent_start
 from solvers.equations.equilibria import equilibria as equilibria
 from solvers.equations.linear_system import LinearSystem as LinearSystem
 from solvers.equations.linear_system import linearise as linearise

@@ -8,7 +8,13 @@ from contextvars import ContextVar
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, function, has_function
+from solvers.equations.module import (
+    GeneratedModule,
+    function,
+    has_function,
+    position_constraints,
+)
+from solvers.equations.singular_configuration import check_constraints
 
 #: Conditions of the mass matrix: above the first digits are lost, above the second all of them.
 DOUBTFUL, SINGULAR = 1e12, 1e15
@@ -58,6 +64,9 @@ def check_condition(
     """
     if _IS_CHECKED.get() or not has_function(module, "mass_matrix"):
         return
+    motions = [*motions]
+    if has_function(module, "constraints"):
+        check_constraints(module, motions, t, stacklevel + 1)
     motion, worst, weakest = max(
         ((name, *_worst(module, t, y0, params)) for name, params, y0 in motions),
         key=lambda row: row[1],
@@ -100,9 +109,10 @@ def _inertia(
     """The mass matrix, with the inertia that constraints add where it is singular by design."""
     matrix, G = function(module, "mass_matrix"), np.zeros((0, 0))
     M = np.array(matrix(t, y[: len(module.STATE)], params))
-    if has_function(module, "constraint_jacobian"):
+    if has_function(module, "constraints_jacobian"):
         usual = np.array(matrix(t, y[: len(module.STATE)], module.DEFAULTS))
-        G = np.array(function(module, "constraint_jacobian")(t, y, params))
+        derivatives = np.array(function(module, "constraints_jacobian")(t, y, params))
+        G = derivatives[position_constraints(module) :, len(module.COORDINATES) :]
         if np.linalg.matrix_rank(usual) < len(usual) and G.any():
             # constraints prevent motions that move no mass, such as of a quaternion's norm
             M = M + G.T @ G * (np.trace(M) / np.sum(G**2))

@@ -131,6 +131,12 @@ def ensemble(
     if inputs is not None:
         count = len(input_names(module))
         constants[:, -count:] = problem.form.params[-count:]
+    held = validation.constants_at_start(problem.form, problem.schedule, problem.span)
+    own = constants[:, constants.shape[1] - len(module.PARAMETERS) :].copy()
+    if problem.schedule:
+        count = len(input_names(module))
+        own[:, -count:] = held[-count:]
+    states = validation.consistent_rows(module, y0, states, own, problem.span[0])
     extremes = any(isinstance(event, Extremum) for event in problem.events)
     occurrences = validation.count("occurrences", occurrences, 2 if extremes else 1)
     skipped = _skipped(skip, problem.events)

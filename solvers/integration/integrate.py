@@ -51,7 +51,9 @@ def integrate(
         Start and end in s; the end may be the earlier one.
     y0 : array_like of shape (state,), or mapping of str to float
         Coordinates and velocities in the order of ``module.STATE``, whatever the form. Or numbers
-        by name, as ``{"theta1": 0.1, "theta2": 0.2}``: velocities that are left out are 0.
+        by name, as ``{"theta1": 0.1, "theta2": 0.2}``: velocities that are left out are 0. Of
+        systems with constraints, which they must satisfy, also coordinates may be left out
+        (`consistent_start`).
     params : array_like of shape (parameters,), or mapping of str to float
         In the order of ``module.PARAMETERS``. Or numbers by name: parameters that are left out
         have their default values.
@@ -118,6 +120,8 @@ def integrate(
         When a motion that conserves its energy ends with another one.
     solvers.equations.mass_matrix.MassMatrixWarning
         When the mass matrix is nearly singular at the start, or where all coordinates are equal.
+    solvers.equations.singular_configuration.SingularConfigurationWarning
+        When constraints nearly depend on each other at the start.
     UserWarning
         When no compiler could build the loop, and it runs in Python.
 

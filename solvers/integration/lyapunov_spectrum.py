@@ -89,7 +89,7 @@ def lyapunov_spectrum(
             "lengthen it, or shorten the interval"
         )
     constants = validation.parameters(module, params)
-    start = validation.initial_state(module, y0)
+    start = validation.initial_state(module, y0, params=constants.tolist())
     frames = Frames(module, start[np.newaxis], constants.tolist(), len(start), rtol=rtol, atol=atol)
     growth = frames.growth(np.array([duration]), round(duration / interval))[:, 0]
     if frames.status[0] != FINISHED:

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from solvers.equations.assembly import has_constraints
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule, parameter_names
 from solvers.equations.module import inputs as input_names
@@ -118,6 +119,7 @@ class Prepared:
         self._positive = [k for k, p in enumerate(parameters) if p in module.POSITIVE]
         self._inputs = len(input_names(module))
         self._limited = [k for k, q in enumerate(names) if q in module.POSITIVE]
+        self._is_constrained = has_constraints(module)
         self._span_start = 0.0
         self._idle = [True]  # empty during a call; faster than a lock, and as atomic
 
@@ -160,8 +162,9 @@ class Prepared:
                 self._start[:] = values  # type: ignore[assignment]
         except (TypeError, ValueError, OverflowError):
             are_real = False
-        if not are_real:
+        if not are_real or self._is_constrained:
             start, end = validation.time_span(t_span)
+            self._span_start = start
             self._start[:] = self._checked(y0)
         if self._limited and not all(self._start[k] > 0 for k in self._limited):
             self._checked(self._start)
@@ -229,8 +232,10 @@ class Prepared:
         self._params[-len(array) :] = array.tolist()
 
     def _checked(self, y0: Any) -> list[Any]:
-        form = self._problem.form
-        return validation.initial_state(form.module, y0, form.name).tolist()
+        form, count = self._problem.form, len(self._problem.form.module.PARAMETERS)
+        params = list(self._params)[len(self._params) - count :]
+        t = self._span_start
+        return validation.initial_state(form.module, y0, form.name, params, t).tolist()
 
     @property
     def steps(self) -> int:

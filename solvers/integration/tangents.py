@@ -68,7 +68,7 @@ class Tangents:
         self._problem, self._program = compiled_loop.select(problem, lanes=True)
         self._batch: Batch | None = None
         self.t, self.changes = problem.span[0], changes
-        self.y = validation.initial_state(module, y0)
+        self.y = validation.initial_state(module, y0, params=problem.form.constants, t=self.t)
 
     def advance(self, t: float) -> None:
         """Move to time `t` in s; `NotFinishedError` where the motion does not get there."""

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.assembly import Assembly, has_constraints
+from solvers.equations.consistent_start import consistent, given_names, guesses
 from solvers.equations.forms import Form
 from solvers.equations.module import (
     GeneratedModule,
@@ -39,9 +41,12 @@ def check_module(module: object) -> None:
 
 
 def problem(
-    module: GeneratedModule, t_span: ArrayLike, y0: Values, params: Values, options: Options
+    module: GeneratedModule, t_span: ArrayLike, y0: Values | None, params: Values, options: Options
 ) -> Problem:
-    """The problem that `integrate` solves, from its arguments, all of which are checked."""
+    """The problem that `integrate` solves, from its arguments, all of which are checked.
+
+    Without `y0` it starts at rest, whether constraints permit it or not.
+    """
     check_module(module)
     warn_if_flushed()
     check_type("method", options.method, str, "the name of a method")
@@ -55,7 +60,10 @@ def problem(
     span, method, name = time_span(t_span), options.method, options.form or "lagrangian"
     form = Form(module, name, parameters(module, params, name).tolist())
     form, schedule = _with_inputs(form, options.inputs, span)
-    start = initial_state(module, y0, name)
+    if y0 is None:
+        start = np.array([float(s in module.POSITIVE) for s in state_names(module, name)])
+    else:
+        start = initial_state(module, y0, name, constants_at_start(form, schedule, span), span[0])
     tableau = None if method in SCIPY else load(str(method))
     rtol, atol, h = step_control(options, tableau, span, len(start))
     if atol.ndim and name != "lagrangian":
@@ -99,10 +107,7 @@ def problem_at_rest(
     module: GeneratedModule, t_span: ArrayLike, options: Options, params: Values | None = None
 ) -> Problem:
     """The problem of motions whose initial states are given later; default parameters if None."""
-    check_module(module)
-    names = state_names(module, options.form or "lagrangian")
-    rest = [float(name in module.POSITIVE) for name in names]
-    return problem(module, t_span, rest, {} if params is None else params, options)
+    return problem(module, t_span, None, {} if params is None else params, options)
 
 
 def parameters(module: GeneratedModule, values: Values, form: str = "lagrangian") -> Array:
@@ -110,9 +115,44 @@ def parameters(module: GeneratedModule, values: Values, form: str = "lagrangian"
     return _vector("params", _parameters(module, values, form), parameter_names(module, form))
 
 
-def initial_state(module: GeneratedModule, values: Values, form: str = "lagrangian") -> Array:
-    """A state in the order of the module; a mapping may leave out velocities, which are 0."""
-    return _vector("y0", _states(module, values, form), state_names(module, form))
+def constants_at_start(
+    form: Form, schedule: Schedule | None, span: tuple[float, float]
+) -> Sequence[Any]:
+    """Parameters without perturbations, and with the first of held inputs."""
+    if schedule is None or schedule.table is None:
+        return form.constants
+    values = schedule.table[:, schedule.pieces(span)[0]]
+    return (*form.constants[: -len(values)], *values.tolist())
+
+
+def initial_state(
+    module: GeneratedModule,
+    values: Values,
+    form: str = "lagrangian",
+    params: Sequence[Any] | None = None,
+    t: float = 0.0,
+) -> Array:
+    """A state in the order of the module; a mapping may leave out velocities, which are 0.
+
+    With `params`, constraints determine components that a mapping leaves out.
+    """
+    is_complete = params is not None and has_constraints(module)
+    state = _states(module, values, form, is_complete)
+    state = _vector("y0", state, state_names(module, form))
+    if params is None:
+        return state
+    constants = np.array([params], float)
+    return consistent_rows(module, values, state[np.newaxis], constants, t)[0]
+
+
+def consistent_rows(
+    module: GeneratedModule, values: Values, rows: Array, params: Array, t: float
+) -> Array:
+    """Initial states in rows that satisfy the constraints, of which `values` were given."""
+    if not has_constraints(module):
+        return rows
+    n, assembly = len(module.STATE), Assembly(module, params, t)
+    return np.hstack([consistent(assembly, rows[:, :n], given_names(module, values)), rows[:, n:]])
 
 
 def parameter_rows(
@@ -130,8 +170,9 @@ def parameter_rows(
 
 
 def state_rows(module: GeneratedModule, values: Values, form: str) -> Array:
-    """Initial states, component first, as rows."""
-    return _rows("y0", _states(module, values, form), state_names(module, form))
+    """Initial states, component first, as rows; guesses of coordinates that constraints give."""
+    states = _states(module, values, form, has_constraints(module))
+    return _rows("y0", states, state_names(module, form))
 
 
 def _parameters(module: GeneratedModule, values: Values, form: str) -> Array:
@@ -141,11 +182,13 @@ def _parameters(module: GeneratedModule, values: Values, form: str) -> Array:
     return quantities(module, "params", names, values, defaults)
 
 
-def _states(module: GeneratedModule, values: Values, form: str) -> Array:
+def _states(module: GeneratedModule, values: Values, form: str, is_complete: bool) -> Array:
     velocities = module.STATE[len(module.COORDINATES) :]
     # in the variational form, the perturbation is that of the state alone
     perturbed = module.STATE if form == "sensitivity" else velocities
     defaults = dict.fromkeys([*velocities, *perturbations(perturbed)], 0.0)
+    if is_complete:
+        defaults |= guesses(module)
     return quantities(module, "y0", state_names(module, form), values, defaults)
 
 

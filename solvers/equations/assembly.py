@@ -1,0 +1,207 @@
+"""States that satisfy constraints: positions by Gauss-Newton steps, then velocities.
+
+Components that are given remain as they are, as far as the degrees of freedom permit. The others
+start from guesses (J. García de Jalón, E. Bayo, Kinematic and Dynamic Simulation of Multibody
+Systems (1994), chapter 3). Motions are rows, which are assembled independently of each other.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.equations.module import GeneratedModule, function, has_function
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+#: Residuals, relative to the size of the system, that are removed: rounded decimals.
+ROUNDED = 1e-6
+#: Those that are rounding errors, and those of a configuration that was assembled.
+EXACT, CLOSED = 1e-14, 1e-10
+#: Rates of change in 1/s; residuals of slower velocities are relative to it.
+SLOW = 1e-3
+#: Most Gauss-Newton steps, the largest change in one, and most halvings of a step.
+STEPS, LARGEST, HALVINGS = 60, 0.5, 12
+#: Other guesses where the first one leads to no configuration.
+GUESSES = 24
+#: Singular values, relative to the largest, that count as 0.
+SINGULAR = 1e-10
+
+
+def has_constraints(module: GeneratedModule) -> bool:
+    """Whether motions have constraints."""
+    return has_function(module, "constraints")
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """Assembly of states in rows, with parameters in rows: one for all motions, or one for each."""
+
+    module: GeneratedModule
+    params: Array
+    t: float = 0.0
+
+    @cached_property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.module.COORDINATES)
+
+    @cached_property
+    def of_positions(self) -> list[int]:
+        """Rows of the Jacobian of constraints of coordinates, in the order of their residuals."""
+        names = self.module.MULTIPLIERS
+        count = len(self.module.RESIDUALS) - len(names)
+        return [names.index(name) for name in self.module.RESIDUALS[:count]]
+
+    @cached_property
+    def scales(self) -> Array:
+        """Sizes of the coordinates: 1 rad, or the largest parameter of the same unit."""
+        units, sizes = self.module.UNITS, dict[str, float]()
+        for name, values in zip(self.module.PARAMETERS, self.params.T, strict=True):
+            size = float(np.abs(values).max(initial=0.0))
+            sizes[units[name]] = max(sizes.get(units[name], 0.0), size)
+        of = (units[name] for name in self.module.COORDINATES)
+        return np.array([(unit != "rad" and sizes.get(unit)) or 1.0 for unit in of])
+
+    def subset(self, rows: Flags) -> "Assembly":
+        """The assembly of some of the motions."""
+        return self if len(self.params) == 1 else replace(self, params=self.params[rows])
+
+    def _many(self, name: str, y: Array) -> Array:
+        with np.errstate(all="ignore"):
+            values = function(self.module, f"{name}_many")(self.t, y.T, self.params.T)
+        return np.moveaxis(np.asarray(values), -1, 0)
+
+    def residuals(self, y: Array) -> Array:
+        """Residuals of constraints, in the order of ``module.RESIDUALS``, one row a motion."""
+        return self._many("constraints", y)
+
+    def jacobian(self, y: Array) -> Array:
+        """G, per scale of the coordinates, one matrix a motion."""
+        return self._many("constraint_jacobian", y) * self.scales
+
+    def relative(self, y: Array) -> Array:
+        """Absolute residuals relative to their changes by the scales of coordinates and rates."""
+        residuals = np.abs(self.residuals(y))
+        sizes = np.linalg.norm(self.jacobian(y), axis=2)
+        rates = np.abs(y[:, self.n :] / self.scales).max(axis=1, initial=0.0)
+        moving = sizes * np.maximum(rates, SLOW)[:, np.newaxis]
+        scales = np.hstack([sizes[:, self.of_positions], moving])
+        ratios = residuals / np.where(scales > 0, scales, 1.0)
+        return np.where(np.isfinite(ratios), ratios, np.inf)
+
+    def assembled(self, y: Array, given: Flags) -> tuple[Array, Flags]:
+        """States near `y` of which the given components are kept, and whether they were found."""
+        n, y = self.n, y.copy()
+        y[:, :n], found = self._positions(y[:, :n], ~given[:n])
+        if found.any():
+            part = self.subset(found)
+            y[found, n:], found[found] = part.velocities(y[found], ~given[n:])
+        return y, found
+
+    def _positions(self, q: Array, free: Flags) -> tuple[Array, Flags]:
+        """Coordinates that satisfy the constraints, from the guess or others near it."""
+        best, error = self.closed(q, free)
+        rng = np.random.default_rng(0)
+        for _ in range(GUESSES if free.any() else 0):
+            # where the first guess is singular, as aligned rods are, the nearest solution counts
+            rows = error > CLOSED
+            if not rows.any():
+                break
+            change = self.scales * free * rng.uniform(-1.5, 1.5, self.n)
+            trial, smaller = self.subset(rows).closed(q[rows] + change, free)
+            better = smaller < error[rows]
+            best[rows] = np.where(better[:, np.newaxis], trial, best[rows])
+            error[rows] = np.minimum(smaller, error[rows])
+        rounded = (error > CLOSED) & (error <= ROUNDED)
+        if rounded.any():
+            every = np.ones_like(free)
+            best[rounded], error[rounded] = self.subset(rounded).closed(best[rounded], every)
+        return best, error <= CLOSED
+
+    def closed(self, q: Array, free: Flags) -> tuple[Array, Array]:
+        """Coordinates after Gauss-Newton steps of the free ones, and relative residuals."""
+        now, error = q.copy(), self._position_errors(q)
+        active = (np.linalg.norm(error, axis=1) > 0) & free.any()
+        for _ in range(STEPS):
+            if not active.any():
+                break
+            part = self.subset(active)
+            step = part._step(now[active], free)
+            before, trial = np.linalg.norm(error[active], axis=1), now[active]
+            accepted = np.zeros(len(step), bool)
+            for _ in range(HALVINGS):
+                open_rows = np.flatnonzero(~accepted)
+                candidates = now[active][open_rows] + step[open_rows]
+                errors = part.subset(~accepted)._position_errors(candidates)
+                fine = np.linalg.norm(errors, axis=1) < before[open_rows]
+                trial[open_rows[fine]] = candidates[fine]
+                accepted[open_rows[fine]] = True
+                step /= 2
+                if accepted.all():
+                    break
+            now[active] = trial
+            error[active] = part._position_errors(trial)
+            active[active] = accepted
+        return now, np.abs(error).max(axis=1, initial=0.0)
+
+    def _at_rest(self, q: Array) -> Array:
+        return np.hstack([q, np.zeros_like(q)])
+
+    def _position_errors(self, q: Array) -> Array:
+        return self.relative(self._at_rest(q))[:, : len(self.of_positions)]
+
+    def _step(self, q: Array, free: Flags) -> Array:
+        """The smallest changes that remove linearised residuals, of limited size."""
+        y = self._at_rest(q)
+        matrix = self.jacobian(y)[:, self.of_positions] * free
+        residuals = self.residuals(y)[:, : len(self.of_positions), np.newaxis]
+        usable = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(residuals).all(axis=(1, 2))
+        matrix[~usable], residuals[~usable] = 0.0, 0.0
+        sizes = np.linalg.norm(matrix, axis=2, keepdims=True)
+        sizes[sizes == 0] = 1.0
+        step = -(np.linalg.pinv(matrix / sizes, rcond=SINGULAR) @ (residuals / sizes))[:, :, 0]
+        largest = np.abs(step).max(axis=1, initial=0.0, keepdims=True)
+        return np.asarray(step * LARGEST / np.maximum(largest, LARGEST) * self.scales * free)
+
+    def velocities(self, y: Array, free: Flags) -> tuple[Array, Flags]:
+        """Velocities that satisfy the constraints, and whether they exist.
+
+        Free ones are, by kinetic energy, as near as possible to those of `y`.
+        """
+        states = y.copy()
+        states[:, self.n :] += self._velocity_changes(states, free)
+        error = self._velocity_errors(states)
+        rounded = (error > CLOSED) & (error <= ROUNDED)
+        if rounded.any():
+            part, every = self.subset(rounded), np.ones_like(free)
+            states[rounded, self.n :] += part._velocity_changes(states[rounded], every)
+            error[rounded] = part._velocity_errors(states[rounded])
+        return states[:, self.n :], error <= CLOSED
+
+    def _velocity_errors(self, y: Array) -> Array:
+        return self.relative(y)[:, len(self.of_positions) :].max(axis=1, initial=0.0)
+
+    def _velocity_changes(self, y: Array, free: Flags) -> Array:
+        """Changes δ of free velocities: M δ = Gᵀ μ, G δ = -residuals."""
+        n, m = self.n, len(self.module.MULTIPLIERS)
+        jacobian = self.jacobian(y)
+        sizes = np.linalg.norm(jacobian, axis=2, keepdims=True)
+        sizes[sizes == 0] = 1.0
+        G = jacobian / sizes
+        M = self._many("mass_matrix", y) * self.scales * self.scales[:, np.newaxis]
+        largest = np.abs(M).max(axis=(1, 2), keepdims=True)
+        M = M / np.where(largest > 0, largest, 1.0)
+        # the given velocities do not change; their equations are replaced by δ = 0
+        kept = np.flatnonzero(~free)
+        matrix = np.zeros((len(y), n + m, n + m))
+        matrix[:, :n, :n], matrix[:, :n, n:], matrix[:, n:, :n] = M, -G.transpose(0, 2, 1), G
+        matrix[:, kept], matrix[:, :, kept] = 0.0, 0.0
+        matrix[:, kept, kept] = 1.0
+        side = np.zeros((len(y), n + m, 1))
+        side[:, n:] = -self.residuals(y)[:, len(self.of_positions) :, np.newaxis] / sizes
+        matrix, side = np.nan_to_num(matrix), np.nan_to_num(side)
+        changes = (np.linalg.pinv(matrix, rcond=1e-13) @ side)[:, :n, 0]
+        return np.asarray(changes * self.scales * free)
