@@ -39,7 +39,7 @@ def crank() -> GeneratedModule:
     q = [Coordinate(s, "m" if s == x else "rad", str(s)) for s in (q1, q2, x)]
     return build(System("crank", "Slider-crank", q,
         [*lengths, MASS], [PointMass(m, (x, 0)), PointMass(m, tuple(at(a, q1)))], potential=0,
-        coincide=[(tuple(pin), (x, 0))]))  # fmt: skip
+        coincide=[(tuple(pin), (x, 0))], keep_coordinates=True))  # fmt: skip
 
 
 @pytest.fixture(scope="module")

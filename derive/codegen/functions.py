@@ -125,10 +125,6 @@ SPECS = (
     FunctionSpec("constraints_jacobian", "lagrangian", "residuals state",
         "Derivatives of `constraints` with respect to the state.",
         "Entry [i][j] is the derivative of residual i with respect to y[j]."),
-    FunctionSpec("constraint_jacobian", "lagrangian", "conditions q",
-        "Jacobian G of the constraints, whose rates are G qdot + b.",
-        "Entry [i][j] is the derivative of constraint i with respect to coordinate j, or of a "
-        "constraint of velocities with respect to velocity j."),
     FunctionSpec("redundant_constraints", "lagrangian", "redundant",
         "Residuals of the constraints {}, which follow from the others, with default parameters.",
         "One for each; where it is not 0, the parameters are such that none follows.", _redundant),
@@ -261,7 +257,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
     constants |= {"outputs": len(system.measured), "params": len(system.params)}
     constants |= {"points": len(system.points)}
-    constants |= {"multipliers": len(system.all_conditions), "conditions": len(system.conditions)}
+    constants |= {"multipliers": len(system.all_conditions)}
     constants |= {"redundant": len(derivation.redundant)}
     constants |= {"residuals": len(system.conditions) + len(derivation.holonomic)}
     sizes |= {name: count for name, count in constants.items() if count}

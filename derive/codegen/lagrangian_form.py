@@ -91,11 +91,6 @@ class LagrangianForm(EquationsOfMotion):
         return [self._derivative(one, name) for one in self.constraints for name in names]
 
     @property
-    def constraint_jacobian(self) -> list[Node]:
-        """Rows of G."""
-        return [entry for row in self._constraint_jacobian for entry in row]
-
-    @property
     def redundant_constraints(self) -> list[Node]:
         """Constraints that follow from the others."""
         return self._nodes([one.formula for one in self._derivation.redundant])

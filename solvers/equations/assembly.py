@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, function, has_function
+from solvers.equations.module import GeneratedModule, function, has_function, position_constraints
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -51,9 +51,16 @@ class Assembly:
     @cached_property
     def of_positions(self) -> list[int]:
         """Rows of the Jacobian of constraints of coordinates, in the order of their residuals."""
-        names = self.module.MULTIPLIERS
-        count = len(self.module.RESIDUALS) - len(names)
-        return [names.index(name) for name in self.module.RESIDUALS[:count]]
+        names = self.module.RESIDUALS[: position_constraints(self.module)]
+        return [self.names.index(name) for name in names]
+
+    @cached_property
+    def names(self) -> list[str]:
+        """Names of the constraints, one for each row of G."""
+        count = position_constraints(self.module)
+        positions, rates = self.module.RESIDUALS[:count], self.module.RESIDUALS[count:]
+        of_rate = {f"{name}_dot": name for name in positions}
+        return [of_rate.get(name, name) for name in rates]
 
     @cached_property
     def scales(self) -> Array:
@@ -80,7 +87,8 @@ class Assembly:
 
     def jacobian(self, y: Array) -> Array:
         """G, per scale of the coordinates, one matrix a motion."""
-        return self._many("constraint_jacobian", y) * self.scales
+        matrices = self._many("constraints_jacobian", y)
+        return matrices[:, len(self.of_positions) :, self.n :] * self.scales
 
     def relative(self, y: Array) -> Array:
         """Absolute residuals relative to their changes by the scales of coordinates and rates."""
@@ -186,7 +194,7 @@ class Assembly:
 
     def _velocity_changes(self, y: Array, free: Flags) -> Array:
         """Changes δ of free velocities: M δ = Gᵀ μ, G δ = -residuals."""
-        n, m = self.n, len(self.module.MULTIPLIERS)
+        n, m = self.n, len(self.names)
         jacobian = self.jacobian(y)
         sizes = np.linalg.norm(jacobian, axis=2, keepdims=True)
         sizes[sizes == 0] = 1.0

@@ -9,7 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
 
-from solvers.equations.module import GeneratedModule, function, has_function
+from solvers.equations.module import (
+    GeneratedModule,
+    function,
+    has_function,
+    position_constraints,
+)
 from solvers.equations.module import inputs as input_names
 from solvers.equations.module import outputs as output_names
 from solvers.equations.quantities import Values, quantities, real_number
@@ -246,7 +251,7 @@ def _tangent(
     G = np.array(function(module, "constraints_jacobian")(*point))
     # of coordinates and of velocities, those that determine the others best
     parts = [np.arange(n // 2), np.arange(n // 2, n)]
-    holonomic = len(G) - len(module.MULTIPLIERS)
+    holonomic = position_constraints(module)
     rows = [slice(0, holonomic), slice(holonomic, None)]
     chosen = [
         own[linalg.qr(G[row][:, own], pivoting=True, mode="r")[1][: len(G[row])]]

@@ -127,6 +127,12 @@ def switching_functions(module: GeneratedModule) -> tuple[str, ...]:
     return module.SWITCHES if has_function(module, "switches") else ()
 
 
+def position_constraints(module: GeneratedModule) -> int:
+    """Number of constraints of coordinates, whose residuals are the first of `constraints`."""
+    names = module.RESIDUALS if has_function(module, "constraints") else ()
+    return sum(f"{name}_dot" in names for name in names)
+
+
 def inputs(module: GeneratedModule) -> tuple[str, ...]:
     """Names of the inputs, which are the last parameters of systems that have inputs."""
     return module.INPUTS if has_function(module, "input_jacobian") else ()

@@ -69,4 +69,4 @@ def _condition(
     left, singular, _ = np.linalg.svd(rows)
     least = singular[-1] if len(singular) == len(rows) else 0.0
     condition = float((singular[0] / least) ** 2) if least > 0 else float("inf")
-    return condition, module.MULTIPLIERS[int(np.argmax(np.abs(left[:, -1])))]
+    return condition, assembly.names[int(np.argmax(np.abs(left[:, -1])))]
