@@ -126,13 +126,13 @@ def test_constraints_that_move_give_velocities(lifted: GeneratedModule) -> None:
 
 
 def test_many_starts_are_those_of_each(crank: GeneratedModule) -> None:
-    angles = np.linspace(-3, 3, 9)
-    batch = ensemble(crank, (0, 0.2), {"q1": angles, "q1_dot": 3.0}, {})
+    angles = np.linspace(-3, 3, 5)
+    batch = ensemble(crank, (0, 0.01), {"q1": angles, "q1_dot": 3.0}, {}, backend="python")
     run = prepare(crank, {})
     for k, angle in enumerate(angles):
         start = consistent_start(crank, {"q1": angle, "q1_dot": 3.0}, {})
-        assert batch.y[:, k] == pytest.approx(run((0, 0.2), tuple(start.y)), abs=1e-12)
-        by_name = run((0, 0.2), {"q1": angle, "q1_dot": 3.0})
+        assert batch.y[:, k] == pytest.approx(run((0, 0.01), tuple(start.y)), abs=1e-12)
+        by_name = run((0, 0.01), {"q1": angle, "q1_dot": 3.0})
         assert by_name == pytest.approx(batch.y[:, k], abs=1e-12)
     with pytest.raises(ValueError, match=r"no state of motion 2 with x = 0.5 m .* pin_1_x = -0.1 "):
         ensemble(crank, (0, 1), {"x": [0.3, 0.35, 0.5]}, {})

@@ -146,27 +146,23 @@ def consistent_start(
 
     Examples
     --------
-    A slider-crank, and its other configuration:
+    A pendulum in Cartesian coordinates, whose bob can be below or above the pivot:
 
-    >>> from sympy import cos, sin, symbols
+    >>> from sympy import symbols
     >>> from derive import Coordinate, Parameter, PointMass, System
     >>> from holonomic import build
-    >>> phi, psi, x = symbols("phi psi x", real=True)
-    >>> a, b, m = symbols("a b m", positive=True)
-    >>> pin = (a * cos(phi) + b * cos(psi), a * sin(phi) + b * sin(psi))
-    >>> crank = build(System(
-    ...     "crank", "Slider-crank",
-    ...     [Coordinate(phi, "rad", "of the crank"), Coordinate(psi, "rad", "of the rod"),
-    ...      Coordinate(x, "m", "of the slider")],
-    ...     [Parameter(a, "m", 0.1, "crank"), Parameter(b, "m", 0.3, "rod"),
-    ...      Parameter(m, "kg", 1.0, "mass of the slider")],
-    ...     [PointMass(m, (x, 0))], potential=0, coincide=[(pin, (x, 0))],
+    >>> x, y = symbols("x y", real=True)
+    >>> m, l = symbols("m l", positive=True)
+    >>> swing = build(System(
+    ...     "swing", "A pendulum", [Coordinate(x, "m", "right"), Coordinate(y, "m", "up")],
+    ...     [Parameter(m, "kg", 1.0, "mass"), Parameter(l, "m", 0.5, "length")],
+    ...     [PointMass(m, (x, y))], potential=0, constraints=[x**2 + y**2 - l**2],
     ... ))
-    >>> consistent_start(crank, {"phi": 1.0, "phi_dot": 2.0}, {}).y.round(4)
-    array([ 1.    , -0.2843,  0.342 ,  2.    , -0.3753, -0.1999])
-    >>> left = consistent_start(crank, {"phi": 1.0}, {}, guess={"psi": 3.0})
-    >>> left.y[:3].round(4)
-    array([ 1.    ,  3.4259, -0.2339])
+    >>> start = consistent_start(swing, {"x": 0.3, "x_dot": 1.0}, {}, guess={"y": -1.0})
+    >>> start.y.round(12)
+    array([ 0.3 , -0.4 ,  1.  ,  0.75])
+    >>> start.others
+    array([[0.3, 0.4]])
     """
     if not has_constraints(module):
         raise ValueError(f"{module.SYSTEM} has no constraints: every state is consistent")
