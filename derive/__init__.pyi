@@ -6,6 +6,12 @@ from derive.mechanics.specialisation import with_inputs as with_inputs
 from derive.mechanics.state_space import StateSpace as StateSpace
 from derive.system.catalogue import load as load
 from derive.system.constraints import Constraint as Constraint
+from derive.system.joints import ball as ball
+from derive.system.joints import fixed_distance as fixed_distance
+from derive.system.joints import pin as pin
+from derive.system.joints import rolling_on_line as rolling_on_line
+from derive.system.joints import rolling_on_plane as rolling_on_plane
+from derive.system.joints import slider as slider
 from derive.system.links import Block as Block
 from derive.system.links import Cart as Cart
 from derive.system.links import Plate as Plate

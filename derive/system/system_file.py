@@ -15,6 +15,7 @@ from derive.formulas.budget import MAX_FACTORS_IN_SYSTEM, MAX_SECOND_IN_SYSTEM, 
 from derive.formulas.expression import FUNCTIONS, ExpressionError, number
 from derive.system.body_tables import rigid_body
 from derive.system.constraints import Constraint
+from derive.system.joint_file import read_joints
 from derive.system.link_file import read_links
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import (
@@ -32,7 +33,7 @@ from solvers.io.toml_input import InputError
 KEYS = (
     *("name", "title", "coordinates", "parameters", "definitions", "masses", "potential"),
     *("gravity", "dissipation", "forces", "equilibrium", "reactions", "inputs"),
-    *("outputs", "constraints", "coincide", "keep_coordinates", "links"),
+    *("outputs", "constraints", "coincide", "keep_coordinates", "joints", "links"),
 )
 #: Units of parameters that are positive by default.
 POSITIVE_UNITS = ("kg", "m")
@@ -100,7 +101,7 @@ def _system(stem: str, table: Table) -> System:
         reactions=[*_lengths(table, formulas, "reactions")],
         inputs=inputs,
         outputs=_outputs(table, formulas),
-        constraints=[*_constraints(table, formulas)],
+        constraints=[*_constraints(table, formulas), *read_joints(table, formulas.value, q)],
         coincide=[*_pairs(table, formulas)],
         links=[*read_links(table, formulas.value)],
         keep_coordinates=table.flag("keep_coordinates", default=False),
