@@ -51,7 +51,8 @@ def read_joints(
 
 
 def _values(row: Table, kind: str, value: Callable[[str], sp.Expr]) -> dict[str, Any]:
-    known, values = _arguments(kind), {}
+    known = _arguments(kind)
+    values: dict[str, Any] = {}
     for key, argument in known.items():
         if key not in row.values and argument.default is Parameter.empty:
             raise InputError(f"{row.name} needs {key}; the keys of a {kind} are {', '.join(known)}")
