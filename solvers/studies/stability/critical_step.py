@@ -33,7 +33,7 @@ NO_GROWTH = 1e-15
 #: Range and ratio of steps times frequency, and the relative resolution of the bisection.
 SHORTEST, LONGEST, RATIO, RESOLUTION = 0.25, 40.0, 1.25, 1e-4
 #: Number of steps; growth is measured over the second half.
-STEPS = 400
+STEPS = 100
 #: Sizes relative to the initial size that count as zero and as no longer small.
 LOST, LARGE = 1e-6, 1e4
 #: Largest number of rounding errors of a state that add up.
