@@ -207,7 +207,8 @@ class Centred(Link):
         """The centre, and the angle: that of the body at the centre, if none is given."""
         centre, angle = _position(self, self.centre, masses), getattr(self, "angle", None)
         if angle is None and isinstance(self.centre, int):
-            angle = getattr(masses[self.centre], "angle", None)
+            orientation = getattr(masses[self.centre], "orientation", None)
+            angle = orientation if isinstance(orientation, sp.Expr) else None
         return centre, angle
 
 
