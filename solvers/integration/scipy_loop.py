@@ -81,7 +81,11 @@ def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag)
         if solver.status == "failed":
             return Status.STEP_TOO_SMALL
         outcome.steps += 1
-        if recorder.advance(solver.t, DenseOutput(problem.form, solver)):
+        try:
+            ends = recorder.advance(solver.t, DenseOutput(problem.form, solver))
+        except ArithmeticError:  # as of constraints that depend on each other there
+            return Status.NOT_FINITE
+        if ends:
             return Status.EVENT
     return Status.FINISHED
 

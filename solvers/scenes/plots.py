@@ -103,7 +103,8 @@ def _accuracy_note(result: SceneResult, is_labelled: bool) -> str:
     if scene.step is not None:
         text += f" with h = {scene.step:g} s"
     label = f"{scene.label}: " if is_labelled else ""
-    return f"[{label}{text}, error estimate {model.error_estimate:.1g}.]"
+    start = f" Start {scene.completed}." if scene.completed else ""
+    return f"[{label}{text}, error estimate {model.error_estimate:.1g}.{start}]"
 
 
 def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:

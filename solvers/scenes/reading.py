@@ -7,6 +7,7 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
+from solvers.equations.assembly import has_constraints
 from solvers.equations.module import GeneratedModule, title
 from solvers.io import toml_input
 from solvers.io.suggestion import shortened
@@ -105,8 +106,9 @@ def _scene(
     if values.get("outputs") == ():
         raise InputError("outputs = [] requests nothing: leave it out to request the state")
     params = _parameters(module, table.get("parameters", {}))
-    y0, samples = _initial(module, table["initial"]), table.get("samples", 0)
-    return Scene(module, params, y0, samples=samples, name=name, beside=beside, **values)
+    y0, guess = _initial(module, table["initial"])
+    values |= {"y0": y0, "guess": guess, "samples": table.get("samples", 0)}
+    return Scene(module, params, name=name, beside=beside, **values)
 
 
 def _parameters(module: GeneratedModule, table: object) -> tuple[float, ...]:
@@ -123,17 +125,25 @@ def _parameters(module: GeneratedModule, table: object) -> tuple[float, ...]:
     return tuple(values.values())
 
 
-def _initial(module: GeneratedModule, table: object) -> tuple[float, ...]:
+def _initial(module: GeneratedModule, table: object) -> tuple[dict[str, float], dict[str, float]]:
+    """Components of the initial state, and guesses of those that constraints determine."""
     given, units = _table("initial", table, module.STATE), module.UNITS
-    if missing := [q for q in module.COORDINATES if q not in given]:
+    is_constrained, guesses = has_constraints(module), dict[str, Any]()
+    for name, value in list(given.items()):
+        if is_constrained and isinstance(value, dict):
+            toml_input.check_keys(f"initial.{name}", value, ("guess",))
+            guesses |= {name: value.get("guess", 0.0)}
+            del given[name]
+    if missing := [q for q in module.COORDINATES if q not in given and not is_constrained]:
         remedy = f"give {', '.join(module.COORDINATES)}; velocities that are left out are 0"
         raise InputError(f"initial.{missing[0]} is missing: {remedy}")
-    for name, value in given.items():
+    for name, value in (given | guesses).items():
         if units[name] == "rad" and isinstance(value, int | float) and abs(value) > TURN:
             text = f"initial.{name} = {value} is {value / TURN:.3g} turns"
             warnings.warn(f'{text}: write "{value} deg" if degrees are meant', stacklevel=2)
-    state = dict.fromkeys(module.STATE, 0.0) | given
-    return tuple(toml_input.number(f"initial.{q}", value, units[q]) for q, value in state.items())
+    numbers = {q: toml_input.number(f"initial.{q}", x, units[q]) for q, x in given.items()}
+    near = {q: toml_input.number(f"initial.{q}.guess", x, units[q]) for q, x in guesses.items()}
+    return numbers, near
 
 
 def _table(key: str, value: object, known: Sequence[str]) -> dict[str, Any]:

@@ -1,10 +1,13 @@
 """A scene: a motion, its accuracy and its outputs."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.assembly import has_constraints
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive
@@ -32,7 +35,8 @@ class Scene:
         default values. A mass or length of 0 is absent.
     y0 : tuple of float, or mapping of str to float
         Initial coordinates and velocities, in the order of ``module.STATE``, or by name:
-        velocities that are left out are 0.
+        velocities that are left out are 0. Of systems with constraints, also coordinates may be
+        left out (`solvers.consistent_start`).
     duration : float
         In s.
     accuracy : float, optional
@@ -63,6 +67,10 @@ class Scene:
         A text below the plots.
     beside : tuple of Scene, optional
         Scenes to show beside this one.
+    guess : mapping of str to float, optional
+        Values near which to find components of `y0` that constraints determine, by default 0.
+    completed : str, optional
+        A description of these components, which a mapping `y0` results in.
 
     Raises
     ------
@@ -103,6 +111,8 @@ class Scene:
     label: str = ""
     note: str = ""
     beside: tuple["Scene", ...] = ()
+    guess: Mapping[str, float] = field(default_factory=dict)
+    completed: str = ""
 
     def __post_init__(self) -> None:
         validation.check_module(self.module)
@@ -111,9 +121,10 @@ class Scene:
         for name in ("outputs", "pictures"):
             check_texts(name, getattr(self, name))
         state = self.module.STATE
-        completed = {
-            "params": tuple(validation.parameters(self.module, self.params).tolist()),
-            "y0": tuple(validation.initial_state(self.module, self.y0).tolist()),
+        params = validation.parameters(self.module, self.params).tolist()
+        completed: dict[str, object] = {
+            "params": tuple(params),
+            **self._start(params),
             "outputs": tuple(self.outputs) or state,
             "label": self.label or self.title,
         }
@@ -135,6 +146,13 @@ class Scene:
             whole("samples", self.samples, 2, checks.MOST_SAMPLES)
         checks.check_outputs(self.outputs, state, (*state, ENERGY))
         checks.check_pictures(self.pictures, state)
+
+    def _start(self, params: list[float]) -> dict[str, object]:
+        """The initial state, and a description of what constraints determine of it."""
+        if has_constraints(self.module) and isinstance(self.y0, Mapping):
+            start = consistent_start(self.module, self.y0, params, guess=self.guess)
+            return {"y0": tuple(start.y.tolist()), "guess": {}, "completed": start.words}
+        return {"y0": tuple(validation.initial_state(self.module, self.y0, params=params).tolist())}
 
     @property
     def times(self) -> NDArray[np.float64]:

@@ -14,6 +14,8 @@ def summary(result: SceneResult) -> Iterator[str]:
     scene, model, state = result.scene, result.selection.model, result.final_state
     label = "" if scene.label == scene.title else f": {scene.label}"
     yield f"{scene.title}{label}, {scene.duration:g} s"
+    if scene.completed:
+        yield f"start {scene.completed}"
     yield f"model: {model.name}{_integration(result)}"
     yield f"  {model.why}"
     for name, reason in result.selection.declined.items():
@@ -86,6 +88,8 @@ def figures(result: SceneResult) -> dict[str, Any]:
         "precision": run.method_choice.precision if run else None,
         "code": "specialised" if result.specialised_module else "general",
         "operations": _operations(run.motion.module, run.method_choice.form) if run else None,
+        "initial_state": dict(zip(scene.module.STATE, scene.y0, strict=True)),
+        "completed": scene.completed,
         "final_state": result.final_state,
         "units": {name: scene.module.UNITS[name] for name in result.final_state},
         "duration": scene.duration,

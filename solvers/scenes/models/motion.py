@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.assembly import has_constraints
 from solvers.equations.module import GeneratedModule
 
 Array = NDArray[np.float64]
@@ -42,9 +43,9 @@ class Motion:
         return tuple(k for k in range(n) if row[k].max() > 0)
 
     def require_inertia(self) -> None:
-        """Raise `OutsideDomainError` where a coordinate has no inertia."""
+        """Raise `OutsideDomainError` where a coordinate has neither inertia nor constraints."""
         absent = [q for k, q in enumerate(self.module.COORDINATES) if k not in self.inertial]
-        if absent:
+        if absent and not has_constraints(self.module):
             raise OutsideDomainError(f"{', '.join(absent)} has no inertia")
 
     @property
