@@ -13,7 +13,7 @@ from latex_trees import show
 from derive import Derivation, load, names
 from derive.formulas.lettering import lettering
 from derive.handout.notation import Notation
-from derive.handout.sections import document
+from derive.handout.sections import document, with_letters
 from derive.handout.tex import equation_rows
 from derive.handout.writing import write_document
 from derive.reading.documents import read_document
@@ -103,13 +103,18 @@ def expected(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     for q, qdot, left, slope, applied in zip(
         s.q, s.qdot, d.euler_lagrange, slopes, s.applied, strict=True
     ):
-        values[f"ddt(d(L, {qdot}))"] = left + slope + applied
+        reactions = sp.Add(*(c.symbol * c.formula.diff(qdot) for c in s.conditions))
+        values[f"ddt(d(L, {qdot}))"] = left + slope + applied + reactions
         values[f"d(L, {q})"] = slope
         force = f" - Q_{q}" if applied else ""
-        values[f"ddt(d(L, {qdot})) - d(L, {q}){force}"] = left
+        reaction = Notation(s).reaction(s.q.index(q))
+        values[f"ddt(d(L, {qdot})) - d(L, {q}){force}{reaction}"] = left
         values[f"Q_{q}"] = applied
         values[f"pdot_{q}"] = slope + applied  # with the momenta of the velocities
-    if d.mass_matrix.is_diagonal() or len(s.q) < 3:
+    if s.conditions:
+        values |= {f"phi_{k}": one.formula for k, one in enumerate(s.conditions, 1)}
+        values |= {"G": d.constraint_jacobian, "gamma_vector": d.constraint_forcing}
+    elif d.mass_matrix.is_diagonal() or len(s.q) < 3:
         values |= dict(zip((a.name for a in s.qddot), d.accelerations, strict=True))
         values |= dict(zip((v.name for v in s.qdot), d.hamilton_equations[0], strict=True))
         values["H"] = d.hamiltonian
@@ -143,9 +148,10 @@ def derivation(name: str) -> Derivation:
 
 @pytest.mark.parametrize("name", names())
 def test_latex_read_back_has_the_values_of_the_derivation(name: str) -> None:
-    d, random = derivation(name), Random(name)
+    d, random = with_letters(derivation(name)), Random(name)
     s = d.system
-    numbers = {x: random.uniform(0.2, 0.9) for x in (*s.params, *s.q, *s.qdot, *s.qddot, TIME)}
+    moving = (*s.q, *s.qdot, *s.qddot, *s.multipliers, TIME)
+    numbers = {x: random.uniform(0.2, 0.9) for x in (*s.params, *moving)}
     momenta = [complex(p.xreplace(numbers)) for p in d.momenta]
     numbers |= dict(zip(s.p, momenta, strict=True))
     numbers[sp.Symbol("omega", positive=True)] = 0.7

@@ -14,20 +14,26 @@ from derive.verification.verdict import Verdict
 def values_by_name(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     """What each name on a left side stands for."""
     s = d.system
-    rates, forces = d.hamilton_equations
-    force_names = (p.name.replace("p_", "pdot_", 1) for p in s.p)
+    if s.conditions:
+        last = {"G": d.constraint_jacobian, "gamma": d.constraint_forcing}
+    else:
+        rates, forces = d.hamilton_equations
+        force_names = (p.name.replace("p_", "pdot_", 1) for p in s.p)
+        last = {
+            "H": d.hamiltonian,
+            **dict(zip((q.name for q in s.qdot), rates, strict=True)),
+            **dict(zip(force_names, forces, strict=True)),
+        }
     return {
         "K": d.kinetic_energy,
         "P": d.potential_energy,
         "L": d.lagrangian,
-        "H": d.hamiltonian,
         "M": d.mass_matrix,
         "f": d.forcing,
         **{f"r{k}": sp.Matrix(mass.position) for k, mass in enumerate(s.masses, 1)},
         **{f"r{k}_dot": velocity for k, velocity in enumerate(d.velocities, 1)},
         **dict(zip((p.name for p in s.p), d.momenta, strict=True)),
-        **dict(zip((q.name for q in s.qdot), rates, strict=True)),
-        **dict(zip(force_names, forces, strict=True)),
+        **last,
     }
 
 
@@ -37,7 +43,9 @@ def test_every_formula_is_the_derived_one(name: str) -> None:
     derivation = Derivation(load(name))
     values = values_by_name(derivation)
     symbols = set().union(*(sp.Matrix([v]).free_symbols for v in values.values()))
-    scope = {**FUNCTIONS, **{s.name: s for s in symbols | {*derivation.system.qddot}}}
+    system = derivation.system
+    symbols |= {*system.qdot, *system.qddot, *system.multipliers}
+    scope = {**FUNCTIONS, **{s.name: s for s in symbols}}
     names_shown, residuals = set(), []
     for step in steps(derivation):
         for formula in step.formulas:
@@ -49,9 +57,11 @@ def test_every_formula_is_the_derived_one(name: str) -> None:
             apart = sp.Matrix([parse(right, scope)]) - sp.Matrix([values[left]])
             assert apart.expand().is_zero_matrix or sp.simplify(apart).is_zero_matrix, left
     assert names_shown == {*values}
-    *equations, product = residuals
-    assert [parse(e, scope) for e in equations] == list(derivation.euler_lagrange)
-    assert product.startswith("M*[[")
+    products = [residual for residual in residuals if "*[[" in residual]
+    equations = [parse(one, scope) for one in residuals if one not in products]
+    conditions = [one.formula for one in system.conditions]
+    assert equations == [*conditions, *derivation.euler_lagrange]
+    assert [product[0] for product in products] == (["M", "G"] if conditions else ["M"])
 
 
 def test_every_step_is_shown_with_its_own_lines(double: Derivation) -> None:

@@ -4,14 +4,22 @@ from collections.abc import Iterator
 
 from derive.handout.document import Block, Paragraph
 from derive.handout.motion import has_inverse, legendre
-from derive.handout.notation import names_of
+from derive.handout.notation import names_of, words
 from derive.handout.numbering import Numbering
 from derive.handout.tidy import tidied
 from derive.mechanics.derivation import Derivation
+from derive.system.parts import SystemDefinitionError
 
 
 def hamilton(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     """The Hamiltonian and its derivatives, if they are readable, or else linear equations."""
+    try:
+        d.check_canonical()
+    except SystemDefinitionError as error:
+        yield Paragraph(
+            f"There are none: {words(str(error).partition(': ')[2].partition(';')[0])}."
+        )
+        return
     if not has_inverse(d) or not formulas.are_readable([d.hamiltonian]):
         yield Paragraph(
             "The Hamiltonian contains the inverse of the mass matrix and is too long to read. At "

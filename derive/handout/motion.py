@@ -41,9 +41,10 @@ def euler_lagrange(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         )
         yield formulas.equation(rate, value=tidied(change, *state))
         yield formulas.equation(slope, value=tidied(derivative, *state))
-        left = f"{rate} - {slope}" + (f" - {force}" if force else "")
+        reaction = formulas.notation.reaction(i)
+        left = f"{rate} - {slope}" + (f" - {force}" if force else "") + reaction
         yield formulas.equation(left, value=residuals[i], after=("0",))
-        if derivative == 0 and not force:
+        if derivative == 0 and not force and not reaction:
             yield Paragraph(
                 f"The Lagrangian does not depend on `{q}`: the momentum `p_{q}` is constant."
             )
@@ -52,7 +53,7 @@ def euler_lagrange(d: Derivation, formulas: Numbering) -> Iterator[Block]:
 def accelerations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     """The equations of motion as linear equations, and their solution if it is readable."""
     M, f = map(formulas.notation.letter, "Mf")
-    still = dict.fromkeys(d.system.qddot, 0)
+    still = dict.fromkeys((*d.system.qddot, *d.system.multipliers), 0)
     forcing = sp.Matrix([-residual.subs(still) for residual in _residuals(d)])
     is_column = len(d.system.q) > 1
     vector = f"{f}_vector" if is_column else f
@@ -61,9 +62,15 @@ def accelerations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         f"The equations of motion are linear in the accelerations, with the {matrix} `{M}` and the "
         f"forcing `{vector}`."
     )
-    yield formulas.relation(f"{M}*{names_of(d.system.qddot)}", vector)
+    if d.system.conditions:
+        yield from _constrained(d, formulas, vector)
+    else:
+        yield formulas.relation(f"{M}*{names_of(d.system.qddot)}", vector)
     yield from formulas.matrix(M, d.mass_matrix)
     yield from formulas.column(f, forcing)
+    if d.system.conditions:
+        yield Paragraph("At each state, both linear equations are solved in numbers.")
+        return
     solution = _solution(d, forcing) if has_inverse(d) else []
     if solution and formulas.are_readable(solution):
         yield Paragraph("The solution:")
@@ -74,6 +81,22 @@ def accelerations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
             "The solution is too long to read; at each state, the linear equations are solved in "
             "numbers."
         )
+
+
+def _constrained(d: Derivation, formulas: Numbering, vector: str) -> Iterator[Block]:
+    """The equations of motion with multipliers, and the constraints of accelerations."""
+    M, G, T, gamma = map(formulas.notation.letter, ("M", "G", "T", "gamma"))
+    accelerations, multipliers = names_of(d.system.qddot), names_of(d.system.multipliers)
+    yield formulas.relation(f"{M}*{accelerations}", f"{vector} + {G}**{T}*{multipliers}")
+    yield Paragraph(
+        f"The constraints, differentiated until accelerations occur, have the matrix `{G}`."
+    )
+    yield formulas.relation(f"{G}*{accelerations}", f"{gamma}_vector")
+    yield from formulas.rows(G, d.constraint_jacobian)
+    if d.constraint_forcing.rows > 1:
+        yield from formulas.column(gamma, d.constraint_forcing)
+    else:
+        yield formulas.equation(f"{gamma}_vector", value=d.constraint_forcing)
 
 
 def energy(d: Derivation, formulas: Numbering) -> Iterator[Block]:
@@ -88,7 +111,9 @@ def energy(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     else:
         yield Paragraph("The energy is the sum of kinetic and potential energy.")
         yield formulas.equation(E, f"{T} + {V}", value=d.energy)
-    power = tidied(d.power, *d.system.q, *d.system.qdot)
+    moved = zip(d.system.multipliers, d.constraint_drift, strict=True)
+    reactions = sp.Add(*(multiplier * drift for multiplier, drift in moved))
+    power = tidied(d.power - reactions, *d.system.q, *d.system.qdot)
     if power == 0:
         yield Paragraph("The energy of a motion is constant, because no force changes it.")
     else:
@@ -116,7 +141,13 @@ def has_inverse(d: Derivation) -> bool:
 def _residuals(d: Derivation) -> list[sp.Expr]:
     """The left sides d/dt ∂L/∂q̇ - ∂L/∂q - Q of the equations of motion."""
     state = (*d.system.q, *d.system.qdot, *d.system.qddot)
-    triples = zip(d.momenta, d.system.q, d.system.applied, strict=True)
+    reactions = d.constraint_jacobian.T * sp.Matrix(d.system.multipliers)
+    forces = (
+        [a + b for a, b in zip(d.system.applied, reactions, strict=True)]
+        if reactions
+        else d.system.applied
+    )
+    triples = zip(d.momenta, d.system.q, forces, strict=True)
     return [
         tidied(_time_derivative(d, p) - d.lagrangian.diff(q) - force, *state)
         for p, q, force in triples

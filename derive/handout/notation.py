@@ -46,6 +46,23 @@ class Notation:
         system = self.system
         return f"{self.letter('Q')}_{system.q[i].name}" if system.applied[i] != 0 else ""
 
+    @property
+    def constraints(self) -> list[str]:
+        """The names of the constraints."""
+        letter, n = self.letter("phi"), len(self.system.conditions)
+        return [f"{letter}_{k}" for k in range(1, n + 1)]
+
+    def reaction(self, i: int) -> str:
+        """The reactions on a coordinate, with their sign: "" if there are none."""
+        system, terms = self.system, ""
+        q, qdot = system.q[i], system.qdot[i]
+        for name, one in zip(self.constraints, system.conditions, strict=True):
+            is_rate = one.formula.free_symbols & {*system.qdot}
+            variable = qdot if is_rate else q
+            if one.formula.has(variable):
+                terms += f" - {one.symbol}*d({name}, {variable})"
+        return terms
+
     @cached_property
     def order(self) -> TextbookOrder:
         """The order of factors and terms: masses, gravity, other parameters, coordinates."""
@@ -58,14 +75,15 @@ class Notation:
             },
             **dict.fromkeys((*system.q, TIME), "coordinate"),
             **dict.fromkeys((*system.qdot, *system.p, omega), "rate"),
-            **dict.fromkeys(system.qddot, "acceleration"),
+            **dict.fromkeys((*system.multipliers, *system.qddot), "acceleration"),
         }
         return TextbookOrder(kinds)
 
     @property
     def _symbols(self) -> tuple[sp.Symbol, ...]:
         system = self.system
-        return (*system.params, *system.q, *system.qdot, *system.qddot, *system.p)
+        moving = (*system.q, *system.qdot, *system.qddot, *system.p)
+        return (*system.params, *moving, *system.multipliers)
 
 
 def names_of(symbols: Sequence[sp.Symbol]) -> str:

@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations_with_replacement, count
+from itertools import combinations_with_replacement, count, product
 
 import sympy as sp
 
@@ -72,6 +72,17 @@ class Numbering:
             for i, j in combinations_with_replacement(range(n), 2):
                 if value[i, j] != 0:
                     yield self.equation(f"{name}_{i + 1}{comma}{j + 1}", value=value[i, j])
+
+    def rows(self, name: str, value: sp.MatrixBase) -> Iterator[Block]:
+        """A matrix of any shape; by entries where it is too wide."""
+        if self.fits(value):
+            yield self.equation(name, value=value)
+            return
+        yield Paragraph(f"Entries of `{name}` that are not listed are zero.")
+        comma = "_" if max(value.shape) > 9 else ""
+        for i, j in product(range(value.rows), range(value.cols)):
+            if value[i, j] != 0:
+                yield self.equation(f"{name}_{i + 1}{comma}{j + 1}", value=value[i, j])
 
     def fits(self, value: sp.Expr | sp.MatrixBase) -> bool:
         """Whether a value fits on a line, beside its name."""

@@ -1,6 +1,7 @@
 """The document of a derivation, from positions to code."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from textwrap import fill
 
 from derive.codegen.backend import find_backends
@@ -12,12 +13,13 @@ from derive.handout.motion import accelerations, energy, euler_lagrange, lagrang
 from derive.handout.notation import Notation, words
 from derive.handout.numbering import Numbering
 from derive.handout.oscillations import oscillations
-from derive.handout.setup import energies, system, velocities
+from derive.handout.setup import constraints, energies, system, velocities
 from derive.mechanics.derivation import Derivation
 from derive.system.parts import SystemDefinitionError
 
 SECTIONS = {
     "System": system,
+    "Constraints": constraints,
     "Velocities": velocities,
     "Energies": energies,
     "Lagrangian and momenta": lagrangian,
@@ -64,12 +66,27 @@ def document(derivation: Derivation) -> Document:
             f"a document of {count} coordinates is too long to read: at most {LARGEST_SYSTEM} are "
             "allowed; choose a system with fewer"
         )
+    derivation = with_letters(derivation)
     formulas = Numbering(Notation(derivation.system))
     sections = [
-        Section(title, tuple(blocks(derivation, formulas))) for title, blocks in SECTIONS.items()
+        Section(title, tuple(blocks(derivation, formulas)))
+        for title, blocks in SECTIONS.items()
+        if derivation.system.conditions or blocks is not constraints
     ]
     sections.append(Section("Generated code", tuple(_code(derivation))))
     return Document(words(derivation.system.title), tuple(sections))
+
+
+def with_letters(derivation: Derivation) -> Derivation:
+    """The derivation with multipliers that are called λ, with an index."""
+    system = derivation.system
+    taken = {s.name for s in (*system.params, *system.q)}
+    letters = [f"lambda_{k}" for k in range(1, len(system.conditions) + 1)]
+    if taken & {*letters} or letters == [one.name for one in system.conditions]:
+        return derivation
+    pairs = zip(system.conditions, letters, strict=True)
+    renamed = [replace(one, name=letter, meaning=one.meaning) for one, letter in pairs]
+    return Derivation(replace(system, constraints=renamed))
 
 
 def _code(derivation: Derivation) -> Iterator[Block]:

@@ -58,6 +58,31 @@ def _in_space(bodies: Sequence[RigidBody], formulas: Numbering) -> Iterator[Bloc
         yield Paragraph(f"The body axes of {mass} in space: {'; '.join(columns)}.")
 
 
+def constraints(d: Derivation, formulas: Numbering) -> Iterator[Block]:
+    """Constraints, with names, and their multipliers."""
+    yield Paragraph("These functions remain zero along a motion.")
+    for name, one in zip(formulas.notation.constraints, d.system.conditions, strict=True):
+        yield formulas.equation(name, value=one.formula, after=("0",), is_given=True)
+    yield Paragraph(
+        "A multiplier times the derivatives of its function by the coordinates, or by the "
+        "velocities if it contains any, is the reaction that keeps it so."
+    )
+    rows = ((f"`{c.symbol}`", unit_words(c.unit), words(c.meaning)) for c in d.system.conditions)
+    yield Table(("multiplier", "unit", "meaning"), tuple(rows))
+    decision = d.integrability
+    if decision.integrals:
+        yield Paragraph(
+            "Some constraints of velocities follow from constraints of positions. These functions "
+            f"are constant: {formulas.text(*decision.integrals)}."
+        )
+    if decision.nonholonomic:
+        yield Paragraph(
+            "Constraints of velocities that are not integrable restrict no positions. They must "
+            "not be used to remove velocities from the Lagrangian before it is differentiated, "
+            "because varied motions do not satisfy them: the equations would lack forces."
+        )
+
+
 def meaning(part: Coordinate | Parameter | Input) -> str:
     """The meaning of a symbol; none if it only repeats the name."""
     return "" if part.meaning == part.symbol.name else words(part.meaning)

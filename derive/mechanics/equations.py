@@ -109,7 +109,7 @@ class Equations(Constraints):
         numerator = matrix.adjugate() * column
         return Matrix(numerator.applyfunc(lambda entry: sp.factor_terms(entry) / determinant))
 
-    def _check_canonical(self) -> None:
+    def check_canonical(self) -> None:
         """Refuse Hamilton's form of a system with constraints."""
         names = ", ".join(one.name for one in self.system.conditions)
         if self.integrability.nonholonomic:
@@ -132,7 +132,7 @@ class Equations(Constraints):
 
         A `SystemDefinitionError` states the reason why a system with constraints has none.
         """
-        self._check_canonical()
+        self.check_canonical()
         adjugate, determinant = self._adjugate_and_determinant
         p = Matrix(self.system.p) - self.drift
         numerator = collected((p.T * adjugate * p)[0, 0], *self.system.q, *self.system.p)
@@ -141,7 +141,7 @@ class Equations(Constraints):
     @cached_property
     def hamilton_equations(self) -> tuple[Matrix, Matrix]:
         """(q̇, ṗ) = (∂H/∂p, -∂H/∂q + Q), two columns; canonical without applied forces."""
-        self._check_canonical()
+        self.check_canonical()
         velocities = self._divided_by_mass(Matrix(self.system.p) - self.drift)
         known = dict(zip(self.system.qdot, velocities, strict=True))
         pairs = zip(self.system.q, self.system.applied, strict=True)

@@ -25,11 +25,12 @@ def with_multipliers(model: Model, equations: Sequence[str]) -> Model:
     def holding(names: Scope) -> int:
         return sum(_holds(motions, text, {**motions.scope, **names}) for text in equations)
 
-    found = max(_usual_names(system), key=holding) if equations else {}
+    found = max(usual_names(system), key=holding) if equations else {}
     return replace(model, names={**found, **model.names})
 
 
-def _usual_names(system: System) -> Iterator[Scope]:
+def usual_names(system: System) -> Iterator[Scope]:
+    """Names of the multipliers with each of the factors."""
     for factor in FACTORS:
         names = {f"lambda_{k}": factor * one for k, one in enumerate(system.multipliers, 1)}
         if len(names) == 1:

@@ -1,7 +1,7 @@
 """What the letters of a document can mean: a system, an order of coordinates, a convention."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice, permutations, product
 from math import pi
 from typing import Any, Literal, TypeAlias
@@ -9,6 +9,7 @@ from typing import Any, Literal, TypeAlias
 from derive.system.parts import Parameter
 from derive.system.system import System
 from derive.verification.documents.letters import Letters
+from derive.verification.multipliers import usual_names
 
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
@@ -87,6 +88,10 @@ def candidates(
     With `numbers`, by kinds of parameters, these have the numbers instead of letters.
     """
     n = len(system.coordinates)
+    if system.conditions:
+        own = {one for names in usual_names(system) for one in names}
+        others = (one for one in letters.parameters if one not in own)
+        letters = replace(letters, parameters=tuple(others))
     choices = _likeliest(
         [*_conventions(system, letters)],
         [*letters.orders([one.unit == "rad" for one in system.coordinates])],
@@ -95,9 +100,9 @@ def candidates(
         frictions(letters, n),
     )
     for (signs, offsets), order, mapping, forces, friction in islice(choices, MAX_CANDIDATES):
-        own = _numbers(system, mapping, numbers or {})
-        if numbers is None or own:
-            yield Candidate(system, order, signs, offsets, mapping, forces, friction, own)
+        stated = _numbers(system, mapping, numbers or {})
+        if numbers is None or stated:
+            yield Candidate(system, order, signs, offsets, mapping, forces, friction, stated)
 
 
 def _numbers(

@@ -31,7 +31,7 @@ def meaning(candidate: Candidate) -> Meaning:
     symbols: dict[str, sp.Symbol] = {}
     for name in candidate.coordinates:
         symbols[name] = sp.Symbol(valid_name(name), real=True)
-    units: dict[str, str] = {}
+    units, defaults = dict[str, str](), dict[str, float]()
     values: dict[sp.Symbol, sp.Expr] = {}
     for parameter in template.parameters:
         own = parameter.symbol
@@ -42,6 +42,7 @@ def meaning(candidate: Candidate) -> Meaning:
         name = valid_name(letter) if letter else own.name + UNNAMED
         values[own] = sp.Symbol(name, **own._assumptions_orig)
         units[name] = parameter.unit
+        defaults[name] = parameter.default if template.conditions else 1.0
         if letter:
             symbols[letter] = values[own]
     q = [symbols[name] for name in candidate.coordinates]
@@ -71,11 +72,15 @@ def meaning(candidate: Candidate) -> Meaning:
         name=template.name,
         title=template.title,
         coordinates=coordinates,
-        parameters=[Parameter(s, units[s.name], 1.0, "a parameter") for s in parameters.values()],
+        parameters=[
+            Parameter(s, units[s.name], defaults.get(s.name, 1.0), "a parameter")
+            for s in parameters.values()
+        ],
         masses=[mass.mapped(lambda e: e.xreplace(values)) for mass in template.masses],
         potential=template.potential_energy.xreplace(values),
         gravity=(sp.S.Zero,) * template.dimension,  # included in the potential
         forces=forces,
+        constraints=[one.with_formula(one.formula.xreplace(values)) for one in template.conditions],
     )
     return Meaning(system, symbols)
 

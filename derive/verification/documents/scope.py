@@ -16,6 +16,7 @@ from derive.verification.documents.meaning import Meaning
 from derive.verification.documents.rates import RATES, stem
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
 from derive.verification.model import Model, depends_on, own_names, time_derivative
+from derive.verification.multipliers import usual_names, with_multipliers
 
 #: Generalized forces, such as Q_theta.
 FORCE = re.compile(r"[QF]_(\w+)\Z")
@@ -42,11 +43,16 @@ class DocumentScope:
         #: Formulas that define a name, with the text that does.
         self.defining: dict[str, tuple[DocumentFormula, str]] = {}
         self._add_letters(meaning)
+        own, *_ = usual_names(self._system)
+        self.names |= own
         self._add_energies()
         self._add_derivatives()
         self._add_usual_names()
+        defined = {formula.subject for formula in formulas}
         for name, text in meanings.items():
-            self._add(name, self.value(text))
+            operand, _ = derivatives.get(name, ("", ()))
+            if name not in own and operand not in defined - {""}:
+                self._add(name, self.value(text))
         #: Names of matrices and columns whose entries are defined one by one, and of columns of
         #: small displacements.
         self.composed, self.displacements = set[str](), set[str]()
@@ -60,7 +66,10 @@ class DocumentScope:
                 break
         #: Parameters with the numbers that the document sets them to.
         self.special_values = self._special_values(formulas)
-        self.model = Model(self.derivation, self.names)
+        equations = [f"{one.sides[0].text} = {one.sides[-1].text}" for one in formulas]
+        others = {name: value for name, value in self.names.items() if name not in own}
+        self.model = with_multipliers(Model(self.derivation, others), equations)
+        self.names = dict(self.model.names)
 
     @property
     def all_names(self) -> dict[str, Any]:

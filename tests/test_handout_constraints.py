@@ -1,0 +1,98 @@
+"""Documents of systems with constraints: multipliers, G and γ, and reasons; verified when read."""
+
+from pathlib import Path
+
+import pytest
+
+from derive import Derivation, load
+from derive.handout.document import Paragraph
+from derive.handout.sections import document
+from derive.handout.writing import write_document
+from derive.reading.documents import read_document
+from derive.verification.documents.hints import hints
+from derive.verification.documents.judged import JudgedDocument
+from derive.verification.documents.judgement import judge_document
+
+SWING = """
+title = "Pendulum in Cartesian coordinates"
+constraints = [{ formula = "x**2 + y**2 - l**2", name = "rod", unit = "N/m", meaning = "tension" }]
+coordinates = { x = { unit = "m" }, y = { unit = "m" } }
+[parameters]
+m = { value = 1, unit = "kg" }
+l = { value = 0.8, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[[masses]]
+mass = "m"
+position = ["x", "y"]
+"""
+DISC = """
+title = "A vertical rolling disc"
+potential = "0"
+constraints = ["x_dot - R*phi_dot*cos(theta)", "y_dot - R*phi_dot*sin(theta)"]
+coordinates = { x = { unit = "m" }, y = { unit = "m" }, theta = {}, phi = {} }
+[parameters]
+m = { value = 1, unit = "kg" }
+R = { value = 0.5, unit = "m" }
+[[masses]]
+mass = "m"
+position = ["x + R*sin(phi)*cos(theta)", "y + R*sin(phi)*sin(theta)", "R*cos(phi)"]
+[[masses]]
+mass = "m"
+position = ["x - R*sin(theta)", "y + R*cos(theta)", "0"]
+"""
+
+
+@pytest.fixture
+def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    path = tmp_path / "system.toml"
+    path.write_text(request.param)
+    return path
+
+
+def judged(path: Path, *changes: tuple[str, str]) -> JudgedDocument:
+    """Verdicts on the document of a system, after changes of its LaTeX."""
+    (written,) = write_document(Derivation(load(path)), path.with_suffix(".tex"))
+    text = written.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    written.write_text(text, encoding="utf-8")
+    return judge_document(read_document(written), hints(str(path), None))
+
+
+@pytest.mark.parametrize("path", [SWING, DISC], indirect=True, ids=["swing", "disc"])
+def test_a_document_is_verified_from_its_own_latex(path: Path) -> None:
+    formulas = judged(path).formulas
+    assert {one.verdict for one in formulas} == {"verified", "definition"}
+    (motion,) = (one for one in formulas if "G^T" in one.latex)
+    assert motion.verdict == "verified"
+    with_multipliers = [one for one in formulas if r"\lambda_1 \frac{\partial \phi" in one.latex]
+    assert [one.verdict for one in with_multipliers] == ["verified"] * 2
+
+
+@pytest.mark.parametrize("path", [SWING], indirect=True)
+def test_another_sign_of_the_reactions_is_wrong(path: Path) -> None:
+    wrong = [
+        one.latex for one in judged(path, ("+ G^T", "- G^T")).formulas if one.verdict == "wrong"
+    ]
+    assert len(wrong) == 1
+    assert "G^T" in wrong[0]
+
+
+@pytest.mark.parametrize(
+    ("path", "reason"),
+    [(SWING, "momenta are not independent"), (DISC, "velocities are not integrable")],
+    indirect=["path"],
+)
+def test_the_document_states_why_there_is_no_hamiltonian(path: Path, reason: str) -> None:
+    sections = {one.title: one.blocks for one in document(Derivation(load(path))).sections}
+    (paragraph,) = sections["Hamilton's equations"]
+    assert isinstance(paragraph, Paragraph)
+    assert reason in paragraph.text
+    texts = "".join(one.text for one in sections["Constraints"] if isinstance(one, Paragraph))
+    assert ("must not be used to remove velocities" in texts) == (path.read_text() == DISC)
+
+
+def test_other_documents_have_no_section_on_constraints() -> None:
+    titles = [one.title for one in document(Derivation(load("single_pendulum"))).sections]
+    assert "Constraints" not in titles
