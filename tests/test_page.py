@@ -13,7 +13,7 @@ import pytest
 from browser import UNIT, Player, at_rest, track_of
 
 from solvers.player import page
-from solvers.player.track import Track
+from solvers.player.track import Coordinate, Track
 
 BOBS, ROD = ((0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00)), (0x4A, 0x52, 0x59)
 # runs have the colours after those of their masses
@@ -371,6 +371,42 @@ def test_the_view_of_a_motion_in_space_turns_by_keys_and_pointer(player: Player)
     assert player.find("#turning").is_displayed()
     player.open([at_rest()])
     assert not player.find("#turning").is_displayed()
+
+
+def test_coordinates_are_shown_over_time_and_in_the_phase_plane(player: Player) -> None:
+    t = np.linspace(0, 5, 501)
+    swing = Coordinate("θ₁", "rad", np.cos(t), -np.sin(t))
+    slide = Coordinate("x", "m", 3 * t, 0 * t + 3)
+    player.open([replace(at_rest(), coordinates=(swing, slide))])
+    chart, plane = "#over-time", "#phase-plane"
+    places = {}
+    for time in (0.5, 4.0):
+        player.js(f"document.getElementById('time-slider').value = {time}")
+        player.js("document.getElementById('time-slider').dispatchEvent(new Event('input'))")
+        player.settle()
+        for selector in (chart, plane):
+            dot, canvas = (player.find(f"{selector} {part}").rect for part in (".dot", "canvas"))
+            across, down = (dot[a] + 5 - canvas[a] for a in "xy")
+            places[selector, time] = across, down
+            # on the curve, in the colour of the run
+            row, column = round(down), round(across)
+            near = player.pixels(f"{selector} canvas")[row - 2 : row + 3, column - 2 : column + 3]
+            assert (near == AFTER_ONE[0]).all(-1).any()
+    # the phase plane is a circle, so that its axes have one scale each
+    (a, b), (c, d) = places[plane, 0.5], places[plane, 4.0]
+    width = (a - c) / (np.cos(0.5) - np.cos(4))
+    height = (d - b) / -(np.sin(0.5) - np.sin(4)) * -1
+    assert width > 40
+    assert abs(height) > 20
+    assert player.find(f"{chart} canvas").get_attribute("aria-label") == "θ₁ over time"
+    player.find("#coordinate option:nth-child(2)").click()
+    player.settle()
+    label = player.find(f"{plane} canvas").get_attribute("aria-label")
+    assert label == "Rate of change of x over x"
+    up = player.find(f"{chart} .dot").rect["y"] - player.find(f"{chart} canvas").rect["y"]
+    assert up != pytest.approx(places[chart, 4.0][1], abs=5)
+    player.open([at_rest()])
+    assert not player.find("#state").is_displayed()
 
 
 def test_text_is_shown_and_never_executed(player: Player) -> None:

@@ -10,6 +10,7 @@ import time
 from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from solvers.app.cli import main
 from solvers.app.commands.options import selected_scenes
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
+from solvers.equations.module import equations_of_motion
 from solvers.io.notation import symbol
 from solvers.references.taylor import taylor
 from solvers.scenes.geometry import ELEVATION, projected, tracks
@@ -179,6 +181,41 @@ def test_masses_at_a_constant_distance_are_joined(
     path.write_text(f'system = "{system}"\nduration = 2\naccuracy = 1e-6\n[initial]\n{initial}\n')
     (motion,) = tracks([run_scene(find(str(path), load_module))])
     assert list(motion.links) == [("rod", pair) for pair in rods]
+
+
+def test_pages_show_coordinates_that_all_runs_have_and_the_equations(tmp_path: Path) -> None:
+    both, light = run_scene(find("report", load_module)), run_scene(find("one_bob", load_module))
+    labels = [[one.label for one in track.coordinates] for track in tracks([both])]
+    assert labels == [["θ₁", "θ₂"]]
+    common = tracks([both, light])
+    assert [[one.label for one in track.coordinates] for track in common] == [["θ₁"]] * 2
+    assert common[0].coordinates[0].rates.tolist() == both.y[2].tolist()
+    assert run("single", folder=tmp_path) == 0
+    text = (tmp_path / "single.html").read_text()
+    assert '<h2 id="equations-title">Equations of motion</h2>' in text
+    formula = text.partition('id="equations-title"')[2]
+    assert formula.count('<div class="formula">') == 1
+    assert "<mi>sin</mi>" in formula
+
+
+def test_formulas_of_a_docstring_are_whole() -> None:
+    first, second = equations_of_motion(dp)
+    assert first.startswith("g*l1*(m1 + m2)*sin(theta1) + ")
+    assert first.endswith(" = 0")
+    assert "\n" not in first + second
+    assert "  " not in first + second
+    text = """Title.
+
+Constraints, with their multipliers:
+    x**2 + y**2 - l**2 = 0: rod [N/m], tension
+
+Equations of motion:
+    m*x_ddot
+        - 2*rod*x = 0
+"""
+    module = SimpleNamespace(__doc__=text)
+    assert equations_of_motion(module) == ("m*x_ddot - 2*rod*x = 0", "x**2 + y**2 - l**2 = 0")
+    assert equations_of_motion(SimpleNamespace(__doc__="Title.\n\nMasses:\n    m")) == ()
 
 
 def test_motions_in_space_are_projected_obliquely() -> None:

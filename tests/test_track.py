@@ -12,7 +12,7 @@ import pytest
 from browser import UNIT, at_rest, track_of
 
 from solvers.player.page import Page
-from solvers.player.track import MOST_SAMPLES, Track
+from solvers.player.track import MOST_SAMPLES, Coordinate, Track
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +49,7 @@ def test_many_samples_are_reduced_evenly(tmp_path: Path) -> None:
 
 
 REST = at_rest()
+X = Coordinate("x", "m", REST.t, REST.t)
 HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
 
 
@@ -68,6 +69,8 @@ HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
         ({"links": (("spring", (-2, 0)),)}, r"links has a spring of points \(-2, 0\)"),
         ({"links": (("wheel", (0, -1)),)}, r"links has a wheel of points \(0, -1\): give 3"),
         ({"links": (("chain", (0, -1)),)}, r"links has the kind 'chain': known are rod,"),
+        ({"coordinates": (replace(X, rates=REST.t[:9]),)}, r"rate of x has shape \(9,\)"),
+        ({"coordinates": (replace(X, values=HOLE),)}, r"x\[7\] is nan"),
         ({"points": np.zeros((1, 3, 501))}, r"points has shape \(1, 3, 501\), but positions"),
     ],
 )
@@ -75,7 +78,7 @@ def test_tracks_that_cannot_be_played_are_refused(
     wrong: dict[str, Any], words: str, tmp_path: Path
 ) -> None:
     with pytest.raises(ValueError, match="track 'at rest': " + words):
-        Page("", "", [REST, replace(REST, **wrong)]).write(tmp_path / "page.html")
+        Page("", "", [replace(REST, **wrong)]).write(tmp_path / "page.html")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -89,6 +92,11 @@ def test_energy_errors_of_different_units_share_no_axis() -> None:
     with pytest.raises(ValueError, match=f"are '{UNIT}', 'J', but they share an axis"):
         Page("", "", [REST, other])
     Page("", "", [other, other])
+
+
+def test_coordinates_of_different_names_share_no_chart() -> None:
+    with pytest.raises(ValueError, match="but they share charts: give all tracks the same ones"):
+        Page("", "", [REST, replace(REST, coordinates=(X,))])
 
 
 def test_two_samples_suffice_and_the_unit_is_plain_text() -> None:

@@ -5,9 +5,7 @@ values, with names from the caller's scope. Sizes are limited before anything is
 """
 
 import ast
-import keyword
 import operator
-import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from functools import reduce
@@ -20,34 +18,25 @@ from derive.formulas import functions
 from derive.formulas.budget import INFINITE, MAX_BITS, MAX_EXPONENT, Budget, BudgetError
 from derive.formulas.numeric import NoValueError
 from derive.formulas.sampling import check_value
+from derive.formulas.syntax import RELATION as RELATION
+from derive.formulas.syntax import ExpressionError as ExpressionError
+from derive.formulas.syntax import is_sum as is_sum
+from derive.formulas.syntax import python_source as python_source
+from derive.formulas.syntax import summands as summands
+from derive.formulas.syntax import syntax_tree as syntax_tree
 from solvers.io.suggestion import did_you_mean
 
 Value: TypeAlias = sp.Expr | sp.MatrixBase
 Scope = Mapping[str, Any]
 
-#: The relations between the sides of a statement.
-RELATION = re.compile(r"(>=|<=|=|>|<)")
-
 #: The functions and constants available in every formula.
 FUNCTIONS: dict[str, Any] = functions.FUNCTIONS | {"pi": sp.pi}
-
-#: Words of Python's grammar, which are names in a formula, such as lambda.
-KEYWORD = re.compile(rf"\b(?:{'|'.join(keyword.kwlist)})\b")
-#: From an ASCII letter to the wide letter that Python's parser normalises to it.
-WIDE = 0xFEE0
 
 #: The comparisons of conditions.
 COMPARISONS = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt, ast.GtE: sp.Ge}
 
 #: Functions that have no value for some arguments.
 PARTIAL = (sp.tan, sp.log)
-
-#: Characters of the longest formula.
-MAX_LENGTH = 20_000
-
-
-class ExpressionError(ValueError):
-    """Invalid formula; the message names the invalid part and the allowed syntax."""
 
 
 def parse(text: str, scope: Scope, budget: Budget | None = None) -> Value:
@@ -82,52 +71,6 @@ def number(text: str, scope: Scope, budget: Budget | None = None) -> sp.Expr:
     if isinstance(value, sp.MatrixBase):  # which is an expression, too, if it is immutable
         raise ExpressionError(f"{text.strip()[:50]!r} is a column or matrix, not a number")
     return value
-
-
-def syntax_tree(text: str) -> ast.expr:
-    """Return the syntax tree of a formula."""
-    if len(text) > MAX_LENGTH:
-        raise ExpressionError(f"a formula has {len(text)} characters; at most {MAX_LENGTH} allowed")
-    text = text.strip()
-    for character in "#\n\\":
-        if character in text:
-            raise ExpressionError(f"{character!r} has no meaning in a formula: {text[:80]!r}")
-    source = python_source(text)
-    try:
-        tree = ast.parse(source, mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise ExpressionError(f"cannot parse {text[:80]!r} as a formula: {error}") from None
-    line = source.encode()  # columns are counted in bytes
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Constant):
-            # the digits, since the value is already rounded; `kind` is free but for text
-            node.kind = line[node.col_offset : node.end_col_offset].decode()
-    return tree
-
-
-def is_sum(node: ast.expr) -> bool:
-    """Whether a part of a formula is a sum or a difference."""
-    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
-
-
-def summands(node: ast.expr) -> list[tuple[ast.expr, int]]:
-    """The terms of a sum and their signs; brackets behind a sign stay whole."""
-    terms: list[tuple[ast.expr, int]] = []
-    while isinstance(node, ast.BinOp) and is_sum(node):
-        terms.append((node.right, 1 if isinstance(node.op, ast.Add) else -1))
-        node = node.left
-    match node:
-        case ast.UnaryOp(op=ast.USub(), operand=operand) if not is_sum(operand):
-            terms.append((operand, -1))
-        case _:
-            terms.append((node, 1))
-    return terms[::-1]
-
-
-def python_source(text: str) -> str:
-    """The formula as Python's parser reads it; columns of a syntax tree are those of this text."""
-    # with a wide letter, the parser reads a keyword as a name, and normalises it
-    return KEYWORD.sub(lambda word: chr(ord(word[0][0]) + WIDE) + word[0][1:], text)
 
 
 class _Evaluator:

@@ -10,11 +10,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from html import escape
+from typing import TYPE_CHECKING
 
-import sympy as sp
-
-from derive.formulas.expression import RELATION, ExpressionError, is_sum, syntax_tree
 from derive.formulas.lettering import letter_and_index, name_markup
+from derive.formulas.syntax import RELATION, ExpressionError, is_sum, syntax_tree
+
+if TYPE_CHECKING:
+    import sympy as sp
 
 RELATIONS = {"=": "=", "<": "&lt;", ">": "&gt;", "<=": "≤", ">=": "≥"}
 #: Invisible operators, for screen readers.
@@ -36,8 +38,10 @@ class Formula:
     text: str
 
     @staticmethod
-    def of(name: str, value: sp.Expr | sp.MatrixBase) -> "Formula":
+    def of(name: str, value: "sp.Expr | sp.MatrixBase") -> "Formula":
         """Return the formula ``name = value`` of a SymPy value."""
+        import sympy as sp  # which pages of motions do not need
+
         plain = partial(sp.sstr, order="lex")
         if not isinstance(value, sp.MatrixBase):
             return Formula(f"{name} = {plain(value)}")

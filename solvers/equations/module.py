@@ -95,6 +95,22 @@ def title(module: GeneratedModule) -> str:
     return str(module.__doc__).partition("\n")[0].removesuffix(".")
 
 
+def equations_of_motion(module: GeneratedModule) -> tuple[str, ...]:
+    """Equations of motion and of constraints, from the docstring; none if they are long."""
+    rows: dict[str, list[str]] = {}
+    for section in str(module.__doc__).split("\n\n"):
+        heading, *lines = section.splitlines()
+        parts = rows.setdefault(heading.partition(",")[0].rstrip(":"), [])
+        for line in lines:
+            if line.startswith(" " * 8):  # the rest of a long formula
+                parts[-1] += f" {line.strip()}"
+            else:
+                parts.append(line.strip())
+    motion = rows.get("Equations of motion", [])
+    constraints = [row.partition(": ")[0] for row in rows.get("Constraints", [])]
+    return (*motion, *constraints) if motion else ()
+
+
 def has_function(module: GeneratedModule, name: str) -> bool:
     """Whether a generated module has the function `name`, and so ``name_many``."""
     return name in module.OPERATIONS

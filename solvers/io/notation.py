@@ -6,6 +6,19 @@ GREEK = (
 ).split()
 
 
+#: The letters, and the digits of indices.
+LETTERS = dict(zip(GREEK, "αβγδεζηθκλμνξπρστφχψωΓΔΘΛΠΣΦΨΩ", strict=True))
+INDICES = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+def plain_symbol(name: str) -> str:
+    """A name of a coordinate or parameter in Unicode: ``θ₁`` for ``theta1``."""
+    stem, _, below = name.partition("_")
+    letters = stem.rstrip("0123456789")
+    index = stem[len(letters) :].translate(INDICES)
+    return LETTERS.get(letters, letters) + index + (f"_{below}" if below else "")
+
+
 def symbol(name: str) -> str:
     r"""A name in mathematical notation.
 

@@ -15,8 +15,8 @@ from solvers.player.track import Track
 SOURCES = Path(__file__).parent
 #: The parts of the player; each uses those before it.
 SCRIPTS = (
-    *("motion.js", "camera.js", "canvas.js", "shapes.js", "panel.js", "energy_chart.js"),
-    "player.js",
+    *("motion.js", "camera.js", "canvas.js", "shapes.js", "panel.js"),
+    *("energy_chart.js", "state_chart.js", "player.js"),
 )
 
 
@@ -30,6 +30,8 @@ class Page:
         Title and description, as plain text.
     tracks : sequence of Track
         The runs. A run with more than 20 000 samples is reduced to 20 000 evenly spaced ones.
+    equations : str, optional
+        Equations of motion, as HTML.
 
     Raises
     ------
@@ -40,6 +42,7 @@ class Page:
     title: str
     note: str
     tracks: Sequence[Track]
+    equations: str = ""
 
     def __post_init__(self) -> None:
         _check(self.tracks)
@@ -48,7 +51,12 @@ class Page:
     def html(self) -> str:
         """The whole file as text."""
         head = f'<h1>{escape(self.title)}</h1>\n<p id="note">{escape(self.note)}</p>'
-        body = f"<header>\n{head}\n</header>\n<main>\n{player(self.tracks)}</main>"
+        main = player(self.tracks)
+        if self.equations:
+            title = '<h2 id="equations-title">Equations of motion</h2>'
+            part = '<section id="equations" aria-labelledby="equations-title">'
+            main += f"{part}\n{title}\n{self.equations}\n</section>\n"
+        body = f"<header>\n{head}\n</header>\n<main>\n{main}</main>"
         return document(self.title, body, style=style(), script=script())
 
     def write(self, path: Path) -> None:
@@ -94,6 +102,12 @@ def _check(tracks: Sequence[Track]) -> None:
     if len({*units}) > 1:
         text = f"the units of energy errors are {', '.join(map(repr, units))}"
         raise ValueError(f"{text}, but they share an axis: convert them to J")
+    labels = {tuple(one.label for one in track.coordinates) for track in tracks}
+    if len(labels) > 1:
+        raise ValueError(
+            f"the coordinates of the tracks are {labels}, but they share charts: give all tracks "
+            "the same ones, or none"
+        )
     for track in tracks:
         track.check()
 

@@ -9,6 +9,10 @@ const box = boundingBox();
 const panels = tracks.map((track, number) => new Panel(track, number, box));
 const energyChart = new EnergyChart(element("energy-chart"));
 const errors = tracks.map((track, number) => legendEntry(track.label, number));
+const { coordinates } = tracks[0];
+const overTime = new StateChart(element("over-time"), (track, number) => [track.t, track.coordinates[number][2]]);
+const phasePlane = new StateChart(element("phase-plane"), (track, number) => track.coordinates[number].slice(2));
+const stateCharts = coordinates.length > 0 ? [overTime, phasePlane] : [];
 const clock = { time: startTime, playing: false, lastFrame: null };
 let frameIsRequested = false;
 
@@ -50,6 +54,7 @@ function show() {
   const { time } = clock;
   for (const panel of panels) panel.draw(time);
   energyChart.moveCursor(time);
+  for (const chart of stateCharts) chart.moveDots(time);
   slider.value = String(time);
   const text = `${time.toFixed(3).replace("-", "−")} s`;
   element("time").textContent = `${text} of ${Number(endTime.toPrecision(6))} s`;
@@ -60,6 +65,13 @@ function show() {
   });
   element("distance").textContent = distanceText(time);
   Object.assign(document.documentElement.dataset, { time, playing: clock.playing, ...camera });
+}
+
+function showCoordinate(number) {
+  const [label, unit] = coordinates[number];
+  const [value, rate] = [inUnit(label, unit), inUnit(rateOf(label), `${unit}/s`)];
+  overTime.show(number, ["time / s", value], `${label} over time`);
+  phasePlane.show(number, [value, rate], `Rate of change of ${label} over ${label}`);
 }
 
 function distanceText(time) {
@@ -120,10 +132,15 @@ function addListeners() {
   });
   const redrawAll = () => {
     energyChart.draw();
+    for (const chart of stateCharts) chart.draw();
     redraw();
   };
+  element("coordinate").addEventListener("change", (event) => {
+    showCoordinate(event.target.selectedIndex);
+    redrawAll();
+  });
   const observer = new ResizeObserver(redrawAll);
-  for (const { canvas } of [...panels, energyChart]) observer.observe(canvas);
+  for (const { canvas } of [...panels, energyChart, ...stateCharts]) observer.observe(canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redrawAll);
 }
 
@@ -133,6 +150,10 @@ element("distance").hidden = tracks.length < 2;
 element("trace-seconds").textContent = String(TRACE_SECONDS);
 slider.min = String(startTime);
 slider.max = String(endTime);
+element("state").hidden = coordinates.length === 0;
+element("coordinate").append(...coordinates.map(([label]) => new Option(label)));
+if (coordinates.length > 0) showCoordinate(0);
 addListeners();
 energyChart.draw();
+for (const chart of stateCharts) chart.draw();
 setPlaying(!matchMedia("(prefers-reduced-motion: reduce)").matches);

@@ -19,6 +19,24 @@ MOST_SAMPLES = 20_000
 
 
 @dataclass(frozen=True)
+class Coordinate:
+    """A coordinate of a run over time.
+
+    Attributes
+    ----------
+    label, unit : str
+        Such as ``"θ₁"`` and ``"rad"``.
+    values, rates : ndarray of shape (n,)
+        The coordinate, and its rate of change per second.
+    """
+
+    label: str
+    unit: str
+    values: Array
+    rates: Array
+
+
+@dataclass(frozen=True)
 class Track:
     """Positions of masses and energy errors of one run; a `Page` checks it.
 
@@ -40,6 +58,8 @@ class Track:
         rest"``.
     points : ndarray of shape (points, axes, n), optional
         Further points of links, in m.
+    coordinates : tuple of Coordinate, optional
+        Shown over time and in the phase plane; the same ones in all runs of a page.
     """
 
     label: str
@@ -49,6 +69,7 @@ class Track:
     energy_error: Array
     energy_unit: str
     points: Array = field(default_factory=lambda: np.empty((0, 2, 0)))
+    coordinates: tuple[Coordinate, ...] = ()
 
     def check(self) -> None:
         """Raise `ValueError` where this run cannot be played."""
@@ -77,6 +98,13 @@ class Track:
             yield f"{text}: give one number for each time"
         arrays = {"t": self.t, "positions": self.positions, "energy_error": self.energy_error}
         arrays["points"] = self.points
+        for one in self.coordinates:
+            named = {one.label: one.values, f"rate of {one.label}": one.rates}
+            for name, array in named.items():
+                if np.shape(array) != (n,):
+                    text = f"{name} has shape {np.shape(array)}, but with {n} times it must be"
+                    yield f"{text} ({n},): give one number for each time"
+            arrays |= named
         for name, array in arrays.items():
             for index in np.argwhere(~np.isfinite(array)).tolist():
                 text = f"{name}{index} is {np.asarray(array)[tuple(index)]}"
@@ -110,6 +138,10 @@ class Track:
             "positions": [[_rounded(axis[indices], 6) for axis in mass] for mass in self.positions],
             "links": [[kind, *numbers] for kind, numbers in self.links],
             "points": [[_or_constant(axis[indices]) for axis in point] for point in self.points],
+            "coordinates": [
+                [one.label, one.unit, *(_rounded(x[indices], 6) for x in (one.values, one.rates))]
+                for one in self.coordinates
+            ],
             "energy_error": _rounded(self.energy_error[indices], 5),
         }
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from solvers.equations.energy import energy_unit
 from solvers.equations.module import function, links
-from solvers.player.track import Links, Track
+from solvers.io.notation import plain_symbol
+from solvers.player.track import Coordinate, Links, Track
 from solvers.scenes.run import SceneResult, energies
 
 #: Largest relative change of a rod's length.
@@ -87,11 +88,28 @@ def energy_errors(results: Sequence[SceneResult]) -> tuple[list[np.ndarray], str
     return errors, units[0].name if is_relative else "J"
 
 
+def coordinates(results: Sequence[SceneResult]) -> list[tuple[Coordinate, ...]]:
+    """Coordinates over time that exist in all runs, of each run."""
+    runs = []
+    for result in results:
+        module, n = result.scene.module, len(result.y) // 2
+        rows = zip(module.COORDINATES, result.y[:n], result.y[n:], strict=True)
+        runs.append(
+            {
+                name: Coordinate(plain_symbol(name), module.UNITS[name], values, rates)
+                for name, values, rates in rows
+                if np.isfinite([values, rates]).all()
+            }
+        )
+    common = [name for name in runs[0] if all(name in run for run in runs)]
+    return [tuple(run[name] for name in common) for run in runs]
+
+
 def tracks(results: Sequence[SceneResult]) -> list[Track]:
     """The motions for the page that plays them, with the links between masses."""
     errors, unit = energy_errors(results)
     return [
-        Track(r.scene.label, r.t, mass_positions(r), joined, error, unit, points)
-        for r, error in zip(results, errors, strict=True)
+        Track(r.scene.label, r.t, mass_positions(r), joined, error, unit, points, own)
+        for r, error, own in zip(results, errors, coordinates(results), strict=True)
         for joined, points in [links_and_points(r)]
     ]

@@ -19,8 +19,13 @@ def file_names(scene: str, runs: int) -> dict[str, str]:
     return {contents: f"{scene}{ending}" for contents, ending in endings.items()}
 
 
-def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]:
-    """Write tables, a plot and a page of a scene and the scenes beside it; return their paths."""
+def write_files(
+    results: Sequence[SceneResult], folder: Path, equations: str = ""
+) -> dict[str, Path]:
+    """Write tables, a plot and a page of a scene and the scenes beside it; return their paths.
+
+    The page shows the `equations` of motion, HTML.
+    """
     scene = results[0].scene
     names = file_names(scene.name, len(results))
     paths = {contents: folder / name for contents, name in names.items()}
@@ -30,5 +35,6 @@ def write_files(results: Sequence[SceneResult], folder: Path) -> dict[str, Path]
         write_text(paths[f"table {n}"], table(result))
     if module := results[0].specialised_module:
         paths["code"] = Path(module.__file__ or "")
-    Page(scene.title, full_note(results), tracks(results)).write(paths["page"])
+    page = Page(scene.title, full_note(results), tracks(results), equations)
+    page.write(paths["page"])
     return paths

@@ -33,6 +33,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Run the scenes, write their files and print summaries."""
     from solvers.app.modules import specialiser
+    from solvers.app.typesetting import equations
     from solvers.io.progress import Progress
     from solvers.scenes.export import check_export, export_motion
     from solvers.scenes.output import write_files
@@ -51,7 +52,7 @@ def run(arguments: Namespace) -> int:
         with Progress() as report:
             first, *beside = (run_scene(one, specialiser, report) for one in (scene, *scene.beside))
             report("plots")
-            paths = write_files([first, *beside], arguments.output)
+            paths = write_files([first, *beside], arguments.output, equations(scene.module))
             if export:
                 report("export")
                 paths["export"] = export_motion([first, *beside], export, speed=arguments.speed)
