@@ -13,6 +13,7 @@ from derive.system.joints import rolling_on_line as rolling_on_line
 from derive.system.joints import rolling_on_plane as rolling_on_plane
 from derive.system.joints import slider as slider
 from derive.system.links import Block as Block
+from derive.system.links import Box as Box
 from derive.system.links import Cart as Cart
 from derive.system.links import Plate as Plate
 from derive.system.links import Rail as Rail

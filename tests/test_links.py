@@ -5,11 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from sympy import cos, pi, sin, symbols
+from sympy import cos, pi, sin, symbols, sympify
 
 from derive import (
     TIME,
     Block,
+    Box,
     Cart,
     Coordinate,
     Derivation,
@@ -25,6 +26,7 @@ from derive import (
     Thread,
     Wheel,
     load,
+    rotations,
     with_inputs,
 )
 from derive.codegen.writing import texts
@@ -99,6 +101,38 @@ def test_angles_turn_wheels_and_blocks() -> None:
     assert_allclose(corners, [[-2, -2], [2, -2], [2, 0], [-2, 0]])
     turned = shape(Block((0, 0), 4, 2, pi / 2), {})
     assert_allclose(turned, [[1, -2], [1, 2], [-1, 2], [-1, -2]])
+
+
+def test_links_of_a_body_in_space_turn_with_it() -> None:
+    phi = symbols("phi", real=True)
+    body = RigidBody(m, (x, 0, 0), (m, m, m), rotations("zx", (phi, theta)))
+
+    def points(link: Link) -> list[np.ndarray]:
+        values = {x: 2.0, phi: 0.3, theta: 0.5}
+        shapes = link.shapes([body, PointMass(m, (0, 0, 0))])
+        return [
+            np.array([[float(sympify(r).subs(values)) for r in point] for point in corners])
+            for _, corners in shapes
+        ]
+
+    axes = np.array(rotations("zx", (phi, theta)).matrix.subs({phi: 0.3, theta: 0.5}), dtype=float)
+    centre = np.array([2.0, 0, 0])
+    (wheel,) = points(Wheel(0, 3))
+    assert_allclose(wheel, [centre, centre + 3 * axes[:, 0], centre + 3 * axes[:, 1]])
+    (turned,) = points(Wheel(0, 1, pi / 2))
+    assert_allclose(turned[1], centre + axes[:, 1], atol=1e-12)
+    (upright,) = points(Wheel(1, 3))  # about a mass without an orientation
+    assert_allclose(upright, [[0, 0, 0], [3, 0, 0], [0, 0, 3]])
+    faces = points(Box(0, 6, 4, 2))
+    assert len(faces) == 6
+    corners = (np.concatenate(faces) - centre) @ axes  # in body axes
+    assert_allclose(np.abs(corners), np.tile([3, 2, 1], (24, 1)))
+    assert len({tuple(np.round(corner)) for corner in corners}) == 8
+    for face in faces:  # flat, with right angles
+        assert_allclose((face[1] - face[0]) @ (face[2] - face[1]), 0, atol=1e-12)
+        assert_allclose(face[0] + face[2], face[1] + face[3], atol=1e-12)
+    with pytest.raises(SystemDefinitionError, match=r"Box is one in space: .* give a Block"):
+        cart(Box(0, 1, 1, 1))
 
 
 def test_a_system_without_links_has_no_points() -> None:

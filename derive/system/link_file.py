@@ -4,7 +4,19 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from derive.system.links import Block, Cart, Line, Link, Plate, Rail, Rod, Spring, Thread, Wheel
+from derive.system.links import (
+    Block,
+    Box,
+    Cart,
+    Line,
+    Link,
+    Plate,
+    Rail,
+    Rod,
+    Spring,
+    Thread,
+    Wheel,
+)
 from derive.system.parts import SystemDefinitionError
 from derive.system.tables import Table
 from solvers.io.suggestion import shortened
@@ -22,9 +34,12 @@ CENTRED: dict[str, tuple[Callable[..., Link], tuple[str, ...]]] = {
     "wheel": (Wheel, ("radius",)),
     "block": (Block, ("width", "height")),
     "cart": (Cart, ("width", "height")),
+    "box": (Box, ("length", "width", "height")),
 }
+#: Other keys of a kind, if they are not an angle.
+OPTIONAL: dict[str, tuple[str, ...]] = {"wheel": ("angle", "plane"), "box": ()}
 KINDS = (*LINES, *CENTRED)
-KEYS = (*KINDS, "radius", "width", "height", "angle", "plane")
+KEYS = (*KINDS, "radius", "length", "width", "height", "angle", "plane")
 
 
 def read_links(table: Table, value: Callable[[str, str], object]) -> Iterator[Link]:
@@ -46,7 +61,7 @@ def _link(row: Table, kind: str, value: Callable[[str], object]) -> Link:
         if not isinstance(points, list):
             raise InputError(f"{kind} = {shortened(points)} in {row.name} must be a list of points")
     else:
-        known = (kind, *CENTRED[kind][1], "angle", *(["plane"] if kind == "wheel" else []))
+        known = (kind, *CENTRED[kind][1], *OPTIONAL.get(kind, ("angle",)))
         points = [row.values[kind]]
     for key in row.values:
         if key not in known:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self, TypeAlias
 import sympy as sp
 
 from derive.system.parts import PointMass, SystemDefinitionError, formula, formulas, items
+from derive.system.rigid_body import RigidBody
 from solvers.io.suggestion import shortened
 
 #: A place in a picture: the number of a mass, from 0, or the components of a position in m.
@@ -203,13 +204,23 @@ class Centred(Link):
             self, **{name: _mapped(value, function) for name, value in vars(self).items()}
         )
 
-    def _frame(self, masses: Sequence[PointMass]) -> tuple[Point, sp.Expr | None]:
-        """The centre, and the angle: that of the body at the centre, if none is given."""
+    def _frame(
+        self, masses: Sequence[PointMass]
+    ) -> tuple[Point, sp.Expr | None, tuple[Point, ...]]:
+        """The centre, the angle and the axes: by default those of a rigid body at the centre."""
         centre, angle = _position(self, self.centre, masses), getattr(self, "angle", None)
-        if angle is None and isinstance(self.centre, int):
-            orientation = getattr(masses[self.centre], "orientation", None)
-            angle = orientation if isinstance(orientation, sp.Expr) else None
-        return centre, angle
+        axes = tuple(tuple(sp.eye(len(centre)).row(k)) for k in range(len(centre)))
+        if body := self._body(masses):
+            if body.axes:
+                return centre, angle or sp.S.Zero, tuple(map(body.axes.turned, axes))
+            if angle is None:
+                angle = formula(body.orientation)
+        return centre, angle, axes
+
+    def _body(self, masses: Sequence[PointMass]) -> RigidBody | None:
+        """The rigid body at the centre."""
+        mass = masses[self.centre] if isinstance(self.centre, int) else None
+        return mass if isinstance(mass, RigidBody) else None
 
 
 @dataclass(frozen=True)
@@ -226,7 +237,8 @@ class Wheel(Centred):
         Of the spoke in rad, from the first axis of the plane to the second one; by default that of
         the rigid body at the centre. Without either there is no spoke.
     plane : pair of sequences of sympy.Expr, optional
-        Perpendicular unit vectors that span the wheel; by default along the first and last axis.
+        Perpendicular unit vectors that span the wheel; by default along the first and last axis,
+        or, of a rigid body in space at the centre, the body's first and second axis.
 
     Raises
     ------
@@ -249,21 +261,18 @@ class Wheel(Centred):
 
     def shapes(self, masses: Sequence[PointMass]) -> Iterator[Shape]:
         """The centre, and two points of the rim a quarter turn apart."""
-        centre, angle = self._frame(masses)
+        centre, angle, axes = self._frame(masses)
         kind, turn = ("ring", sp.S.Zero) if angle is None else ("wheel", angle)
-        first, second = self.plane or _plane(len(centre))
+        body = self._body(masses)
+        first, second = self.plane or (axes[0], axes[1 if body and body.axes else -1])
         if not len(first) == len(second) == len(centre):
             raise SystemDefinitionError(
                 f"Wheel has a plane of {len(first)} and {len(second)} components: give two unit "
                 f"vectors of {len(centre)}, as of the masses"
             )
-        rim = (
-            tuple(
-                c + self.radius * (sp.cos(turn + quarter) * a + sp.sin(turn + quarter) * b)
-                for c, a, b in zip(centre, first, second, strict=True)
-            )
-            for quarter in (0, sp.pi / 2)
-        )
+        angles = (turn, turn + sp.pi / 2)
+        spokes = ((self.radius * sp.cos(a), self.radius * sp.sin(a)) for a in angles)
+        rim = (_along(centre, spoke, (first, second)) for spoke in spokes)
         yield kind, (centre, *rim)
 
 
@@ -309,13 +318,10 @@ class Block(Centred):
 
     def _at(self, masses: Sequence[PointMass], across: sp.Expr, up: sp.Expr) -> Point:
         """The point at these distances from the centre along width and height."""
-        centre, angle = self._frame(masses)
+        centre, angle, axes = self._frame(masses)
         cos, sin = sp.cos(angle or 0), sp.sin(angle or 0)
         along = (across * cos - up * sin, across * sin + up * cos)
-        return tuple(
-            c + a * along[0] + b * along[1]
-            for c, a, b in zip(centre, *_plane(len(centre)), strict=True)
-        )
+        return _along(centre, along, (axes[0], axes[-1]))
 
 
 @dataclass(frozen=True)
@@ -353,9 +359,53 @@ class Cart(Block):
             yield "ring", tuple(self._at(masses, across + a, up + b) for a, b in offsets)
 
 
-def _plane(dimension: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Unit vectors along the first and the last axis."""
-    return (1, *[0] * (dimension - 1)), (*[0] * (dimension - 1), 1)
+@dataclass(frozen=True)
+class Box(Centred):
+    """A box in space, with faces along the axes of the rigid body at its centre.
+
+    Parameters
+    ----------
+    centre : int or sequence of sympy.Expr
+        The number of a mass, from 0, or the components of a position in m.
+    length, width, height : sympy.Expr or number
+        Along the first, second and third axis, in m.
+
+    Raises
+    ------
+    SystemDefinitionError
+        When a value is no formula, or the centre no point.
+
+    Examples
+    --------
+    >>> from derive import Box
+    >>> Box(0, 0.3, 0.2, 0.1).height
+    1/10
+    """
+
+    length: sp.Expr
+    width: sp.Expr
+    height: sp.Expr
+
+    def shapes(self, masses: Sequence[PointMass]) -> Iterator[Shape]:
+        """The six faces."""
+        centre, _, axes = self._frame(masses)
+        if len(axes) != 3:
+            raise SystemDefinitionError("Box is one in space: in the plane give a Block")
+        sides = (self.length, self.width, self.height)
+        for k in range(3):
+            for sign in (-1, 1):
+                corners = []
+                for pair in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+                    signs = [*pair[:k], sign, *pair[k:]]
+                    lengths = [s * side / 2 for s, side in zip(signs, sides, strict=True)]
+                    corners.append(_along(centre, lengths, axes))
+                yield "plate", tuple(corners)
+
+
+def _along(centre: Point, lengths: Sequence[sp.Expr], axes: Sequence[Sequence[sp.Expr]]) -> Point:
+    """The point at these lengths along axes from a centre."""
+    terms = [[length * x for x in axis] for length, axis in zip(lengths, axes, strict=True)]
+    return tuple(c + sp.Add(*parts) for c, *parts in zip(centre, *terms, strict=True))
 
 
 def _axes(plane: object) -> tuple[Point, ...]:

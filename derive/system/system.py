@@ -86,7 +86,7 @@ class System:
     coincide : sequence of pairs of points, optional
         Points, each a sequence of components in m, that remain together, such as the ends of two
         rods at a pin. They become `constraints`.
-    links : sequence of Rod, Thread, Spring, Rail, Plate, Wheel, Block and Cart, optional
+    links : sequence of Rod, Thread, Spring, Rail, Plate, Wheel, Block, Cart and Box, optional
         How pictures join the masses and other points; by default rods between masses at a constant
         distance.
     keep_coordinates : bool, optional
