@@ -29,7 +29,7 @@ def motions(path: Path) -> list[dict[str, Any]]:
 def test_a_page_is_small_and_as_exact_as_a_screen(tracks: list[Track], tmp_path: Path) -> None:
     path = tmp_path / "new" / "page.html"
     Page("", "", tracks).write(path)
-    assert path.stat().st_size < 50_000
+    assert path.stat().st_size < 60_000  # of which the player is the larger part
     (values,) = motions(path)
     for name, tolerance in (("t", 1e-6), ("positions", 1e-5), ("energy_error", 1e-9)):
         assert np.array(values[name]) == pytest.approx(getattr(tracks[0], name), abs=tolerance)
