@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import cos, sin
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from solvers.app.modules import load
@@ -13,6 +14,12 @@ from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
 from solvers.scenes.summary import figures, summary
+from solvers.sweeps.axes import Grid
+from solvers.sweeps.checks import FROM_ENERGY
+from solvers.sweeps.initial_states import initial_states
+from solvers.sweeps.maps.final import Final
+from solvers.sweeps.status import STATUSES
+from solvers.sweeps.sweep import Sweep
 
 ROCKER = """
 title = "Four-bar linkage"
@@ -90,3 +97,31 @@ def test_what_was_completed_is_reported(tmp_path: Path) -> None:
 def test_invalid_starts_of_scenes_are_refused(initial: str, message: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=message):
         scene(tmp_path, initial)
+
+
+def test_sweeps_complete_every_start(tmp_path: Path) -> None:
+    module = scene(tmp_path, "phi = 1\n").module
+    angles = np.linspace(0, np.pi, 41)
+    definition = Sweep(module, Grid({"chi": angles}), {"end": Final(("phi",))}, 1.0)
+    states, params, status = initial_states(definition, {"chi": angles})
+    # oracle: crank and coupler reach the rocker's end
+    distance = np.hypot(0.9 + 0.6 * np.cos(angles), 0.6 * np.sin(angles))
+    reached = (distance > 0.5) & (distance < 1.1)
+    assert 5 < reached.sum() < 36
+    assert np.array_equal(status == 0, reached)
+    assert (status[~reached] == STATUSES.index("no configuration")).all()
+    residuals = module.constraints_many(0.0, states[reached].T, np.array(params)[:, reached])
+    assert np.abs(residuals).max() < 1e-12
+    assert np.array_equal(states[:, 2], angles)
+
+
+def test_sweeps_give_a_velocity_by_the_energy(tmp_path: Path) -> None:
+    module = scene(tmp_path, "phi = 1\n").module
+    values = {"phi_dot": FROM_ENERGY, "energy": 5.0}
+    angles = np.linspace(0.2, 3, 5)
+    definition = Sweep(module, Grid({"phi": angles}), {"end": Final(("phi",))}, 1.0, values=values)
+    states, params, status = initial_states(definition, {"phi": angles})
+    assert not status.any()
+    energies = module.energy_many(0.0, states.T, np.array(params))
+    assert energies == pytest.approx(np.full(5, 5.0), abs=1e-12)
+    assert np.abs(module.constraints_many(0.0, states.T, np.array(params))).max() < 1e-12

@@ -6,6 +6,7 @@ from math import prod
 
 import numpy as np
 
+from solvers.equations.assembly import has_constraints
 from solvers.equations.mass_matrix import Motion, examined
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive, quantity, real_number
@@ -46,7 +47,7 @@ def check_names(module: GeneratedModule, axes: Axes, values: Values) -> None:
         if name in values:
             raise ValueError(f"{name} varies and has the value {values[name]}; remove one")
     for name in module.COORDINATES:
-        if name not in (*varied, *values):
+        if name not in (*varied, *values) and not has_constraints(module):
             raise ValueError(f"{name} is missing: give its value or an axis")
     for name, value in {**values, **axes.smallest}.items():
         if isinstance(value, str) and value == FROM_ENERGY:
@@ -136,4 +137,5 @@ def examined_motions(module: GeneratedModule, axes: Axes, values: Values) -> Ite
         # velocities do not matter, and one may follow from the energy
         state = [float(given[name]) for name in module.COORDINATES]
         state += [0.0] * len(module.COORDINATES)
-        yield f"motion {k} ({where}): ", [float(given[p]) for p in module.PARAMETERS], state
+        known = None if has_constraints(module) else state  # which determine coordinates later
+        yield f"motion {k} ({where}): ", [float(given[p]) for p in module.PARAMETERS], known
