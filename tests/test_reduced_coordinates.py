@@ -24,6 +24,7 @@ from derive import (
     reduced,
     velocity,
 )
+from derive import load as load_system
 from derive.codegen.writing import texts
 from derive.commands.derive import main
 from derive.mechanics.derivation import RedundancyWarning
@@ -322,3 +323,14 @@ theta = "1 rad"
     start = (1.0, along, 0.1 * cos(1) + along, 0, 0, 0)
     motion = integrate(module, (0, 3), start, module.DEFAULTS, rtol=1e-13, atol=1e-13)
     assert np.abs(result.y[:, -1] - motion.y[[0, 3], -1]).max() < 1e-8
+
+
+def test_eliminated_coordinates_are_measured() -> None:
+    pinned, hand = double_pendulum(), load_system("double_pendulum")
+    for outputs in (["y2"], ["x1", "x2_dot"]):
+        formulas = ["l1*sin(theta1)", "l1*cos(theta1)*theta1_dot + l2*cos(theta2)*theta2_dot"]
+        expected = Derivation(hand).identifiable(outputs=formulas if len(outputs) > 1 else outputs)
+        found = Derivation(reduced(pinned)).identifiable(outputs=outputs)
+        assert str(found) == str(expected)
+    with pytest.raises(SystemDefinitionError, match=r"Derivation\(derive.reduced\(system\)\)"):
+        Derivation(pinned).identifiable(outputs=["x2"])

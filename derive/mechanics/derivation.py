@@ -140,8 +140,9 @@ class Derivation(Equations):
     def _check_free(self, results: str) -> None:
         if self.system.conditions:
             raise SystemDefinitionError(
-                f"{results} of system {self.system.name!r}, which has constraints, are found in "
-                "numbers only: use solvers.equilibria and solvers.linearise with the built module"
+                f"{results} of system {self.system.name!r} are derived without constraints only: "
+                "use solvers.equilibria and solvers.linearise with the built module, or "
+                "Derivation(derive.reduced(system)) if no constraint remains there"
             )
 
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
@@ -213,7 +214,7 @@ class Derivation(Equations):
         Raises
         ------
         SystemDefinitionError
-            When a name is unknown.
+            When a name is unknown, or the system has constraints.
 
         Examples
         --------
@@ -222,6 +223,7 @@ class Derivation(Equations):
         l1, l2, g: determined
         m1, m2: only as m2/m1; give one of them a value
         """
+        self._check_free("identifiable parameters")
         known = {part.symbol.name: part.symbol for part in self.system.parameters}
         for name in unknown or ():
             if name not in known:

@@ -13,7 +13,7 @@ from solvers.io.suggestion import did_you_mean, shortened
 
 
 def named_outputs(kinetics: Kinetics) -> dict[str, sp.Expr]:
-    """Quantities that have a name: ``energy``, positions ``x1``, ``y1`` ..., and the state.
+    """Quantities with names: ``energy``, positions ``x1``, ``y1`` ..., outputs, and the state.
 
     The number is that of the mass, in the order of the system; two axes are x and y.
     """
@@ -24,7 +24,7 @@ def named_outputs(kinetics: Kinetics) -> dict[str, sp.Expr]:
         for axis, part in zip("xyz", mass.position, strict=False)
     }
     state = {s.name: s for s in (*system.q, *system.qdot)}
-    return {"energy": kinetics.energy} | positions | state
+    return {"energy": kinetics.energy} | positions | dict(system.measured) | state
 
 
 def outputs(kinetics: Kinetics, formulas: Sequence[Formula]) -> tuple[sp.Expr, ...]:
