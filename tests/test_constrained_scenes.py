@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from solvers.app.modules import load
+from solvers.integration.integrate import integrate
 from solvers.io.toml_input import InputError
 from solvers.scenes.plots import full_note
 from solvers.scenes.reading import find
@@ -125,3 +126,18 @@ def test_sweeps_give_a_velocity_by_the_energy(tmp_path: Path) -> None:
     energies = module.energy_many(0.0, states.T, np.array(params))
     assert energies == pytest.approx(np.full(5, 5.0), abs=1e-12)
     assert np.abs(module.constraints_many(0.0, states.T, np.array(params))).max() < 1e-12
+
+
+def test_values_of_eliminated_coordinates_are_refused(tmp_path: Path) -> None:
+    text = ROCKER.replace("coincide", 'constraints = ["x - a*cos(phi)"]\ncoincide')
+    (tmp_path / "slider.toml").write_text(text.replace("[parameters]", "x = {}\n[parameters]"))
+    settings = SCENE.replace("rocker", "slider")
+    (tmp_path / "scene.toml").write_text(settings + "phi = 1\n")
+    one = find(str(tmp_path / "scene.toml"), load)
+    assert "x" not in one.module.STATE
+    words = "has 'x', which follows from phi, psi, chi: give these, or .* keep_coordinates=True"
+    with pytest.raises(ValueError, match=f"y0 {words}"):
+        integrate(one.module, (0, 1), {"x": 0.1}, {})
+    (tmp_path / "scene.toml").write_text(settings + "x = 0.1\n")
+    with pytest.raises(InputError, match=words):
+        find(str(tmp_path / "scene.toml"), load)

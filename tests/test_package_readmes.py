@@ -183,7 +183,8 @@ def test_the_letters_of_the_readme_are_those_of_a_document(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("letters.toml").write_text(blocks(VERIFICATION, "toml")[1])
+    (letters,) = (text for text in blocks(VERIFICATION, "toml") if "# letters.toml" in text)
+    Path("letters.toml").write_text(letters)
     Path("my_page.md").write_text(r"$$\ddot\alpha = -\frac gw\cos\alpha$$")
     assert main(["verify", "my_page.md", "--names", "letters.toml"]) == 0
     assert " verified " in capsys.readouterr().out

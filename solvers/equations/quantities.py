@@ -1,12 +1,12 @@
 """Checks of numbers: real, finite, and of the sign that a generated module declares."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, outputs
 from solvers.io.suggestion import did_you_mean, shortened
 
 Array: TypeAlias = NDArray[np.float64]
@@ -97,6 +97,7 @@ def quantities(
     """
     given: Any = values
     if isinstance(values, Mapping):
+        check_outputs(module, what, values)
         given = _in_order(what, names, values, defaults)
     elif not isinstance(values, list | tuple):
         given = np.asarray(values)
@@ -110,6 +111,16 @@ def quantities(
     except ValueError as error:
         shapes = ", ".join(f"{n}: {c.shape}" for n, c in zip(names, columns, strict=True))
         raise ValueError(f"the values of {what} differ in shape: {shapes}") from error
+
+
+def check_outputs(module: GeneratedModule, what: str, names: Iterable[str]) -> None:
+    """Refuse values of outputs, such as coordinates that were eliminated."""
+    for name in names:
+        if name in outputs(module):
+            raise ValueError(
+                f"{what} has {name!r}, which follows from {', '.join(module.COORDINATES)}: give "
+                "these, or derive the system with keep_coordinates=True"
+            )
 
 
 def _in_order(

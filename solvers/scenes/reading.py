@@ -9,6 +9,7 @@ from typing import Any
 
 from solvers.equations.assembly import has_constraints
 from solvers.equations.module import GeneratedModule, title
+from solvers.equations.quantities import check_outputs
 from solvers.io import toml_input
 from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError
@@ -127,6 +128,7 @@ def _parameters(module: GeneratedModule, table: object) -> tuple[float, ...]:
 
 def _initial(module: GeneratedModule, table: object) -> tuple[dict[str, float], dict[str, float]]:
     """Components of the initial state, and guesses of those that constraints determine."""
+    check_outputs(module, "[initial]", toml_input.table("initial", table))
     given, units = _table("initial", table, module.STATE), module.UNITS
     is_constrained, guesses = has_constraints(module), dict[str, Any]()
     for name, value in list(given.items()):
