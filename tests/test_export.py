@@ -6,6 +6,7 @@ import shutil
 import subprocess
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +104,17 @@ def test_an_absent_mass_is_left_out() -> None:
     moved = at(result, np.array([0.05, 0.1]))
     assert np.isnan(moved.y).all(axis=1).tolist() == np.isnan(result.y).all(axis=1).tolist()
     assert export._Panel(Figure().subplots(), result, moved.t).masses.shape == (1, 2, 2)
+
+
+@pytest.mark.parametrize("name", ["rest", "spring"])
+def test_motions_along_a_line_have_room_beside_it(name: str) -> None:
+    result = run_scene(replace(load_scene(name), duration=0.2, beside=()))
+    figure, (panel,) = export._figure([result], result.t[:1])
+    for low, high in (panel.axes.get_xlim(), panel.axes.get_ylim()):
+        assert high - low > 0.5 * panel.size
+    figure.draw_without_rendering()
+    boxes = [tick.label1.get_window_extent() for tick in panel.axes.xaxis.get_major_ticks()]
+    assert all(a.x1 < b.x0 for a, b in pairwise(boxes))
 
 
 def test_a_failed_export_leaves_the_old_file_and_nothing_else(

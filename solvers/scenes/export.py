@@ -181,14 +181,20 @@ def _figure(results: Sequence[SceneResult], times: Array) -> tuple[Figure, list[
     high = np.max([panel.high for panel in drawn], axis=0)
     margin = 0.06 * float((high - low).max()) or 1.0
     width, height = high - low + 2 * margin
-    ratio = min(max(width / height, NARROW), WIDE)
+    # of a motion along a line, room beside it
+    width, height = max(width, NARROW * height), max(height, width / WIDE)
+    (left, right), (bottom, top) = (
+        (middle - side / 2, middle + side / 2)
+        for middle, side in zip((low + high) / 2, (width, height), strict=True)
+    )
+    ratio = width / height
     # even numbers of pixels, as MP4 requires
     size = (2 * round(HEIGHT * ratio * PIXELS / 2) / PIXELS * len(results), HEIGHT)
     figure, axes = panels(plain(scene.title), columns=len(results), size=size)
     for panel, own, result in zip(drawn, axes, results, strict=True):
         panel.axes = own
         label_axes(own, "path", [result])
-        own.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
+        own.set(xlim=(left, right), ylim=(bottom, top))
         own.set_aspect("equal", adjustable="box")
         own.spines[["top", "right"]].set_visible(False)
         own.xaxis.set_major_locator(MaxNLocator(6))
