@@ -135,7 +135,13 @@ def rolling() -> System:
         constraints=constraints)  # fmt: skip
 
 
-SYSTEMS = (double_pendulum, closed_crank, crank, driven, lifted, rolling)
+def guided() -> System:
+    """The constraint that remains depends on the eliminated coordinate."""
+    return System("guided", "Guided", [X, Y, S], [KG, *LENGTHS, GRAVITY], [PointMass(m, (x, y)),
+        PointMass(m, (s, x))], constraints=[s - 2 * x, s**2 + y**2 - b**2])  # fmt: skip
+
+
+SYSTEMS = (guided, double_pendulum, closed_crank, crank, driven, lifted, rolling)
 
 
 def differences(system: System) -> dict[str, float]:
