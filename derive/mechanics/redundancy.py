@@ -27,7 +27,9 @@ Array: TypeAlias = NDArray[np.float64]
 #: Most guesses, and configurations that decide together.
 GUESSES, ENOUGH = 60, 8
 #: Most Gauss-Newton steps, their largest change of a coordinate, and most halvings of a step.
-STEPS, LARGEST, HALVINGS = 100, 0.5, 20
+STEPS, LARGEST, HALVINGS = 100, 0.5, 10
+#: The ratio of residuals after a step and before it above which there is no solution near.
+SLOWEST = 0.98
 #: A residual that counts as 0, and the distance of a row from others on which it depends.
 CLOSED, DEPENDENT = 1e-9, 1e-6
 #: The distance to other configurations, at which redundant constraints still hold.
@@ -94,15 +96,21 @@ class Closure:
         columns = (equations.constraint_drift, *equations.constraint_jacobian.T.tolist())
         entries = [*equations.holonomic, *(entry for column in columns for entry in column)]
         entries = [entry.xreplace(values) for entry in entries]
-        return sp.lambdify([*system.q, TIME], entries, "numpy", cse=True)
+        return sp.lambdify([*system.q, TIME], entries, "math", cse=True)  # faster than NumPy
 
     def values(self, at: Configuration) -> tuple[Array, Array, Array]:
         """Residuals of the constraints of coordinates, drifts b, and G in units of the scales."""
-        with np.errstate(all="ignore"):
-            numbers = np.array(self._function(*at.q, at.t), dtype=float)
+        numbers = self._numbers(at)
         h, m = len(self.of_coordinates), len(self.conditions)
         jacobian = numbers[h + m :].reshape(-1, m).T * self.scales
         return numbers[:h] / self.sizes, numbers[h : h + m], jacobian
+
+    def _numbers(self, at: Configuration) -> Array:
+        try:
+            return np.array(self._function(*at.q.tolist(), at.t), dtype=float)
+        except (ArithmeticError, ValueError):  # as of roots of negative numbers
+            count = len(self.of_coordinates) + len(self.conditions) * (len(at.q) + 1)
+            return np.full(count, np.nan)
 
     @cached_property
     def scales(self) -> Array:
@@ -132,8 +140,7 @@ class Closure:
     @cached_property
     def sizes(self) -> Array:
         """Sizes of the constraints of coordinates at the guesses."""
-        with np.errstate(all="ignore"):
-            rows = [np.array(self._function(*at.q, at.t), dtype=float) for at in self.guesses]
+        rows = [self._numbers(at) for at in self.guesses]
         h = len(self.of_coordinates)
         values = np.abs(np.array(rows)[:, :h])
         finite = np.where(np.isfinite(values), values, 0.0).max(axis=0, initial=0.0)
@@ -152,7 +159,7 @@ class Closure:
             for _ in range(HALVINGS):
                 trial = Configuration(now.q + step * self.scales, now.t)
                 values = self.values(trial)
-                if np.linalg.norm(values[0][chosen]) < np.linalg.norm(residuals[chosen]):
+                if np.linalg.norm(values[0][chosen]) < SLOWEST * np.linalg.norm(residuals[chosen]):
                     break
                 step /= 2
             else:
