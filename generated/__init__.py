@@ -4,6 +4,7 @@
 __all__ = [
     "cart_3",
     "chain_3",
+    "chaplygin_sleigh",
     "coupled_pendulums",
     "double_bar_pendulum",
     "double_pendulum",
