@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from derive.formulas.expansion import is_expandable
 from derive.formulas.switching import decisive_numbers, switching_functions
 from derive.mechanics.reduction import gathered, reduced
 from derive.system.rigid_body import RigidBody
@@ -14,6 +15,9 @@ from derive.system.symbols import TIME
 from derive.system.system import System
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
+
+#: Terms of the largest expression whose common factors are searched.
+MOST_FACTORED = 200
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,7 @@ class Kinetics:
             for inertia, tangent in zip(inertias, tangents, strict=True):
                 pair = (tangent[i], tangent[j])
                 if pair not in dots:
-                    dots[pair] = sp.factor_terms(reduced(_dot(*pair)))
+                    dots[pair] = _factored(reduced(_dot(*pair)))
                 totals[dots[pair]] = totals.get(dots[pair], sp.S.Zero) + inertia
             return sp.Add(*(total * dot for dot, total in totals.items()))
 
@@ -196,6 +200,12 @@ class Kinetics:
 
 def _dot(a: Sequence[sp.Expr | int], b: Sequence[sp.Expr]) -> sp.Expr:
     return sp.Add(*(x * y for x, y in zip(a, b, strict=True)))
+
+
+def _factored(expression: sp.Expr) -> sp.Expr:
+    """The expression with common factors outside; unchanged if to find them takes too long."""
+    short = is_expandable(expression, largest=MOST_FACTORED)
+    return sp.factor_terms(expression) if short else expression
 
 
 def derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
